@@ -1,0 +1,66 @@
+# `make` lists the targets. Overrides: RENDER=0|1 (default 1), JOBS=n, PORT=8000,
+# PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+MAKEFLAGS += --no-print-directory
+
+ifdef PYTHON
+  PY := $(PYTHON)
+  ENVIRONMENT :=
+else
+  PY := .venv/bin/python
+  ENVIRONMENT := .venv/.installed
+endif
+BASE_PYTHON ?= python3
+
+# The code under test is this checkout's, whatever environment runs it.
+export PYTHONPATH := $(CURDIR)
+export RENDER ?= 1
+export JOBS
+
+.PHONY: help
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
+	  while IFS='|' read -r name text; do printf '  make %-10s %s\n' "$$name" "$$text"; done
+
+.PHONY: book
+book: $(ENVIRONMENT) ## measure every lesson on CPU, verify, render and check the site
+	@$(PY) build_scripts/book.py
+
+.PHONY: test
+test: $(ENVIRONMENT) ## run all tests (needs Debian's chromium)
+	@$(PY) -m pytest
+
+.PHONY: lint
+lint: $(ENVIRONMENT) ## ruff, mypy and codespell
+	@$(PY) -m ruff check .
+	@$(PY) -m ruff format --check .
+	@$(PY) -m mypy
+	@$(PY) -m codespell_lib
+
+.PHONY: serve
+serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
+	@$(PY) build_scripts/serve.py
+
+.PHONY: clean
+clean: ## remove the built site and the executed pages, keep the compiled kernels
+	@rm -rf book/_build book/_build.* .cache/pages .pytest_cache .mypy_cache .ruff_cache .hypothesis
+
+.PHONY: distclean
+distclean: clean ## remove the environment and every cache too
+	@rm -rf .venv .cache
+
+.PHONY: lock
+lock: $(ENVIRONMENT) ## resolve requirements.lock anew from pyproject.toml
+	@$(PY) build_scripts/lock.py
+
+# The stamp is written last: an installation that was broken off starts again.
+.venv/.installed: requirements.lock
+	@$(BASE_PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 14) else \
+	  "The course needs Python 3.11 to 3.13, found %d.%d. Name another with BASE_PYTHON=python3.11." % v)'
+	@echo "Setting up .venv from requirements.lock (once; some minutes)"
+	@$(BASE_PYTHON) -m venv --clear .venv
+	@.venv/bin/python -m pip install -qq --disable-pip-version-check --requirement requirements.lock
+	@touch $@

@@ -1,0 +1,67 @@
+"""Build the course site: `make book`.
+
+Environment: RENDER=0|1 (default 1: the labs' camera is used), JOBS (pages at once; default one for
+each core) and ROBO_GENESIS_BACKEND=auto|cpu (default cpu).
+Exit status: 0 published, 1 failed, 130 interrupted; unless it is 0, the old site still stands.
+"""
+
+import argparse
+import os
+import signal
+import sys
+from pathlib import Path
+
+from robo_genesis.build import Build, BuildError, run_build
+from robo_genesis.execute import TIMEOUT
+from robo_genesis.pages import PageError
+from robo_genesis.project import BOOK, CACHE, ProjectError
+from robo_genesis.render import RenderError
+
+
+def choice(name: str, default: str, choices: tuple[str, ...]) -> str:
+    """Return an environment variable that has few valid values; exit with 1 on another."""
+    value = os.environ.get(name) or default
+    if value not in choices:
+        sys.exit(f"{name}={value!r} is not valid. Choices: {', '.join(choices)}.")
+    return value
+
+
+def jobs() -> int | None:
+    """Return JOBS, None where it is not set; exit with 1 unless it is a positive number."""
+    value = os.environ.get("JOBS") or None
+    if value is not None and not (value.isdecimal() and int(value) > 0):
+        sys.exit(f"JOBS={value!r} is not valid. Give the number of pages that run at once, from 1.")
+    return int(value) if value else None
+
+
+def main() -> int:
+    """Run the build and return its exit status."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--book", type=Path, default=BOOK, help="folder of the pages")
+    parser.add_argument("--cache", type=Path, default=CACHE, help="folder of the caches")
+    parser.add_argument("--timeout", type=int, default=TIMEOUT, help="seconds for one cell")
+    args = parser.parse_args()
+    os.environ["ROBO_GENESIS_RENDER"] = choice("RENDER", "1", ("0", "1"))
+    os.environ["ROBO_GENESIS_BACKEND"] = choice("ROBO_GENESIS_BACKEND", "cpu", ("auto", "cpu"))
+    # A cancelled CI job sends SIGTERM: the same way out as Ctrl-C, so that no kernel stays behind.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    build = Build(
+        book=args.book.absolute(),
+        cache=args.cache.absolute(),
+        jobs=jobs(),
+        timeout=args.timeout,
+        say=lambda line: print(line, flush=True),
+    )
+    try:
+        print("\n".join(run_build(build)))
+    except (BuildError, PageError, ProjectError, RenderError) as error:
+        print(f"\n{error}\n\nFAILED: nothing was published.", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("\nInterrupted: nothing was published.", file=sys.stderr)
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,188 @@
+"""The stages of `make book` in their order: execute, verify, render, check, publish."""
+
+import fcntl
+import os
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from robo_genesis import project
+from robo_genesis.execute import TIMEOUT, execute_pages
+from robo_genesis.page_results import PageResult, failure_report
+from robo_genesis.pages import Page, find_pages, fingerprint
+from robo_genesis.publish import publish, recover
+from robo_genesis.render import render
+from robo_genesis.site_checks import check_site
+
+Verify = Callable[[Path, str], Any]
+
+
+class BuildError(Exception):
+    """A stage failed; the message is the whole report. The site that stood before still stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class Build:
+    """What to build, with which resources, and where progress is printed.
+
+    `jobs` None means one for each core; `verify` takes a bundle folder and its run id, returns the
+    manifest or raises; None is the course's own verification.
+    """
+
+    root: Path = project.ROOT
+    book: Path = project.BOOK
+    cache: Path = project.CACHE
+    jobs: int | None = None
+    timeout: int = TIMEOUT
+    verify: Verify | None = None
+    say: Callable[[str], None] = print
+
+
+class Progress:
+    """Prints lines of elapsed time, stage, page and event."""
+
+    def __init__(self, say: Callable[[str], None]):
+        self.say, self.begin = say, time.monotonic()
+
+    def __call__(self, stage: str, what: str, event: str = "") -> None:
+        """Print one line."""
+        elapsed = time.monotonic() - self.begin
+        self.say(f"[{elapsed:7.1f} s] {stage:8} {what}  {event}".rstrip())
+
+
+def run_build(build: Build) -> list[str]:
+    """Build the site and publish it.
+
+    Args:
+        build: see there.
+
+    Returns:
+        The last lines for the user: where the site is and what it was built with.
+
+    Raises:
+        BuildError: a stage failed; nothing was published.
+        ProjectError, PageError: the checkout is not fit for a build.
+    """
+    with only_build(build.cache):
+        recover(build.book)
+        progress = Progress(build.say)
+        engine = project.require_pinned_engine(build.root)
+        project.remove_stale_kernel_lock(build.cache)
+        pages = find_pages(build.book)
+        folder = project.page_cache_folder(fingerprint(pages, build.root), build.cache)
+        results = _execute(build, pages, folder, progress)
+        manifests = _verify(build, results, progress)
+        progress("render", "all pages")
+        staging, log = build.cache / "staging", build.cache / "render.log"
+        html = render(build.book, staging, folder, log)
+        checked = _check(html, progress)
+        html = publish(build.book, html, results)
+        progress("publish", str(html))
+        return [f"Site: {html / 'index.html'}", *_summary(engine, results, manifests, checked)]
+
+
+def _execute(
+    build: Build, pages: Sequence[Page], folder: Path, progress: Progress
+) -> list[PageResult]:
+    """Run the execution stage; every page is tried before the report."""
+    cores = os.cpu_count() or 1
+    progress("execute", f"{len(pages)} pages", f"fingerprint {folder.name}")
+    environment = {
+        **project.engine_cache_environment(build.root, build.cache),
+        **project.environment_contract(),
+        "ROBO_GENESIS_COMMAND": "make book",
+    }
+    results = execute_pages(
+        pages,
+        folder,
+        jobs=build.jobs or max(1, min(cores, len(pages))),
+        timeout=build.timeout,
+        environment=environment,
+        on_progress=lambda page, text: progress("execute", page.docname, text),
+    )
+    if any(result.failure for result in results):
+        raise BuildError(failure_report(results))
+    return results
+
+
+def _verify(build: Build, results: Sequence[PageResult], progress: Progress) -> Mapping[str, Any]:
+    """Return the accepted manifests of all bundles, by page name."""
+    from robo_genesis.evidence.bundle import BundleRefused
+    from robo_genesis.evidence.verify import verify_bundle
+
+    verify = build.verify or verify_bundle
+    manifests, refused = {}, []
+    for result in results:
+        if result.bundle is None:
+            continue
+        try:
+            manifests[result.page.docname] = verify(result.bundle, result.run_id)
+            progress("verify", result.page.docname, "accepted")
+        except BundleRefused as error:
+            refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
+    if refused:
+        raise BuildError("\n".join(refused))
+    return manifests
+
+
+def _check(html: Path, progress: Progress) -> int:
+    """Check the rendered site and return the number of checks passed."""
+    checks = check_site(html)
+    for check in checks:
+        found = f"{len(check.problems)} problems" if check.problems else "passed"
+        progress("check", f"{check.name} ({check.count})", found)
+    problems = [f"{check.name}: {line}" for check in checks for line in check.problems]
+    if problems:
+        raise BuildError("\n".join([f"The site has {len(problems)} problems.", *problems]))
+    return len(checks)
+
+
+def _summary(
+    engine: str, results: Sequence[PageResult], manifests: Mapping[str, Any], checked: int
+) -> list[str]:
+    """Return the facts that a build ends with, one line for each lab."""
+    counts = Counter(result.status for result in results)
+    labs = [result.page for result in results if result.page.page == "lab"]
+    lines = [f"Engine: {project.ENGINE} {engine}"]
+    for page in labs:
+        facts = manifests[page.docname].predicate
+        renderer = facts.render.renderer or "SKIP: no camera frames"
+        lines.append(
+            f"Lesson {page.lesson}: engine {facts.engine.version}, backend requested "
+            f"{facts.backend.requested}, actual {facts.backend.actual}, "
+            f"render {facts.render.mode} ({renderer})"
+        )
+    lines.append(f"Pages: {counts['executed']} executed, {counts['reused']} reused.")
+    measured = sum(len(manifest.predicate.checks) for manifest in manifests.values())
+    lines.append(f"Checks passed: {measured} on what was measured, {checked} on the site.")
+    return lines
+
+
+@contextmanager
+def only_build(cache: Path) -> Iterator[None]:
+    """Hold the lock of builds.
+
+    Args:
+        cache: folder of the lock file.
+
+    Raises:
+        BuildError: another build runs; the message names its process.
+    """
+    cache.mkdir(parents=True, exist_ok=True)
+    with (cache / "build.lock").open("a+") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            lock.seek(0)
+            raise BuildError(
+                f"Another build runs here (process {lock.read().strip() or 'unknown'}). "
+                "Wait for it, or stop it with Ctrl-C there."
+            ) from None
+        lock.truncate(0)
+        lock.write(str(os.getpid()))
+        lock.flush()
+        yield

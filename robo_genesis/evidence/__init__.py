@@ -1,0 +1,1 @@
+"""Evidence bundles: their form (`bundle`), written by `record` and read by `verify`."""

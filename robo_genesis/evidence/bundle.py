@@ -1,0 +1,266 @@
+"""The evidence bundle: one folder with everything that one page measured on one backend.
+
+manifest.json   in-toto Statement: every other file with its sha256, one strict predicate
+metrics.json    value, unit, class and source array of each metric; null = not observed
+arrays.json     dims, dtype, unit and long name of every array
+arrays/<case>.npz
+frames/*.png    camera frames only
+log.txt         the engine's own log
+"""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import rfc8785
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
+PREDICATE_TYPE = "urn:robo-genesis:evidence:v1"
+SCHEMA_VERSION = 1
+
+Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
+Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z$")]
+
+
+class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepted or refused
+    """A bundle that must not become evidence. `code` is stable; the message says what to do."""
+
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(f"{code}: {message}")
+        self.code = code
+
+
+class Strict(BaseModel):
+    """A record that refuses unknown fields, converted types and later changes."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class Digest(Strict):
+    """Digests of one file."""
+
+    sha256: Sha256
+
+
+class Subject(Strict):
+    """One file of the bundle, path relative to its folder."""
+
+    name: str
+    digest: Digest
+
+
+class EngineRecord(Strict):
+    """The engine that computed."""
+
+    version: str
+    quadrants_version: str
+    precision: str
+    files_match_wheel: bool
+
+
+class BackendRecord(Strict):
+    """Where it computed: asked for, found after init, found again at the end."""
+
+    requested: Literal["auto", "cpu"]
+    actual: Literal["cpu", "cuda", "amdgpu", "metal"]
+    actual_at_end: Literal["cpu", "cuda", "amdgpu", "metal"]
+    arch: str
+    torch_device: str
+    torch_version: str
+    hip_version: str | None
+    cuda_version: str | None
+    device_name: str
+    driver: str | None
+
+
+class RenderRecord(Strict):
+    """Who drew the frames, or that none were asked for."""
+
+    mode: Literal["camera", "skip"]
+    vendor: str | None
+    renderer: str | None
+    software: bool | None
+
+
+class HostRecord(Strict):
+    """The machine and its packages."""
+
+    os: str
+    machine: str
+    cpu: str
+    cores: int
+    python: str
+    packages: dict[str, str]
+
+
+class GitRecord(Strict):
+    """State of the checkout, where there is one."""
+
+    commit: str
+    dirty: bool
+
+
+class SourceRecord(Strict):
+    """Digests of the code that computed: the page's code cells and the package's modules."""
+
+    page: Sha256 | None
+    modules: dict[str, Sha256]
+
+
+class CheckRecord(Strict):
+    """Outcome of one named check."""
+
+    name: str
+    passed: bool
+    detail: str
+
+
+class Predicate(Strict):
+    """What is said about the files."""
+
+    schema_version: int
+    lesson: str
+    page: str
+    run_id: RunId
+    started: Timestamp
+    ended: Timestamp
+    command: str
+    engine: EngineRecord
+    backend: BackendRecord
+    render: RenderRecord
+    host: HostRecord
+    parameters: dict[str, Any]
+    seed: int
+    checks: list[CheckRecord]
+    warnings: list[str]
+    git: GitRecord | None
+    source: SourceRecord
+    evidence_key: Sha256
+
+
+class Manifest(Strict):
+    """`manifest.json`, in the shape of an in-toto Statement."""
+
+    type_: Literal["https://in-toto.io/Statement/v1"] = Field(alias="_type")
+    subject: list[Subject]
+    predicate_type: Literal["urn:robo-genesis:evidence:v1"] = Field(alias="predicateType")
+    predicate: Predicate
+
+
+class Metric(Strict):
+    """One number of `metrics.json`; null where it was not observed."""
+
+    value: int | float | None
+    unit: str
+    kind: Literal["exact", "value", "performance"] = Field(alias="class")
+    source: list[str] = Field(alias="from")
+
+
+class Variable(Strict):
+    """One array of `arrays.json`. `unit` has one entry a DOF where DOFs have different units."""
+
+    dims: list[str]
+    shape: list[int]
+    dtype: str
+    unit: str | list[str]
+    long_name: str
+
+
+class CaseArrays(Strict):
+    """The arrays of one case."""
+
+    file: str
+    variables: dict[str, Variable]
+
+
+class Arrays(Strict):
+    """`arrays.json`: labels of the dimensions, and every array of every case."""
+
+    coords: dict[str, list[str]]
+    cases: dict[str, CaseArrays]
+
+
+def sha256(path: Path) -> str:
+    """Return the hexadecimal SHA-256 of a file."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def canonical_sha256(value: Any) -> str:
+    """Return the SHA-256 of a value's canonical JSON (RFC 8785)."""
+    return hashlib.sha256(rfc8785.dumps(value)).hexdigest()
+
+
+def evidence_key(predicate: dict[str, Any]) -> str:
+    """Return the key that says which question a bundle answers.
+
+    It covers schema, lesson and page, the code that computes, engine versions, parameters, seed
+    and precision; not commit, time, host, driver or prose.
+    """
+    engine = predicate["engine"]
+    keyed = {name: predicate[name] for name in ("schema_version", "lesson", "page", "source")}
+    keyed |= {name: predicate[name] for name in ("parameters", "seed")}
+    keyed["engine"] = {n: engine[n] for n in ("version", "quadrants_version", "precision")}
+    return canonical_sha256(keyed)
+
+
+def parse_strict(text: str, where: str) -> Any:
+    """Parse JSON that has no duplicate keys, NaN or infinities, else raise BundleRefused."""
+
+    def no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        keys = [key for key, _ in pairs]
+        if len(set(keys)) != len(keys):
+            raise ValueError(f"duplicate key among {keys}")
+        return dict(pairs)
+
+    def no_constant(name: str) -> None:
+        raise ValueError(f"{name} is no JSON number")
+
+    try:
+        return json.loads(text, object_pairs_hook=no_duplicates, parse_constant=no_constant)
+    except ValueError as error:
+        raise BundleRefused("bad-json", f"{where}: {error}. Record the bundle again.") from error
+
+
+def read_json(folder: Path, name: str) -> Any:
+    """Return the strictly parsed content of one JSON file of a bundle."""
+    path = folder / name
+    if not path.is_file():
+        raise BundleRefused("missing-file", f"{name} is not in {folder.name}. Record it again.")
+    try:
+        return parse_strict(path.read_text(encoding="utf-8"), name)
+    except UnicodeDecodeError as error:
+        raise BundleRefused("bad-json", f"{name} is not UTF-8: {error}.") from error
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """Return a bundle's manifest after checking its form, and its form only."""
+    return _validated(Manifest, read_json(folder, "manifest.json"), "manifest.json")
+
+
+def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
+    """Return metrics by group (a case, or `model`) and name."""
+    return {
+        group: {
+            n: _validated(Metric, value, f"metrics.json {group}.{n}") for n, value in items.items()
+        }
+        for group, items in read_json(folder, "metrics.json").items()
+    }
+
+
+def read_arrays(folder: Path) -> Arrays:
+    """Return the description of a bundle's arrays."""
+    return _validated(Arrays, read_json(folder, "arrays.json"), "arrays.json")
+
+
+def _validated(model: type, value: Any, where: str) -> Any:
+    try:
+        return model.model_validate(value)  # type: ignore[attr-defined]
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"])
+        raise BundleRefused(
+            "bad-schema", f"{where}: {place}: {first['msg']}. Record the bundle again."
+        ) from error

@@ -1,0 +1,150 @@
+"""Specification of lesson L04: cases, predictions and what they are compared by.
+
+Pages, checks, verification and tests read the experiment here; none of them repeats it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.joint_control import ControlCase
+from robo_genesis.metrics import (
+    RISE_FRACTION,
+    SATURATION_THRESHOLD,
+    SETTLING_BAND,
+    StepMetrics,
+    step_metrics,
+)
+from robo_genesis.scene_config import (
+    DT,
+    EFFORT_LIMIT,
+    FRANKA_MJCF,
+    JOINT_NAMES,
+    KP_BASELINE,
+    KV_BASELINE,
+    Q_START,
+    FloatArray,
+)
+from robo_genesis.trace import Trace
+
+LESSON = "l04"
+TITLE = "Robot models, degrees of freedom, and joint control"
+MINIMUM_HARDWARE = "cpu"
+
+STEPPED_JOINT = "joint4"
+STEP = 0.25
+"""Height of the commanded step [rad]."""
+
+WINDOW = 1.2
+"""Length of every run [s]."""
+
+STEPS = round(WINDOW / DT)
+
+EXPECTED_MODEL = {"links": 11, "joints": 9, "dofs": 9, "qpos": 9}
+EXPECTED_TYPES = ("REVOLUTE",) * 7 + ("PRISMATIC",) * 2
+
+RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "1": 0.5}
+"""Differences below these are called equal: the noise floor of a comparison, by unit."""
+
+
+def with_entry(values: FloatArray, value: float) -> FloatArray:
+    """Return a read-only copy of `values` (9,) in which only the stepped joint's entry differs."""
+    changed = np.array(values)
+    changed[JOINT_NAMES.index(STEPPED_JOINT)] = value
+    changed.setflags(write=False)
+    return changed
+
+
+START_OF_STEP = float(Q_START[JOINT_NAMES.index(STEPPED_JOINT)])
+
+BASELINE = ControlCase(
+    q_start=Q_START,
+    q_target=with_entry(Q_START, START_OF_STEP + STEP),
+    kp=KP_BASELINE,
+    kv=KV_BASELINE,
+    effort_limit=EFFORT_LIMIT,
+    steps=STEPS,
+)
+G1 = replace(BASELINE, kp=with_entry(KP_BASELINE, 3500.0), kv=with_entry(KV_BASELINE, 100.0))
+G2 = replace(G1, kp=with_entry(KP_BASELINE, 7000.0))
+G3 = replace(G2, kv=with_entry(KV_BASELINE, 300.0))
+
+CASES = {"baseline": BASELINE, "G1": G1, "G2": G2, "G3": G3}
+
+ONE_FACTOR = {("G1", "G2"): [f"kp[{STEPPED_JOINT}]"], ("G2", "G3"): [f"kv[{STEPPED_JOINT}]"]}
+"""What may differ between two compared cases, and nothing else."""
+
+PREDICTIONS = {
+    ("G1", "G2"): (
+        ("rise_time", "no later"),
+        ("peak_speed", "higher"),
+        ("overshoot", "higher"),
+        ("saturation_samples", "higher"),
+    ),
+    ("G2", "G3"): (
+        ("peak_speed", "lower"),
+        ("overshoot", "lower"),
+        ("rise_time", "later"),
+    ),
+}
+"""Written down before the runs: what the second case of a pair would do against the first."""
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input of the lesson as JSON values, for the evidence key."""
+    return {
+        "stepped_joint": STEPPED_JOINT,
+        "model": FRANKA_MJCF,
+        "rise_fraction": RISE_FRACTION,
+        "settling_band_rad": SETTLING_BAND,
+        "saturation_threshold": SATURATION_THRESHOLD,
+        "cases": {
+            name: {key: np.asarray(value).tolist() for key, value in asdict(case).items()}
+            for name, case in CASES.items()
+        },
+    }
+
+
+def measure(traces: Mapping[str, Trace], entry: int) -> dict[str, StepMetrics]:
+    """Return the metrics of each case of the lesson, from its trace alone."""
+    return {name: step_metrics(traces[name], entry) for name in CASES}
+
+
+SOURCES = {
+    "initial_error": ("q_rad_or_m", "target_rad_or_m"),
+    "rise_time": ("q_rad_or_m", "target_rad_or_m", "t_s"),
+    "overshoot": ("q_rad_or_m", "target_rad_or_m"),
+    "settling_time": ("q_rad_or_m", "target_rad_or_m", "t_s"),
+    "final_error": ("q_rad_or_m", "target_rad_or_m"),
+    "final_velocity": ("qd_rad_s_or_m_s",),
+    "peak_speed": ("qd_rad_s_or_m_s",),
+    "peak_control": ("control_force_Nm_or_N",),
+    "saturation_samples": ("control_force_Nm_or_N", "effort_limit_Nm_or_N"),
+    "saturation_duration": ("control_force_Nm_or_N", "effort_limit_Nm_or_N", "t_s"),
+}
+"""The arrays that each metric is computed from."""
+
+
+def metric_records(
+    metrics: Mapping[str, StepMetrics], model: Mapping[str, int]
+) -> dict[str, dict[str, dict[str, Any]]]:
+    """Return `metrics.json`: the model's counts and each case's metrics, with class and source."""
+    records = {
+        "model": {
+            name: {"value": count, "unit": "1", "class": "exact", "from": ["engine"]}
+            for name, count in model.items()
+        }
+    }
+    for case, measured in metrics.items():
+        records[case] = {
+            name: {
+                "value": value,
+                "unit": unit,
+                "class": "exact" if unit == "1" else "value",
+                "from": list(SOURCES[name]),
+            }
+            for name, value, unit in measured.items()
+        }
+    return records

@@ -1,0 +1,201 @@
+"""Which pages are executed, which modules they import, and the fingerprint of both."""
+
+import ast
+import hashlib
+import json
+import platform
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from IPython.core.inputtransformer2 import TransformerManager
+from myst_nb.core.read import is_myst_markdown_notebook, myst_nb_reader_plugin
+from nbformat import NotebookNode
+from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
+
+from robo_genesis.project import ROOT, environment_contract, installed_version, lock_digest
+
+PACKAGE = "robo_genesis"
+COMPUTING_PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
+DATA_SUFFIXES = (".json", ".toml", ".yaml", ".yml", ".csv")
+
+
+class PageError(Exception):
+    """A page or the table of contents is written in a way that the build cannot use."""
+
+
+@dataclass(frozen=True, slots=True)
+class Page:
+    """One page whose code cells are executed.
+
+    `lesson` and `page` come from the front matter's `robo_genesis: {lesson, page}`: such a page
+    runs the engine and must leave an evidence bundle. Both are None on other pages.
+    """
+
+    docname: str
+    path: Path
+    notebook: NotebookNode
+    lesson: str | None = None
+    page: str | None = None
+
+    @property
+    def declares_bundle(self) -> bool:
+        """Whether the page must leave an evidence bundle."""
+        return self.lesson is not None
+
+
+def find_pages(book: Path) -> list[Page]:
+    """Return the executed pages of a book, in the order of its table of contents.
+
+    Args:
+        book: the folder with `_toc.yml`.
+
+    Returns:
+        The MyST text notebooks among the pages that the table of contents names.
+
+    Raises:
+        PageError: a named file is missing, or a front matter is incomplete or not allowed.
+    """
+    try:
+        site_map = parse_toc_yaml(book / "_toc.yml")
+    except (OSError, MalformedError) as error:
+        raise PageError(f"The table of contents cannot be read: {error}") from error
+    if site_map.globs():
+        raise PageError(f"_toc.yml uses globs {sorted(site_map.globs())}; name every page instead.")
+    return [page for docname in site_map for page in _read(book, str(docname))]
+
+
+def _read(book: Path, docname: str) -> Iterator[Page]:
+    """Yield the page if it is executed."""
+    name = docname.removesuffix(".md")
+    path = (book / name).with_name(Path(name).name + ".md")
+    if not path.is_file():
+        raise PageError(f"_toc.yml names {docname!r}, but there is no {path}. Pages are .md files.")
+    if not is_myst_markdown_notebook(path.read_text("utf8")):
+        return
+    notebook = myst_nb_reader_plugin(str(path))
+    if "name" not in notebook.metadata.get("kernelspec", {}):
+        raise PageError(f"{name}: front matter needs `kernelspec: {{name: python3}}`.")
+    if notebook.metadata.get("execution", {}).get("allow_errors"):
+        raise PageError(
+            f"{name}: `execution: allow_errors` would publish failing cells; "
+            "tag the one cell `raises-exception` and say what it `expects`."
+        )
+    yield Page(name, path, notebook, *_declared(name, notebook))
+
+
+def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None]:
+    """Return lesson and page of the front matter, both None if it declares none."""
+    declared = notebook.metadata.get(PACKAGE)
+    if declared is None:
+        return None, None
+    parts = [declared.get(key) for key in ("lesson", "page")] if isinstance(declared, dict) else []
+    if not parts or not all(isinstance(part, str) and part.isidentifier() for part in parts):
+        raise PageError(
+            f"{name}: front matter has `{PACKAGE}: {declared!r}`; "
+            f"valid is `{PACKAGE}: {{lesson: l04, page: lab}}`, both plain words."
+        )
+    return parts[0], parts[1]
+
+
+def cell_sources(page: Page) -> list[str]:
+    """Return the page's code cells as plain Python, IPython's magics translated."""
+    transform = TransformerManager().transform_cell
+    return [transform(cell.source) for cell in page.notebook.cells if cell.cell_type == "code"]
+
+
+def code_digest(page: Page) -> str:
+    """Return the sha256 of the page's code cells as they are written; prose does not count."""
+    cells = [cell.source for cell in page.notebook.cells if cell.cell_type == "code"]
+    return hashlib.sha256(json.dumps(cells).encode()).hexdigest()
+
+
+def imported_modules(sources: Iterable[str], root: Path = ROOT) -> dict[str, Path]:
+    """Return the package's modules that some sources import, directly or through others.
+
+    Args:
+        sources: Python sources; one that does not parse counts as importing nothing, its page
+            fails when it is executed.
+        root: the folder that holds the package.
+
+    Returns:
+        Module name to file, packages by their `__init__.py`.
+    """
+    found: dict[str, Path] = {}
+    waiting = [name for source in sources for name in _imports(source, "")]
+    while waiting:
+        for name in _with_parents(waiting.pop()):
+            path = _module_file(root, name)
+            if path is None or name in found:
+                continue
+            found[name] = path
+            is_package = path.name == "__init__.py"
+            waiting += _imports(path.read_text("utf8"), name if is_package else _parent(name))
+    return found
+
+
+def _imports(source: str, package: str) -> list[str]:
+    """Return the dotted names below the course package that a source imports anywhere."""
+    try:
+        tree = ast.parse(source)
+    except SyntaxError:
+        return []
+    names: list[str] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            above = package.split(".")[: len(package.split(".")) - node.level + 1]
+            base = ".".join([*(above if node.level else []), *filter(None, [node.module])])
+            names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
+    return [name for name in names if name.split(".")[0] == PACKAGE]
+
+
+def _parent(name: str) -> str:
+    return name.rpartition(".")[0]
+
+
+def _with_parents(name: str) -> list[str]:
+    parts = name.split(".")
+    return [".".join(parts[: count + 1]) for count in range(len(parts))]
+
+
+def _module_file(root: Path, name: str) -> Path | None:
+    """Return the file of a module; None for a dotted name that is an attribute of one."""
+    base = root.joinpath(*name.split("."))
+    candidates = (base.with_name(base.name + ".py"), base / "__init__.py")
+    return next((path for path in candidates if path.is_file()), None)
+
+
+def fingerprint(
+    pages: Iterable[Page], root: Path = ROOT, environment: Mapping[str, str] | None = None
+) -> str:
+    """Return the name of everything, apart from the pages' own code, that decides their outputs.
+
+    jupyter-cache compares code cells alone; so its folder is named by this digest of the lock, the
+    installed versions, the package modules that the pages import, the package's data files, the
+    environment contract and the Python version.
+
+    Args:
+        pages: the executed pages.
+        root: the checkout.
+        environment: variables, by default those of this process.
+
+    Returns:
+        20 hex digits.
+    """
+    sources = [source for page in pages for source in cell_sources(page)]
+    files = list(imported_modules(sources, root).values())
+    files += [path for path in (root / PACKAGE).rglob("*") if path.suffix in DATA_SUFFIXES]
+    digests = {
+        path.relative_to(root).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in files
+    }
+    parts = {
+        "lock": lock_digest(root),
+        "installed": {name: installed_version(name) for name in COMPUTING_PACKAGES},
+        "python": platform.python_version(),
+        "environment": environment_contract(environment),
+        "files": digests,
+    }
+    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:20]

@@ -1,0 +1,161 @@
+"""Figures of the course: axes in, axes out; no numerics, no show()."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+
+from robo_genesis.metrics import SETTLING_BAND
+from robo_genesis.robot_model import JointMap
+from robo_genesis.trace import Trace
+
+# Okabe and Ito's palette; line styles tell the cases apart without colour too.
+STYLES: dict[str, dict[str, Any]] = {
+    "baseline": {"color": "#4d4d4d", "linestyle": "-"},
+    "G1": {"color": "#0072b2", "linestyle": "-"},
+    "G2": {"color": "#d55e00", "linestyle": (0, (6, 2))},
+    "G3": {"color": "#00795c", "linestyle": (0, (6, 2, 1.5, 2))},
+}
+TARGET: dict[str, Any] = {"color": "#222222", "linestyle": ":", "linewidth": 1.4}
+LIMIT: dict[str, Any] = {"color": "#a8003d", "linestyle": (0, (1.5, 1.5)), "linewidth": 1.4}
+
+
+def use_course_style() -> None:
+    """Set fonts, grid and sizes; notebooks embed figures as SVG, the same bytes each run."""
+    mpl.rcParams.update(
+        {
+            "axes.grid": True,
+            "axes.spines.right": False,
+            "axes.spines.top": False,
+            "axes.titlesize": "medium",
+            "figure.constrained_layout.use": True,
+            "figure.facecolor": "white",
+            "font.size": 11,
+            "grid.color": "#d9d9d9",
+            "legend.frameon": False,
+            "lines.linewidth": 1.9,
+            "svg.fonttype": "path",
+            "svg.hashsalt": "robo-genesis",
+        }
+    )
+    try:
+        from matplotlib_inline.backend_inline import set_matplotlib_formats
+    except ImportError:  # not in a notebook
+        return
+    set_matplotlib_formats("svg", metadata={"Date": None, "Creator": None})
+
+
+def style(name: str) -> dict[str, Any]:
+    """Return the line style of a case; an unknown name gets the baseline's."""
+    return dict(STYLES.get(name, STYLES["baseline"]))
+
+
+def position(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
+    """Draw q of one joint for each trace, the common target and its settling band."""
+    k = joints.entry(joint)
+    unit = joints.position_units[k]
+    target = float(next(iter(traces.values())).target[0, k])
+    ax.axhspan(target - SETTLING_BAND, target + SETTLING_BAND, color="#e9e4d4", zorder=0,
+               label=f"settling band ±{SETTLING_BAND:g} {unit}")  # fmt: skip
+    ax.axhline(target, label="target", **TARGET)
+    for name, trace in traces.items():
+        ax.plot(trace.t, trace.q[:, k], label=name, **style(name))
+    return _finish(ax, f"Position of {joint}", f"q [{unit}]")
+
+
+def velocity(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
+    """Draw q̇ of one joint for each trace."""
+    k = joints.entry(joint)
+    for name, trace in traces.items():
+        ax.plot(trace.t_step, trace.qd[:, k], label=name, **style(name))
+    return _finish(ax, f"Velocity of {joint}", f"q̇ [{joints.position_units[k]}/s]")
+
+
+def control_force(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
+    """Draw the control force of one joint for each trace, between the limits read back."""
+    k = joints.entry(joint)
+    limit = float(next(iter(traces.values())).effort_limit[k])
+    for name, trace in traces.items():
+        ax.plot(trace.t_step, trace.control_force[:, k], label=name, **style(name))
+    ax.axhline(limit, label="limit, read back", **LIMIT)
+    ax.axhline(-limit, **LIMIT)
+    return _finish(ax, f"Control force of {joint}", f"control force [{joints.effort_units[k]}]")
+
+
+def response(
+    axes: Sequence[Axes], traces: Mapping[str, Trace], joints: JointMap, joint: str
+) -> Sequence[Axes]:
+    """Draw position, velocity and control force of one joint on three axes."""
+    for ax, draw in zip(axes, (position, velocity, control_force), strict=True):
+        draw(ax, traces, joints, joint)
+    return axes
+
+
+def two_forces(ax: Axes, trace: Trace, joints: JointMap, joint: str) -> Axes:
+    """Draw both force getters of one run: they answer different questions."""
+    k = joints.entry(joint)
+    ax.plot(
+        trace.t_step, trace.control_force[:, k], color="#0072b2", label="get_dofs_control_force"
+    )
+    ax.plot(trace.t_step, trace.internal_force[:, k], color="#a8003d", linestyle=(0, (6, 2)),
+            label="get_dofs_force")  # fmt: skip
+    limit = float(trace.effort_limit[k])
+    ax.axhline(limit, label="limit, read back", **LIMIT)
+    ax.axhline(-limit, **LIMIT)
+    return _finish(ax, f"Two getters, one run, {joint}", f"force [{joints.effort_units[k]}]")
+
+
+def assigned_and_commanded(
+    ax: Axes, assigned: Trace, commanded: Trace, joints: JointMap, joint: str
+) -> Axes:
+    """Draw a state that is assigned at every step beside one that is commanded."""
+    k = joints.entry(joint)
+    ax.axhline(float(commanded.target[0, k]), label="target", **TARGET)
+    ax.plot(assigned.t, assigned.q[:, k], color="#a8003d", linestyle=(0, (6, 2)),
+            label="state assigned: set_dofs_position")  # fmt: skip
+    ax.plot(commanded.t, commanded.q[:, k], color="#0072b2",
+            label="target commanded: control_dofs_position")  # fmt: skip
+    return _finish(ax, f"Assigned or commanded, {joint}", f"q [{joints.position_units[k]}]")
+
+
+def frames(axes: Sequence[Axes], pictures: Mapping[str, np.ndarray]) -> Sequence[Axes]:
+    """Show camera frames side by side."""
+    for ax, (name, picture) in zip(axes, pictures.items(), strict=True):
+        ax.imshow(picture)
+        ax.set_axis_off()
+        ax.set_title(f"Camera frame, {name}")
+    return axes
+
+
+def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
+    """Draw the measured link origins at both ends as a stick figure seen from the side.
+
+    Args:
+        ax: where to draw.
+        trace: its first and last link positions are drawn, x against z [m].
+        parents: for each link the local index of its parent, -1 for the base.
+    """
+    ends = (("before the first step", 0, "G1"), ("after the last step", -1, "G2"))
+    for label, when, case in ends:
+        points = trace.link_pos[when]
+        look = style(case) | {"marker": "o", "markersize": 4}
+        bones = [points[[parent, link]] for link, parent in enumerate(parents) if parent >= 0]
+        for number, bone in enumerate(bones):
+            ax.plot(bone[:, 0], bone[:, 2], label="" if number else label, **look)
+    ax.set_aspect("equal")
+    ax.set_xlabel("x [m]")
+    ax.set_ylabel("z [m]")
+    ax.set_title("Schematic of measured link origins: this is not a camera frame")
+    ax.legend()
+    return ax
+
+
+def _finish(ax: Axes, title: str, ylabel: str) -> Axes:
+    ax.set_title(title)
+    ax.set_xlabel("time [s]")
+    ax.set_ylabel(ylabel)
+    ax.margins(x=0.01)
+    ax.legend(fontsize="small")
+    return ax

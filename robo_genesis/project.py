@@ -1,0 +1,143 @@
+"""Where things are: the checkout, the engine pin, the lock and the cache folders."""
+
+import hashlib
+import os
+import tomllib
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from packaging.requirements import Requirement
+
+ROOT = Path(__file__).resolve().parents[1]
+BOOK = ROOT / "book"
+CACHE = ROOT / ".cache"
+ENGINE = "genesis-world"
+
+KERNEL_CACHE_BYTES = (
+    "2000000000"  # the engine's own limit of 100 MB throws out what it just compiled
+)
+
+
+class ProjectError(Exception):
+    """The checkout or the environment is not fit for a build; the message says what to do."""
+
+
+def engine_pin(root: Path = ROOT) -> str:
+    """Return the engine version that pyproject.toml pins.
+
+    Args:
+        root: the checkout.
+
+    Returns:
+        The version X of the dependency `genesis-world==X`.
+
+    Raises:
+        ProjectError: the dependency is missing or is not one exact version.
+    """
+    declared = tomllib.loads((root / "pyproject.toml").read_text("utf8"))["project"]["dependencies"]
+    found = [line for line in declared if Requirement(line).name == ENGINE]
+    pins = [spec for line in found for spec in Requirement(line).specifier]
+    if len(pins) != 1 or pins[0].operator != "==" or pins[0].version.endswith("*"):
+        raise ProjectError(
+            f"pyproject.toml declares {found or 'no engine'}; "
+            f'exactly one line "{ENGINE}==X" must stand in project.dependencies.'
+        )
+    return pins[0].version
+
+
+def installed_version(package: str) -> str | None:
+    """Return the installed version of a package, None where it is not installed."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
+def require_pinned_engine(root: Path = ROOT) -> str:
+    """Return the pinned engine version after checking that this environment has it.
+
+    Args:
+        root: the checkout.
+
+    Raises:
+        ProjectError: another engine version is installed, or none.
+    """
+    pin, installed = engine_pin(root), installed_version(ENGINE)
+    if installed != pin:
+        raise ProjectError(
+            f"Installed is {ENGINE} {installed or '(none)'}, pinned in pyproject.toml is {pin}. "
+            "Install the lock (pip install -r requirements.lock), or change pin and lock together."
+        )
+    return pin
+
+
+def lock_digest(root: Path = ROOT) -> str:
+    """Return the sha256 of requirements.lock as hex digits.
+
+    Args:
+        root: the checkout.
+
+    Raises:
+        ProjectError: there is no lock.
+    """
+    lock = root / "requirements.lock"
+    if not lock.is_file():
+        raise ProjectError(f"No {lock}. `make lock` writes it.")
+    return hashlib.sha256(lock.read_bytes()).hexdigest()
+
+
+def engine_cache_folder(root: Path = ROOT, cache: Path | None = None) -> Path:
+    """Return the folder for what the engine compiles: one per engine version and lock."""
+    name = f"{engine_pin(root)}-{lock_digest(root)[:12]}"
+    return (cache or root / ".cache") / "engine" / name
+
+
+def page_cache_folder(fingerprint: str, cache: Path = CACHE) -> Path:
+    """Return the folder of the pages that were executed under a fingerprint."""
+    return cache / "pages" / fingerprint
+
+
+def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> dict[str, str]:
+    """Return the variables that make the engine keep its compiled code in the cache folder.
+
+    Args:
+        root: the checkout.
+        cache: the cache folder, by default `.cache` of the checkout.
+
+    Returns:
+        Variable to value; the folders that they name exist.
+    """
+    base = engine_cache_folder(root, cache)
+    folders = {
+        "QD_OFFLINE_CACHE_FILE_PATH": base / "kernels",
+        "NUMBA_CACHE_DIR": base / "numba",
+        "MESA_SHADER_CACHE_DIR": base / "mesa",
+        "MPLCONFIGDIR": base / "matplotlib",  # its font list; also keeps a user's matplotlibrc out
+    }
+    for folder in folders.values():
+        folder.mkdir(parents=True, exist_ok=True)
+    paths = {name: str(folder) for name, folder in folders.items()}
+    return {**paths, "QD_OFFLINE_CACHE_MAX_SIZE_OF_FILES": KERNEL_CACHE_BYTES}
+
+
+def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:
+    """Remove lock files that killed engine processes left in the kernel caches.
+
+    The file names no owner, so nobody can tell a stale one from a live one: call this only at the
+    start of a build, while the build lock says that no other build runs.
+
+    Returns:
+        The removed files.
+    """
+    stale = sorted((cache / "engine").glob("*/kernels/**/*.lock"))
+    for path in stale:
+        path.unlink(missing_ok=True)
+    return stale
+
+
+def environment_contract(environment: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Return the variables that decide what a page measures, with their defaults filled in."""
+    given = os.environ if environment is None else environment
+    defaults = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "1"}
+    return {name: given.get(name) or default for name, default in defaults.items()}

@@ -1,0 +1,69 @@
+"""Tables of measured values as Markdown, for pages to display."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from robo_genesis.checks import Check
+from robo_genesis.metrics import StepMetrics, format_value
+
+METRIC_LABELS = {
+    "initial_error": "initial error",
+    "rise_time": "rise time",
+    "overshoot": "overshoot",
+    "settling_time": "settling time",
+    "final_error": "final error",
+    "final_velocity": "final velocity",
+    "peak_speed": "peak speed",
+    "peak_control": "peak control",
+    "saturation_samples": "saturation",
+    "saturation_duration": "saturation, seconds",
+}
+
+
+def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return rows of equal keys as a Markdown table; numbers to the right, floats shortened.
+
+    Raises:
+        ValueError: no rows are given, or their keys differ.
+    """
+    if not rows or any(list(row) != list(rows[0]) for row in rows):
+        raise ValueError("A table takes at least one row, and rows of equal keys in equal order.")
+    head = list(rows[0])
+    numeric = [isinstance(rows[0][key], int | float) for key in head]
+    lines = [head, ["---:" if right else ":---" for right in numeric]]
+    lines += [[_cell(row[key]) for key in head] for row in rows]
+    return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines) + "\n"
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, float):
+        text = f"{value:.4f}".rstrip("0").rstrip(".")
+        return "0" if text == "-0" else text.replace("-", "−")
+    return str(value)
+
+
+def metric_table(metrics: Mapping[str, StepMetrics]) -> str:
+    """Return metrics as rows and cases as columns, each value with its unit."""
+    cases = list(metrics)
+    names = [name for name, _, _ in metrics[cases[0]].items()]
+    values = {case: {n: format_value(v, u) for n, v, u in m.items()} for case, m in metrics.items()}
+    return markdown(
+        [
+            {"metric": METRIC_LABELS[name]} | {case: values[case][name] for case in cases}
+            for name in names
+        ]
+    )
+
+
+def check_table(outcomes: Sequence[Check]) -> str:
+    """Return one row a check: its name, its outcome and what it found or held."""
+    return markdown(
+        [
+            {
+                "check": f"`{check.name}`",
+                "outcome": "passed" if check.passed else "**FAILED**",
+                "what": check.detail,
+            }
+            for check in outcomes
+        ]
+    )

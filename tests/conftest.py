@@ -1,0 +1,179 @@
+"""Runs without the engine for most tests; one real engine and one built scene for the rest."""
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from robo_genesis import checks, l04, project, robot_model, runtime
+from robo_genesis.robot_model import JointMap
+from robo_genesis.scene_config import (
+    CAMERA,
+    DT,
+    FRAME_SHAPE,
+    FRANKA_MJCF,
+    JOINT_NAMES,
+    SUBSTEPS,
+    per_joint,
+)
+from robo_genesis.trace import Trace
+
+LINKS = ("link0", "link4", "hand")
+# Natural frequency [rad/s] and damping ratio of each synthetic case.
+SHAPES = {"baseline": (20.0, 1.2), "G1": (20.0, 0.8), "G2": (28.0, 0.5), "G3": (28.0, 1.3)}
+
+
+@pytest.fixture(scope="session")
+def second_order() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
+    """Unit step response of y″ + 2ζω y′ + ω² y = ω² from rest, and its slope."""
+
+    def response(t: np.ndarray, omega: float, zeta: float) -> tuple[np.ndarray, np.ndarray]:
+        decay = np.exp(-zeta * omega * t)
+        if zeta == 1:
+            return 1 - decay * (1 + omega * t), omega**2 * t * decay
+        r = omega * np.sqrt(complex(zeta**2 - 1))
+        y = 1 - decay * (np.cosh(r * t) + zeta * omega / r * np.sinh(r * t))
+        return y.real, (omega**2 / r * decay * np.sinh(r * t)).real
+
+    return response
+
+
+@pytest.fixture(scope="session")
+def make_trace() -> Callable[..., Trace]:
+    """Build a run of one joint from its positions; what is not given is zero."""
+
+    def build(
+        q: Any,
+        target: Any,
+        *,
+        dt: float = DT,
+        qd: Any = 0.0,
+        control_force: Any = 0.0,
+        effort_limit: float = 87.0,
+    ) -> Trace:
+        q = np.asarray(q)[:, None]
+        n = len(q) - 1
+
+        def column(values: Any) -> np.ndarray:
+            return np.broadcast_to(np.asarray(values, dtype=float), (n,))[:, None]
+
+        return Trace(
+            t=np.arange(n + 1) * dt,
+            q=q,
+            qd=column(qd),
+            target=column(target),
+            control_force=column(control_force),
+            internal_force=column(0.0),
+            start_control_force=np.zeros(1),
+            start_qd=np.zeros(1),
+            effort_limit=np.array([effort_limit]),
+            link_pos=np.zeros((n + 1, 1, 3)),
+            link_quat=np.zeros((n + 1, 1, 4)),
+        )
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def joints() -> JointMap:
+    """The Franka's map as the engine reports it."""
+    return JointMap(
+        names=JOINT_NAMES,
+        types=l04.EXPECTED_TYPES,
+        dofs_idx_local=np.arange(9),
+        qs_idx_local=np.arange(9),
+        lower=per_joint(-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0, 0),
+        upper=per_joint(2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973, 0.04, 0.04),
+    )
+
+
+@pytest.fixture(scope="session")
+def traces(second_order) -> dict[str, Trace]:
+    """Synthetic runs of the four cases of L04: float32 as from the engine, efforts clipped."""
+
+    def run(name: str) -> Trace:
+        case, t = l04.CASES[name], np.arange(l04.STEPS + 1) * DT
+        y, yd = second_order(t, *SHAPES[name])
+        step = case.q_target - case.q_start
+        q = (case.q_start + y[:, None] * step).astype(np.float32)
+        qd = (yd[:, None] * step).astype(np.float32)
+        demand = case.kp * (case.q_target - q) - case.kv * qd
+        effort = np.clip(demand, -case.effort_limit, case.effort_limit).astype(np.float32)
+        link_pos = np.zeros((len(t), len(LINKS), 3))
+        link_pos[:, 1:, 2] = 0.5
+        link_pos[:, 2, 0] = y
+        return Trace(
+            t=t,
+            q=q,
+            qd=qd[1:],
+            target=np.tile(case.q_target, (l04.STEPS, 1)),
+            control_force=effort[1:],
+            internal_force=effort[1:] / 2,
+            start_control_force=effort[0],
+            start_qd=qd[0],
+            effort_limit=case.effort_limit.astype(np.float32),
+            link_pos=link_pos,
+            link_quat=np.tile([1.0, 0.0, 0.0, 0.0], (len(t), len(LINKS), 1)),
+        )
+
+    return {name: run(name) for name in l04.CASES}
+
+
+@pytest.fixture(scope="session")
+def frames() -> dict[str, np.ndarray]:
+    """Two different pictures of the course's shape."""
+    initial = np.arange(np.prod(FRAME_SHAPE), dtype=np.uint32).astype(np.uint8).reshape(FRAME_SHAPE)
+    return {"initial": initial, "final": initial[::-1].copy()}
+
+
+@pytest.fixture(scope="session")
+def experiment(joints, traces, frames) -> checks.StepExperiment:
+    """A synthetic L04 run that passes every check."""
+    return checks.StepExperiment(
+        joints=joints,
+        model=l04.EXPECTED_MODEL,
+        cases=l04.CASES,
+        traces=traces,
+        metrics=l04.measure(traces, joints.entry(l04.STEPPED_JOINT)),
+        posture="camera",
+        frames=frames,
+    )
+
+
+@pytest.fixture(scope="session")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
+    """Real engine, in this process, and the lab's scene, built once."""
+    contract = runtime.Contract("cpu", True, tmp_path_factory.mktemp("outputs"))
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in project.engine_cache_environment().items():
+            patch.setitem(os.environ, name, value)
+        engine = runtime.start(contract)
+        import genesis as gs
+
+        scene = gs.Scene(
+            sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS), show_viewer=False
+        )
+        scene.add_entity(gs.morphs.Plane())
+        franka = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
+        camera = scene.add_camera(**CAMERA)
+        scene.build()
+        yield SimpleNamespace(
+            gs=gs,
+            contract=contract,
+            engine=engine,
+            scene=scene,
+            franka=franka,
+            camera=camera,
+            joints=robot_model.resolve_joints(franka, JOINT_NAMES),
+        )
+
+
+@pytest.fixture
+def no_file(tmp_path: Path) -> Path:
+    """A path that nobody may create, root included: its parent is a regular file."""
+    (tmp_path / "file").write_text("")
+    return tmp_path / "file" / "below"

@@ -1,0 +1,69 @@
+"""Tiny books for the tests of the build: pages that run in a second, without the engine."""
+
+import json
+from pathlib import Path
+
+import yaml
+
+from robo_genesis.project import BOOK
+
+FRONT = (
+    "---\nfile_format: mystnb\nkernelspec: {{name: python3}}\n{front}---\n# {title}\n\nA page.\n"
+)
+CELL = "\n```{{code-cell}}\n{options}{code}\n```\n"
+
+# A lab's cell that leaves the least that counts as a bundle of this run.
+WRITE_BUNDLE = """\
+import json, os, pathlib
+folder = pathlib.Path(os.environ["ROBO_GENESIS_OUTPUTS_DIR"], "l04", "lab", "cpu")
+folder.mkdir(parents=True)
+manifest = {"predicate": {"run_id": os.environ["ROBO_GENESIS_RUN_ID"]}}
+(folder / "manifest.json").write_text(json.dumps(manifest))"""
+
+LAB_FRONT = "robo_genesis: {lesson: l04, page: lab}\n"
+
+
+def cell(code: str, options: str = "") -> str:
+    """Return one code cell; options are lines like ':tags: [a]'."""
+    return CELL.format(code=code, options=options)
+
+
+def raising(code: str, expects: str | None) -> str:
+    """Return a cell tagged raises-exception."""
+    says = f':expects: "{expects}"\n' if expects else ""
+    return cell(code, f":tags: [raises-exception]\n{says}")
+
+
+def notebook(*cells: str, front: str = "", title: str = "Page") -> str:
+    """Return the text of an executed page."""
+    return FRONT.format(front=front, title=title) + "".join(cells)
+
+
+def make_book(folder: Path, **pages: str) -> Path:
+    """Write a book with a home page, the given pages and the course's own configuration."""
+    book = folder / "book"
+    book.mkdir(parents=True, exist_ok=True)
+    (book / "index.md").write_text("# Home\n\nWelcome.\n")
+    for name, text in pages.items():
+        (book / f"{name}.md").write_text(text)
+    chapters = [{"file": name} for name in pages]
+    toc = {"format": "jb-book", "root": "index", "chapters": chapters}
+    (book / "_toc.yml").write_text(yaml.safe_dump(toc))
+    (book / "_config.yml").write_text((BOOK / "_config.yml").read_text("utf8"))
+    return book
+
+
+def published_marker(book: Path) -> Path:
+    """Put an old site in place and return a file of it that a failed build must leave alone."""
+    marker = book / "_build" / "html" / "index.html"
+    marker.parent.mkdir(parents=True)
+    marker.write_text("the old site")
+    return marker
+
+
+def write_bundle(outputs: Path, run_id: str, backend: str = "cpu") -> Path:
+    """Write the least that counts as the lab's bundle of a run."""
+    folder = outputs / "l04" / "lab" / backend
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "manifest.json").write_text(json.dumps({"predicate": {"run_id": run_id}}))
+    return folder
