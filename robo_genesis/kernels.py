@@ -30,8 +30,12 @@ class CleanKernelManager(AsyncKernelManager):
 
     @default("shutdown_wait_time")
     def _time_to_save(self) -> float:
-        """Return 120 s: at exit the engine saves what it compiled; killed before, it saves none."""
-        return 120.0
+        """Return the seconds for a kernel's exit; SIGTERM comes after the first half of them.
+
+        The engine saves what it compiled in its exit handler, so the usual 5 s are short. Longer
+        does not help: ipykernel 7 hangs now and then in its own handler, which runs last.
+        """
+        return 40.0
 
     @default("transport")
     def _sockets_as_files(self) -> str:

@@ -58,7 +58,7 @@ def position(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str
     unit = joints.position_units[k]
     target = float(next(iter(traces.values())).target[0, k])
     ax.axhspan(target - SETTLING_BAND, target + SETTLING_BAND, color="#e9e4d4", zorder=0,
-               label=f"settling band ±{SETTLING_BAND:g} {unit}")  # fmt: skip
+               label=f"band ±{SETTLING_BAND:g} {unit}")  # fmt: skip
     ax.axhline(target, label="target", **TARGET)
     for name, trace in traces.items():
         ax.plot(trace.t, trace.q[:, k], label=name, **style(name))
@@ -90,6 +90,7 @@ def response(
     """Draw position, velocity and control force of one joint on three axes."""
     for ax, draw in zip(axes, (position, velocity, control_force), strict=True):
         draw(ax, traces, joints, joint)
+        ax.label_outer()
     return axes
 
 
@@ -104,7 +105,7 @@ def two_forces(ax: Axes, trace: Trace, joints: JointMap, joint: str) -> Axes:
     limit = float(trace.effort_limit[k])
     ax.axhline(limit, label="limit, read back", **LIMIT)
     ax.axhline(-limit, **LIMIT)
-    return _finish(ax, f"Two getters, one run, {joint}", f"force [{joints.effort_units[k]}]")
+    return _finish(ax, f"Two getters, one run, {joint}", f"force [{joints.effort_units[k]}]", "right")
 
 
 def assigned_and_commanded(
@@ -117,7 +118,7 @@ def assigned_and_commanded(
             label="state assigned: set_dofs_position")  # fmt: skip
     ax.plot(commanded.t, commanded.q[:, k], color="#0072b2",
             label="target commanded: control_dofs_position")  # fmt: skip
-    return _finish(ax, f"Assigned or commanded, {joint}", f"q [{joints.position_units[k]}]")
+    return _finish(ax, f"Assigned or commanded, {joint}", f"q [{joints.position_units[k]}]", "lower right")
 
 
 def frames(axes: Sequence[Axes], pictures: Mapping[str, np.ndarray]) -> Sequence[Axes]:
@@ -152,10 +153,15 @@ def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
     return ax
 
 
-def _finish(ax: Axes, title: str, ylabel: str) -> Axes:
-    ax.set_title(title)
+def _finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
+    ax.set_title(title, loc="left")
     ax.set_xlabel("time [s]")
     ax.set_ylabel(ylabel)
     ax.margins(x=0.01)
-    ax.legend(fontsize="small")
+    if legend == "above":  # on the title's line, clear of curves and limits
+        entries = len(ax.get_legend_handles_labels()[1])
+        place: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.01, 0.99)}
+        ax.legend(fontsize="small", ncols=entries, columnspacing=1.0, borderaxespad=0.2, **place)
+    else:
+        ax.legend(fontsize="small", loc=legend)
     return ax

@@ -12,7 +12,7 @@ ADDRESSES = ("href", "src", "srcset", "poster", "data", "action")
 # A link of these kinds names a page for readers or crawlers; the browser does not load it.
 NOT_LOADED = {"canonical", "alternate", "author", "license", "next", "prev", "index", "search"}
 ELSEWHERE = re.compile(r"^(?:https?|wss?|ftp):|^//", re.IGNORECASE)
-CSS_ADDRESS = re.compile(r"""(?:url\(|@import)\s*["']?([^"')\s;]+)""", re.IGNORECASE)
+CSS_ADDRESS = re.compile(r"""(?:(?:@import\s+)?url\(|@import)\s*["']?([^"')\s;]+)""", re.IGNORECASE)
 CSS_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 SCRIPT_ADDRESS = re.compile(r"""["'`]((?:https?:)?//[\w.-]+\.[a-z]{2,}[^"'`]*)""", re.IGNORECASE)
 SERVICES = re.compile(

@@ -59,8 +59,17 @@ def fill_outputs(notebook: NotebookNode, executed: NotebookNode) -> None:
         if cell.cell_type == "code":
             source = next(ran)
             cell.outputs, cell.execution_count = source.outputs, source.execution_count
+            if "raises-exception" in cell.metadata.get("tags", []):
+                for output in cell.outputs:
+                    shorten_traceback(output)
     if "language_info" in executed.metadata:
         notebook.metadata["language_info"] = executed.metadata["language_info"]
+
+
+def shorten_traceback(output: NotebookNode) -> None:
+    """Keep the exception's own line of an expected error; its stack names paths of the builder."""
+    if output.output_type == "error":
+        output.traceback = output.traceback[-1:]
 
 
 def read_executed_page(

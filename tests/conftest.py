@@ -1,15 +1,20 @@
 """Runs without the engine for most tests; one real engine and one built scene for the rest."""
 
+import io
 import os
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import pytest
+from hypothesis import settings
+from matplotlib.figure import Figure
 
-from robo_genesis import checks, l04, project, robot_model, runtime
+from robo_genesis import checks, l04, plots, project, robot_model, runtime
 from robo_genesis.robot_model import JointMap
 from robo_genesis.scene_config import (
     CAMERA,
@@ -21,6 +26,10 @@ from robo_genesis.scene_config import (
     per_joint,
 )
 from robo_genesis.trace import Trace
+
+# The same examples each time, and no time limit: shared machines stall.
+settings.register_profile("course", derandomize=True, deadline=None)
+settings.load_profile("course")
 
 LINKS = ("link0", "link4", "hand")
 # Natural frequency [rad/s] and damping ratio of each synthetic case.
@@ -170,6 +179,23 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
             camera=camera,
             joints=robot_model.resolve_joints(franka, JOINT_NAMES),
         )
+        gs.destroy()  # saves the compiled kernels while the log can still be written
+
+
+@pytest.fixture
+def draw_svg(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., bytes]]:
+    """Draw the response of joint4 in the course's style, as the bytes of an SVG file."""
+    monkeypatch.setitem(sys.modules, "matplotlib_inline.backend_inline", None)
+
+    def draw(traces: dict[str, Trace], joints: JointMap) -> bytes:
+        figure, stream = Figure(), io.BytesIO()
+        plots.response(figure.subplots(3, 1), traces, joints, l04.STEPPED_JOINT)
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+        return stream.getvalue()
+
+    with mpl.rc_context():
+        plots.use_course_style()
+        yield draw
 
 
 @pytest.fixture

@@ -77,7 +77,7 @@ def test_arrays_are_read_only(robot, name):
 
 
 def test_an_unknown_name_lists_the_models_names(robot):
-    with pytest.raises(JointError, match="'elbw'.*base, shoulder, wrist, slider, weld"):
+    with pytest.raises(JointError, match=r"'elbw'.*base, shoulder, wrist, slider, weld"):
         resolve_joints(robot, ("shoulder", "elbw"))
 
 
@@ -103,7 +103,7 @@ def test_two_joints_of_the_model_that_share_a_dof_are_refused():
 def test_entry_is_the_place_in_the_map(robot):
     joints = resolve_joints(robot, ("slider", "shoulder"))
     assert joints.entry("shoulder") == 1
-    with pytest.raises(JointError, match="'wrist'.*slider, shoulder"):
+    with pytest.raises(JointError, match=r"'wrist'.*slider, shoulder"):
         joints.entry("wrist")
 
 

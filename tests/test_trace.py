@@ -56,7 +56,7 @@ def test_a_missing_axis_is_refused(trace, name):
 
 
 def test_a_state_before_the_first_step_is_required(trace):
-    with pytest.raises(TraceError, match="qd has shape .* a run of 119 steps has 120 states"):
+    with pytest.raises(TraceError, match=r"qd has shape .* a run of 119 steps has 120 states"):
         replace(
             trace,
             t=trace.t[:-1],

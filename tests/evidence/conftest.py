@@ -1,0 +1,71 @@
+"""A bundle of the synthetic run, written by a recorder whose engine is not real."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from robo_genesis import l04, project, runtime
+from robo_genesis.checks import run_checks
+from robo_genesis.evidence import record
+from robo_genesis.evidence.record import Measured, Recorder
+
+RUN_ID = "0123456789abcdef" * 2
+
+
+@pytest.fixture(scope="session")
+def backend():
+    return runtime.Backend("cpu", "cpu", "x64", "cpu", "2.13.0+cpu", None, None, "a CPU")
+
+
+@pytest.fixture(scope="session")
+def engine(backend):
+    log = runtime.EngineLog()
+    log.lines += [("INFO", "Scene created."), ("WARNING", "Approximating tendon.")]
+    return runtime.Engine(project.engine_pin(), "1.3.0", "32", 0, backend, log)
+
+
+@pytest.fixture(scope="session")
+def measured(experiment):
+    return Measured(
+        joints=experiment.joints,
+        links=("link0", "link4", "hand"),
+        traces=experiment.traces,
+        metrics=l04.metric_records(experiment.metrics, experiment.model),
+        checks=run_checks(experiment),
+        frames=experiment.frames,
+        parameters=l04.parameters(),
+        renderer=runtime.Renderer("Mesa", "llvmpipe"),
+    )
+
+
+@pytest.fixture(scope="session")
+def quiet(backend):
+    """Keep the recorder from asking an engine that is not there, and from hashing its wheel."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runtime, "probe", lambda requested: backend)
+        patch.setattr(record, "files_match_wheel", lambda *names: True)
+        for name in ("RUN_ID", "COMMAND", "PAGE_SHA256"):
+            patch.delenv(f"ROBO_GENESIS_{name}", raising=False)
+        yield
+
+
+@pytest.fixture
+def recorder(quiet, tmp_path, engine, monkeypatch):
+    monkeypatch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
+    contract = runtime.Contract("cpu", True, tmp_path / "outputs")
+    return Recorder("l04", "lab", contract, engine)
+
+
+@pytest.fixture(scope="session")
+def pristine(quiet, tmp_path_factory, engine, measured) -> Path:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
+        contract = runtime.Contract("cpu", True, tmp_path_factory.mktemp("pristine"))
+        return Recorder("l04", "lab", contract, engine).write(measured)
+
+
+@pytest.fixture
+def folder(pristine, tmp_path) -> Path:
+    """A bundle of one's own, to spoil."""
+    return Path(shutil.copytree(pristine, tmp_path / "l04" / "lab" / "cpu"))

@@ -1,0 +1,76 @@
+"""What a reader finds on the built pages."""
+
+import re
+
+import pytest
+from bs4 import BeautifulSoup
+
+from robo_genesis import l04, project
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.verify import verify_bundle
+
+pytestmark = pytest.mark.engine
+LESSON = "lessons/l04-joint-control"
+
+
+def page(site, name: str) -> BeautifulSoup:
+    return BeautifulSoup((site / f"{name}.html").read_text(), "html.parser")
+
+
+@pytest.mark.parametrize("name", [f"{LESSON}/lecture", f"{LESSON}/lab"])
+def test_pages_show_executed_outputs_and_their_verdict(site, name):
+    found = page(site, name)
+    assert "L04 CHECK: PASSED" in found.get_text()
+    assert len(found.select("div.cell_output img[src$='.svg']")) >= 3
+
+
+@pytest.mark.parametrize("name", ["index", f"{LESSON}/lecture"])
+def test_status_is_computed_and_says_what_is_missing(site, name):
+    status = page(site, name).select_one(".lesson-status").get_text()
+    assert f"Genesis {project.engine_pin()}" in status
+    assert "11 of 11 checks passed" in status
+    assert "ROCm): missing" in status
+
+
+def test_a_number_in_prose_is_the_bundle_s_and_says_where_it_comes_from(site):
+    records = bundle.read_metrics(site.parent / "evidence" / "l04" / "cpu")
+    number = page(site, "index").select_one(".measured")
+    assert number.get_text() == f"{records['G2']['overshoot'].value:.4f} rad"
+    assert re.search(r"l04/lab on cpu, Genesis .*, run \w{8}, \d{4}-\d\d-\d\d", number["title"])
+
+
+def test_the_lab_s_bundle_stands_beside_the_site_and_is_accepted(site):
+    manifest = verify_bundle(site.parent / "evidence" / "l04" / "cpu")
+    assert manifest.predicate.page == "lab"
+    assert manifest.predicate.parameters == l04.parameters()
+
+
+def test_nothing_published_names_a_path_of_the_builder(site):
+    texts = [p for p in site.parent.rglob("*") if p.suffix in {".html", ".json", ".txt", ".md"}]
+    assert texts
+    assert [p.name for p in texts if str(project.ROOT) in p.read_text(errors="ignore")] == []
+
+
+def test_expected_error_shows_its_message_without_a_stack(site):
+    errors = page(site, f"{LESSON}/lecture").select(".output.traceback")
+    assert [e.get_text().startswith("JointError: Joint 'elbw'") for e in errors] == [True]
+    assert "finger_joint2" in errors[0].get_text()
+
+
+def test_engine_warnings_are_kept_in_a_fold(site):
+    folds = page(site, f"{LESSON}/lab").select("details.hide")
+    assert any("Approximating tendon" in fold.get_text() for fold in folds)
+
+
+def test_math_needs_no_script(site):
+    found = page(site, f"{LESSON}/lecture")
+    assert len(found.select("math")) > 5
+    scripts = [script.get("src") or script.get_text() for script in found.select("script")]
+    assert not [text for text in scripts if "mathjax" in text.lower() or "katex" in text.lower()]
+
+
+def test_build_ends_with_what_it_was_made_of(build_output):
+    tail = "\n".join(build_output.splitlines()[-5:])
+    expected = ["Site: ", "Engine: genesis-world", "requested cpu, actual cpu", "render camera"]
+    expected += ["executed", "reused", "Checks passed: "]
+    assert [words for words in expected if words not in tail] == []

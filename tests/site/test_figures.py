@@ -1,0 +1,62 @@
+"""Each measured figure on a page is what its cell draws from the arrays of the page's bundle."""
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+from robo_genesis.page_cache import PageCache, notebooks_folder, outputs_folder
+from robo_genesis.pages import find_pages, fingerprint
+from robo_genesis.project import BOOK, ROOT, page_cache_folder
+
+pytestmark = pytest.mark.engine
+
+FROM_BUNDLE = """
+import matplotlib.pyplot as plt, numpy as np
+from pathlib import Path
+from PIL import Image
+from robo_genesis import l04, plots
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.traces import read_trace
+from robo_genesis.robot_model import JointMap
+from robo_genesis.scene_config import JOINT_NAMES
+
+plots.use_course_style()
+folder = Path({folder!r})
+arrays = bundle.read_arrays(folder)
+everything = {{case: read_trace(folder, arrays, case) for case in arrays.cases}}
+baseline, assigned = everything["baseline"], everything.get("assigned")
+compared = {{case: everything[case] for case in ("G1", "G2", "G3")}}
+traces = {{"baseline": baseline}}
+camera = True
+frames = {{n: np.array(Image.open(folder / "frames" / f"{{n}}.png")) for n in ("initial", "final")}}
+joints = JointMap(JOINT_NAMES, l04.EXPECTED_TYPES, *[np.arange(9)] * 4)
+"""
+
+
+def svgs(cells) -> list[str]:
+    outputs = [output for cell in cells for output in cell.get("outputs", [])]
+    return [o["data"]["image/svg+xml"] for o in outputs if "image/svg+xml" in o.get("data", {})]
+
+
+@pytest.mark.parametrize("name", ["lecture", "lab"])
+def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, name):
+    for variable, value in (("ROBO_GENESIS_RENDER", "1"), ("ROBO_GENESIS_BACKEND", "cpu")):
+        monkeypatch.setenv(variable, value)
+    pages = find_pages(BOOK)
+    (page,) = (p for p in pages if p.page == name)
+    folder = page_cache_folder(fingerprint(pages, ROOT))
+    cache = PageCache(notebooks_folder(folder))
+    executed = cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
+    code = [cell for cell in page.notebook.cells if cell.cell_type == "code"]
+    tagged = [
+        ran
+        for cell, ran in zip(code, executed.cells, strict=True)
+        if "figure" in cell.metadata.get("tags", [])
+    ]
+    setup = FROM_BUNDLE.format(folder=str(outputs_folder(folder) / "l04" / name / "cpu"))
+    sources = [setup, *(cell.source for cell in tagged)]
+    redrawn = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(s) for s in sources])
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    NotebookClient(redrawn, kernel_name="python3", timeout=120).execute()
+    assert len(svgs(tagged)) == len(tagged) >= 3
+    assert svgs(redrawn.cells) == svgs(tagged)

@@ -1,0 +1,94 @@
+"""The engine is imported where it runs, and there only inside functions."""
+
+import ast
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import robo_genesis
+
+PACKAGE = Path(robo_genesis.__file__).parent
+MODULES = sorted(PACKAGE.rglob("*.py"))
+MAY_IMPORT = {"runtime.py", "robot_model.py", "joint_control.py"}
+ENGINE = {"genesis", "quadrants"}
+
+
+def imported(node):
+    """Names of the modules that one node imports, by statement or by call."""
+    match node:
+        case ast.Import():
+            return [alias.name for alias in node.names]
+        case ast.ImportFrom(module=str(module), level=0):
+            return [module]
+        case ast.Call(func=ast.Attribute(attr="import_module") | ast.Name(id="import_module")):
+            return [a.value for a in node.args if isinstance(a, ast.Constant)]
+        case ast.Call(func=ast.Name(id="__import__")):
+            return [a.value for a in node.args if isinstance(a, ast.Constant)]
+    return []
+
+
+def engine_imports(tree, inside=False):
+    """Yield (line, whether inside a function) of every import of the engine."""
+    for node in ast.iter_child_nodes(tree):
+        if any(str(name).split(".")[0] in ENGINE for name in imported(node)):
+            yield node.lineno, inside
+        yield from engine_imports(
+            node, inside or isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
+        )
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: path.relative_to(PACKAGE).as_posix())
+def test_the_engine_is_imported_by_few_and_inside_functions(path):
+    found = list(engine_imports(ast.parse(path.read_text("utf8"))))
+    if path.relative_to(PACKAGE).as_posix() not in MAY_IMPORT:
+        assert found == []
+    assert [line for line, inside in found if not inside] == []
+
+
+@pytest.mark.parametrize(
+    ("source", "found"),
+    [
+        ("import genesis as gs", [(1, False)]),
+        ("from genesis.utils import geom", [(1, False)]),
+        ("def f():\n    import quadrants", [(2, True)]),
+        ("class C:\n    gs = importlib.import_module('genesis')", [(2, False)]),
+        ("def f():\n    return importlib.import_module('genesis.x')", [(2, True)]),
+        ("x = __import__('genesis')", [(1, False)]),
+        ("from robo_genesis import genesis_notes", []),
+        ("import genesistools", []),
+    ],
+)
+def test_the_search_finds_every_form(source, found):
+    assert list(engine_imports(ast.parse(source))) == found
+
+
+BLOCKED = """
+import importlib, json, sys
+for name in ("genesis", "quadrants", "torch"):
+    sys.modules[name] = None
+failed = {}
+for name in json.loads(sys.argv[1]):
+    try:
+        importlib.import_module(name)
+    except Exception as error:
+        failed[name] = repr(error)
+print(json.dumps(failed))
+"""
+
+
+def test_every_module_imports_without_the_engine():
+    names = [
+        ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
+        for path in MODULES
+    ]
+    done = subprocess.run(
+        [sys.executable, "-c", BLOCKED, json.dumps(names)],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=PACKAGE.parent,
+    )
+    assert json.loads(done.stdout.splitlines()[-1]) == {}

@@ -1,0 +1,57 @@
+"""The lock names every package that the project needs, in the version that is installed."""
+
+import importlib.metadata
+import re
+
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+from robo_genesis.project import ROOT, engine_pin
+
+LINES = [line for line in (ROOT / "requirements.lock").read_text().splitlines() if line[:1] != "#"]
+LOCKED = {canonicalize_name(n): v for n, v in (line.split("==") for line in LINES)}
+TORCH_BUILD = re.compile(r"(nvidia|cuda|triton)")
+"""A build of Torch names the exact versions of its own parts; the lock leaves them to it."""
+
+
+def needed(requirements: list[str], extras: set[str], seen: dict[str, str]) -> dict[str, str]:
+    for line in requirements:
+        requirement = Requirement(line)
+        active = [{"extra": extra} for extra in extras or {""}]
+        if requirement.marker and not any(requirement.marker.evaluate(env) for env in active):
+            continue
+        name = canonicalize_name(requirement.name)
+        if name in seen:
+            continue
+        found = importlib.metadata.distribution(name)
+        seen[name] = found.version.split("+")[0]
+        below = [r for r in found.requires or [] if name != "torch" or not TORCH_BUILD.match(r)]
+        needed(below, set(requirement.extras), seen)
+    return seen
+
+
+def test_every_line_names_one_exact_public_version():
+    assert len(LOCKED) == len(LINES)
+    assert all(re.fullmatch(r"[\w.]+", version) for version in LOCKED.values())
+
+
+def test_the_lock_follows_the_pin():
+    assert LOCKED["genesis-world"] == engine_pin()
+
+
+def test_installed_closure_of_the_project_is_locked():
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    direct = project["dependencies"] + sum(project["optional-dependencies"].values(), [])
+    found = needed(direct, set(), {})
+    assert {name: LOCKED.get(name) for name in found} == found
+
+
+def test_torch_is_a_range_for_users_and_one_version_in_the_lock():
+    import tomllib
+
+    direct = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+    (torch,) = (Requirement(line) for line in direct if line.startswith("torch"))
+    assert not any(spec.operator == "==" for spec in torch.specifier)
+    assert torch.specifier.contains(LOCKED["torch"])
