@@ -105,7 +105,8 @@ def two_forces(ax: Axes, trace: Trace, joints: JointMap, joint: str) -> Axes:
     limit = float(trace.effort_limit[k])
     ax.axhline(limit, label="limit, read back", **LIMIT)
     ax.axhline(-limit, **LIMIT)
-    return _finish(ax, f"Two getters, one run, {joint}", f"force [{joints.effort_units[k]}]", "right")
+    unit = joints.effort_units[k]
+    return _finish(ax, f"Two getters, one run, {joint}", f"force [{unit}]", "right")
 
 
 def assigned_and_commanded(
@@ -118,7 +119,8 @@ def assigned_and_commanded(
             label="state assigned: set_dofs_position")  # fmt: skip
     ax.plot(commanded.t, commanded.q[:, k], color="#0072b2",
             label="target commanded: control_dofs_position")  # fmt: skip
-    return _finish(ax, f"Assigned or commanded, {joint}", f"q [{joints.position_units[k]}]", "lower right")
+    unit = joints.position_units[k]
+    return _finish(ax, f"Assigned or commanded, {joint}", f"q [{unit}]", "lower right")
 
 
 def frames(axes: Sequence[Axes], pictures: Mapping[str, np.ndarray]) -> Sequence[Axes]:
@@ -158,10 +160,9 @@ def _finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
     ax.set_xlabel("time [s]")
     ax.set_ylabel(ylabel)
     ax.margins(x=0.01)
+    place: dict[str, Any] = {"loc": legend}
     if legend == "above":  # on the title's line, clear of curves and limits
         entries = len(ax.get_legend_handles_labels()[1])
-        place: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.01, 0.99)}
-        ax.legend(fontsize="small", ncols=entries, columnspacing=1.0, borderaxespad=0.2, **place)
-    else:
-        ax.legend(fontsize="small", loc=legend)
+        place = {"loc": "lower right", "bbox_to_anchor": (1.01, 0.99), "ncols": entries}
+    ax.legend(fontsize="small", columnspacing=1.0, borderaxespad=0.2, **place)
     return ax

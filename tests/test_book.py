@@ -80,7 +80,7 @@ def test_a_broken_page_fails_with_status_1_a_report_and_the_old_site(tmp_path):
     assert process.returncode == 1
     assert "good  executed in" in out
     assert "1 of 2 pages failed." in err
-    assert "broken, code cell 1, line 11: import sys" in err
+    assert "broken, code cell 1, line 10: import sys" in err
     assert "ZeroDivisionError: division by zero" in err
     assert "| engine: last words" in err
     assert marker.read_text() == "the old site"

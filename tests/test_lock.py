@@ -2,6 +2,7 @@
 
 import importlib.metadata
 import re
+import tomllib
 
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
@@ -10,6 +11,7 @@ from robo_genesis.project import ROOT, engine_pin
 
 LINES = [line for line in (ROOT / "requirements.lock").read_text().splitlines() if line[:1] != "#"]
 LOCKED = {canonicalize_name(n): v for n, v in (line.split("==") for line in LINES)}
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 TORCH_BUILD = re.compile(r"(nvidia|cuda|triton)")
 """A build of Torch names the exact versions of its own parts; the lock leaves them to it."""
 
@@ -40,18 +42,13 @@ def test_the_lock_follows_the_pin():
 
 
 def test_installed_closure_of_the_project_is_locked():
-    import tomllib
-
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    direct = project["dependencies"] + sum(project["optional-dependencies"].values(), [])
+    extras = PROJECT["optional-dependencies"].values()
+    direct = [*PROJECT["dependencies"], *(line for lines in extras for line in lines)]
     found = needed(direct, set(), {})
     assert {name: LOCKED.get(name) for name in found} == found
 
 
 def test_torch_is_a_range_for_users_and_one_version_in_the_lock():
-    import tomllib
-
-    direct = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
-    (torch,) = (Requirement(line) for line in direct if line.startswith("torch"))
+    (torch,) = (Requirement(r) for r in PROJECT["dependencies"] if r.startswith("torch"))
     assert not any(spec.operator == "==" for spec in torch.specifier)
     assert torch.specifier.contains(LOCKED["torch"])

@@ -8,7 +8,8 @@ PAGE = "<!DOCTYPE html><html><head>{head}</head><body><article id='top-of-page'>
 GOOD = """\
 <h1 id="home">Home</h1><a href="#home">self</a> <a href="sub/page.html#part">page</a>
 <a href="https://example.org/away">away</a> <a href="mailto:a@example.org">mail</a>
-<a href="#">top</a> <a href="sub/">folder</a> <img src="picture.png" alt="Joint angle over time, three cases">
+<a href="#">top</a> <a href="sub/">folder</a>
+<img src="picture.png" alt="Joint angle over time, three cases">
 <pre>{eval}`x` in code is fine</pre>"""
 
 

@@ -1,6 +1,7 @@
 """Tiny books for the tests of the build: pages that run in a second, without the engine."""
 
 import json
+import shutil
 from pathlib import Path
 
 import yaml
@@ -49,7 +50,8 @@ def make_book(folder: Path, **pages: str) -> Path:
     chapters = [{"file": name} for name in pages]
     toc = {"format": "jb-book", "root": "index", "chapters": chapters}
     (book / "_toc.yml").write_text(yaml.safe_dump(toc))
-    (book / "_config.yml").write_text((BOOK / "_config.yml").read_text("utf8"))
+    shutil.copy(BOOK / "_config.yml", book)
+    shutil.copytree(BOOK / "_static", book / "_static", dirs_exist_ok=True)
     return book
 
 

@@ -185,6 +185,7 @@ SPOILERS = {
     "another backend than the folder": ("backend", part(
         "backend", actual="cuda", actual_at_end="cuda")),
     "another backend at the end": ("backend", part("backend", actual_at_end="cuda")),
+    "a camera without frames": ("frames", sealed(lambda f: shutil.rmtree(f / "frames"))),
     "a frame without a stamp": ("frames", sealed(frame())),
     "a frame of another run": ("frames", sealed(frame("f" * 32))),
     "frames without a camera": ("frames", part("render", mode="skip")),
@@ -203,8 +204,12 @@ SPOILERS = {
         f, "metrics.json", lambda m: m.pop("G1")))),
     "a group too many": ("metrics", sealed(lambda f: edit(
         f, "metrics.json", lambda m: m.update(G4={})))),
+    "an edited count": ("metrics", sealed(lambda f: edit(
+        f, "metrics.json", lambda m: m["model"]["links"].update(value=12)))),
     "edited arrays": ("metrics", sealed(rewrite(qd_rad_s_or_m_s=slower))),
     "a failed check": ("checks", fail_check),
+    "a check left out": ("checks", lambda f: edit(
+        f, "manifest.json", lambda m: m["predicate"]["checks"].pop())),
     "no check": ("checks", predicate(checks=[])),
 }  # fmt: skip
 
