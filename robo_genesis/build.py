@@ -82,6 +82,7 @@ def run_build(build: Build) -> list[str]:
         checked = _check(html, progress)
         html = publish(build.book, html, results)
         progress("publish", str(html))
+        project.forget_old_pages(folder)
         return [f"Site: {html / 'index.html'}", *_summary(engine, results, manifests, checked)]
 
 

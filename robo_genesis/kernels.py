@@ -2,6 +2,7 @@
 
 import multiprocessing
 import os
+import shutil
 import signal
 import threading
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,6 +19,11 @@ from traitlets import default
 # Start-up files and search paths by which a user's own set-up would leak into the pages.
 LEAKS = ("PYTHONSTARTUP", "PYTHONHOME", "JUPYTER_PATH", "JUPYTER_CONFIG_PATH", "MATPLOTLIBRC")
 
+# ipykernel 7 hangs for ever, or 10 s, in about one of ten of its own exit handlers. They run last:
+# one that is registered right after them runs right before them, after the engine's, and ends it.
+END_BEFORE_IPYKERNEL = "__import__('atexit').register(__import__('os')._exit, 0)"
+ARGUMENTS = [f"--IPKernelApp.exec_lines={END_BEFORE_IPYKERNEL}"]
+
 
 class CleanKernelManager(AsyncKernelManager):
     """Starts the kernel of this interpreter and knows no installed kernelspec.
@@ -32,10 +38,9 @@ class CleanKernelManager(AsyncKernelManager):
     def _time_to_save(self) -> float:
         """Return the seconds for a kernel's exit; SIGTERM comes after the first half of them.
 
-        The engine saves what it compiled in its exit handler, so the usual 5 s are short. Longer
-        does not help: ipykernel 7 hangs now and then in its own handler, which runs last.
+        The engine saves what it compiled in its exit handler, so the usual 5 s are short.
         """
-        return 40.0
+        return 120.0
 
     @default("transport")
     def _sockets_as_files(self) -> str:
@@ -126,8 +131,12 @@ def kill_with_descendants(pids: Iterable[int]) -> None:
     psutil.wait_procs(doomed, timeout=10)
 
 
-def die_with_parent() -> None:
-    """Make this worker kill its kernel and itself when the build process is gone."""
+def die_with_parent(scratch: Path) -> None:
+    """Make this worker kill its kernel and itself when the build process is gone.
+
+    Args:
+        scratch: temporary folder of the build, which then nobody else removes.
+    """
     parent = multiprocessing.parent_process()
     if parent is None:
         return
@@ -136,6 +145,7 @@ def die_with_parent() -> None:
         parent.join()
         children = psutil.Process().children(recursive=True)
         kill_with_descendants(child.pid for child in children)
+        shutil.rmtree(scratch, ignore_errors=True)
         os._exit(1)
 
     threading.Thread(target=wait_and_die, daemon=True).start()

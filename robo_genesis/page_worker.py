@@ -15,7 +15,7 @@ from jupyter_cache.executors.utils import ExecutionResult, single_nb_execution
 from nbclient.exceptions import CellExecutionError, CellTimeoutError
 from nbformat import NotebookNode
 
-from robo_genesis.kernels import CleanKernelManager, clean_environment, die_with_parent
+from robo_genesis.kernels import ARGUMENTS, CleanKernelManager, clean_environment, die_with_parent
 from robo_genesis.page_cache import outputs_folder
 from robo_genesis.page_results import (
     Failure,
@@ -78,6 +78,7 @@ class PageWorker(ExecutionWorkerTempMProc):
                     timeout=data.timeout,
                     allow_errors=False,
                     kernel_manager_class=CleanKernelManager,
+                    extra_arguments=ARGUMENTS,
                     on_cell_execute=self._cell_starts,
                     on_cell_executed=self._cell_ends,
                 )
@@ -119,7 +120,7 @@ def work(run: PageRun, connection: Connection) -> None:
         run: what to execute.
         connection: takes one pair; a process that ends without sending it has failed, too.
     """
-    die_with_parent()
+    die_with_parent(run.scratch)
     logging.getLogger(__name__).addHandler(logging.NullHandler())
     logging.getLogger(__name__).propagate = False
     runtime = Path(tempfile.mkdtemp(dir=run.scratch))

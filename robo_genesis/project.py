@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import shutil
 import tomllib
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
@@ -96,6 +97,19 @@ def engine_cache_folder(root: Path = ROOT, cache: Path | None = None) -> Path:
 def page_cache_folder(fingerprint: str, cache: Path = CACHE) -> Path:
     """Return the folder of the pages that were executed under a fingerprint."""
     return cache / "pages" / fingerprint
+
+
+def forget_old_pages(current: Path, keep: int = 4) -> None:
+    """Remove the page caches of fingerprints that were not built for long.
+
+    Args:
+        current: the page cache folder of this build.
+        keep: how many to keep, this one included; RENDER=0 and RENDER=1 have one each.
+    """
+    current.touch()
+    folders = sorted(current.parent.iterdir(), key=lambda path: path.stat().st_mtime)
+    for folder in folders[:-keep]:
+        shutil.rmtree(folder)
 
 
 def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> dict[str, str]:

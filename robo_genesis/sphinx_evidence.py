@@ -8,6 +8,7 @@ Roles and directive, as pages write them:
 | {measured}`l04/lab engine` | the engine version that the page ran on |
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
+| {lesson-state}`l04` | the state of a lesson on CPU, in a word |
 | {lesson-status} l04 (directive) | what was run for a lesson, and its state |
 """
 
@@ -96,6 +97,15 @@ class LessonStatus(SphinxDirective):
         return [lines]
 
 
+class LessonState(SphinxRole):
+    """Say in a word what state a lesson's lab is in on CPU."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return state and backend."""
+        status = page_status(outputs_folder(), self.text, "lab", BACKEND)
+        return [nodes.inline(self.rawtext, f"{status.state} ({status.backend})")], []
+
+
 class EngineSource(SphinxRole):
     """Link to a file of the engine at the pin; a path that it does not have is an error."""
 
@@ -132,6 +142,7 @@ def depart_measured(self: Any, node: measured_value) -> None:
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register role, directive and their writer."""
     app.add_role("measured", Measured())
+    app.add_role("lesson-state", LessonState())
     app.add_role("engine-source", EngineSource())
     app.add_role("engine-release", EngineRelease())
     app.add_directive("lesson-status", LessonStatus)

@@ -136,7 +136,9 @@ def traces(second_order) -> dict[str, Trace]:
 def frames() -> dict[str, np.ndarray]:
     """Two different pictures of the course's shape."""
     initial = np.arange(np.prod(FRAME_SHAPE), dtype=np.uint32).astype(np.uint8).reshape(FRAME_SHAPE)
-    return {"initial": initial, "final": initial[::-1].copy()}
+    final = initial.copy()
+    final[200:300] += 1
+    return {"initial": initial, "final": final}
 
 
 @pytest.fixture(scope="session")

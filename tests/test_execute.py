@@ -284,11 +284,15 @@ def test_no_process_outlives_an_interrupted_or_killed_stage(tmp_path, sent):
     wait_until(lambda: all(path.exists() and path.read_text() for path in pids))
     below = psutil.Process(stage.pid).children(recursive=True)
     assert {int(path.read_text()) for path in pids} <= {process.pid for process in below}
+    (kernel, *_) = [process for process in below if process.pid == int(pids[0].read_text())]
+    scratch = Path(kernel.cwd()).parent
+    assert scratch.name.startswith("robo-")
     stage.send_signal(sent)
     assert stage.wait(30) != 0
     _, alive = psutil.wait_procs(below, timeout=15)
     assert alive == []
     assert not list((tmp_path / "cache/notebooks").glob("executed/*"))
+    assert not scratch.exists()
 
 
 def wait_until(true, seconds=30):

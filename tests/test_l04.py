@@ -77,6 +77,11 @@ def test_every_compared_unit_has_a_resolution():
     assert all(value > 0 for value in l04.RESOLUTION.values())
 
 
+def test_one_sample_more_is_a_difference():
+    assert l04.RESOLUTION["s"] < l04.BASELINE.dt
+    assert l04.RESOLUTION["1"] < 1
+
+
 def test_parameters_are_json_and_complete():
     parameters = l04.parameters()
     assert json.loads(json.dumps(parameters, allow_nan=False)) == parameters

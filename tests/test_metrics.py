@@ -85,6 +85,11 @@ def test_every_number_of_a_small_run(make_trace):
     )
 
 
+def test_the_end_keeps_the_sign_of_velocity_but_not_of_error(make_trace):
+    m = step_metrics(make_trace([0.0, 1.0, 1.5], 1.0, qd=[2.0, -0.5]), 0)
+    assert (m.final_error, m.final_velocity) == (0.5, -0.5)
+
+
 def test_what_the_window_does_not_reach_is_none_and_not_its_end(make_trace):
     m = step_metrics(make_trace(np.linspace(0, 0.2, 21), STEP), 0)
     assert (m.rise_time, m.settling_time) == (None, None)

@@ -61,7 +61,9 @@ def test_position_draws_target_and_settling_band(ax, three, joints):
     (band,) = ax.patches
     edges = band.get_extents().transformed(ax.transData.inverted())
     assert (edges.y0, edges.y1) == pytest.approx((target - SETTLING_BAND, target + SETTLING_BAND))
-    assert legend(ax) == ["settling band ±0.01 rad", "target", "G1", "G2", "G3"]
+    labels = legend(ax)
+    assert labels[0].endswith("band ±0.01 rad")
+    assert labels[1:] == ["target", "G1", "G2", "G3"]
 
 
 def test_velocity_draws_the_samples_after_each_step(ax, three, joints):
@@ -98,6 +100,12 @@ def test_units_follow_the_joint(ax, three, joints, draw, ylabel):
         plots.velocity: (three["G1"].t_step, three["G1"].qd[:, 8]),
         plots.control_force: (three["G1"].t_step, three["G1"].control_force[:, 8]),
     }[draw])  # fmt: skip
+
+
+@pytest.mark.parametrize(("joint", "limit"), [("joint5", 12), ("finger_joint1", 100)])
+def test_limits_are_the_joints_own(ax, three, joints, joint, limit):
+    plots.control_force(ax, three, joints, joint)
+    assert heights(ax) == [-limit, limit]
 
 
 def test_response_draws_three_axes(three, joints):

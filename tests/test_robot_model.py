@@ -38,6 +38,8 @@ def robot():
         ("wrist", "SPHERICAL", [7, 8, 9], [8, 9, 10, 11]),
         ("slider", "PRISMATIC", [10], [12]),
         ("weld", "FIXED", [], []),
+        ("disc", "REVOLUTE", [11], [13, 14]),
+        ("screw", "REVOLUTE", [12, 13], [15]),
     )
 
 
@@ -77,12 +79,15 @@ def test_arrays_are_read_only(robot, name):
 
 
 def test_an_unknown_name_lists_the_models_names(robot):
-    with pytest.raises(JointError, match=r"'elbw'.*base, shoulder, wrist, slider, weld"):
+    with pytest.raises(
+        JointError, match=r"'elbw'.*base, shoulder, wrist, slider, weld, disc, screw"
+    ):
         resolve_joints(robot, ("shoulder", "elbw"))
 
 
 @pytest.mark.parametrize(
-    ("name", "dofs", "qpos"), [("wrist", 3, 4), ("base", 6, 7), ("weld", 0, 0)]
+    ("name", "dofs", "qpos"),
+    [("wrist", 3, 4), ("base", 6, 7), ("weld", 0, 0), ("disc", 1, 2), ("screw", 2, 1)],
 )
 def test_a_joint_that_is_no_scalar_gives_both_counts(robot, name, dofs, qpos):
     with pytest.raises(JointError, match=f"'{name}' has {dofs} DOFs and {qpos} qpos"):

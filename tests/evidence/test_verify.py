@@ -200,6 +200,8 @@ SPOILERS = {
     "a metric of another class": ("metrics", sealed(metric(**{"class": "performance"}))),
     "a metric that is missing": ("metrics", sealed(lambda f: edit(
         f, "metrics.json", lambda m: m["G1"].pop("rise_time")))),
+    "a metric too many": ("metrics", sealed(lambda f: edit(
+        f, "metrics.json", lambda m: m["G1"].update(grace=m["G1"]["overshoot"])))),
     "a group that is missing": ("metrics", sealed(lambda f: edit(
         f, "metrics.json", lambda m: m.pop("G1")))),
     "a group too many": ("metrics", sealed(lambda f: edit(
