@@ -144,8 +144,8 @@ def factor_sentence(names: tuple[str, str], changed: list[str]) -> str:
     """Say what two configurations differ in."""
     if len(changed) == 1:
         return (
-            f"Between {names[0]} and {names[1]} only `{changed[0]}` differs; start, target, time "
-            "step, duration, effort limit, seed and every other gain are equal, field by field."
+            f"Between {names[0]} and {names[1]} only `{changed[0]}` differs; every other entry of "
+            "the two configurations is equal, compared field by field."
         )
     found = ", ".join(f"`{entry}`" for entry in changed) or "nothing"
     return (
@@ -193,6 +193,11 @@ def final_error_sentence(name: str, m: StepMetrics) -> str:
         f"{name} ends {format_value(m.final_error, 'rad')} from its target, {motion} at "
         f"{format_value(m.final_velocity, 'rad/s')}"
     )
+    if m.settling_time is None and at_rest:
+        return (
+            f"{ends}; settling into ±{SETTLING_BAND:g} rad was not observed: it stands outside the "
+            "band, and only a longer window would tell a steady error from a slow approach."
+        )
     if m.settling_time is None:
         return (
             f"{ends}; settling into ±{SETTLING_BAND:g} rad was not observed, so its last sample "

@@ -70,7 +70,7 @@ def validate(case: ControlCase, joints: JointMap) -> None:
         for k in np.flatnonzero(np.asarray(getattr(case, name)) < 0):
             value = getattr(case, name)[k]
             raise CaseError(f"{name}[{joints.names[k]}] is {value}, expected zero or more.")
-    if case.steps < 1 or case.dt <= 0 or case.substeps < 1:
+    if case.steps < 1 or not case.dt > 0 or case.substeps < 1:
         raise CaseError(
             f"steps={case.steps}, dt={case.dt}, substeps={case.substeps}: all must be positive."
         )

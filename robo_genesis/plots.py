@@ -5,7 +5,9 @@ from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from IPython import get_ipython
 from matplotlib.axes import Axes
+from matplotlib_inline.backend_inline import set_matplotlib_formats
 
 from robo_genesis.metrics import SETTLING_BAND
 from robo_genesis.robot_model import JointMap
@@ -40,9 +42,7 @@ def use_course_style() -> None:
             "svg.hashsalt": "robo-genesis",
         }
     )
-    try:
-        from matplotlib_inline.backend_inline import set_matplotlib_formats
-    except ImportError:  # not in a notebook
+    if get_ipython() is None:  # not in a notebook
         return
     set_matplotlib_formats("svg", metadata={"Date": None, "Creator": None})
 

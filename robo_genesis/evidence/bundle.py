@@ -242,11 +242,14 @@ def read_manifest(folder: Path) -> Manifest:
 
 def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
     """Return metrics by group (a case, or `model`) and name."""
+    found = read_json(folder, "metrics.json")
+    if not isinstance(found, dict) or not all(isinstance(v, dict) for v in found.values()):
+        raise BundleRefused("bad-schema", "metrics.json is not groups of metrics. Record it again.")
     return {
         group: {
             n: _validated(Metric, value, f"metrics.json {group}.{n}") for n, value in items.items()
         }
-        for group, items in read_json(folder, "metrics.json").items()
+        for group, items in found.items()
     }
 
 

@@ -170,7 +170,10 @@ def files_match_wheel(*distributions: str) -> bool:
         for file in importlib.metadata.distribution(name).files or []:
             if file.hash is None:
                 continue
-            digest = hashlib.new(file.hash.mode, Path(str(file.locate())).read_bytes()).digest()
+            path = Path(str(file.locate()))
+            if not path.is_file():
+                return False
+            digest = hashlib.new(file.hash.mode, path.read_bytes()).digest()
             if base64.urlsafe_b64encode(digest).rstrip(b"=").decode() != file.hash.value:
                 return False
     return True

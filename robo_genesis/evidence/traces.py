@@ -1,5 +1,6 @@
 """A trace as files and back: npz with units in the names, described in `arrays.json`."""
 
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from zipfile import BadZipFile
@@ -69,10 +70,15 @@ def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
             not form one run.
     """
     described = arrays.cases[case]
+    if described.file != f"arrays/{case}.npz":
+        raise BundleRefused(
+            "path", f"arrays.json puts {case} at {described.file!r}, expected arrays/{case}.npz."
+        )
     try:
-        with np.load(folder / described.file, allow_pickle=False) as archive:
+        with (folder / described.file).open("rb") as stream:
+            archive = np.lib.npyio.NpzFile(stream, allow_pickle=False)
             values = {name: archive[name] for name in archive.files}
-    except (OSError, ValueError, EOFError, BadZipFile) as error:
+    except (OSError, ValueError, EOFError, KeyError, BadZipFile, zlib.error) as error:
         raise BundleRefused("bad-array", f"{described.file}: {error}. Record it again.") from error
     if set(values) != set(described.variables) or set(values) != {n for n, *_ in FIELDS.values()}:
         raise BundleRefused("bad-array", f"{described.file} has other arrays than arrays.json.")

@@ -3,13 +3,18 @@
 import json
 from pathlib import Path, PurePosixPath
 
+import numpy as np
 from PIL import Image
 
 from robo_genesis import l04, project
+from robo_genesis.checks import CHECKS
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused, Manifest
 from robo_genesis.evidence.record import COMPUTING_MODULES, PACKAGE
 from robo_genesis.evidence.traces import read_trace
+from robo_genesis.runtime import FrameError, require_frame
+
+AGAIN = "Record the bundle again."
 
 
 def verify_bundle(folder: Path, run_id: str | None = None) -> Manifest:
@@ -43,17 +48,18 @@ def _expect(code: str, what: str, found: object, expected: object, mend: str) ->
 
 def _check_identity(folder: Path, manifest: Manifest, run_id: str | None) -> None:
     predicate = manifest.predicate
-    again = "Record the bundle again."
-    _expect("schema", "schema_version", predicate.schema_version, bundle.SCHEMA_VERSION, again)
+    _expect("schema", "schema_version", predicate.schema_version, bundle.SCHEMA_VERSION, AGAIN)
     if run_id is not None:
         _expect("run-id", "run_id", predicate.run_id, run_id, "Execute the page again.")
     _expect("lesson", "lesson", predicate.lesson, l04.LESSON, "File it under its own lesson.")
     key = bundle.evidence_key(predicate.model_dump())
-    _expect("key", "evidence_key", predicate.evidence_key, key, again)
+    _expect("key", "evidence_key", predicate.evidence_key, key, AGAIN)
 
 
 def _check_files(folder: Path, manifest: Manifest) -> None:
     listed = {subject.name: subject.digest.sha256 for subject in manifest.subject}
+    if len(listed) != len(manifest.subject):
+        raise BundleRefused("files", f"a file is listed twice. {AGAIN}")
     for name in listed:
         path = PurePosixPath(name)
         if path.is_absolute() or ".." in path.parts or (folder / name).is_symlink():
@@ -93,36 +99,49 @@ def _check_backend(folder: Path, manifest: Manifest) -> None:
 
 
 def _check_frames(folder: Path, manifest: Manifest) -> None:
-    pictures = sorted((folder / "frames").glob("*"))
-    for path in pictures:
-        with Image.open(path) as picture:
-            stamp = picture.info.get("run_id")
-        _expect("frames", f"run id of {path.name}", stamp, manifest.predicate.run_id, "Run again.")
-    if manifest.predicate.render.mode == "skip" and pictures:
-        raise BundleRefused("frames", "rendering was off, yet there are frames. Run again.")
+    camera = manifest.predicate.render.mode == "camera"
+    found = sorted(path.name for path in (folder / "frames").glob("*"))
+    expected = ["final.png", "initial.png"] if camera else []
+    _expect(
+        "frames", f"frames with render {manifest.predicate.render.mode}", found, expected, AGAIN
+    )
+    for name in found:
+        try:
+            with Image.open(folder / "frames" / name) as picture:
+                stamp, pixels = picture.info.get("run_id"), np.array(picture)
+            require_frame(pixels)
+        except (OSError, FrameError) as error:
+            raise BundleRefused("frames", f"{name}: {error}. {AGAIN}") from error
+        _expect("frames", f"run id of {name}", stamp, manifest.predicate.run_id, AGAIN)
 
 
 def _check_metrics(folder: Path) -> None:
     arrays = bundle.read_arrays(folder)
     missing = set(l04.CASES) - set(arrays.cases)
-    if missing:
-        raise BundleRefused("cases", f"no arrays for {sorted(missing)}. Record the bundle again.")
-    entry = arrays.coords["dof"].index(l04.STEPPED_JOINT)
+    dofs = arrays.coords.get("dof", [])
+    if missing or l04.STEPPED_JOINT not in dofs:
+        raise BundleRefused(
+            "cases",
+            f"no arrays for {sorted(missing)}, or no {l04.STEPPED_JOINT} in {dofs}. {AGAIN}",
+        )
     traces = {case: read_trace(folder, arrays, case) for case in arrays.cases}
-    found = bundle.read_json(folder, "metrics.json")
-    model = {name: record["value"] for name, record in found["model"].items()}
-    expected = json.loads(json.dumps(l04.metric_records(l04.measure(traces, entry), model)))
-    for group, records in expected.items():
-        for name, record in records.items():
-            _expect(
-                "metrics", f"metrics.json {group}.{name}", found.get(group, {}).get(name), record,
-                "It is not what the arrays say: record the bundle again.",
-            )  # fmt: skip
-    _expect("metrics", "groups", sorted(found), sorted(expected), "Record the bundle again.")
+    measured = l04.measure(traces, dofs.index(l04.STEPPED_JOINT))
+    expected = l04.metric_records(measured, l04.EXPECTED_MODEL)
+    found = {
+        group: {name: metric.model_dump(by_alias=True) for name, metric in metrics.items()}
+        for group, metrics in bundle.read_metrics(folder).items()
+    }
+    _expect("metrics", "groups of metrics", sorted(found), sorted(expected), AGAIN)
+    for group in expected:
+        here, there = found[group], expected[group]
+        for name in sorted(here.keys() | there.keys()):
+            _expect("metrics", f"{group}.{name}", here.get(name), there.get(name), AGAIN)
 
 
 def _check_outcomes(manifest: Manifest) -> None:
     checks = manifest.predicate.checks
+    names = [check.__name__ for check in CHECKS]
+    _expect("checks", "list of checks", [check.name for check in checks], names, AGAIN)
     failed = [f"[{c.name}] {c.detail}" for c in checks if not c.passed]
-    if failed or not checks:
-        raise BundleRefused("checks", " ".join(failed) or "no check was run.")
+    if failed:
+        raise BundleRefused("checks", " ".join(failed))
