@@ -1,13 +1,12 @@
 """Figures of the course: axes in, axes out; no numerics, no show()."""
 
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
-from IPython import get_ipython
 from matplotlib.axes import Axes
-from matplotlib_inline.backend_inline import set_matplotlib_formats
 
 from robo_genesis.metrics import SETTLING_BAND
 from robo_genesis.robot_model import JointMap
@@ -42,8 +41,11 @@ def use_course_style() -> None:
             "svg.hashsalt": "robo-genesis",
         }
     )
-    if get_ipython() is None:  # not in a notebook
+    interactive = sys.modules.get("IPython")
+    if interactive is None or interactive.get_ipython() is None:  # not in a notebook
         return
+    from matplotlib_inline.backend_inline import set_matplotlib_formats
+
     set_matplotlib_formats("svg", metadata={"Date": None, "Creator": None})
 
 
