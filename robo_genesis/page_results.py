@@ -137,14 +137,19 @@ def at_cell(
 
 
 def last_log_lines(notebook: NotebookNode, upto: int) -> tuple[str, ...]:
-    """Return the last lines that the cells up to a position wrote to stderr, colours removed."""
+    """Return the last lines that the cells up to a position wrote, the engine's log among them."""
     written = [
         output.text
         for cell in notebook.cells[: upto + 1]
         for output in cell.get("outputs", [])
-        if output.output_type == "stream" and output.name == "stderr"
+        if output.output_type == "stream"
     ]
-    return tuple(ANSI.sub("", "".join(written)).splitlines()[-LOG_LINES:])
+    return last_lines("".join(written))
+
+
+def last_lines(text: str) -> tuple[str, ...]:
+    """Return the last lines of a text, colours removed."""
+    return tuple(ANSI.sub("", text).splitlines()[-LOG_LINES:])
 
 
 def failure_report(results: Sequence[PageResult]) -> str:

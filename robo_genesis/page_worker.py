@@ -5,7 +5,7 @@ import os
 import tempfile
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 
@@ -20,6 +20,7 @@ from robo_genesis.page_cache import outputs_folder
 from robo_genesis.page_results import (
     Failure,
     at_cell,
+    last_lines,
     last_log_lines,
     missing_bundle,
     unexpected_outcome,
@@ -113,6 +114,18 @@ class PageWorker(ExecutionWorkerTempMProc):
         return at_cell(notebook, last, name, message, last_log_lines(notebook, last))
 
 
+def capture_file_descriptors(path: Path) -> Path:
+    """Send what this process and its kernel write past Python to a file, and return the file.
+
+    The engine's compiled parts do so: it would stand among the build's progress lines, and a crash
+    would take its last words along.
+    """
+    target = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    for descriptor in (1, 2):
+        os.dup2(target, descriptor)
+    return path
+
+
 def work(run: PageRun, connection: Connection) -> None:
     """Execute one page in this process and send back seconds and failure.
 
@@ -127,10 +140,13 @@ def work(run: PageRun, connection: Connection) -> None:
     environment = clean_environment(run.folder / "home", runtime, ROOT, run.environment)
     os.environ.clear()
     os.environ.update(environment)
+    raw = capture_file_descriptors(runtime / "raw.log")
     worker = PageWorker(run)
     begin = time.monotonic()
     code, _ = worker(run.data)
     failure = worker.failure
     if code and failure is None:
         failure = Failure("CacheError", "jupyter-cache could not read or store the page.")
+    if failure:
+        failure = replace(failure, log=failure.log + last_lines(raw.read_text(errors="replace")))
     connection.send((time.monotonic() - begin, failure))

@@ -27,7 +27,7 @@ BROKEN = {
     "check": notebook(
         cell(CHECK), cell("# proof\nraise CheckFailed('[one_factor] kp changed,\\nkv too')")
     ),
-    "dead": notebook(cell("import os\nos._exit(3)")),
+    "dead": notebook(cell('import os\nos.write(2, b"last words")\nos._exit(3)')),
     "slow": notebook(cell("import time\ntime.sleep(60)"), front="execution: {timeout: 2}\n"),
     "calm": notebook(raising("2 + 1", "ValueError: no")),
     "other": notebook(raising("raise ValueError('maybe')", "ValueError: no")),
@@ -88,6 +88,11 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
 
 def test_a_dead_kernel_is_a_failed_page(broken):
     assert failure(broken, "dead") == ("DeadKernelError", "Kernel died", 1)
+
+
+def test_a_dead_kernel_leaves_its_last_words(broken):
+    log = broken[1]["dead"].failure.log
+    assert any("last words" in line for line in log)
 
 
 def test_a_timeout_is_a_failed_page_and_names_the_limit_of_the_front_matter(broken):

@@ -2,6 +2,7 @@
 
 import importlib.metadata
 import re
+import runpy
 import tomllib
 
 from packaging.requirements import Requirement
@@ -30,6 +31,18 @@ def needed(requirements: list[str], extras: set[str], seen: dict[str, str]) -> d
         below = [r for r in found.requires or [] if name != "torch" or not TORCH_BUILD.match(r)]
         needed(below, set(requirement.extras), seen)
     return seen
+
+
+def test_parts_of_torch_s_cuda_build_are_left_out_unless_others_need_them():
+    script = runpy.run_path(str(ROOT / "build_scripts" / "lock.py"))
+    packages = {
+        "robo-genesis": {"requires_dist": ["torch>=2", "engine==1"]},
+        "engine": {"requires_dist": ["nvidia-nvrtc-cu12; platform_system == 'Linux'"]},
+        "torch": {"requires_dist": ["sympy", "cuda-toolkit[all]==13", "nvidia-nvrtc-cu12"]},
+        "cuda-toolkit": {"requires_dist": ["nvidia-cublas"]},
+        **{key: {} for key in ("sympy", "nvidia-nvrtc-cu12", "nvidia-cublas")},
+    }
+    assert script["needed"](packages) == {"torch", "engine", "sympy", "nvidia-nvrtc-cu12"}
 
 
 def test_every_line_names_one_exact_public_version():
