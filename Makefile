@@ -5,10 +5,12 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
 MAKEFLAGS += --no-print-directory
+# The book is built on all cores; a test or a second build beside it would only disturb it.
+.NOTPARALLEL:
 
 ifdef PYTHON
   PY := $(PYTHON)
-  ENVIRONMENT :=
+  ENVIRONMENT := has-packages
 else
   PY := .venv/bin/python
   ENVIRONMENT := .venv/.installed
@@ -27,22 +29,22 @@ help: ## list the targets
 
 .PHONY: book
 book: $(ENVIRONMENT) ## measure every lesson on CPU, verify, render and check the site
-	@$(PY) build_scripts/book.py
+	@"$(PY)" build_scripts/book.py
 
 .PHONY: test
 test: $(ENVIRONMENT) ## run all tests (needs Debian's chromium)
-	@$(PY) -m pytest
+	@"$(PY)" -m pytest
 
 .PHONY: lint
 lint: $(ENVIRONMENT) ## ruff, mypy and codespell
-	@$(PY) -m ruff check .
-	@$(PY) -m ruff format --check .
-	@$(PY) -m mypy
-	@$(PY) -m codespell_lib
+	@"$(PY)" -m ruff check .
+	@"$(PY)" -m ruff format --check .
+	@"$(PY)" -m mypy
+	@"$(PY)" -m codespell_lib
 
 .PHONY: serve
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
-	@$(PY) build_scripts/serve.py
+	@"$(PY)" build_scripts/serve.py
 
 .PHONY: clean
 clean: ## remove the built site and the executed pages, keep the compiled kernels
@@ -54,13 +56,21 @@ distclean: clean ## remove the environment and every cache too
 
 .PHONY: lock
 lock: $(ENVIRONMENT) ## resolve requirements.lock anew from pyproject.toml
-	@$(PY) build_scripts/lock.py
+	@"$(PY)" build_scripts/lock.py
+
+.PHONY: has-packages
+has-packages:
+	@"$(PY)" -c 'import sys; from importlib.util import find_spec; \
+	  needed = "genesis jupyter_book pytest ruff mypy codespell_lib".split(); \
+	  gone = [name for name in needed if find_spec(name) is None]; \
+	  sys.exit("PYTHON=%s lacks %s. Install the lock there: pip install -r requirements.lock" \
+	  % (sys.argv[1], ", ".join(gone)) if gone else 0)' "$(PY)"
 
 # The stamp is written last: an installation that was broken off starts again.
 .venv/.installed: requirements.lock
-	@$(BASE_PYTHON) -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 14) else \
+	@"$(BASE_PYTHON)" -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 14) else \
 	  "The course needs Python 3.11 to 3.13, found %d.%d. Name another with BASE_PYTHON=python3.11." % v)'
 	@echo "Setting up .venv from requirements.lock (once; some minutes)"
-	@$(BASE_PYTHON) -m venv --clear .venv
+	@"$(BASE_PYTHON)" -m venv --clear .venv
 	@.venv/bin/python -m pip install -qq --disable-pip-version-check --requirement requirements.lock
 	@touch $@

@@ -1,7 +1,7 @@
 """Build the course site: `make book`.
 
-Environment: RENDER=0|1 (default 1: the labs' camera is used), JOBS (pages at once; default one for
-each core) and ROBO_GENESIS_BACKEND=auto|cpu (default cpu).
+Environment: RENDER=0|1 (default 1: the labs' camera is used) and JOBS (pages at once; default one
+for each core). Backend is always the CPU; results of accelerators are recorded apart.
 Exit status: 0 published, 1 failed, 130 interrupted; unless it is 0, the old site still stands.
 """
 
@@ -34,6 +34,24 @@ def jobs() -> int | None:
     return int(value) if value else None
 
 
+def require_cpu() -> None:
+    """Exit with 1 where the environment asks for another backend than the CPU."""
+    value = os.environ.get("ROBO_GENESIS_BACKEND") or "cpu"
+    if value != "cpu":
+        sys.exit(
+            f"ROBO_GENESIS_BACKEND={value!r} is not valid for a build, which measures on the CPU: "
+            "its pages show what was measured there, and accelerators are recorded apart. "
+            "Unset it. Choices: cpu."
+        )
+    os.environ["ROBO_GENESIS_BACKEND"] = "cpu"
+
+
+def failed(report: str) -> int:
+    """Print why nothing was published; return the exit status."""
+    print(f"\n{report}\n\nFAILED: nothing was published.", file=sys.stderr)
+    return 1
+
+
 def main() -> int:
     """Run the build and return its exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -42,7 +60,7 @@ def main() -> int:
     parser.add_argument("--timeout", type=int, default=TIMEOUT, help="seconds for one cell")
     args = parser.parse_args()
     os.environ["ROBO_GENESIS_RENDER"] = choice("RENDER", "1", ("0", "1"))
-    os.environ["ROBO_GENESIS_BACKEND"] = choice("ROBO_GENESIS_BACKEND", "cpu", ("auto", "cpu"))
+    require_cpu()
     # A cancelled CI job sends SIGTERM: the same way out as Ctrl-C, so that no kernel stays behind.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     build = Build(
@@ -55,8 +73,9 @@ def main() -> int:
     try:
         print("\n".join(run_build(build)))
     except (BuildError, PageError, ProjectError, RenderError) as error:
-        print(f"\n{error}\n\nFAILED: nothing was published.", file=sys.stderr)
-        return 1
+        return failed(str(error))
+    except OSError as error:
+        return failed(f"A file cannot be used: {error}. Give it free space or write access.")
     except KeyboardInterrupt:
         print("\nInterrupted: nothing was published.", file=sys.stderr)
         return 130

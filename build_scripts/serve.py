@@ -10,7 +10,7 @@ from robo_genesis.publish import PUBLISHED
 
 
 def main() -> int:
-    """Serve until Ctrl-C; return 1 if there is no site or the port is not valid."""
+    """Serve until Ctrl-C; return 1 if there is no site, or the port is not valid or not free."""
     html = BOOK / PUBLISHED / "html"
     port = os.environ.get("PORT") or "8000"
     if not (html / "index.html").is_file():
@@ -20,7 +20,12 @@ def main() -> int:
         print(f"PORT={port!r} is not valid. Choices: 1 to 65535.", file=sys.stderr)
         return 1
     handler = partial(SimpleHTTPRequestHandler, directory=str(html))
-    with ThreadingHTTPServer(("127.0.0.1", int(port)), handler) as server:
+    try:
+        server = ThreadingHTTPServer(("127.0.0.1", int(port)), handler)
+    except OSError as error:
+        print(f"PORT={port}: {error.strerror}. Choose a free port.", file=sys.stderr)
+        return 1
+    with server:
         print(f"http://localhost:{port}/ serves {html}; Ctrl-C ends it.", flush=True)
         try:
             server.serve_forever()

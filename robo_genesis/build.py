@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from sqlalchemy.exc import OperationalError
+
 from robo_genesis import project
 from robo_genesis.execute import TIMEOUT, execute_pages
 from robo_genesis.page_results import PageResult, failure_report
@@ -80,9 +82,9 @@ def run_build(build: Build) -> list[str]:
         staging, log = build.cache / "staging", build.cache / "render.log"
         html = render(build.book, staging, folder, log)
         checked = _check(html, progress)
-        html = publish(build.book, html, results)
-        progress("publish", str(html))
         project.forget_old_pages(folder)
+        html = publish(build.book, html, results)  # last: after it, nothing may fail
+        progress("publish", str(html))
         return [f"Site: {html / 'index.html'}", *_summary(engine, results, manifests, checked)]
 
 
@@ -92,22 +94,32 @@ def _execute(
     """Run the execution stage; every page is tried before the report."""
     cores = os.cpu_count() or 1
     progress("execute", f"{len(pages)} pages", f"fingerprint {folder.name}")
-    environment = {
+    try:
+        results = execute_pages(
+            pages,
+            folder,
+            jobs=build.jobs or max(1, min(cores, len(pages))),
+            timeout=build.timeout,
+            environment=_kernel_environment(build),
+            on_progress=lambda what, event: progress("execute", what, event),
+        )
+    except (OperationalError, RuntimeError) as error:  # jupyter-cache's database, bare or wrapped
+        raise BuildError(
+            f"The executed pages in {folder} cannot be kept: {error.__cause__ or error}\n"
+            "Give them free space or write access, or remove that folder."
+        ) from error
+    if any(result.failure for result in results):
+        raise BuildError(failure_report(results))
+    return results
+
+
+def _kernel_environment(build: Build) -> dict[str, str]:
+    """Return the variables that every page's kernel gets from this build."""
+    return {
         **project.engine_cache_environment(build.root, build.cache),
         **project.environment_contract(),
         "ROBO_GENESIS_COMMAND": "make book",
     }
-    results = execute_pages(
-        pages,
-        folder,
-        jobs=build.jobs or max(1, min(cores, len(pages))),
-        timeout=build.timeout,
-        environment=environment,
-        on_progress=lambda page, text: progress("execute", page.docname, text),
-    )
-    if any(result.failure for result in results):
-        raise BuildError(failure_report(results))
-    return results
 
 
 def _verify(build: Build, results: Sequence[PageResult], progress: Progress) -> Mapping[str, Any]:
@@ -121,13 +133,37 @@ def _verify(build: Build, results: Sequence[PageResult], progress: Progress) -> 
         if result.bundle is None:
             continue
         try:
-            manifests[result.page.docname] = verify(result.bundle, result.run_id)
+            manifest = verify(result.bundle, result.run_id)
+            _require_what_was_asked(manifest.predicate)
+            manifests[result.page.docname] = manifest
             progress("verify", result.page.docname, "accepted")
         except BundleRefused as error:
             refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
     if refused:
         raise BuildError("\n".join(refused))
     return manifests
+
+
+def _require_what_was_asked(predicate: Any) -> None:
+    """Raise BundleRefused where a bundle's backend or camera is not the one this build asked for.
+
+    Args:
+        predicate: what the bundle's manifest says of its run.
+    """
+    from robo_genesis.evidence.bundle import BundleRefused
+
+    contract = project.environment_contract()
+    backend, render = contract["ROBO_GENESIS_BACKEND"], contract["ROBO_GENESIS_RENDER"]
+    for code, what, found, asked in (
+        ("backend", "backend.requested", predicate.backend.requested, backend),
+        ("frames", "render.mode", predicate.render.mode, "camera" if render == "1" else "skip"),
+    ):
+        if found != asked:
+            raise BundleRefused(
+                code,
+                f"{what} is {found!r}, this build asked for {asked!r}. "
+                "Let the page read runtime.read_contract() and set neither itself.",
+            )
 
 
 def _check(html: Path, progress: Progress) -> int:
@@ -165,23 +201,25 @@ def _summary(
 
 @contextmanager
 def only_build(cache: Path) -> Iterator[None]:
-    """Hold the lock of builds.
+    """Hold the lock of builds and of tests that run the engine.
 
     Args:
-        cache: folder of the lock file.
+        cache: folder of the caches. The lock lies beside the compiled kernels, which two cache
+            folders may share.
 
     Raises:
-        BuildError: another build runs; the message names its process.
+        BuildError: another process holds it; the message names that process.
     """
-    cache.mkdir(parents=True, exist_ok=True)
-    with (cache / "build.lock").open("a+") as lock:
+    engine = cache / "engine"
+    engine.mkdir(parents=True, exist_ok=True)
+    with (engine / "build.lock").open("a+") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             lock.seek(0)
             raise BuildError(
-                f"Another build runs here (process {lock.read().strip() or 'unknown'}). "
-                "Wait for it, or stop it with Ctrl-C there."
+                "Another build, or a test of the engine, runs here (process "
+                f"{lock.read().strip() or 'unknown'}). Wait for it, or stop it with Ctrl-C there."
             ) from None
         lock.truncate(0)
         lock.write(str(os.getpid()))

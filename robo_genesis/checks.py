@@ -13,6 +13,9 @@ from robo_genesis.runtime import FrameError, require_frame
 from robo_genesis.scene_config import JOINT_NAMES
 from robo_genesis.trace import Trace
 
+CONTROL_LAW_TOLERANCE = 1e-2
+"""Room for float32 in KP times a position error [N·m or N]."""
+
 POSTURES = ("camera", "schematic")
 
 
@@ -68,7 +71,7 @@ def mapping(run: StepExperiment) -> list[str]:
 
 
 def configuration(run: StepExperiment) -> list[str]:
-    """Start, target, gains, limits and ranges: one finite value a joint, a unit for each type."""
+    """Start, target, gains, limits and ranges: one finite value per joint, a unit for each type."""
     n = len(run.joints.names)
     problems = [
         f"{case}.{name} is not {n} finite values"
@@ -110,7 +113,7 @@ def baseline_approaches(run: StepExperiment) -> list[str]:
 
 
 def stamps(run: StepExperiment) -> list[str]:
-    """States at k · dt from zero, one value a step after each step, as many as were asked for."""
+    """States at k · dt from zero, one value per step after each step, as many as were asked for."""
     problems = []
     for name, case in run.cases.items():
         trace = run.traces[name]
@@ -174,10 +177,24 @@ def not_observed(run: StepExperiment) -> list[str]:
     return problems
 
 
+def control_law(run: StepExperiment) -> list[str]:
+    """Each control force is clip(KP (q_target − q) − KV q̇) with the gains of its own case."""
+    problems = []
+    for name, c in run.cases.items():
+        trace = run.traces[name]
+        limit = trace.effort_limit
+        law = np.clip(c.kp * (c.q_target - trace.q[1:]) - c.kv * trace.qd, -limit, limit)  # (n, d)
+        apart = float(np.abs(law - trace.control_force).max())
+        if apart > CONTROL_LAW_TOLERANCE:
+            problems.append(f"{name}: control force is up to {apart:g} off its case's control law")
+    return problems
+
+
 def measurements(run: StepExperiment) -> list[str]:
-    """Position, velocity and control force are finite, and no control force passes its limit."""
+    """Position, velocity and forces are finite, and no control force passes its limit."""
     problems = []
     for name, trace in run.traces.items():
+        # A trace refuses values that are not finite; this holds for one that was changed since.
         problems += [
             f"{name}.{field} is not finite everywhere"
             for field in ("q", "qd", "control_force", "internal_force")
@@ -230,6 +247,7 @@ CHECKS: tuple[Callable[[StepExperiment], list[str]], ...] = (
     stamps,
     same_start,
     one_factor,
+    control_law,
     not_observed,
     measurements,
     saturation,

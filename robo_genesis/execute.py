@@ -22,8 +22,10 @@ from robo_genesis.page_worker import PageRun, work
 from robo_genesis.pages import Page, code_digest
 
 TIMEOUT = 1500
+HEARTBEAT = 30.0
 READER = {"type": "plugin", "name": "myst_nb_md"}
-Progress = Callable[[Page, str], None]
+Progress = Callable[[str, str], None]
+Running = dict[Any, tuple[Any, PageRun]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,13 +33,15 @@ class Execution:
     """How pages are executed.
 
     `folder` is the cache folder of the pages' fingerprint, `jobs` the number of pages that run at
-    once, `environment` goes to the kernels, `on_progress` is told a page and what happens to it.
+    once, `environment` goes to the kernels, `on_progress` is told a page and what happens to it,
+    and what runs, where nothing happened for `heartbeat` seconds.
     """
 
     folder: Path
     jobs: int
     environment: Mapping[str, str]
     on_progress: Progress
+    heartbeat: float = HEARTBEAT
 
 
 class PageExecutor(JupyterExecutorTempMproc):
@@ -75,14 +79,13 @@ class PageExecutor(JupyterExecutorTempMproc):
             for record in self.get_records(filter_uris, filter_pks, force=force)
         ]
         result = ExecutorRunResult()
-        running: dict[Any, tuple[Any, PageRun]] = {}
+        running: Running = {}
         with tempfile.TemporaryDirectory(prefix="robo-") as scratch:
             try:
                 while waiting or running:
                     while waiting and len(running) < self.execution.jobs:
-                        connection, *started = self._launch(waiting.pop(0), Path(scratch))
-                        running[connection] = (started[0], started[1])
-                    for connection in wait(list(running)):
+                        self._launch(waiting.pop(0), Path(scratch), running)
+                    for connection in self._ended(running):
                         failure = self._finish(connection, *running[connection])
                         _, run = running.pop(connection)
                         (result.excepted if failure else result.succeeded).append(run.data.uri)
@@ -90,10 +93,17 @@ class PageExecutor(JupyterExecutorTempMproc):
                 kill_with_descendants(process.pid for process, _ in running.values())
         return result
 
-    def _launch(self, data: ProcessData, scratch: Path) -> tuple[Any, Any, PageRun]:
-        """Start the worker process of one page."""
+    def _ended(self, running: Running) -> list[Any]:
+        """Return connections of workers that sent a result or died; say meanwhile what runs."""
+        while not (ended := wait(list(running), timeout=self.execution.heartbeat)):
+            names = ", ".join(run.page.docname for _, run in running.values())
+            self.execution.on_progress(f"{len(running)} running: {names}", "")
+        return ended
+
+    def _launch(self, data: ProcessData, scratch: Path, running: Running) -> None:
+        """Start the worker process of one page and enter it in `running`."""
         page, how = self.pages[data.uri], self.execution
-        how.on_progress(page, "started")
+        how.on_progress(page.docname, "started")
         outputs = outputs_folder(how.folder)
         run_id = prepare_outputs(page, outputs)
         own = {
@@ -106,10 +116,10 @@ class PageExecutor(JupyterExecutorTempMproc):
         context = multiprocessing.get_context("spawn")
         receiver, sender = context.Pipe(duplex=False)
         process = context.Process(target=work, args=(run, sender))
-        with interrupts_blocked():
+        with interrupts_blocked():  # a Ctrl-C from here on finds the worker among the running
             process.start()
+            running[receiver] = (process, run)
         sender.close()
-        return receiver, process, run
 
     def _finish(self, connection: Any, process: Any, run: PageRun) -> Failure | None:
         """Keep the result of one page and return its failure, if it failed."""
@@ -121,7 +131,7 @@ class PageExecutor(JupyterExecutorTempMproc):
             page, "failed" if failure else "executed", seconds, run.run_id, bundle, failure
         )
         self.results[page.docname] = result
-        self.execution.on_progress(page, f"{result.status} in {seconds:.0f} s")
+        self.execution.on_progress(page.docname, f"{result.status} in {seconds:.0f} s")
         return failure
 
 
@@ -155,7 +165,8 @@ def execute_pages(
     jobs: int = 1,
     timeout: int = TIMEOUT,
     environment: Mapping[str, str] | None = None,
-    on_progress: Progress = lambda page, text: None,
+    on_progress: Progress = lambda what, event: None,
+    heartbeat: float = HEARTBEAT,
 ) -> list[PageResult]:
     """Execute the pages that this cache folder does not hold yet; try all of them.
 
@@ -165,16 +176,17 @@ def execute_pages(
         jobs: how many pages run at once.
         timeout: seconds for one cell; a page's front matter may say less.
         environment: variables for the kernels.
-        on_progress: called with a page and what happens to it.
+        on_progress: called with a page's name and what happens to it, or with what runs and "".
+        heartbeat: seconds without any event after which it is told what runs.
 
     Returns:
         One result for each page, in the order of `pages`.
     """
-    execution = Execution(folder.absolute(), jobs, environment or {}, on_progress)
+    execution = Execution(folder.absolute(), jobs, environment or {}, on_progress, heartbeat)
     cache = PageCache(notebooks_folder(execution.folder))
     cached = cached_results(pages, cache, outputs_folder(execution.folder))
     for result in cached.values():
-        on_progress(result.page, result.status)
+        on_progress(result.page.docname, result.status)
     waiting = {str(page.path.absolute()): page for page in pages if page.docname not in cached}
     for uri in waiting:
         cache.add_nb_to_project(uri, read_data=READER)

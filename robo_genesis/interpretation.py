@@ -7,29 +7,24 @@ it is given.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
+from robo_genesis.comparison import compare, comparison_sentence, prediction_sentence
 from robo_genesis.metrics import (
     SATURATION_THRESHOLD,
     SETTLING_BAND,
-    UNITS,
     StepMetrics,
     format_value,
 )
+from robo_genesis.trace import Trace
 
-LABELS = {
-    "rise_time": "rise time",
-    "peak_speed": "peak speed",
-    "overshoot": "overshoot",
-    "settling_time": "settling time",
-    "saturation_samples": "number of saturated samples",
-    "final_error": "final error",
-}
+SATURATION_SHARE = f"{100 * SATURATION_THRESHOLD:.0f} %"
+
+GRAVITY_AGREEMENT = 0.05
+"""Share within which KP × final error and gravity are said to agree."""
+
 AT_REST = 0.01
 """Speed below which the last sample is called nearly at rest [rad/s]."""
-
-INSPECT = (
-    "Before blaming the model, inspect saturation, the time stamps, the initial states and "
-    "the length of the window."
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,70 +37,6 @@ class Block:
     def markdown(self) -> str:
         """Return the block as a Markdown list under a bold title."""
         return "\n".join([f"**{self.title}**", "", *(f"- {s}" for s in self.sentences), ""])
-
-
-@dataclass(frozen=True, slots=True)
-class Comparison:
-    """One metric of two cases. `order` is the second against the first, None if undecidable."""
-
-    metric: str
-    first: float | None
-    second: float | None
-    order: str | None  # "lower" | "equal" | "higher" | None
-
-
-def compare(
-    metric: str, first: StepMetrics, second: StepMetrics, resolution: Mapping
-) -> Comparison:
-    """Order one metric of two cases; a difference below the resolution of its unit is equal."""
-    a, b = getattr(first, metric), getattr(second, metric)
-    if a is None and b is None:
-        order = None
-    elif a is None or b is None:
-        # A time that the window did not reach is later than any time within it.
-        order = "higher" if b is None else "lower"
-    elif abs(b - a) <= resolution[UNITS[metric]]:
-        order = "equal"
-    else:
-        order = "higher" if b > a else "lower"
-    return Comparison(metric, a, b, order)
-
-
-def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
-    """Say how one metric of two cases compares."""
-    label, unit = LABELS[comparison.metric], UNITS[comparison.metric]
-    first, second = (format_value(v, unit) for v in (comparison.first, comparison.second))
-    values = f"{names[0]} {first}, {names[1]} {second}"
-    if comparison.order is None:
-        return f"The {label} was not observed in either case, so this window cannot rank them."
-    if None in (comparison.first, comparison.second):
-        seen, unseen = names if comparison.second is None else names[::-1]
-        return (
-            f"The {label} was observed for {seen} alone ({values}); within this window "
-            f"{unseen} is the slower one, by how much is unknown."
-        )
-    verb = {"lower": "goes down", "higher": "goes up", "equal": "does not change measurably"}
-    return f"The {label} {verb[comparison.order]} ({values})."
-
-
-def prediction_sentence(names: tuple[str, str], comparison: Comparison, predicted: str) -> str:
-    """Hold one prediction against the measured order; one that fails says what to inspect."""
-    label = LABELS[comparison.metric]
-    claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
-    if comparison.order is None:
-        return f"{claim}. Cannot be judged: not observed in either case."
-    held = (
-        comparison.order
-        in {
-            "no later": ("lower", "equal"),
-            "later": ("higher",),
-            "higher": ("higher",),
-            "lower": ("lower",),
-        }[predicted]
-    )
-    if held:
-        return f"{claim}. Held in this run."
-    return f"{claim}. **Did not hold**: measured {comparison.order}. {INSPECT}"
 
 
 def pair_block(
@@ -151,6 +82,69 @@ def factor_sentence(names: tuple[str, str], changed: list[str]) -> str:
     return (
         f"{names[0]} and {names[1]} differ in {found}, so no difference below can be put down "
         "to one factor."
+    )
+
+
+def start_sentence(
+    names: tuple[str, str], traces: Mapping[str, Trace], entry: int, resolution: Mapping
+) -> str:
+    """Say what two cases did while both were clipped to the same effort, if they were.
+
+    Under one and the same effort a difference in motion is no work of the controller. The engine's
+    implicit integrator adds substep length · KV to the inertia of a position-controlled DOF.
+    """
+    one, other = (traces[name] for name in names)
+    alike = _clipped_alike(one, other, entry)
+    if alike == 0:
+        return "No leading samples of the two were clipped to the same effort."
+    speeds = [float(trace.qd[alike - 1, entry]) for trace in (one, other)]
+    told = " and ".join(
+        f"{name} {format_value(v, 'rad/s')}" for name, v in zip(names, speeds, strict=True)
+    )
+    time = format_value(float(one.t_step[alike - 1]), "s")
+    lead = f"Up to {time} both were clipped to the same effort at each sample"
+    if abs(speeds[0] - speeds[1]) <= resolution["rad/s"]:
+        return f"{lead}, and they moved alike ({told}): a gain cannot act while it is clipped."
+    return (
+        f"{lead}, and yet they differ in speed there ({told}). The effort cannot be the reason: "
+        "the engine's implicit integrator adds substep length × KV to the inertia of a position-"
+        "controlled DOF, clipped or not. That part of the difference is numerical, and a smaller "
+        "substep would shrink it."
+    )
+
+
+def _clipped_alike(one: Trace, other: Trace, entry: int) -> int:
+    """Count the leading samples in which both traces have one and the same saturated effort."""
+    a, b = one.control_force[:, entry], other.control_force[:, entry]
+    alike = (a == b) & (np.abs(a) >= SATURATION_THRESHOLD * one.effort_limit[entry])
+    return int(alike.argmin()) if not alike.all() else len(alike)
+
+
+def gravity_sentence(
+    kp: Mapping[str, float], metrics: Mapping[str, StepMetrics], gravity: Mapping[str, float]
+) -> str:
+    """Hold KP × final error of each case against the gravity effort read from the engine.
+
+    Args:
+        kp: by case [N·m/rad].
+        metrics: by case.
+        gravity: by case, the effort that holds its final posture [N·m].
+    """
+    told, apart = [], []
+    for name, effort in gravity.items():
+        support = kp[name] * metrics[name].final_error
+        told.append(f"{name} {format_value(support, 'N·m')} of {format_value(effort, 'N·m')}")
+        apart.append(abs(support - effort) / abs(effort))
+    found = f"KP × final error against the engine's gravity effort: {', '.join(told)}"
+    share = f"{100 * max(apart):.1f} %"
+    if max(apart) <= GRAVITY_AGREEMENT:
+        return (
+            f"{found}. They agree within {share}, as they would if gravity alone kept the "
+            "error up; that is consistent with gravity, and still no proof of a steady state."
+        )
+    return (
+        f"{found}. They differ by up to {share}, so gravity alone does not explain the "
+        "error: look at final velocity, tail and saturation."
     )
 
 
@@ -206,7 +200,7 @@ def final_error_sentence(name: str, m: StepMetrics) -> str:
     settled = format_value(m.settling_time, "s")
     tail = f"{ends}; it stays within ±{SETTLING_BAND:g} rad from {settled} on"
     if at_rest:
-        return f"{tail}, so the tail is quiet as far as this window shows."
+        return f"{tail}, and its last speed is no more than {AT_REST:g} rad/s."
     return f"{tail}, yet its speed says that the error is not final."
 
 
@@ -224,12 +218,12 @@ def actuator_block(metrics: Mapping[str, StepMetrics], limit: float) -> Block:
             sentences.append(
                 f"{name}: {format_value(m.saturation_samples, '1')} "
                 f"({format_value(m.saturation_duration, 's')}) at or above "
-                f"{SATURATION_THRESHOLD:.0%} of the limit; {peak}. While the effort is clipped, a "
+                f"{SATURATION_SHARE} of the limit; {peak}. While the effort is clipped, a "
                 "higher gain cannot add effort, and the ideal second-order picture does not apply."
             )
         else:
             sentences.append(
-                f"{name}: no sample at or above {SATURATION_THRESHOLD:.0%} of the limit; {peak}. "
+                f"{name}: no sample at or above {SATURATION_SHARE} of the limit; {peak}. "
                 "At these stamps nothing was clipped."
             )
     return Block("4. What the actuator limit did", tuple(sentences))
@@ -240,7 +234,8 @@ def interpret(
     changed: Mapping[tuple[str, str], list[str]],
     predictions: Mapping[tuple[str, str], tuple[tuple[str, str], ...]],
     resolution: Mapping,
-    limit: float,
+    traces: Mapping[str, Trace],
+    entry: int,
 ) -> tuple[Block, ...]:
     """Return the four blocks for three cases compared pair by pair.
 
@@ -249,16 +244,25 @@ def interpret(
         changed: by pair, what their configurations differ in; two pairs in order (KP, KV).
         predictions: by pair, (metric, order) written down before the runs.
         resolution: by unit, the difference that counts as none.
-        limit: effort limit of the stepped joint, read back [N·m].
+        traces: by case name, what the metrics were computed from.
+        entry: column of the stepped joint.
     """
     (kp_pair, kp_changed), (kv_pair, kv_changed) = changed.items()
     kp = pair_block(
         f"1. {kp_pair[0]} → {kp_pair[1]}: what KP did",
         kp_pair, metrics, kp_changed, predictions[kp_pair], resolution,
     )  # fmt: skip
+    kp_start = start_sentence(kp_pair, traces, entry, resolution)
     kv = pair_block(
         f"2. {kv_pair[0]} → {kv_pair[1]}: what KV did, and its cost",
         kv_pair, metrics, kv_changed, predictions[kv_pair], resolution,
     )  # fmt: skip
-    kv = Block(kv.title, (*kv.sentences, cost_sentence(kv_pair, metrics, resolution)))
-    return kp, kv, final_error_block(metrics), actuator_block(metrics, limit)
+    kv_start = start_sentence(kv_pair, traces, entry, resolution)
+    cost = cost_sentence(kv_pair, metrics, resolution)
+    limit = float(traces[kp_pair[0]].effort_limit[entry])
+    return (
+        Block(kp.title, (*kp.sentences, kp_start)),
+        Block(kv.title, (*kv.sentences, cost, kv_start)),
+        final_error_block(metrics),
+        actuator_block(metrics, limit),
+    )

@@ -134,19 +134,31 @@ def run_case(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Tra
     """
     reset(scene, robot, joints, case)
     dofs = joints.dofs_idx_local.tolist()
-    states = [read_state(robot, dofs)]
-    steps = []
+    states, steps, targets = [read_state(robot, dofs)], [], []
     start_qd = to_numpy(robot.get_dofs_velocity(dofs))
     q_target = case.q_target.copy()
     robot.control_dofs_position(q_target, dofs)
     start_control_force = to_numpy(robot.get_dofs_control_force(dofs))
     effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
+    begin = engine_time(scene)
     for _ in range(case.steps):
         robot.control_dofs_position(q_target, dofs)  # at t[k]: repeat the target
         scene.step()  # bounded effort drives the dynamics for dt
         states.append(read_state(robot, dofs))  # at t[k+1]: the new state
         steps.append(read_step(robot, dofs))
-    return assemble(case, states, steps, start_qd, start_control_force, effort_limit)
+        targets.append(q_target)
+    passed = engine_time(scene) - begin
+    if not np.isclose(passed, case.steps * case.dt, rtol=1e-5, atol=0):
+        raise CaseError(
+            f"The engine's clock advanced {passed:g} s in {case.steps} steps of {case.dt:g} s: the "
+            "stamps k · dt would be wrong. Build the scene with the case's dt."
+        )
+    return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)
+
+
+def engine_time(scene: Any) -> float:
+    """Return the time that the engine's own clock shows [s]."""
+    return float(scene.get_time() if hasattr(scene, "get_time") else scene.t * scene.dt)
 
 
 def assign_path(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Trace:
@@ -155,36 +167,53 @@ def assign_path(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> 
     No step is taken: this is what a sequence of resets looks like, for contrast with `run_case`.
 
     Returns:
-        A trace whose positions are the assigned ones.
+        A trace of the assigned positions. Its time is nominal: none passed.
     """
     reset(scene, robot, joints, case)
     dofs = joints.dofs_idx_local.tolist()
     start_qd, start_force, _ = read_step(robot, dofs)
     effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
     states, steps = [read_state(robot, dofs)], []
-    for q in np.linspace(case.q_start, case.q_target, case.steps + 1)[1:]:
+    path = np.linspace(case.q_start, case.q_target, case.steps + 1)[1:]
+    for q in path:
         robot.set_dofs_position(q, dofs, zero_velocity=True)
         states.append(read_state(robot, dofs))
         steps.append(read_step(robot, dofs))
-    return assemble(case, states, steps, start_qd, start_force, effort_limit)
+    return assemble(case, states, steps, list(path), start_qd, start_force, effort_limit)
+
+
+def gravity_effort(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> FloatArray:
+    """Return the effort (d,) that would hold a posture against gravity, read from the engine.
+
+    The posture `q` (d,) [rad or m] is assigned at rest, no effort is commanded, and one step is
+    taken. What `get_dofs_force` then reports is gravity's pull, less the little passive damping at
+    the speed gained in that step. No gain enters, so it can be held against KP × error.
+    """
+    dofs = joints.dofs_idx_local.tolist()
+    scene.reset()
+    robot.set_dofs_position(np.array(q, dtype=np.float64), dofs, zero_velocity=True)
+    robot.control_dofs_force(np.zeros(len(dofs)), dofs)
+    scene.step()
+    return -to_numpy(robot.get_dofs_force(dofs))
 
 
 def assemble(
     case: ControlCase,
     states: list[tuple[FloatArray, FloatArray, FloatArray]],
     steps: list[tuple[FloatArray, FloatArray, FloatArray]],
+    targets: list[FloatArray],
     start_qd: FloatArray,
     start_control_force: FloatArray,
     effort_limit: FloatArray,
 ) -> Trace:
-    """Stack the n+1 states and n step readings of a run of `case` into a trace."""
+    """Stack the n+1 states, n step readings and n targets of a run of `case` into a trace."""
     q, link_pos, link_quat = (np.stack(column) for column in zip(*states, strict=True))
     qd, control_force, internal_force = (np.stack(column) for column in zip(*steps, strict=True))
     return Trace(
         t=np.arange(case.steps + 1) * case.dt,
         q=q,
         qd=qd,
-        target=np.tile(case.q_target, (case.steps, 1)),
+        target=np.stack(targets),
         control_force=control_force,
         internal_force=internal_force,
         start_control_force=start_control_force,

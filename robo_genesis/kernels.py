@@ -16,8 +16,12 @@ from jupyter_client.manager import AsyncKernelManager
 from jupyter_core.paths import jupyter_runtime_dir
 from traitlets import default
 
-# Start-up files and search paths by which a user's own set-up would leak into the pages.
-LEAKS = ("PYTHONSTARTUP", "PYTHONHOME", "JUPYTER_PATH", "JUPYTER_CONFIG_PATH", "MATPLOTLIBRC")
+from robo_genesis.project import ENGINE_PREFIXES
+
+# What a kernel gets of the user's environment: the machine's own, and the engine's switches, which
+# are part of the pages' fingerprint. All else (MPLBACKEND, PYTHONSTARTUP …) would change pages.
+MACHINE = ("HOME", "LANG", "LD_LIBRARY_PATH", "LOGNAME", "PATH", "TMPDIR", "TZ", "USER")
+ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
 
 # ipykernel 7 hangs for ever, or 10 s, in about one of ten of its own exit handlers. They run last:
 # one that is registered right after them runs right before them, after the engine's, and ends it.
@@ -75,7 +79,11 @@ def clean_environment(
         root: the checkout, the only entry of the kernel's PYTHONPATH.
         extra: variables of this run.
     """
-    kept = {name: value for name, value in os.environ.items() if name not in LEAKS}
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if name in MACHINE or name.startswith(ALLOWED)
+    }
     folders = {
         "IPYTHONDIR": home / "ipython",
         "JUPYTER_CONFIG_DIR": home / "jupyter-config",
@@ -87,6 +95,7 @@ def clean_environment(
     own = {
         "JUPYTER_NO_CONFIG": "1",
         "JUPYTER_PREFER_ENV_PATH": "1",
+        "MPLBACKEND": "module://matplotlib_inline.backend_inline",
         "PYTHONNOUSERSITE": "1",
         "PYTHONPATH": str(root),
     }

@@ -30,7 +30,6 @@ from robo_genesis.scene_config import (
 from robo_genesis.trace import Trace
 
 LESSON = "l04"
-TITLE = "Robot models, degrees of freedom, and joint control"
 MINIMUM_HARDWARE = "cpu"
 
 STEPPED_JOINT = "joint4"

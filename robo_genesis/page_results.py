@@ -85,11 +85,21 @@ def unexpected_outcome(source: NotebookNode, executed: NotebookNode) -> Failure 
     ran = [cell for cell in executed.cells if cell.cell_type == "code"]
     places = [index for index, cell in enumerate(source.cells) if cell.cell_type == "code"]
     for index, cell in zip(places, ran, strict=True):
+        if _lacks_figure(source.cells[index].metadata, cell):
+            return at_cell(
+                source, index, "FigureMissing", "the cell is tagged figure, but shows none."
+            )
         raised = [out for out in cell.outputs if out.output_type == "error"]
         reason = _contradiction(source.cells[index].metadata, raised)
         if reason:
             return at_cell(source, index, "ExpectedException", reason)
     return None
+
+
+def _lacks_figure(metadata: NotebookNode, executed: NotebookNode) -> bool:
+    """Whether a cell that is tagged figure put out no picture."""
+    kinds = {kind for out in executed.outputs for kind in out.get("data", {})}
+    return "figure" in metadata.get("tags", []) and not kinds & {"image/svg+xml", "image/png"}
 
 
 def _contradiction(metadata: NotebookNode, raised: Sequence[NotebookNode]) -> str | None:

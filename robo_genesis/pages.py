@@ -8,15 +8,15 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+import yaml
 from IPython.core.inputtransformer2 import TransformerManager
 from myst_nb.core.read import is_myst_markdown_notebook, myst_nb_reader_plugin
 from nbformat import NotebookNode
 from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
-from robo_genesis.project import ROOT, environment_contract, installed_version, lock_digest
+from robo_genesis.project import ROOT, environment_contract, installed_packages, lock_digest
 
 PACKAGE = "robo_genesis"
-COMPUTING_PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 DATA_SUFFIXES = (".json", ".toml", ".yaml", ".yml", ".csv")
 
 
@@ -54,15 +54,32 @@ def find_pages(book: Path) -> list[Page]:
         The MyST text notebooks among the pages that the table of contents names.
 
     Raises:
-        PageError: a named file is missing, or a front matter is incomplete or not allowed.
+        PageError: `_toc.yml` or pages cannot be read, a named file is missing, or a front matter
+            is incomplete or not allowed; the message names every such page.
     """
+    pages: list[Page] = []
+    problems: list[str] = []
+    for docname in _docnames(book / "_toc.yml"):
+        try:
+            pages += _read(book, docname)
+        except PageError as error:
+            problems.append(str(error))
+    if problems:
+        raise PageError("\n".join(problems))
+    return pages
+
+
+def _docnames(toc: Path) -> list[str]:
+    """Return the names of all pages in the order of the table of contents."""
     try:
-        site_map = parse_toc_yaml(book / "_toc.yml")
-    except (OSError, MalformedError) as error:
-        raise PageError(f"The table of contents cannot be read: {error}") from error
+        site_map = parse_toc_yaml(toc)
+    except (OSError, ValueError, yaml.YAMLError, MalformedError) as error:
+        raise PageError(
+            f"The table of contents {toc} cannot be read: {error}\nMend it there."
+        ) from error
     if site_map.globs():
         raise PageError(f"_toc.yml uses globs {sorted(site_map.globs())}; name every page instead.")
-    return [page for docname in site_map for page in _read(book, str(docname))]
+    return [str(docname) for docname in site_map]
 
 
 def _read(book: Path, docname: str) -> Iterator[Page]:
@@ -71,9 +88,9 @@ def _read(book: Path, docname: str) -> Iterator[Page]:
     path = (book / name).with_name(Path(name).name + ".md")
     if not path.is_file():
         raise PageError(f"_toc.yml names {docname!r}, but there is no {path}. Pages are .md files.")
-    if not is_myst_markdown_notebook(path.read_text("utf8")):
+    notebook = _notebook(name, path)
+    if notebook is None:
         return
-    notebook = myst_nb_reader_plugin(str(path))
     if "name" not in notebook.metadata.get("kernelspec", {}):
         raise PageError(f"{name}: front matter needs `kernelspec: {{name: python3}}`.")
     if notebook.metadata.get("execution", {}).get("allow_errors"):
@@ -82,6 +99,20 @@ def _read(book: Path, docname: str) -> Iterator[Page]:
             "tag the one cell `raises-exception` and say what it `expects`."
         )
     yield Page(name, path, notebook, *_declared(name, notebook))
+
+
+def _notebook(name: str, path: Path) -> NotebookNode | None:
+    """Return the parsed page, None for one of text alone."""
+    try:
+        text = path.read_text("utf8")
+        # Read first: a front matter that does not parse makes MyST-NB take a notebook for text.
+        notebook = myst_nb_reader_plugin(str(path)) if text.startswith("---") else None
+    except Exception as error:  # the reader has no exception of its own for half of its complaints
+        raise PageError(
+            f"{name}: the page cannot be read: {error}\n"
+            f"Mend {path}; front matter and the options of cells (`:name: value`) are YAML."
+        ) from error
+    return notebook if is_myst_markdown_notebook(text) else None
 
 
 def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None]:
@@ -172,7 +203,7 @@ def fingerprint(
 ) -> str:
     """Return the name of everything, apart from the pages' own code, that decides their outputs.
 
-    jupyter-cache compares code cells alone; so its folder is named by this digest of the lock, the
+    jupyter-cache compares code cells alone; so its folder is named by this digest of the lock, all
     installed versions, the package modules that the pages import, the package's data files, the
     environment contract and the Python version.
 
@@ -193,7 +224,7 @@ def fingerprint(
     }
     parts = {
         "lock": lock_digest(root),
-        "installed": {name: installed_version(name) for name in COMPUTING_PACKAGES},
+        "installed": installed_packages(),
         "python": platform.python_version(),
         "environment": environment_contract(environment),
         "files": digests,

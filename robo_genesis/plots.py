@@ -87,11 +87,24 @@ def control_force(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint
 
 
 def response(
-    axes: Sequence[Axes], traces: Mapping[str, Trace], joints: JointMap, joint: str
+    axes: Sequence[Axes],
+    traces: Mapping[str, Trace],
+    joints: JointMap,
+    joint: str,
+    until: float | None = None,
 ) -> Sequence[Axes]:
-    """Draw position, velocity and control force of one joint on three axes."""
+    """Draw position, velocity and control force of one joint on three axes.
+
+    `until` [s] shows the beginning alone, enlarged, with a mark at every sample.
+    """
     for ax, draw in zip(axes, (position, velocity, control_force), strict=True):
         draw(ax, traces, joints, joint)
+        if until is not None:
+            ax.set_xlim(-0.01, until)
+            for line in ax.get_lines():
+                if np.size(line.get_xdata()) > 2:  # a curve of samples, not a limit
+                    line.set(marker=".", markersize=6)
+            _legend_above(ax)  # marks belong in it, too
         ax.label_outer()
     return axes
 
@@ -108,7 +121,7 @@ def two_forces(ax: Axes, trace: Trace, joints: JointMap, joint: str) -> Axes:
     ax.axhline(limit, label="limit, read back", **LIMIT)
     ax.axhline(-limit, **LIMIT)
     unit = joints.effort_units[k]
-    return _finish(ax, f"Two getters, one run, {joint}", f"force [{unit}]", "right")
+    return _finish(ax, f"Forces on {joint}", f"force [{unit}]")
 
 
 def assigned_and_commanded(
@@ -162,9 +175,16 @@ def _finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
     ax.set_xlabel("time [s]")
     ax.set_ylabel(ylabel)
     ax.margins(x=0.01)
-    place: dict[str, Any] = {"loc": legend}
-    if legend == "above":  # on the title's line, clear of curves and limits
-        entries = len(ax.get_legend_handles_labels()[1])
-        place = {"loc": "lower right", "bbox_to_anchor": (1.01, 0.99), "ncols": entries}
-    ax.legend(fontsize="small", columnspacing=1.0, borderaxespad=0.2, **place)
+    if legend == "above":
+        _legend_above(ax)
+    else:
+        ax.legend(fontsize="small", loc=legend)  # type: ignore[call-overload]
     return ax
+
+
+def _legend_above(ax: Axes) -> None:
+    """Put the legend on the title's line, clear of curves and limits."""
+    ax.legend(
+        fontsize="small", columnspacing=1.0, borderaxespad=0.2, loc="lower right",
+        bbox_to_anchor=(1.01, 0.99), ncols=len(ax.get_legend_handles_labels()[1]),
+    )  # fmt: skip

@@ -5,7 +5,7 @@ import os
 import shutil
 import tomllib
 from collections.abc import Mapping
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, distributions, version
 from pathlib import Path
 
 from packaging.requirements import Requirement
@@ -15,9 +15,16 @@ BOOK = ROOT / "book"
 CACHE = ROOT / ".cache"
 ENGINE = "genesis-world"
 
-KERNEL_CACHE_BYTES = (
-    "2000000000"  # the engine's own limit of 100 MB throws out what it just compiled
-)
+# Variables that switch the engine, its compiler and the drivers below it.
+ENGINE_PREFIXES = ("GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "HSA_", "CUDA_")
+CACHE_FOLDERS = {
+    "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
+    "NUMBA_CACHE_DIR": "numba",
+    "MESA_SHADER_CACHE_DIR": "mesa",
+    "MPLCONFIGDIR": "matplotlib",  # its font list; also keeps a user's matplotlibrc out
+}
+# The engine's own limit of 100 MB throws out what it just compiled.
+CACHE_LIMIT = {"QD_OFFLINE_CACHE_MAX_SIZE_OF_FILES": "2000000000"}
 
 
 class ProjectError(Exception):
@@ -34,11 +41,19 @@ def engine_pin(root: Path = ROOT) -> str:
         The version X of the dependency `genesis-world==X`.
 
     Raises:
-        ProjectError: the dependency is missing or is not one exact version.
+        ProjectError: pyproject.toml cannot be read, the dependency is missing, or it is not one
+            exact version.
     """
-    declared = tomllib.loads((root / "pyproject.toml").read_text("utf8"))["project"]["dependencies"]
-    found = [line for line in declared if Requirement(line).name == ENGINE]
-    pins = [spec for line in found for spec in Requirement(line).specifier]
+    try:
+        project = tomllib.loads((root / "pyproject.toml").read_text("utf8"))["project"]
+        requirements = [Requirement(line) for line in project["dependencies"]]
+    except (KeyError, ValueError) as error:  # InvalidRequirement is a ValueError
+        raise ProjectError(
+            f"{root / 'pyproject.toml'} cannot be read: {error}\n"
+            'Valid lines of project.dependencies are like "numpy>=2.0"; mend that one.'
+        ) from error
+    found = [str(line) for line in requirements if line.name == ENGINE]
+    pins = [spec for line in requirements if line.name == ENGINE for spec in line.specifier]
     if len(pins) != 1 or pins[0].operator != "==" or pins[0].version.endswith("*"):
         raise ProjectError(
             f"pyproject.toml declares {found or 'no engine'}; "
@@ -53,6 +68,11 @@ def installed_version(package: str) -> str | None:
         return version(package)
     except PackageNotFoundError:
         return None
+
+
+def installed_packages() -> list[str]:
+    """Return `name==version` of everything that is installed for this interpreter, sorted."""
+    return sorted({f"{package.name}=={package.version}" for package in distributions()})
 
 
 def require_pinned_engine(root: Path = ROOT) -> str:
@@ -123,16 +143,10 @@ def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> di
         Variable to value; the folders that they name exist.
     """
     base = engine_cache_folder(root, cache)
-    folders = {
-        "QD_OFFLINE_CACHE_FILE_PATH": base / "kernels",
-        "NUMBA_CACHE_DIR": base / "numba",
-        "MESA_SHADER_CACHE_DIR": base / "mesa",
-        "MPLCONFIGDIR": base / "matplotlib",  # its font list; also keeps a user's matplotlibrc out
-    }
-    for folder in folders.values():
-        folder.mkdir(parents=True, exist_ok=True)
-    paths = {name: str(folder) for name, folder in folders.items()}
-    return {**paths, "QD_OFFLINE_CACHE_MAX_SIZE_OF_FILES": KERNEL_CACHE_BYTES}
+    paths = {name: base / folder for name, folder in CACHE_FOLDERS.items()}
+    for path in paths.values():
+        path.mkdir(parents=True, exist_ok=True)
+    return {name: str(path) for name, path in paths.items()} | CACHE_LIMIT
 
 
 def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:
@@ -151,7 +165,18 @@ def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:
 
 
 def environment_contract(environment: Mapping[str, str] | None = None) -> dict[str, str]:
-    """Return the variables that decide what a page measures, with their defaults filled in."""
+    """Return the variables that decide what a page measures.
+
+    Args:
+        environment: variables, by default those of this process.
+
+    Returns:
+        Backend and render with their defaults filled in, and the engine's switches that are set;
+        where the engine keeps compiled code is not among them.
+    """
     given = os.environ if environment is None else environment
     defaults = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "1"}
-    return {name: given.get(name) or default for name, default in defaults.items()}
+    asked = {name: given.get(name) or default for name, default in defaults.items()}
+    elsewhere = CACHE_FOLDERS.keys() | CACHE_LIMIT.keys()
+    switches = {name for name in given if name.startswith(ENGINE_PREFIXES)} - elsewhere
+    return asked | {name: given[name] for name in sorted(switches)}

@@ -21,13 +21,14 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
-from robo_genesis import project
+from robo_genesis import l04, project
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.status import page_status
+from robo_genesis.evidence.status import page_status, recorded_status
 from robo_genesis.metrics import format_value
 
 BUILD_OUTPUTS = "ROBO_GENESIS_BUILD_OUTPUTS"
-BACKEND = "cpu"
+BACKEND = l04.MINIMUM_HARDWARE
+REFERENCE = "amdgpu"
 REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"
 
 
@@ -83,7 +84,7 @@ class Measured(SphinxRole):
 
 
 class LessonStatus(SphinxDirective):
-    """Say what was run for a lesson: the state of its lab, and what is not recorded yet."""
+    """Say what was run for a lesson: the state of its lab on CPU and on the reference backend."""
 
     required_arguments = 1
 
@@ -91,9 +92,10 @@ class LessonStatus(SphinxDirective):
         """Return one line a backend."""
         lesson = self.arguments[0]
         cpu = page_status(outputs_folder(), lesson, "lab", BACKEND)
+        reference = recorded_status(Path(self.env.srcdir), lesson, REFERENCE)
         lines = nodes.bullet_list(classes=["lesson-status", f"status-{cpu.state}"])
-        for text in (cpu.sentence, "amdgpu (ROCm): missing. No run is recorded for this engine."):
-            lines += nodes.list_item("", nodes.paragraph("", text))
+        for status in (cpu, reference):
+            lines += nodes.list_item("", nodes.paragraph("", status.sentence))
         return [lines]
 
 
@@ -130,8 +132,9 @@ class EngineRelease(SphinxRole):
 
 
 def visit_measured(self: Any, node: measured_value) -> None:
-    """Write a value that shows its provenance on hover."""
-    self.body.append(self.starttag(node, "span", "", title=node["provenance"]))
+    """Write a value that shows its provenance on hover, focus or touch."""
+    provenance = {"data-provenance": node["provenance"], "aria-description": node["provenance"]}
+    self.body.append(self.starttag(node, "span", "", tabindex="0", role="note", **provenance))
 
 
 def depart_measured(self: Any, node: measured_value) -> None:

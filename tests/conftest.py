@@ -14,7 +14,7 @@ import pytest
 from hypothesis import settings
 from matplotlib.figure import Figure
 
-from robo_genesis import checks, l04, plots, project, robot_model, runtime
+from robo_genesis import build, checks, l04, plots, project, robot_model, runtime
 from robo_genesis.robot_model import JointMap
 from robo_genesis.scene_config import (
     CAMERA,
@@ -155,11 +155,15 @@ def experiment(joints, traces, frames) -> checks.StepExperiment:
     )
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
-    """Real engine, in this process, and the lab's scene, built once."""
+    """Real engine, in this process, and the lab's scene, built once.
+
+    It holds the lock of builds: one that starts meanwhile would take the engine's lock files for
+    stale. Module scope gives the lock back before the tests of the site build theirs.
+    """
     contract = runtime.Contract("cpu", True, tmp_path_factory.mktemp("outputs"))
-    with pytest.MonkeyPatch.context() as patch:
+    with build.only_build(project.CACHE), pytest.MonkeyPatch.context() as patch:
         for name, value in project.engine_cache_environment().items():
             patch.setitem(os.environ, name, value)
         engine = runtime.start(contract)

@@ -8,11 +8,20 @@ from types import SimpleNamespace
 
 import psutil
 import pytest
-from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, published_marker
+from tiny_book import (
+    LAB_FRONT,
+    WRITE_BUNDLE,
+    cell,
+    make_book,
+    notebook,
+    published_marker,
+    raising,
+)
 
 from robo_genesis.build import Build, BuildError, only_build, run_build
 from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.project import ROOT, ProjectError
+from robo_genesis.pages import PageError, find_pages, fingerprint
+from robo_genesis.project import ROOT, ProjectError, page_cache_folder
 
 SCRIPT = ROOT / "build_scripts" / "book.py"
 FACTS = SimpleNamespace(
@@ -39,11 +48,11 @@ def build(folder: Path, said: list[str] | None = None, **settings) -> list[str]:
     return run_build(Build(book=folder / "book", cache=folder / "cache", **settings))
 
 
-def command(folder: Path, **environment: str) -> subprocess.Popen[str]:
-    """Start `make book`'s command on a tiny book."""
+def command(folder: Path, *more: str, **environment: str) -> subprocess.Popen[str]:
+    """Start `make book`'s command on a tiny book, with more arguments and variables."""
     arguments = ["--book", str(folder / "book"), "--cache", str(folder / "cache")]
     return subprocess.Popen(
-        [sys.executable, str(SCRIPT), *arguments],
+        [sys.executable, str(SCRIPT), *arguments, *more],
         env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -86,6 +95,100 @@ def test_a_broken_page_fails_with_status_1_a_report_and_the_old_site(tmp_path):
     assert marker.read_text() == "the old site"
 
 
+SLOW = notebook(cell("import time\ntime.sleep(60)"), front="execution: {timeout: 1}\n")
+
+
+@pytest.mark.parametrize(
+    ("page", "said"),
+    [
+        (notebook(cell("raise KeyError('kp')")), "KeyError: 'kp'"),
+        (notebook(cell("import os\nos._exit(3)")), "DeadKernelError: Kernel died"),
+        (SLOW, "CellTimeoutError: A cell timed out"),
+        (notebook(raising("1 + 1", "ValueError: no")), "expected was 'ValueError: no'"),
+    ],
+    ids=["raising cell", "dead kernel", "timeout", "exception that does not come"],
+)
+def test_a_failed_page_is_status_1_its_report_and_the_old_site(tmp_path, page, said):
+    marker = published_marker(make_book(tmp_path, page=page))
+    process = command(tmp_path)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 1
+    assert "page, code cell 1, line " in err
+    assert said in err
+    assert marker.read_text() == "the old site"
+
+
+def test_a_book_without_camera_is_published(tmp_path):
+    asked = "import os\nprint('render', os.environ['ROBO_GENESIS_RENDER'])"
+    book = make_book(tmp_path, page=notebook(cell(asked)))
+    process = command(tmp_path, RENDER="0")
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 0, err
+    assert "render 0" in (book / "_build/html/page.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("ROBO_GENESIS_RENDER", "0", "render.mode is 'camera', this build asked for 'skip'"),
+        ("ROBO_GENESIS_BACKEND", "auto", "requested is 'cpu', this build asked for 'auto'"),
+    ],
+)
+def test_a_bundle_of_another_kind_of_run_is_refused(tmp_path, monkeypatch, name, value, said):
+    make_book(tmp_path, lab=notebook(cell(WRITE_BUNDLE), front=LAB_FRONT))
+    monkeypatch.setenv(name, value)
+    with pytest.raises(BuildError, match=said):
+        build(tmp_path)
+
+
+def test_a_build_removes_stale_kernel_locks_before_it_reads_a_page(tmp_path):
+    stale = tmp_path / "cache/engine/1-a/kernels/qdcache.lock"
+    stale.parent.mkdir(parents=True)
+    stale.touch()
+    (make_book(tmp_path) / "_toc.yml").unlink()
+    with pytest.raises(PageError):
+        build(tmp_path)
+    assert not stale.exists()
+
+
+def test_a_build_forgets_page_caches_of_long_ago(tmp_path):
+    make_book(tmp_path, text="# Text\n\nNo cells.\n")
+    old = [tmp_path / "cache/pages" / name for name in "abcde"]
+    for folder in old:
+        folder.mkdir(parents=True)
+    build(tmp_path)
+    assert sum(folder.exists() for folder in old) == 3
+
+
+def test_a_cache_that_cannot_be_written_is_status_1_and_named(tmp_path, no_file):
+    make_book(tmp_path)
+    process = command(tmp_path, "--cache", str(no_file))
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert f"Not a directory: '{no_file}" in err
+    assert "free space or write access" in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [Path.mkdir, lambda database: database.symlink_to("no folder/global.db")],
+    ids=["unreadable", "cannot be created"],
+)
+def test_a_cache_of_pages_that_cannot_be_used_is_status_1_and_named(tmp_path, spoil):
+    pages = find_pages(make_book(tmp_path, page=notebook(cell("1"))))
+    folder = page_cache_folder(fingerprint(pages), tmp_path / "cache")
+    (folder / "notebooks").mkdir(parents=True)
+    spoil(folder / "notebooks" / "global.db")
+    process = command(tmp_path)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert f"in {folder} cannot be kept" in err
+    assert "unable to open database file" in err
+    assert "free space or write access" in err
+    assert "Traceback" not in err
+
+
 @pytest.mark.parametrize(
     ("page", "settings", "said"),
     [
@@ -100,7 +203,8 @@ def test_a_refused_bundle_or_site_leaves_the_old_site(tmp_path, page, settings, 
     assert marker.read_text() == "the old site"
 
 
-def test_ctrl_c_ends_with_130_no_kernel_and_the_old_site(tmp_path):
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_and_cancelling_end_with_130_no_kernel_and_the_old_site(tmp_path, sent):
     pid = tmp_path / "kernel.pid"
     code = f"import os, pathlib, time\npathlib.Path({str(pid)!r}).write_text(str(os.getpid()))\n"
     book = make_book(tmp_path, page=notebook(cell(code + "time.sleep(100)")))
@@ -113,7 +217,7 @@ def test_ctrl_c_ends_with_130_no_kernel_and_the_old_site(tmp_path):
         time.sleep(0.05)
     below = psutil.Process(process.pid).children(recursive=True)
     assert int(pid.read_text()) in {child.pid for child in below}
-    process.send_signal(signal.SIGINT)
+    process.send_signal(sent)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130
     assert "Interrupted: nothing was published." in err
@@ -124,7 +228,11 @@ def test_ctrl_c_ends_with_130_no_kernel_and_the_old_site(tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "value", "choices"),
-    [("RENDER", "yes", "0, 1"), ("ROBO_GENESIS_BACKEND", "tpu", "auto, cpu"), ("JOBS", "0", "1")],
+    [
+        ("RENDER", "yes", "0, 1"),
+        ("ROBO_GENESIS_BACKEND", "auto", "accelerators are recorded apart. Unset it. Choices: cpu"),
+        ("JOBS", "0", "1"),
+    ],
 )
 def test_invalid_settings_are_refused_with_name_value_and_choices(tmp_path, name, value, choices):
     process = command(tmp_path, **{name: value})

@@ -2,7 +2,9 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
+from multiprocessing.context import SpawnProcess
 from pathlib import Path
 
 import psutil
@@ -22,12 +24,18 @@ for number in range(20):
     print(f"\\x1b[31mengine line {number}\\x1b[0m", file=sys.stderr)
 class CheckFailed(Exception): pass"""
 
+# The kernel passes on what is written to its file descriptors; a moment lets it do so.
+LAST_WORDS = """\
+import os, time
+os.write(2, b"last words\\n")
+time.sleep(1)
+os._exit(3)"""
 BROKEN = {
     "good": notebook(cell("1 + 1")),
     "check": notebook(
         cell(CHECK), cell("# proof\nraise CheckFailed('[one_factor] kp changed,\\nkv too')")
     ),
-    "dead": notebook(cell('import os\nos.write(2, b"last words")\nos._exit(3)')),
+    "dead": notebook(cell(LAST_WORDS)),
     "slow": notebook(cell("import time\ntime.sleep(60)"), front="execution: {timeout: 2}\n"),
     "calm": notebook(raising("2 + 1", "ValueError: no")),
     "other": notebook(raising("raise ValueError('maybe')", "ValueError: no")),
@@ -261,6 +269,35 @@ def test_a_killed_worker_is_a_failed_page(tmp_path):
     results = execute(tmp_path)
     assert results["page"].failure.error == "WorkerDied"
     assert results["good"].status == "executed"
+
+
+def test_a_long_silence_is_broken_by_what_runs(tmp_path):
+    """The page ends when the line that names it has been said."""
+    said = tmp_path / "said"
+    code = f"import pathlib, time\nwhile not pathlib.Path({str(said)!r}).exists(): time.sleep(0.05)"
+    make_book(tmp_path, page=notebook(cell(code)))
+
+    def hear(what, event):
+        if what == "1 running: page":
+            said.touch()
+
+    execute(tmp_path, timeout=30, on_progress=hear, heartbeat=0.1)
+    assert said.exists()
+
+
+def test_ctrl_c_while_a_worker_starts_kills_it(tmp_path, monkeypatch):
+    start, started = SpawnProcess.start, []
+
+    def start_and_interrupt(process):
+        start(process)
+        started.append(process)
+        signal.pthread_kill(threading.get_ident(), signal.SIGINT)
+
+    monkeypatch.setattr(SpawnProcess, "start", start_and_interrupt)
+    make_book(tmp_path, page=notebook(cell("import time\ntime.sleep(60)")))
+    with pytest.raises(KeyboardInterrupt):
+        execute(tmp_path)
+    assert [psutil.pid_exists(process.pid) for process in started] == [False]
 
 
 RUN = """\

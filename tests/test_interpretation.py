@@ -1,28 +1,34 @@
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robo_genesis.interpretation import (
-    AT_REST,
+from robo_genesis.comparison import (
     INSPECT,
     LABELS,
-    Block,
-    actuator_block,
     compare,
     comparison_sentence,
+    prediction_sentence,
+)
+from robo_genesis.interpretation import (
+    AT_REST,
+    Block,
+    actuator_block,
     cost_sentence,
     factor_sentence,
     final_error_block,
     final_error_sentence,
+    gravity_sentence,
     interpret,
     pair_block,
-    prediction_sentence,
+    start_sentence,
 )
 from robo_genesis.l04 import ONE_FACTOR, PREDICTIONS, RESOLUTION
 from robo_genesis.metrics import UNITS, StepMetrics, format_value
+from robo_genesis.trace import Trace
 
 NAMES = ("G1", "G2")
 COMPARED = ("rise_time", "peak_speed", "overshoot", "settling_time")
@@ -210,7 +216,11 @@ def test_the_cost_in_response_time(values, says):
 @pytest.mark.parametrize(
     ("settling", "velocity", "says"),
     [
-        (0.31, AT_REST, "nearly at rest at {}; it stays within ±0.01 rad from 0.31 s on, so the"),
+        (
+            0.31,
+            AT_REST,
+            "nearly at rest at {}; it stays within ±0.01 rad from 0.31 s on, and its",
+        ),
         (0.31, 0.5, "still moving at {}; it stays within ±0.01 rad from 0.31 s on, yet its"),
         (None, 0.5, "still moving at {}; settling into ±0.01 rad was not observed"),
         (None, AT_REST, "nearly at rest at {}; settling into ±0.01 rad was not observed"),
@@ -239,7 +249,7 @@ def test_the_final_error_block_ends_with_its_boundary():
 
 def test_a_saturated_case_reports_samples_seconds_and_peak():
     (sentence,) = actuator_block({"G1": MEASURED}, 87.0).sentences
-    assert sentence.startswith("G1: 7 samples (0.07 s) at or above 99% of the limit;")
+    assert sentence.startswith("G1: 7 samples (0.07 s) at or above 99 % of the limit;")
     assert "peak control 86.50 N·m of 87.00 N·m" in sentence
     assert "does not apply" in sentence
 
@@ -247,7 +257,7 @@ def test_a_saturated_case_reports_samples_seconds_and_peak():
 def test_a_case_that_is_not_saturated_says_so():
     m = replace(MEASURED, saturation_samples=0, saturation_duration=0.0, peak_control=40.0)
     (sentence,) = actuator_block({"G1": m}, 87.0).sentences
-    assert "no sample at or above 99% of the limit" in sentence
+    assert "no sample at or above 99 % of the limit" in sentence
     assert "peak control 40.00 N·m of 87.00 N·m" in sentence
     assert "nothing was clipped" in sentence
     assert "does not apply" not in sentence
@@ -257,8 +267,56 @@ def test_a_block_is_a_markdown_list():
     assert Block("T", ("One.", "Two.")).markdown() == "**T**\n\n- One.\n- Two.\n"
 
 
+def trace(qd=0.0, control_force=0.0, limit=87.0, n=3):
+    def column(values):
+        return np.broadcast_to(np.asarray(values, dtype=float), (n,))[:, None]
+
+    return Trace(
+        t=np.arange(n + 1) * 0.01, q=np.zeros((n + 1, 1)), qd=column(qd), target=column(0.0),
+        control_force=column(control_force), internal_force=column(0.0),
+        start_control_force=np.zeros(1), start_qd=np.zeros(1), effort_limit=np.array([limit]),
+        link_pos=np.zeros((n + 1, 1, 3)), link_quat=np.zeros((n + 1, 1, 4)),
+    )  # fmt: skip
+
+
 def interpreted(metrics, limit=87.0):
-    return interpret(metrics, ONE_FACTOR, PREDICTIONS, RESOLUTION, limit)
+    traces = dict.fromkeys(("G1", "G2", "G3"), trace(limit=limit))
+    return interpret(metrics, ONE_FACTOR, PREDICTIONS, RESOLUTION, traces, 0)
+
+
+def started(one, other):
+    return start_sentence(("G1", "G2"), {"G1": one, "G2": other}, 0, RESOLUTION)
+
+
+def test_clipped_alike_and_moving_alike_says_that_a_gain_cannot_act():
+    run = trace(qd=[0.5, 1.0, 1.5], control_force=[87, 87, 20])
+    says = started(run, run)
+    assert says.startswith("Up to 0.02 s both were clipped to the same effort")
+    assert "moved alike (G1 1.000 rad/s and G2 1.000 rad/s)" in says
+
+
+def test_clipped_alike_and_moving_apart_is_called_numerical():
+    one = trace(qd=[0.5, 1.0, 1.5], control_force=87.0)
+    other = trace(qd=[0.3, 0.6, 0.9], control_force=[87, 87, 50])
+    says = started(one, other)
+    assert "differ in speed there (G1 1.000 rad/s and G2 0.600 rad/s)" in says
+    assert "numerical" in says
+
+
+@pytest.mark.parametrize("efforts", [(0.0, 0.0), (87.0, -87.0), (87.0, 20.0)])
+def test_without_a_common_clipped_start_nothing_is_concluded(efforts):
+    one, other = (trace(control_force=effort) for effort in efforts)
+    assert started(one, other).startswith("No leading samples")
+
+
+@pytest.mark.parametrize(
+    ("effort", "says"), [(21.5, "consistent with gravity"), (30.0, "gravity alone does not")]
+)
+def test_gravity_is_held_against_kp_times_error(effort, says):
+    metrics = {"G1": replace(MEASURED, final_error=0.0062)}
+    text = gravity_sentence({"G1": 3500.0}, metrics, {"G1": effort})
+    assert f"G1 21.70 N·m of {effort:.2f} N·m" in text
+    assert says in text
 
 
 def words(blocks):
@@ -345,4 +403,4 @@ def test_the_pairs_are_those_that_were_given():
     )
     assert "`kp[joint4]`" in kp.sentences[0]
     assert "`kv[joint4]`" in kv.sentences[0]
-    assert "cost in response time" in kv.sentences[-1].lower()
+    assert any("cost in response time" in s.lower() for s in kv.sentences)

@@ -97,7 +97,14 @@ def robot():
 
 @pytest.fixture
 def scene(robot):
-    return SimpleNamespace(is_built=True, dt=0.01, substeps=2, reset=robot.reset, step=robot.step)
+    scene = SimpleNamespace(is_built=True, dt=0.01, substeps=2, t=0, reset=robot.reset)
+
+    def step():
+        scene.t += 1
+        robot.step()
+
+    scene.step = step
+    return scene
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=list(CASES))

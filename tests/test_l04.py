@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robo_genesis import l04, project
-from robo_genesis.interpretation import LABELS
+from robo_genesis.comparison import LABELS
 from robo_genesis.joint_control import ControlCase, differences, validate
 from robo_genesis.metrics import UNITS, StepMetrics
 from robo_genesis.scene_config import EFFORT_LIMIT, JOINT_NAMES, Q_START, per_joint

@@ -70,6 +70,40 @@ def test_bad_front_matter_is_refused_with_the_page(tmp_path, text, reason):
     assert str(caught.value).startswith("bad: ")
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        notebook(cell("1", ":tags: [a\n")),
+        notebook(front="title: [a\n"),
+        notebook(cell("1", ":load: no_such_file.py\n")),
+    ],
+    ids=["cell header", "front matter", "loaded file"],
+)
+def test_a_page_that_cannot_be_read_is_refused_with_its_name(tmp_path, text):
+    with pytest.raises(
+        PageError, match=r"^bad: the page cannot be read: .*\n(.*\n)*Mend .*bad\.md"
+    ):
+        find_pages(make_book(tmp_path, bad=text))
+
+
+def test_all_bad_pages_stand_in_one_report(tmp_path):
+    unread, incomplete = notebook(cell("1", ":tags: [a\n")), notebook(front="robo_genesis: lab\n")
+    with pytest.raises(PageError) as caught:
+        find_pages(make_book(tmp_path, one=unread, good=notebook(cell("1")), two=incomplete))
+    report = str(caught.value)
+    assert report.startswith("one: ")
+    assert "\ntwo: " in report
+    assert "good" not in report
+
+
+@pytest.mark.parametrize("text", ["format: [", "- a list\n", "root: index\nnoise: 1\n", ""])
+def test_a_broken_table_of_contents_is_refused_with_its_path(tmp_path, text):
+    book = make_book(tmp_path)
+    (book / "_toc.yml").write_text(text)
+    with pytest.raises(PageError, match=f"contents {book / '_toc.yml'} cannot be read"):
+        find_pages(book)
+
+
 def test_a_missing_page_is_refused(tmp_path):
     book = make_book(tmp_path, gone="# Gone\n")
     (book / "gone.md").unlink()
@@ -116,16 +150,35 @@ def test_a_module_that_no_page_imports_does_not_count(root, pages):
     assert fingerprint(pages, root, {}) == before
 
 
-def test_lock_environment_and_engine_count(root, pages, monkeypatch):
-    found = {fingerprint(pages, root, {})}
-    found.add(fingerprint(pages, root, {"ROBO_GENESIS_RENDER": "0"}))
-    found.add(fingerprint(pages, root, {"ROBO_GENESIS_BACKEND": "auto"}))
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("ROBO_GENESIS_RENDER", "0"), ("ROBO_GENESIS_BACKEND", "auto"), ("QD_FAST_MATH", "0")],
+)
+def test_what_the_environment_asks_for_counts(root, pages, name, value):
+    assert fingerprint(pages, root, {name: value}) != fingerprint(pages, root, {})
+
+
+@pytest.mark.parametrize("name", ["HOME", "QD_OFFLINE_CACHE_FILE_PATH"])
+def test_a_variable_that_changes_no_measurement_does_not_count(root, pages, name):
+    assert fingerprint(pages, root, {name: "/elsewhere"}) == fingerprint(pages, root, {})
+
+
+def test_the_lock_counts(root, pages):
+    before = fingerprint(pages, root, {})
     (root / "requirements.lock").write_text("numpy==2.1\n")
-    found.add(fingerprint(pages, root, {}))
-    monkeypatch.setattr("robo_genesis.pages.installed_version", lambda name: "9.9.9")
-    found.add(fingerprint(pages, root, {}))
-    assert len(found) == 5
-    assert fingerprint(pages, root, {"HOME": "/elsewhere"}) in found
+    assert fingerprint(pages, root, {}) != before
+
+
+def test_another_version_of_any_installed_package_counts(root, pages, monkeypatch):
+    before = fingerprint(pages, root, {})
+    monkeypatch.setattr("robo_genesis.pages.installed_packages", lambda: ["mujoco==0.1"])
+    assert fingerprint(pages, root, {}) != before
+
+
+def test_the_python_version_counts(root, pages, monkeypatch):
+    before = fingerprint(pages, root, {})
+    monkeypatch.setattr("platform.python_version", lambda: "3.99.0")
+    assert fingerprint(pages, root, {}) != before
 
 
 def test_the_code_digest_ignores_prose(tmp_path):

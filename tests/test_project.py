@@ -27,6 +27,27 @@ def test_anything_but_one_exact_pin_is_refused(tmp_path, dependency):
         project.engine_pin(checkout(tmp_path, dependency))
 
 
+@pytest.mark.parametrize("line", ["numpy >< 2", "genesis-world=1.3"])
+def test_an_invalid_requirement_is_refused_with_file_and_line(tmp_path, line):
+    with pytest.raises(project.ProjectError, match=r"pyproject\.toml cannot be read") as caught:
+        project.engine_pin(checkout(tmp_path, line))
+    assert line in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["[project", "[project]\n", ""])
+def test_a_pyproject_without_dependencies_is_refused(tmp_path, text):
+    (tmp_path / "pyproject.toml").write_text(text)
+    with pytest.raises(project.ProjectError, match=r"pyproject\.toml cannot be read"):
+        project.engine_pin(tmp_path)
+
+
+def test_all_installed_packages_are_named_with_their_versions():
+    installed = project.installed_packages()
+    assert installed == sorted(installed)
+    for name in ("genesis-world", "mujoco", "numba"):
+        assert f"{name}=={project.installed_version(name)}" in installed
+
+
 def test_another_installed_engine_is_refused_with_both_versions(tmp_path):
     root = checkout(tmp_path, "genesis-world==0.0.1")
     installed = project.installed_version("genesis-world")
@@ -81,3 +102,10 @@ def test_the_environment_contract_fills_in_defaults():
         "ROBO_GENESIS_BACKEND": "cpu",
         "ROBO_GENESIS_RENDER": "0",
     }
+
+
+def test_the_environment_contract_holds_the_engines_switches_and_not_its_cache_folders(tmp_path):
+    switches = {f"{prefix}X": "1" for prefix in project.ENGINE_PREFIXES}
+    folders = project.engine_cache_environment(checkout(tmp_path, "genesis-world==9.8.7"))
+    contract = project.environment_contract({**switches, **folders})
+    assert contract.keys() - {"ROBO_GENESIS_BACKEND", "ROBO_GENESIS_RENDER"} == switches.keys()

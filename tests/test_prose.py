@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis import l04, metrics, scene_config
+from robo_genesis import interpretation, l04, metrics, scene_config
 from robo_genesis.project import BOOK
 
 CONFIGURED = {
@@ -16,16 +16,19 @@ CONFIGURED = {
     "rise fraction": metrics.RISE_FRACTION,
     "settling band [rad]": metrics.SETTLING_BAND,
     "saturation threshold": metrics.SATURATION_THRESHOLD,
+    "speed nearly at rest [rad/s]": interpretation.AT_REST,
 }
 PAGES = sorted(BOOK.glob("*.md")) + sorted(BOOK.glob("lessons/**/*.md"))
-DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?!\.?\w)")
+DECIMAL = re.compile(r"(?<![\w.])(?:\d*\.\d+(?:e-?\d+)?|\d+e-?\d+)(?!\.\d)")
+CODE_CELL = re.compile(r"^```\{code-cell\}[^\n]*\n((?:---\n.*?^---\n)?).*?^```", re.S | re.M)
 
 
 def prose(source: str) -> str:
-    """Drop front matter, fenced code, inline code and roles; keep text, tables and formulas."""
+    """Drop front matter, code and roles; keep text, tables, formulas, captions and alt texts."""
     source = re.sub(r"\A---\n.*?\n---\n", "", source, flags=re.S)
-    source = re.sub(r"^(`{3,})\{(code-cell|literalinclude)\}.*?^\1", "", source, flags=re.S | re.M)
-    return re.sub(r"`[^`\n]+`", "", source)
+    source = re.sub(CODE_CELL, r"\1", source)
+    source = re.sub(r"^```\{literalinclude\}.*?^```", "", source, flags=re.S | re.M)
+    return re.sub(r"\{[\w-]+\}`[^`\n]+`", "", source)
 
 
 def typed_numbers(source: str) -> set[str]:
@@ -44,5 +47,17 @@ def test_a_typed_measurement_is_found():
     assert typed_numbers("| 87.0 | N·m |") == {"87.0"}
 
 
-def test_code_roles_and_versions_in_them_are_not_prose():
-    assert typed_numbers("{measured}`l04/lab G2.overshoot` and `v1.3`") == set()
+@pytest.mark.parametrize("text", ["0.0447rad", ".0447", "6e-3", "`0.0447 rad`"])
+def test_other_ways_to_type_one_are_found(text):
+    assert typed_numbers(f"It overshoots by {text} or so.")
+
+
+def test_captions_and_alt_texts_count_as_prose():
+    header = "mystnb:\n  image:\n    alt: peaks at 3.67 rad/s\n"
+    cell = f"```{{code-cell}} ipython3\n---\n{header}---\nx = 0.5\n```\n"
+    assert typed_numbers(cell) == {"3.67"}
+
+
+def test_code_and_roles_are_not_prose():
+    cell = "```{code-cell} ipython3\nx = 0.5\n```\n"
+    assert typed_numbers(cell + "{measured}`l04/lab G2.overshoot 0.5`") == set()

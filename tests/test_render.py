@@ -82,6 +82,8 @@ def test_sphinx_executes_nothing_and_names_the_page(folder, front):
     [
         ("$\\foo{x}$", r"uses \\foo, which latex2mathml does not know"),
         ("{doc}`nowhere`", "nowhere"),
+        ("[missing](#nowhere)", "nowhere"),
+        ("{py:func}`nowhere`", "reference target not found: nowhere"),
         ("{nosuchrole}`x`", "nosuchrole"),
     ],
 )

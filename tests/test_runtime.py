@@ -87,6 +87,17 @@ def test_a_missing_library_names_the_command_that_installs_it():
         require_libraries("libdoesnotexist.so.1")
 
 
+def test_a_start_without_egl_names_the_command_that_installs_it(tmp_path, monkeypatch):
+    def load(name):
+        if name == "libEGL.so.1":
+            raise OSError(f"{name}: cannot open shared object file")
+
+    monkeypatch.setattr(runtime.ctypes, "CDLL", load)
+    monkeypatch.setitem(sys.modules, "genesis", None)  # as if: its import must not be reached
+    with pytest.raises(EngineError, match=r"libEGL\.so\.1 .*apt install libegl1 libgl1"):
+        start(Contract("cpu", True, tmp_path))
+
+
 def test_a_missing_engine_names_the_lock(monkeypatch):
     monkeypatch.setitem(sys.modules, "genesis", None)
     monkeypatch.setattr(runtime, "require_libraries", lambda *names: None)

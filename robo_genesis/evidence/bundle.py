@@ -173,6 +173,7 @@ class CaseArrays(Strict):
     """The arrays of one case."""
 
     file: str
+    note: str
     variables: dict[str, Variable]
 
 

@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import uuid
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -39,7 +39,8 @@ class Measured:
     """What a page hands over.
 
     `metrics` is group → name → {value, unit, class, from}; `frames` name → RGB, empty without a
-    camera; `parameters` must be JSON values.
+    camera; `parameters` must be JSON values; `notes` says by case what its arrays are where they
+    are no ordinary run.
     """
 
     joints: JointMap
@@ -50,6 +51,7 @@ class Measured:
     frames: Mapping[str, np.ndarray]
     parameters: Mapping[str, Any]
     renderer: runtime.Renderer | None
+    notes: Mapping[str, str] = field(default_factory=dict)
 
 
 class Recorder:
@@ -76,9 +78,18 @@ class Recorder:
     def write(self, measured: Measured) -> Path:
         """Write the bundle beside its place, then move it there in one step.
 
+        Raises:
+            ContractError: a camera was asked for and none was used, or the other way round.
+
         Returns:
             Its folder. An earlier bundle of the same page and backend is replaced.
         """
+        if self.contract.render != (measured.renderer is not None):
+            raise runtime.ContractError(
+                f"ROBO_GENESIS_RENDER asks for {'a camera' if self.contract.render else 'none'}, "
+                f"but the page hands over {'a' if measured.renderer else 'no'} renderer. A page "
+                "follows the contract: it renders where it was asked to, and says SKIP elsewhere."
+            )
         partial = self.contract.outputs / f".{self.lesson}-{self.page}-{self.run_id}.partial"
         shutil.rmtree(partial, ignore_errors=True)
         partial.mkdir(parents=True)
@@ -93,7 +104,9 @@ class Recorder:
         return self.folder
 
     def _write_files(self, folder: Path, measured: Measured) -> None:
-        arrays = write_traces(folder, measured.traces, measured.joints, list(measured.links))
+        arrays = write_traces(
+            folder, measured.traces, measured.joints, list(measured.links), measured.notes
+        )
         _write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
         _write_json(folder / "metrics.json", measured.metrics)
         for name, frame in measured.frames.items():
@@ -165,8 +178,12 @@ def source_record() -> dict[str, Any]:
 
 
 def files_match_wheel(*distributions: str) -> bool:
-    """Whether every installed file of the packages has the digest that its wheel recorded."""
+    """Whether every installed file of the packages has the digest that its wheel recorded.
+
+    A package without recorded digests, such as an editable one, does not match.
+    """
     for name in distributions:
+        compared = 0
         for file in importlib.metadata.distribution(name).files or []:
             if file.hash is None:
                 continue
@@ -176,6 +193,9 @@ def files_match_wheel(*distributions: str) -> bool:
             digest = hashlib.new(file.hash.mode, path.read_bytes()).digest()
             if base64.urlsafe_b64encode(digest).rstrip(b"=").decode() != file.hash.value:
                 return False
+            compared += path.suffix == ".py"
+        if not compared:
+            return False
     return True
 
 

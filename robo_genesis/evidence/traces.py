@@ -40,9 +40,16 @@ def dof_units(name: str, joints: JointMap) -> list[str]:
 
 
 def write_traces(
-    folder: Path, traces: Mapping[str, Trace], joints: JointMap, links: list[str]
+    folder: Path,
+    traces: Mapping[str, Trace],
+    joints: JointMap,
+    links: list[str],
+    notes: Mapping[str, str] | None = None,
 ) -> Arrays:
-    """Write `arrays/<case>.npz` for every trace and return their description."""
+    """Write `arrays/<case>.npz` for every trace and return their description.
+
+    `notes` says by case in what its arrays differ from the long names; most cases need none.
+    """
     (folder / "arrays").mkdir()
     cases = {}
     for case, trace in traces.items():
@@ -58,7 +65,9 @@ def write_traces(
             )
             for name, dims, unit, long_name in FIELDS.values()
         }
-        cases[case] = CaseArrays(file=f"arrays/{case}.npz", variables=variables)
+        cases[case] = CaseArrays(
+            file=f"arrays/{case}.npz", note=(notes or {}).get(case, ""), variables=variables
+        )
     return Arrays(coords={"dof": list(joints.names), "link": links}, cases=cases)
 
 

@@ -91,12 +91,22 @@ def test_the_backend_is_probed_again_at_the_end(recorder, measured, backend, mon
 
 
 def test_without_a_camera_there_are_no_frames(recorder, measured):
+    recorder.contract = replace(recorder.contract, render=False)
     written = recorder.write(replace(measured, frames={}, renderer=None))
     render = read_manifest(written).predicate.render
     assert render.model_dump() == {
         "mode": "skip", "vendor": None, "renderer": None, "software": None,
     }  # fmt: skip
     assert not (written / "frames").exists()
+
+
+@pytest.mark.parametrize("asked", [True, False])
+def test_a_page_that_renders_otherwise_than_asked_is_refused(recorder, measured, asked):
+    recorder.contract = replace(recorder.contract, render=asked)
+    handed = measured if not asked else replace(measured, frames={}, renderer=None)
+    with pytest.raises(runtime.ContractError, match="ROBO_GENESIS_RENDER asks for"):
+        recorder.write(handed)
+    assert not recorder.folder.exists()
 
 
 def test_times_are_utc_and_in_order(predicate):

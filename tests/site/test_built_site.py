@@ -10,6 +10,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.verify import verify_bundle
 
 pytestmark = pytest.mark.engine
+PIN = project.engine_pin()
 LESSON = "lessons/l04-joint-control"
 
 
@@ -27,16 +28,18 @@ def test_pages_show_executed_outputs_and_their_verdict(site, name):
 @pytest.mark.parametrize("name", ["index", f"{LESSON}/lecture"])
 def test_status_is_computed_and_says_what_is_missing(site, name):
     status = page(site, name).select_one(".lesson-status").get_text()
-    assert f"Genesis {project.engine_pin()}" in status
-    assert "11 of 11 checks passed" in status
-    assert "ROCm): missing" in status
+    assert f"cpu: verified. Clean kernel, Genesis {PIN}" in status
+    assert "12 of 12 checks passed" in status
+    assert f"amdgpu: missing. No run on this backend is recorded for Genesis {PIN}" in status
 
 
 def test_a_number_in_prose_is_the_bundle_s_and_says_where_it_comes_from(site):
     records = bundle.read_metrics(site.parent / "evidence" / "l04" / "cpu")
     number = page(site, "index").select_one(".measured")
     assert number.get_text() == f"{records['G2']['overshoot'].value:.4f} rad"
-    assert re.search(r"l04/lab on cpu, Genesis .*, run \w{8}, \d{4}-\d\d-\d\d", number["title"])
+    assert re.search(
+        r"l04/lab on cpu, Genesis .*, run \w{8}, \d{4}-\d\d-\d\d", number["data-provenance"]
+    )
 
 
 def test_the_lab_s_bundle_stands_beside_the_site_and_is_accepted(site):

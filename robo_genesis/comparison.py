@@ -1,0 +1,84 @@
+"""One metric of two cases: its order, the sentence about it, and a prediction held against it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from robo_genesis.metrics import UNITS, StepMetrics, format_value
+
+LABELS = {
+    "rise_time": "rise time",
+    "peak_speed": "peak speed",
+    "overshoot": "overshoot",
+    "settling_time": "settling time",
+    "saturation_samples": "number of saturated samples",
+    "final_error": "final error",
+}
+
+INSPECT = (
+    "Before blaming the model, inspect saturation, the time stamps, the initial states and "
+    "the length of the window."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """One metric of two cases. `order` is the second against the first, None if undecidable."""
+
+    metric: str
+    first: float | None
+    second: float | None
+    order: str | None  # "lower" | "equal" | "higher" | None
+
+
+def compare(
+    metric: str, first: StepMetrics, second: StepMetrics, resolution: Mapping
+) -> Comparison:
+    """Order one metric of two cases; a difference below the resolution of its unit is equal."""
+    a, b = getattr(first, metric), getattr(second, metric)
+    if a is None and b is None:
+        order = None
+    elif a is None or b is None:
+        # A time that the window did not reach is later than any time within it.
+        order = "higher" if b is None else "lower"
+    elif abs(b - a) <= resolution[UNITS[metric]]:
+        order = "equal"
+    else:
+        order = "higher" if b > a else "lower"
+    return Comparison(metric, a, b, order)
+
+
+def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
+    """Say how one metric of two cases compares."""
+    label, unit = LABELS[comparison.metric], UNITS[comparison.metric]
+    first, second = (format_value(v, unit) for v in (comparison.first, comparison.second))
+    values = f"{names[0]} {first}, {names[1]} {second}"
+    if comparison.order is None:
+        return f"The {label} was not observed in either case, so this window cannot rank them."
+    if None in (comparison.first, comparison.second):
+        seen, unseen = names if comparison.second is None else names[::-1]
+        return (
+            f"The {label} was observed for {seen} alone ({values}); within this window "
+            f"{unseen} is the slower one, by how much is unknown."
+        )
+    verb = {"lower": "goes down", "higher": "goes up", "equal": "does not change measurably"}
+    return f"The {label} {verb[comparison.order]} ({values})."
+
+
+def prediction_sentence(names: tuple[str, str], comparison: Comparison, predicted: str) -> str:
+    """Hold one prediction against the measured order; one that fails says what to inspect."""
+    label = LABELS[comparison.metric]
+    claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
+    if comparison.order is None:
+        return f"{claim}. Cannot be judged: not observed in either case."
+    held = (
+        comparison.order
+        in {
+            "no later": ("lower", "equal"),
+            "later": ("higher",),
+            "higher": ("higher",),
+            "lower": ("lower",),
+        }[predicted]
+    )
+    if held:
+        return f"{claim}. Held in this run."
+    return f"{claim}. **Did not hold**: measured {comparison.order}. {INSPECT}"

@@ -1,0 +1,70 @@
+"""The commands around the package: what `make` and `make serve` say of a wrong environment."""
+
+import os
+import shutil
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.project import ROOT
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """The Makefile in a folder with a space in its name, with a stub instead of the server."""
+    folder = tmp_path / "a course"
+    (folder / "build_scripts").mkdir(parents=True)
+    shutil.copy(ROOT / "Makefile", folder)
+    stub = "import os\nprint(os.environ['PYTHONPATH'])\n"
+    (folder / "build_scripts" / "serve.py").write_text(stub)
+    return folder
+
+
+def python(folder: Path, *options: str) -> Path:
+    """Write a Python command that always has these options."""
+    path = folder / "python"
+    path.write_text(f"#!/bin/sh\nexec '{sys.executable}' {' '.join(options)} \"$@\"\n")
+    path.chmod(0o755)
+    return path
+
+
+def make_serve(folder: Path, interpreter: Path) -> subprocess.CompletedProcess[str]:
+    command = ["make", "-C", str(folder), "serve", f"PYTHON={interpreter}"]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+
+
+def test_a_path_with_spaces_is_no_hindrance(checkout):
+    done = make_serve(checkout, python(checkout))
+    assert done.returncode == 0, done.stderr
+    assert str(checkout) in done.stdout.splitlines()
+
+
+def test_a_python_without_the_packages_is_refused_with_their_names_and_the_mend(checkout):
+    without = python(checkout, "-S")
+    done = make_serve(checkout, without)
+    assert done.returncode != 0
+    assert f"PYTHON={without} lacks genesis, jupyter_book, pytest" in done.stderr
+    assert "pip install -r requirements.lock" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert str(checkout) not in done.stdout.splitlines()
+
+
+def test_a_port_in_use_is_refused(tmp_path):
+    (tmp_path / "book/_build/html").mkdir(parents=True)
+    (tmp_path / "book/_build/html/index.html").touch()
+    shutil.copytree(ROOT / "robo_genesis", tmp_path / "robo_genesis")
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = str(server.getsockname()[1])
+        done = subprocess.run(
+            [sys.executable, str(ROOT / "build_scripts" / "serve.py")],
+            env=os.environ | {"PYTHONPATH": str(tmp_path), "PORT": port},
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=60,
+        )
+    assert done.returncode == 1
+    assert done.stderr == f"PORT={port}: Address already in use. Choose a free port.\n"
