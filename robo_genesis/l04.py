@@ -90,6 +90,32 @@ PREDICTIONS = {
 }
 """Written down before the runs: what the second case of a pair would do against the first."""
 
+MARGINS = {
+    "rise_time": 1.5 * DT,
+    "peak_speed": 0.05,
+    "overshoot": 1e-3,
+    "saturation_samples": 1.5,
+}
+"""What an order must exceed to count as shown when runs are compared, above `RESOLUTION`: a time
+or a count may fall one sample to either side."""
+
+RELATIONS = tuple(
+    (pair, metric, order, MARGINS[metric])
+    for pair, predicted in PREDICTIONS.items()
+    for metric, order in predicted
+)
+"""The orderings that the lesson claims: a refreshed run must still show them."""
+
+TOLERANCES = {
+    "rad": (1e-4, 1e-3),
+    "rad/s": (1e-3, 1e-3),
+    "s": (DT / 2, 0.0),
+    "N·m": (1e-2, 1e-3),
+    "initial_error": (1e-6, 0.0),
+}
+"""By unit, or by metric where that is stricter: (atol, rtol) that one metric may differ by between
+engine versions or backends. A time on the grid of samples may not move at all; counts are exact."""
+
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lesson as JSON values, for the evidence key."""
