@@ -42,6 +42,11 @@ lint: $(ENVIRONMENT) ## ruff, mypy and codespell
 	@"$(PY)" -m mypy
 	@"$(PY)" -m codespell_lib
 
+# OLD and NEW reach the recipe through the environment, so a path may hold any character.
+.PHONY: compare
+compare: $(ENVIRONMENT) ## compare two bundles: OLD=path NEW=path [REPORT=folder]
+	@"$(PY)" build_scripts/compare.py --report "$${REPORT:-}" -- "$${OLD:-}" "$${NEW:-}"
+
 .PHONY: serve
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
 	@"$(PY)" build_scripts/serve.py

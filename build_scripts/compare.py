@@ -1,0 +1,72 @@
+"""Compare two evidence bundles: `make compare OLD=path NEW=path [REPORT=folder]`.
+
+Writes report.md and report.html, by default below .cache/reports/, and prints the summary.
+Exit status: 0 equal or within tolerance, 1 differs or inconclusive, 2 not comparable or refused.
+"""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from robo_genesis.evidence import report
+from robo_genesis.evidence.bundle import BundleRefused, read_manifest
+from robo_genesis.evidence.compare import Comparison, compare, specification
+from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE
+from robo_genesis.project import CACHE
+
+STATUS = {DIFFERS: 1, INCONCLUSIVE: 1, NOT_COMPARABLE: 2}
+
+
+def write(comparison: Comparison, folder: Path) -> list[Path]:
+    """Write both pages, each in one step; return their paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    pages = {"report.md": report.markdown, "report.html": report.html}
+    for name, page in pages.items():
+        partial = folder / f".{name}.{os.getpid()}.partial"
+        try:
+            partial.write_text(page(comparison), encoding="utf-8")
+            partial.replace(folder / name)
+        finally:
+            partial.unlink(missing_ok=True)
+    return [folder / name for name in pages]
+
+
+def refused(message: str) -> int:
+    """Print why nothing was compared; return the exit status."""
+    print(message, file=sys.stderr)
+    return 2
+
+
+def main() -> int:
+    """Compare, write the report and return the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("old", help="folder of the bundle that is compared against")
+    parser.add_argument("new", help="folder of the bundle that is compared")
+    parser.add_argument("--report", default="", help="folder of the report")
+    args = parser.parse_args()
+    for name, path in (("OLD", args.old), ("NEW", args.new)):
+        if not path or not Path(path).is_dir():
+            return refused(
+                f"{name}={path!r} is no folder. Usage: make compare OLD=path NEW=path; a path is "
+                "a bundle's folder, for example book/_build/evidence/l04/cpu."
+            )
+    old, new = Path(args.old), Path(args.new)
+    try:
+        spec = specification(read_manifest(new).predicate.lesson)
+        comparison = compare(old, new, spec)
+    except BundleRefused as refusal:
+        return refused(f"Refused: {refusal}")
+    runs = [predicate.run_id[:8] for predicate in (comparison.old, comparison.new)]
+    folder = Path(args.report or CACHE / "reports" / "-".join(["compare", *runs]))
+    try:
+        written = write(comparison, folder)
+    except OSError as error:
+        return refused(f"REPORT={folder} cannot be written: {error}. Give another folder.")
+    print(report.summary(comparison))
+    print("\n".join(f"Report: {path}" for path in written))
+    return STATUS.get(comparison.state, 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,163 @@
+"""A comparison for readers: a summary, a Markdown page, an HTML page that fetches nothing."""
+
+from collections.abc import Iterator
+from html import escape
+from itertools import groupby
+
+from robo_genesis import tables
+from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence.compare import Comparison
+from robo_genesis.evidence.findings import SEVERITY, Section
+
+COLUMNS = ("result", "what", "old", "new", "Δ", "allowed")
+Row = tuple[str, ...]
+
+STYLE = """
+:root { color-scheme: light dark; --line: #c9ced6; --soft: #f3f4f5; --text: #222832; --page: #fff;
+  --bad: #a3122a; --unsure: #7a4b00; --good: #1b6b3a; }
+@media (prefers-color-scheme: dark) { :root { --line: #48566b; --soft: #222832; --text: #ced6dd;
+  --page: #14181e; --bad: #ff8f9e; --unsure: #f0b75e; --good: #6fd39a; } }
+body { background: var(--page); color: var(--text); line-height: 1.6; margin: 0 auto;
+  max-width: 60rem; padding: 1rem 1rem 3rem; overflow-wrap: anywhere;
+  font-family: -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
+h2 { border-bottom: 1px solid var(--line); margin-top: 2rem; }
+.box { overflow-x: auto; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; overflow-wrap: normal; }
+th, td { border-bottom: 1px solid var(--line); padding: .3rem .8rem .3rem 0; text-align: left;
+  vertical-align: top; }
+.differs, .not-comparable { color: var(--bad); font-weight: 600; }
+.inconclusive { color: var(--unsure); font-weight: 600; }
+.equal, .within-tolerance { color: var(--good); }
+.verdict { background: var(--soft); border-left: .3rem solid; padding: .5rem 1rem; }
+"""
+
+
+def title(comparison: Comparison) -> str:
+    """Return the heading of a report."""
+    lesson, page = comparison.new.lesson, comparison.new.page
+    return f"{lesson.upper()} {page}: {comparison.axis}"
+
+
+def verdict(comparison: Comparison) -> str:
+    """Say the result in one sentence, with how many rows stand behind it."""
+    if comparison.obstacles:
+        return "Not comparable."
+    states = sorted(
+        (f.state for s in comparison.sections for f in s.findings), key=SEVERITY.index, reverse=True
+    )
+    counts = ", ".join(f"{len(list(group))} {state}" for state, group in groupby(states))
+    return f"{comparison.state.capitalize()}. Rows: {counts}."
+
+
+def summary(comparison: Comparison) -> str:
+    """Return the report in a few lines: verdict, obstacles or one line a section, notes."""
+    lines = [title(comparison), verdict(comparison), *comparison.obstacles]
+    for part in comparison.sections:
+        state = part.state if part.findings else part.empty
+        lines.append(f"  {part.title.lower()}: {state}")
+        lines += [
+            f"    {f.what}: {f.old} → {f.new}"
+            for f in part.findings
+            if f.state in ("differs", "inconclusive")
+        ]
+    return "\n".join([*lines, *comparison.notes])
+
+
+def markdown(comparison: Comparison) -> str:
+    """Return the report as a Markdown page."""
+    parts = [f"# {_plain(title(comparison))}", f"**{verdict(comparison)}**"]
+    parts += ["\n".join(f"- {_plain(line)}" for line in _remarks(comparison))]
+    for part in comparison.sections:
+        parts.append(f"## {part.title}: {part.state}" if part.findings else f"## {part.title}")
+        parts.append(_markdown_table(_table(part)) if part.findings else part.empty)
+    parts += ["## The two bundles", _markdown_table(_origin(comparison))]
+    return "\n\n".join(part.strip() for part in parts if part) + "\n"
+
+
+def html(comparison: Comparison) -> str:
+    """Return the report as one HTML page without scripts, fonts or pictures from elsewhere."""
+    name, state = escape(title(comparison)), _css(comparison.state)
+    body = [f"<h1>{name}</h1>"]
+    body.append(f'<p class="verdict {state}">{escape(verdict(comparison))}</p>')
+    remarks = "".join(f"<li>{escape(line)}</li>\n" for line in _remarks(comparison))
+    body += [f"<ul>\n{remarks}</ul>"] if remarks else []
+    for part in comparison.sections:
+        mark = f': <span class="{_css(part.state)}">{part.state}</span>' if part.findings else ""
+        body.append(f"<h2>{part.title}{mark}</h2>")
+        body.append(
+            _html_table(part.title, _table(part)) if part.findings else f"<p>{part.empty}</p>"
+        )
+    body += ["<h2>The two bundles</h2>", _html_table("The two bundles", _origin(comparison))]
+    head = (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{name}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<main>\n"
+    )
+    return head + "\n".join(body) + "\n</main>\n</body>\n</html>\n"
+
+
+def _remarks(comparison: Comparison) -> Iterator[str]:
+    yield from comparison.obstacles
+    yield from comparison.notes
+
+
+def _table(part: Section) -> list[Row]:
+    """Return head and rows of one section, without columns that no row fills."""
+    rows = [(f.state, f.what, f.old, f.new, f.delta, f.allowed) for f in part.findings]
+    kept = [k for k in range(len(COLUMNS)) if any(row[k] for row in rows)]
+    return [tuple(row[k] for k in kept) for row in [COLUMNS, *rows]]
+
+
+def _origin(comparison: Comparison) -> list[Row]:
+    old, new = _facts(comparison.old), _facts(comparison.new)
+    rows = [("folder", *comparison.folders), *((what, old[what], new[what]) for what in old)]
+    return [("", "old", "new"), *rows]
+
+
+def _facts(predicate: Predicate) -> dict[str, str]:
+    engine, backend, git = predicate.engine, predicate.backend, predicate.git
+    dirty = " with changes" if git and git.dirty else ""
+    return {
+        "engine": f"{engine.version}, quadrants {engine.quadrants_version}",
+        "precision": engine.precision,
+        "backend": f"{backend.actual} (asked for {backend.requested})",
+        "device": backend.device_name,
+        "torch": backend.torch_version,
+        "host": f"{predicate.host.os}, {predicate.host.cpu}",
+        "measured": predicate.started,
+        "run": predicate.run_id,
+        "commit": f"{git.commit}{dirty}" if git else "unknown",
+    }
+
+
+def _markdown_table(rows: list[Row]) -> str:
+    head = [_plain(cell) for cell in rows[0]]
+    return tables.markdown(
+        [dict(zip(head, map(_plain, row), strict=True)) for row in rows[1:]]
+    ).strip()
+
+
+def _html_table(label: str, rows: list[Row]) -> str:
+    head = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in rows[0])
+    lines = ["".join(map(_cell, row)) for row in rows[1:]]
+    body = "".join(f"<tr>{line}</tr>\n" for line in lines)
+    return (
+        f'<div class="box" role="region" aria-label="{escape(label)}" tabindex="0">\n'
+        f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table>\n</div>"
+    )
+
+
+def _cell(text: str) -> str:
+    if text in SEVERITY:
+        return f'<td class="{_css(text)}">{text}</td>'
+    return f"<td>{escape(text)}</td>"
+
+
+def _css(state: str) -> str:
+    return state.replace(" ", "-")
+
+
+def _plain(text: str) -> str:
+    """Keep a bundle's words from acting as Markdown."""
+    one_line = " ".join(text.split())
+    return "".join(f"\\{c}" if c in "\\`*_|[]<>#" else c for c in one_line)
