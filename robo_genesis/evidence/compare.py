@@ -182,7 +182,7 @@ def _unlike(old: Any, new: Any, path: str) -> Iterator[tuple[str, Any, Any]]:
 
 def _notes(old: Predicate, new: Predicate) -> Iterator[str]:
     if old.run_id == new.run_id:
-        yield "Both have one run id: this is a bundle beside itself."
+        yield "Both have one run id: one is a copy of the other, or was edited."
     modules = old.source.modules, new.source.modules
     names = sorted(modules[0].keys() | modules[1].keys())
     changed = [name for name in names if modules[0].get(name) != modules[1].get(name)]
