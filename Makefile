@@ -31,6 +31,11 @@ help: ## list the targets
 book: $(ENVIRONMENT) ## measure every lesson on CPU, verify, render and check the site
 	@"$(PY)" build_scripts/book.py
 
+# LESSON, BACKEND and TO reach the script as environment variables.
+.PHONY: evidence
+evidence: $(ENVIRONMENT) ## record a lab here (LESSON=l04 BACKEND=amdgpu|cuda|cpu TO=folder)
+	@"$(PY)" build_scripts/evidence.py
+
 .PHONY: test
 test: $(ENVIRONMENT) ## run all tests (needs Debian's chromium)
 	@"$(PY)" -m pytest
