@@ -1,6 +1,7 @@
 """What `make evidence` answers: exit status, what is printed, and the real lab on the CPU."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -46,6 +47,17 @@ def old(tmp_path):
     place.mkdir(parents=True)
     (place / "manifest.json").write_text("the old one")
     return place / "manifest.json"
+
+
+def test_make_hands_the_settings_over(tmp_path):
+    (tmp_path / "build_scripts").mkdir()
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    stub = "import os\nprint([os.environ.get(name) for name in ('LESSON', 'BACKEND', 'TO')])\n"
+    (tmp_path / "build_scripts" / "evidence.py").write_text(stub)
+    settings = ["LESSON=l04", "BACKEND=amdgpu", "TO=a folder", f"PYTHON={sys.executable}"]
+    make = ["make", "-C", str(tmp_path), "evidence", *settings]
+    done = subprocess.run(make, capture_output=True, text=True, check=False, timeout=60)
+    assert "['l04', 'amdgpu', 'a folder']" in done.stdout.splitlines(), done.stderr
 
 
 def test_a_failing_lab_is_status_1_a_report_and_the_old_bundle(tmp_path, old):
