@@ -1,10 +1,7 @@
 """`make evidence`: run a lesson's lab on this machine and keep its bundle, whole or not at all."""
 
-import json
 import os
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,22 +12,16 @@ from sqlalchemy.exc import OperationalError
 from robo_genesis import project
 from robo_genesis.build import Progress, Verify, only_build
 from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.place import put, recover, require_folder
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.execute import TIMEOUT, execute_pages
+from robo_genesis.foresight import foreseen_backend
 from robo_genesis.page_results import PageResult, failure_report
 from robo_genesis.pages import Page, find_pages
 
 ACCELERATORS = ("amdgpu", "cuda")
 BACKENDS = (*ACCELERATORS, "cpu")
 COMMAND = "make evidence"
-NEXT, OLD = ".next", ".old"
-
-PROBE = """
-import json, torch
-count = torch.cuda.device_count() if torch.cuda.is_available() else 0
-print(json.dumps([torch.version.hip, torch.version.cuda, count]))
-"""
-PROBE_SECONDS = 180.0
 
 
 class RecordingError(Exception):
@@ -82,30 +73,34 @@ def record(recording: Recording) -> list[str]:
         RecordingError: the lesson or backend is not valid, another backend was found, the lab
             failed, or its bundle was refused. What was recorded before still stands.
         BuildError: a build, or another recording, runs here.
-        ProjectError, PageError: the checkout is not fit for a run.
+        ProjectError, PageError: checkout, environment or the bundle's place is not fit for it.
     """
     with only_build(recording.cache):
         recover(recording.evidence)
-        page = _lab(recording)
-        _require_folder(recording.evidence)
-        progress = Progress(recording.say)
+        page, progress = _lab(recording), Progress(recording.say)
+        require_folder(recording.evidence)
         project.require_pinned_engine(recording.root)
         if recording.requested == "auto":
             found = (recording.foresee or foreseen_backend)()
             progress("probe", f"Torch sees {found}")
             require_expected(recording, found)
-        project.remove_stale_kernel_lock(recording.cache)
-        run_folder = recording.cache / "recording"  # new each time: nothing is ever reused
-        shutil.rmtree(run_folder, ignore_errors=True)
-        try:
-            result = _execute(recording, page, run_folder, progress)
-            manifest = _accepted(recording, result, progress)
-            assert result.bundle is not None
-            place = put(result.bundle, recording.evidence / recording.lesson)
-        finally:
-            shutil.rmtree(run_folder, ignore_errors=True)
-        progress("record", str(place))
-        return summary(place, manifest.predicate)
+        place, facts = _run(recording, page, progress)
+        return summary(place, facts)
+
+
+def _run(recording: Recording, page: Page, progress: Progress) -> tuple[Path, Any]:
+    """Execute, verify and put in place; return where the bundle stands and what it says."""
+    project.remove_stale_kernel_lock(recording.cache)
+    folder = recording.cache / "recording"  # new each time: nothing is ever reused
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        result = _execute(recording, page, folder, progress)
+        bundle, facts = _accepted(recording, result, progress)
+        place = put(bundle, recording.evidence / recording.lesson)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    progress("record", str(place))
+    return place, facts
 
 
 def _lab(recording: Recording) -> Page:
@@ -122,52 +117,6 @@ def _lab(recording: Recording) -> Page:
             f"Lessons with a lab: {', '.join(sorted(labs)) or 'none'}."
         )
     return labs[recording.lesson]
-
-
-def _require_folder(evidence: Path) -> None:
-    """Raise before the long run where the bundle could not be put in the end."""
-    there = next(path for path in (evidence, *evidence.parents) if path.exists())
-    if not there.is_dir() or not os.access(there, os.W_OK):
-        raise RecordingError(
-            f"{evidence} cannot hold evidence: {there} is no folder that you may write. "
-            "Name another with TO=folder, or give write access."
-        )
-
-
-def foreseen_backend() -> str:
-    """Return the backend that `auto` would find, as Torch sees it in a process of its own.
-
-    It only spares a run that is bound to be refused: what counts is what the run itself finds.
-
-    Raises:
-        RecordingError: Torch does not answer.
-    """
-    try:
-        done = subprocess.run(
-            [sys.executable, "-c", PROBE],
-            capture_output=True,
-            text=True,
-            check=True,
-            timeout=PROBE_SECONDS,
-        )
-        hip, cuda, count = json.loads(done.stdout.splitlines()[-1])
-    except (subprocess.SubprocessError, ValueError, IndexError) as error:
-        last = str(getattr(error, "stderr", "") or error).strip().splitlines()[-1:]
-        raise RecordingError(
-            f"Torch of {sys.executable} does not say what it runs on: {' '.join(last)}\n"
-            "Mend that environment, or name another with PYTHON=path."
-        ) from error
-    return backend_of(hip, cuda, count)
-
-
-def backend_of(hip: str | None, cuda: str | None, count: int) -> str:
-    """Return the backend of a Torch build and its number of devices.
-
-    ROCm and CUDA both call their device `cuda`; the build's versions tell them apart.
-    """
-    if count and hip:
-        return "amdgpu"
-    return "cuda" if count and cuda else "cpu"
 
 
 def require_expected(recording: Recording, actual: str) -> None:
@@ -216,8 +165,8 @@ def kernel_environment(recording: Recording) -> dict[str, str]:
     }
 
 
-def _accepted(recording: Recording, result: PageResult, progress: Progress) -> Any:
-    """Return the manifest of a bundle that is verified and of the run that was asked for."""
+def _accepted(recording: Recording, result: PageResult, progress: Progress) -> tuple[Path, Any]:
+    """Return a bundle that is verified and of the run that was asked for, and what it says."""
     if result.bundle is None:
         raise RecordingError(f"{result.page.docname} left no bundle.")
     require_expected(recording, result.bundle.name)
@@ -237,61 +186,7 @@ def _accepted(recording: Recording, result: PageResult, progress: Progress) -> A
             "runtime.read_contract() and set nothing of it itself."
         )
     progress("verify", result.page.docname, "accepted")
-    return manifest
-
-
-def put(bundle: Path, lesson: Path) -> Path:
-    """Put a bundle into its lesson's folder under its own name, in the place of an older one.
-
-    Args:
-        bundle: the accepted bundle, named by its actual backend.
-        lesson: the folder of the lesson's recorded bundles.
-
-    Returns:
-        Where it stands.
-
-    Raises:
-        RecordingError: something that is no bundle stands there.
-        OSError: nothing is changed.
-    """
-    place = lesson / bundle.name
-    if place.is_symlink() or (place.exists() and not (place / "manifest.json").is_file()):
-        raise RecordingError(
-            f"{place} is no evidence bundle: it has no manifest.json, or is a link. "
-            "Move it away, or name another folder with TO=folder."
-        )
-    following, aside = _beside(place, NEXT), _beside(place, OLD)
-    try:
-        shutil.copytree(bundle, following)
-        if place.exists():
-            os.rename(place, aside)
-        os.rename(following, place)
-    finally:
-        recover(lesson.parent)
-    return place
-
-
-def recover(evidence: Path) -> None:
-    """Bring recorded evidence into order after a command that was killed.
-
-    Killed between the two renames, the old bundle stands aside: it comes back. Killed earlier or
-    later, what is left is rubbish.
-
-    Args:
-        evidence: the folder of all recorded bundles.
-    """
-    for aside in evidence.glob(f"*/.*{OLD}"):
-        place = aside.with_name(aside.name.removeprefix(".").removesuffix(OLD))
-        if place.exists():
-            shutil.rmtree(aside)
-        else:
-            aside.rename(place)
-    for folder in evidence.glob(f"*/.*{NEXT}"):
-        shutil.rmtree(folder)
-
-
-def _beside(place: Path, suffix: str) -> Path:
-    return place.with_name(f".{place.name}{suffix}")
+    return result.bundle, facts
 
 
 def summary(place: Path, facts: Any) -> list[str]:
