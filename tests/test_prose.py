@@ -18,7 +18,7 @@ CONFIGURED = {
     "saturation threshold": metrics.SATURATION_THRESHOLD,
     "speed nearly at rest [rad/s]": interpretation.AT_REST,
 }
-PAGES = sorted(BOOK.glob("*.md")) + sorted(BOOK.glob("lessons/**/*.md"))
+PAGES = [*sorted(BOOK.glob("*.md")), *sorted(BOOK.glob("[el]*/**/*.md"))]
 DECIMAL = re.compile(r"(?<![\w.])(?:\d*\.\d+(?:e-?\d+)?|\d+e-?\d+)(?!\.\d)")
 CODE_CELL = re.compile(r"^```\{code-cell\}[^\n]*\n((?:---\n.*?^---\n)?).*?^```", re.S | re.M)
 
@@ -28,6 +28,7 @@ def prose(source: str) -> str:
     source = re.sub(r"\A---\n.*?\n---\n", "", source, flags=re.S)
     source = re.sub(CODE_CELL, r"\1", source)
     source = re.sub(r"^```\{literalinclude\}.*?^```", "", source, flags=re.S | re.M)
+    source = re.sub(r"\]\([^)\s]*\)", "]", source)  # addresses
     return re.sub(r"\{[\w-]+\}`[^`\n]+`", "", source)
 
 

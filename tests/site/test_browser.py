@@ -8,7 +8,13 @@ from playwright.sync_api import Browser, sync_playwright
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 CHROMIUM = "/usr/bin/chromium"
-PAGES = ("index", "glossary", "lessons/l04-joint-control/lecture", "lessons/l04-joint-control/lab")
+PAGES = (
+    "index",
+    "glossary",
+    "evidence/recording",
+    "lessons/l04-joint-control/lecture",
+    "lessons/l04-joint-control/lab",
+)
 VIEWS = {"light": (1280, "light"), "dark": (1280, "dark"), "phone": (320, "light")}
 
 

@@ -60,6 +60,13 @@ def test_expected_error_shows_its_message_without_a_stack(site):
     assert "finger_joint2" in errors[0].get_text()
 
 
+def test_the_missing_reference_run_has_a_panel_with_its_command(site):
+    panel = page(site, f"{LESSON}/lecture").select_one(".evidence-panel.status-missing")
+    assert f"No run on this backend is recorded for Genesis {PIN}" in panel.get_text()
+    assert "make evidence LESSON=l04 BACKEND=amdgpu" in panel.get_text()
+    assert not panel.select("img")
+
+
 def test_engine_warnings_are_kept_in_a_fold(site):
     folds = page(site, f"{LESSON}/lab").select("details.hide")
     assert any("Approximating tendon" in fold.get_text() for fold in folds)

@@ -1,0 +1,163 @@
+"""The reference run in a lesson: its figures, frames, metrics and backend, or what is missing.
+
+A page writes ```` ```{evidence} l04 ````. Everything shown comes from an accepted bundle below
+`book/evidence/<lesson>/<backend>/`; where there is none, the panel says why and what makes one.
+"""
+
+import base64
+import io
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from docutils import nodes
+from matplotlib.figure import Figure
+from PIL import Image
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from robo_genesis import l04, plots, tables
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.status import Status, recorded_status
+from robo_genesis.evidence.traces import read_trace
+from robo_genesis.metrics import format_value
+from robo_genesis.robot_model import JointMap
+from robo_genesis.sphinx_evidence import BACKEND, REFERENCE, outputs_folder
+
+COMPARED = ("G1", "G2", "G3")
+
+
+class Evidence(SphinxDirective):
+    """Show the recorded runs of a lesson, the reference backend first."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return one panel a backend; the reference backend has one even where it is missing."""
+        lesson, book = self.arguments[0], Path(self.env.srcdir)
+        recorded = [path.name for path in sorted((book / "evidence" / lesson).glob("[!.]*/"))]
+        backends = [REFERENCE, *(name for name in recorded if name != REFERENCE)]
+        return [self.panel(lesson, recorded_status(book, lesson, name)) for name in backends]
+
+    def panel(self, lesson: str, status: Status) -> nodes.Node:
+        """Return the panel of one backend."""
+        panel = nodes.container(classes=["evidence-panel", f"status-{status.state}"])
+        if status.manifest is None:
+            panel += self.parse_text_to_nodes(missing_text(lesson, status))
+            return panel
+        folder = Path(self.env.srcdir) / "evidence" / lesson / status.backend
+        here = outputs_folder() / lesson / "lab" / BACKEND
+        panel += self.parse_text_to_nodes(backend_text(status))
+        panel += nodes.raw("", figure_html(folder, status), format="html")
+        panel += nodes.raw("", frames_html(folder, status), format="html")
+        panel += self.parse_text_to_nodes(metrics_text(here, folder, status.backend))
+        panel += nodes.raw("", warnings_html(status.manifest.predicate.warnings), format="html")
+        return panel
+
+
+def missing_text(lesson: str, status: Status) -> str:
+    """Say which evidence is not here, why, and the command that makes it."""
+    return (
+        f"**Reference run on {status.backend}: {status.state}.** {status.reason} "
+        "On a machine with this backend:\n\n"
+        f"```console\n$ make evidence LESSON={lesson} BACKEND={status.backend}\n```\n\n"
+        "{doc}`/evidence/recording` says what that machine needs.\n"
+    )
+
+
+def backend_text(status: Status) -> str:
+    """Return the run's state and the facts of its backend as Markdown."""
+    assert status.manifest is not None
+    predicate = status.manifest.predicate
+    backend = predicate.backend
+    facts = {
+        "device": backend.device_name,
+        "backend requested, actual": f"{backend.requested}, {backend.actual}",
+        "Torch": backend.torch_version,
+        "HIP, CUDA": f"{backend.hip_version or '–'}, {backend.cuda_version or '–'}",
+        "driver": backend.driver or "–",
+        "renderer": predicate.render.renderer or "SKIP",
+        "recorded": predicate.started[:10],
+        "run": predicate.run_id[:8],
+    }
+    rows = [{"what": name, "value": value} for name, value in facts.items()]
+    return f"**Reference run.** {status.sentence}\n\n{tables.markdown(rows)}"
+
+
+def figure_html(folder: Path, status: Status) -> str:
+    """Return the response of the three cases, drawn from the bundle's arrays, as HTML."""
+    arrays = bundle.read_arrays(folder)
+    traces = {case: read_trace(folder, arrays, case) for case in COMPARED}
+    joints = described_joints(arrays)
+    stream = io.BytesIO()
+    with mpl.rc_context():
+        plots.use_course_style()
+        figure = Figure(figsize=(7, 8.5))
+        plots.response(figure.subplots(3, 1, sharex=True), traces, joints, l04.STEPPED_JOINT)
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    alt = (
+        f"Position, velocity and control force of {l04.STEPPED_JOINT} over time on "
+        f"{status.backend}, with the cases G1, G2 and G3 drawn over each other."
+    )
+    caption = f"{l04.STEPPED_JOINT} on {status.backend}, drawn from the arrays of the recorded run."
+    return _figure("image/svg+xml", stream.getvalue(), alt, caption)
+
+
+def described_joints(arrays: bundle.Arrays) -> JointMap:
+    """Return the names, types and units that figures need, in the order of a bundle's arrays."""
+    names = tuple(arrays.coords["dof"])
+    unknown = np.zeros(len(names))
+    return JointMap(names, l04.EXPECTED_TYPES, unknown, unknown, unknown, unknown)
+
+
+def frames_html(folder: Path, status: Status) -> str:
+    """Return the camera frames at both ends as small pictures, nothing where rendering was off."""
+    html = []
+    for name in ("initial", "final"):
+        path = folder / "frames" / f"{name}.png"
+        if path.is_file():
+            stream = io.BytesIO()
+            with Image.open(path) as picture:
+                picture.save(stream, format="webp", quality=80)
+            alt = f"Camera frame of the Franka, {name} state of the baseline on {status.backend}."
+            html.append(_figure("image/webp", stream.getvalue(), alt, f"Camera frame, {name}."))
+    return "".join(html)
+
+
+def metrics_text(here: Path, folder: Path, backend: str) -> str:
+    """Return CPU beside accelerator for each metric of the three cases, as Markdown."""
+    ours, theirs = bundle.read_metrics(here), bundle.read_metrics(folder)
+    rows = [
+        {
+            "case": case,
+            "metric": tables.METRIC_LABELS[name],
+            f"{BACKEND}, this build": format_value(ours[case][name].value, metric.unit),
+            f"{backend}, recorded": format_value(metric.value, metric.unit),
+        }
+        for case in COMPARED
+        for name, metric in theirs[case].items()
+    ]
+    return tables.markdown(rows)
+
+
+def warnings_html(warnings: Sequence[str]) -> str:
+    """Return the engine's warnings in a fold."""
+    lines = "".join(f"<li>{escape(text)}</li>" for text in warnings)
+    return f"<details><summary>{len(warnings)} engine warnings</summary><ol>{lines}</ol></details>"
+
+
+def _figure(kind: str, content: bytes, alt: str, caption: str) -> str:
+    source = f"data:{kind};base64,{base64.b64encode(content).decode()}"
+    return (
+        f'<figure><img alt="{escape(alt)}" src="{source}" loading="lazy"/>'
+        f"<figcaption>{escape(caption)}</figcaption></figure>"
+    )
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the directive."""
+    app.add_directive("evidence", Evidence)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
