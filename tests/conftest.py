@@ -112,7 +112,7 @@ def traces(second_order) -> dict[str, Trace]:
         qd = (yd[:, None] * step).astype(np.float32)
         demand = case.kp * (case.q_target - q) - case.kv * qd
         effort = np.clip(demand, -case.effort_limit, case.effort_limit).astype(np.float32)
-        link_pos = np.zeros((len(t), len(LINKS), 3))
+        link_pos = np.zeros((len(t), len(LINKS), 3), np.float32)
         link_pos[:, 1:, 2] = 0.5
         link_pos[:, 2, 0] = y
         return Trace(
@@ -126,7 +126,7 @@ def traces(second_order) -> dict[str, Trace]:
             start_qd=qd[0],
             effort_limit=case.effort_limit.astype(np.float32),
             link_pos=link_pos,
-            link_quat=np.tile([1.0, 0.0, 0.0, 0.0], (len(t), len(LINKS), 1)),
+            link_quat=np.tile(np.float32([1, 0, 0, 0]), (len(t), len(LINKS), 1)),
         )
 
     return {name: run(name) for name in l04.CASES}

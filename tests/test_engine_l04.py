@@ -3,8 +3,9 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from robo_genesis import checks, l04, runtime
+from robo_genesis import checks, l04, project, runtime
 from robo_genesis.evidence.bundle import read_arrays
+from robo_genesis.evidence.current import page_digest
 from robo_genesis.evidence.record import Measured, Recorder
 from robo_genesis.evidence.traces import read_trace
 from robo_genesis.evidence.verify import verify_bundle
@@ -50,8 +51,8 @@ def measured_run(lab, run):
 @pytest.fixture(scope="module")
 def bundle_folder(lab, measured_run):
     with pytest.MonkeyPatch.context() as patch:
-        for name in ("RUN_ID", "PAGE_SHA256"):
-            patch.delenv(f"ROBO_GENESIS_{name}", raising=False)
+        patch.delenv("ROBO_GENESIS_RUN_ID", raising=False)
+        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lab", project.BOOK))
         recorder = Recorder("l04", "lab", lab.contract, lab.engine)
         return recorder.write(
             Measured(

@@ -9,12 +9,13 @@ log.txt         the engine's own log
 """
 
 import hashlib
-import json
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import rfc8785
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect, parse_strict
 
 STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
 PREDICATE_TYPE = "urn:robo-genesis:evidence:v1"
@@ -23,14 +24,6 @@ SCHEMA_VERSION = 1
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
 Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z$")]
-
-
-class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepted or refused
-    """A bundle that must not become evidence. `code` is stable; the message says what to do."""
-
-    def __init__(self, code: str, message: str) -> None:
-        super().__init__(f"{code}: {message}")
-        self.code = code
 
 
 class Strict(BaseModel):
@@ -191,7 +184,12 @@ def sha256(path: Path) -> str:
 
 def canonical_sha256(value: Any) -> str:
     """Return the SHA-256 of a value's canonical JSON (RFC 8785)."""
-    return hashlib.sha256(rfc8785.dumps(value)).hexdigest()
+    try:
+        return hashlib.sha256(rfc8785.dumps(value)).hexdigest()
+    except (rfc8785.CanonicalizationError, RecursionError) as error:
+        raise BundleRefused(
+            "bad-json", f"manifest.json: {error}, expected numbers that JSON can carry. {AGAIN}"
+        ) from error
 
 
 def evidence_key(predicate: dict[str, Any]) -> str:
@@ -207,45 +205,40 @@ def evidence_key(predicate: dict[str, Any]) -> str:
     return canonical_sha256(keyed)
 
 
-def parse_strict(text: str, where: str) -> Any:
-    """Parse JSON that has no duplicate keys, NaN or infinities, else raise BundleRefused."""
-
-    def no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        keys = [key for key, _ in pairs]
-        if len(set(keys)) != len(keys):
-            raise ValueError(f"duplicate key among {keys}")
-        return dict(pairs)
-
-    def no_constant(name: str) -> None:
-        raise ValueError(f"{name} is no JSON number")
-
-    try:
-        return json.loads(text, object_pairs_hook=no_duplicates, parse_constant=no_constant)
-    except ValueError as error:
-        raise BundleRefused("bad-json", f"{where}: {error}. Record the bundle again.") from error
-
-
 def read_json(folder: Path, name: str) -> Any:
     """Return the strictly parsed content of one JSON file of a bundle."""
     path = folder / name
     if not path.is_file():
-        raise BundleRefused("missing-file", f"{name} is not in {folder.name}. Record it again.")
+        raise BundleRefused("missing-file", f"{name} is not in {folder.name}. {AGAIN}")
     try:
         return parse_strict(path.read_text(encoding="utf-8"), name)
     except UnicodeDecodeError as error:
-        raise BundleRefused("bad-json", f"{name} is not UTF-8: {error}.") from error
+        raise BundleRefused("bad-json", f"{name} is not UTF-8: {error}. {AGAIN}") from error
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Return a bundle's manifest after checking its form, and its form only."""
-    return _validated(Manifest, read_json(folder, "manifest.json"), "manifest.json")
+    """Return a bundle's manifest after checking its form, and its form only.
+
+    Raises:
+        BundleRefused: `schema` for another version of the form, which comes before all else:
+            what its fields mean is not known here.
+    """
+    found = read_json(folder, "manifest.json")
+    kind = found.get("predicateType") if isinstance(found, dict) else None
+    if isinstance(kind, str):
+        expect("schema", "manifest.json", "predicateType", kind, PREDICATE_TYPE)
+    predicate = found.get("predicate") if isinstance(found, dict) else None
+    version = predicate.get("schema_version") if isinstance(predicate, dict) else None
+    if isinstance(version, int):
+        expect("schema", "manifest.json", "schema_version", version, SCHEMA_VERSION)
+    return _validated(Manifest, found, "manifest.json")
 
 
 def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
     """Return metrics by group (a case, or `model`) and name."""
     found = read_json(folder, "metrics.json")
     if not isinstance(found, dict) or not all(isinstance(v, dict) for v in found.values()):
-        raise BundleRefused("bad-schema", "metrics.json is not groups of metrics. Record it again.")
+        raise BundleRefused("bad-schema", f"metrics.json is not groups of metrics. {AGAIN}")
     return {
         group: {
             n: _validated(Metric, value, f"metrics.json {group}.{n}") for n, value in items.items()
@@ -265,6 +258,4 @@ def _validated(model: type, value: Any, where: str) -> Any:
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(str(part) for part in first["loc"])
-        raise BundleRefused(
-            "bad-schema", f"{where}: {place}: {first['msg']}. Record the bundle again."
-        ) from error
+        raise BundleRefused("bad-schema", f"{where}: {place}: {first['msg']}. {AGAIN}") from error

@@ -1,14 +1,15 @@
 """A trace as files and back: npz with units in the names, described in `arrays.json`."""
 
-import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
+from robo_genesis.evidence.archive import read_archive
 from robo_genesis.evidence.bundle import Arrays, BundleRefused, CaseArrays, Variable
-from robo_genesis.robot_model import JointMap
+from robo_genesis.evidence.strict_json import AGAIN, expect
+from robo_genesis.l04 import EXPECTED_TYPES
+from robo_genesis.robot_model import EFFORT_UNIT, POSITION_UNIT, JointMap
 from robo_genesis.trace import Trace, TraceError
 
 # Trace field → name in the file, dimensions, unit (None: that of each DOF), long name.
@@ -30,13 +31,18 @@ FIELDS = {
 }  # fmt: skip
 
 
-def dof_units(name: str, joints: JointMap) -> list[str]:
-    """Return the unit of each DOF for one array name of `FIELDS`."""
+DTYPES = {"t": "float64", "target": "float64"}
+"""Fields that are no values of the engine, which computes in float32."""
+
+
+def dof_units(name: str, types: Sequence[str]) -> list[str]:
+    """Return the unit of each DOF, by its joint's type, for one array name of `FIELDS`."""
+    positions = [POSITION_UNIT[kind] for kind in types]
     if name.startswith(("q_", "target")):
-        return list(joints.position_units)
+        return positions
     if "qd" in name:
-        return [f"{unit}/s" for unit in joints.position_units]
-    return list(joints.effort_units)
+        return [f"{unit}/s" for unit in positions]
+    return [EFFORT_UNIT[kind] for kind in types]
 
 
 def write_traces(
@@ -60,7 +66,7 @@ def write_traces(
                 dims=dims,
                 shape=list(values[name].shape),
                 dtype=str(values[name].dtype),
-                unit=dof_units(name, joints) if unit is None else unit,
+                unit=dof_units(name, joints.types) if unit is None else unit,
                 long_name=long_name,
             )
             for name, dims, unit, long_name in FIELDS.values()
@@ -75,30 +81,37 @@ def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
     """Return one case's trace after holding its arrays against their description.
 
     Raises:
-        BundleRefused: the file cannot be read, has other arrays than described, or its arrays do
-            not form one run.
+        BundleRefused: `labels`, `too-big` or `bad-array`; `bad-trace` where its arrays do not form
+            one run.
     """
     described = arrays.cases[case]
-    if described.file != f"arrays/{case}.npz":
-        raise BundleRefused(
-            "path", f"arrays.json puts {case} at {described.file!r}, expected arrays/{case}.npz."
-        )
-    try:
-        with (folder / described.file).open("rb") as stream:
-            archive = np.lib.npyio.NpzFile(stream, allow_pickle=False)
-            values = {name: archive[name] for name in archive.files}
-    except (OSError, ValueError, EOFError, KeyError, BadZipFile, zlib.error) as error:
-        raise BundleRefused("bad-array", f"{described.file}: {error}. Record it again.") from error
-    if set(values) != set(described.variables) or set(values) != {n for n, *_ in FIELDS.values()}:
-        raise BundleRefused("bad-array", f"{described.file} has other arrays than arrays.json.")
+    expect("path", "arrays.json", f"file of case {case}", described.file, f"arrays/{case}.npz")
+    _check_labels(arrays, case)
+    values = read_archive(folder / described.file, described.file, {n for n, *_ in FIELDS.values()})
     for name, variable in described.variables.items():
         found = (list(values[name].shape), str(values[name].dtype))
-        if found != (variable.shape, variable.dtype):
-            raise BundleRefused(
-                "bad-array", f"{described.file} {name} is {found}, described as "
-                f"{(variable.shape, variable.dtype)}. Record the bundle again.",
-            )  # fmt: skip
+        what = f"shape and type of {name}"
+        expect("bad-array", described.file, what, found, (variable.shape, variable.dtype))
     try:
         return Trace(**{field: values[name] for field, (name, *_) in FIELDS.items()})
     except TraceError as error:
-        raise BundleRefused("bad-trace", f"{described.file}: {error}") from error
+        raise BundleRefused("bad-trace", f"{described.file}: {error} {AGAIN}") from error
+
+
+def _check_labels(arrays: Arrays, case: str) -> None:
+    """Require that names, dimensions, units and types are those that `write_traces` gives."""
+    variables = arrays.cases[case].variables
+    names = sorted(name for name, *_ in FIELDS.values())
+    expect("labels", "arrays.json", f"list of arrays of {case}", sorted(variables), names)
+    lengths = {"axis": 3, "wxyz": 4} | {dim: len(them) for dim, them in arrays.coords.items()}
+    for field, (name, dims, unit, long_name) in FIELDS.items():
+        found, file = variables[name], f"arrays.json {case}.{name}"
+        units = dof_units(name, EXPECTED_TYPES) if unit is None else unit
+        expect("labels", file, "unit", found.unit, units)
+        expect("labels", file, "dims", found.dims, dims)
+        expect("labels", file, "long_name", found.long_name, long_name)
+        expect("labels", file, "dtype", found.dtype, DTYPES.get(field, "float32"))
+        expect("labels", file, "number of dimensions", len(found.shape), len(dims))
+        for dim, length in zip(dims, found.shape, strict=True):
+            if dim in lengths:
+                expect("labels", file, f"length of {dim}", length, lengths[dim])

@@ -8,9 +8,17 @@ import pytest
 from robo_genesis import l04, project, runtime
 from robo_genesis.checks import run_checks
 from robo_genesis.evidence import record
+from robo_genesis.evidence.current import page_digest
 from robo_genesis.evidence.record import Measured, Recorder
 
 RUN_ID = "0123456789abcdef" * 2
+LOG = (
+    ("INFO", "Running on [a CPU] with backend gs.cpu. Device memory: 23.54 GB."),
+    ("INFO", f"🚀 Genesis initialized. 🔖 version: {project.engine_pin()}, 🌱 seed: 0, "
+             "📏 precision: 32, 💬 verbose: INFO"),
+    ("WARNING", "Approximating tendon."),
+    ("INFO", "Software rendering context detected. Shadows not supported."),
+)  # fmt: skip
 
 
 @pytest.fixture(scope="session")
@@ -21,7 +29,7 @@ def backend():
 @pytest.fixture(scope="session")
 def engine(backend):
     log = runtime.EngineLog()
-    log.lines += [("INFO", "Scene created."), ("WARNING", "Approximating tendon.")]
+    log.lines += LOG
     return runtime.Engine(project.engine_pin(), "1.3.0", "32", 0, backend, log)
 
 
@@ -53,6 +61,7 @@ def quiet(backend):
 @pytest.fixture
 def recorder(quiet, tmp_path, engine, monkeypatch):
     monkeypatch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
+    monkeypatch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lab", project.BOOK))
     contract = runtime.Contract("cpu", True, tmp_path / "outputs")
     return Recorder("l04", "lab", contract, engine)
 
@@ -61,6 +70,7 @@ def recorder(quiet, tmp_path, engine, monkeypatch):
 def pristine(quiet, tmp_path_factory, engine, measured) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
+        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lab", project.BOOK))
         contract = runtime.Contract("cpu", True, tmp_path_factory.mktemp("pristine"))
         return Recorder("l04", "lab", contract, engine).write(measured)
 

@@ -68,17 +68,17 @@ def test_dimensions_have_the_lengths_that_are_described(written):
     ],
 )
 def test_each_dof_has_its_own_unit(joints, written, name, arm, finger):
-    assert dof_units(name, joints) == [arm] * 7 + [finger] * 2
+    assert dof_units(name, joints.types) == [arm] * 7 + [finger] * 2
     assert written[1].cases["G1"].variables[name].unit == [arm] * 7 + [finger] * 2
 
 
 def test_an_array_that_is_not_described_is_refused(spoil):
-    with pytest.raises(BundleRefused, match=r"^bad-array: .*other arrays"):
+    with pytest.raises(BundleRefused, match=r"^bad-array: .*list of arrays"):
         read_trace(*spoil(extra=np.zeros(1)), "G1")
 
 
 def test_a_described_array_that_is_absent_is_refused(spoil):
-    with pytest.raises(BundleRefused, match=r"^bad-array: .*other arrays"):
+    with pytest.raises(BundleRefused, match=r"^bad-array: .*list of arrays"):
         read_trace(*spoil(q_rad_or_m=None), "G1")
 
 
@@ -86,7 +86,7 @@ def test_a_described_array_that_is_absent_is_refused(spoil):
     "array", [np.zeros((121, 9)), np.zeros((120, 9), np.float32), np.zeros((121, 9), np.float16)]
 )
 def test_another_shape_or_type_than_described_is_refused(spoil, array):
-    with pytest.raises(BundleRefused, match=r"^bad-array: .*q_rad_or_m is .*described as"):
+    with pytest.raises(BundleRefused, match=r"^bad-array: .*q_rad_or_m.* is .*"):
         read_trace(*spoil(q_rad_or_m=array), "G1")
 
 

@@ -1,0 +1,491 @@
+"""Bundles spoiled in one way each, with the code that refuses them.
+
+`SPOILED` is name → (code as it is, code after digests and key were made right again, spoiler).
+A spoiler changes the bundle in a folder; it returns the folder where it moved it.
+"""
+
+import io
+import json
+import os
+import shutil
+import struct
+import warnings
+import zipfile
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+from robo_genesis import l04
+from robo_genesis.evidence import bundle, files, traces
+from robo_genesis.evidence.archive import UNPACKED_LIMIT
+
+
+def edit(folder, name, change):
+    """Change the JSON of one file in place."""
+    path = folder / name
+    value = json.loads(path.read_text("utf8"))
+    change(value)
+    path.write_text(json.dumps(value), "utf8")
+
+
+def manifest(change):
+    return lambda folder: edit(folder, "manifest.json", change)
+
+
+def predicate(**values):
+    return manifest(lambda m: m["predicate"].update(values))
+
+
+def part(name, **values):
+    """Change one record of the predicate."""
+    return manifest(lambda m: m["predicate"][name].update(values))
+
+
+def seal(folder):
+    """List every file with its digest and make the key right, as a careful forger would."""
+    found = sorted(p for p in folder.rglob("*") if p.is_file() and p.name != "manifest.json")
+    subject = [
+        {"name": p.relative_to(folder).as_posix(), "digest": {"sha256": bundle.sha256(p)}}
+        for p in found
+    ]
+
+    def change(m):
+        m["subject"] = subject
+        m["predicate"]["evidence_key"] = bundle.evidence_key(m["predicate"])
+
+    edit(folder, "manifest.json", change)
+
+
+def both(*spoilers):
+    def change(folder):
+        for spoil in spoilers:
+            folder = moved(spoil(folder), folder)
+        return folder
+
+    return change
+
+
+def moved(returned, folder):
+    """Return where a bundle stands after a spoiler, of which few move it."""
+    return returned if isinstance(returned, Path) else folder
+
+
+def text(name, old, new):
+    """Replace text in a file, every occurrence."""
+
+    def change(folder):
+        path = folder / name
+        before = path.read_bytes()
+        assert old.encode() in before
+        path.write_bytes(before.replace(old.encode(), new.encode()))
+
+    return change
+
+
+def log(old, new):
+    return text("log.txt", old, new)
+
+
+# --- accelerators ---------------------------------------------------------------------------
+
+TORCH = {
+    "amdgpu": {"torch_version": "2.13.0+rocm7.1", "hip_version": "7.1.25424", "cuda_version": None},
+    "cuda": {"torch_version": "2.13.0+cu130", "hip_version": None, "cuda_version": "13.0"},
+}
+
+
+def on(actual):
+    """Turn the CPU's bundle into one that an accelerator would have left, sealed."""
+    torch = {"torch_device": "cuda", **TORCH[actual]}
+
+    def change(folder):
+        part("backend", actual=actual, actual_at_end=actual, arch=actual, **torch)(folder)
+        part("backend", requested="auto", driver="6.16", device_name="a GPU")(folder)
+        part("render", vendor="AMD", renderer="AMD Radeon (radeonsi)", software=False)(folder)
+        log("[a CPU] with backend gs.cpu", f"[a GPU] with backend gs.{actual}")(folder)
+        log("INFO Software rendering context detected. Shadows not supported.\n", "")(folder)
+        there = folder.rename(folder.with_name(actual))
+        seal(there)
+        return there
+
+    return change
+
+
+# --- files ----------------------------------------------------------------------------------
+
+
+def flip_byte(folder):
+    data = bytearray((folder / "metrics.json").read_bytes())
+    data[data.index(b"0.")] ^= 1
+    (folder / "metrics.json").write_bytes(data)
+
+
+def add_subject(name):
+    entry = {"name": name, "digest": {"sha256": "0" * 64}}
+    return manifest(lambda m: m["subject"].append(entry))
+
+
+def repeat_subject(change):
+    def repeat(m):
+        entry = dict(m["subject"][0])
+        m["subject"].append(entry | {"name": change(entry["name"])})
+
+    return manifest(repeat)
+
+
+def link_out(folder):
+    outside = shutil.move(folder / "log.txt", folder.parent / "log.txt")
+    (folder / "log.txt").symlink_to(outside)
+
+
+def link_folder(folder):
+    elsewhere = folder.rename(folder.with_name("elsewhere"))
+    folder.symlink_to(elsewhere)
+
+
+def pipe(folder):
+    os.mkfifo(folder / "pipe")
+
+
+def pad(name):
+    """Make a file too long for its kind."""
+
+    def change(folder):
+        limit = files.SIZE_LIMITS.get(name, files.OTHER_LIMIT)
+        with (folder / name).open("ab") as stream:
+            stream.truncate(limit + 1)
+
+    return change
+
+
+def crowd(folder):
+    for number in range(files.ENTRIES_LIMIT):
+        (folder / f"{number}.txt").touch()
+
+
+# --- arrays ---------------------------------------------------------------------------------
+
+G1 = "arrays/G1.npz"
+NAMES = {field: name for field, (name, *_) in traces.FIELDS.items()}
+
+
+def rewrite(**fields):
+    """Write one case's archive anew, some fields changed by their functions."""
+
+    def change(folder):
+        path = folder / G1
+        with np.load(path) as archive:
+            kept = {**archive}
+        kept |= {NAMES[field]: changed(kept[NAMES[field]]) for field, changed in fields.items()}
+        np.savez_compressed(path, **kept)
+
+    return change
+
+
+def described(folder):
+    """Describe the arrays of G1 as they are now."""
+    with np.load(folder / G1) as archive:
+        found = {name: (list(a.shape), str(a.dtype)) for name, a in archive.items()}
+
+    def change(arrays):
+        for name, variable in arrays["cases"]["G1"]["variables"].items():
+            variable["shape"], variable["dtype"] = found[name]
+
+    edit(folder, "arrays.json", change)
+
+
+def measured_again(folder):
+    """Make metrics.json what the arrays now give."""
+    arrays = bundle.read_arrays(folder)
+    found = {case: traces.read_trace(folder, arrays, case) for case in arrays.cases}
+    records = l04.metric_records(l04.measure(found, 3), l04.EXPECTED_MODEL)
+    (folder / "metrics.json").write_text(json.dumps(records), "utf8")
+
+
+def changed_at(index, value):
+    def change(array):
+        array = np.array(array)
+        array[index] = value
+        return array
+
+    return change
+
+
+def short(array):
+    return np.array(array[:61] if len(array) == 121 else array[:60] if len(array) == 120 else array)
+
+
+def member(name, data):
+    """Replace one member of the archive by other bytes."""
+
+    def change(folder):
+        path = folder / G1
+        with zipfile.ZipFile(path) as archive:
+            kept = {item: archive.read(item) for item in archive.namelist()}
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+            for item, content in (kept | {name: data}).items():
+                archive.writestr(item, content)
+
+    return change
+
+
+def pickled(folder):
+    stream = io.BytesIO()
+    np.save(stream, np.full((121, 9), None), allow_pickle=True)
+    member("q_rad_or_m.npy", stream.getvalue())(folder)
+
+
+def giant_header(folder):
+    """An array of four TiB by its header, in a few bytes."""
+    header = b"{'descr': '<f4', 'fortran_order': False, 'shape': (1099511627776,), }\n"
+    data = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header
+    member("q_rad_or_m.npy", data)(folder)
+
+
+def bomb(folder):
+    member("q_rad_or_m.npy", bytes(UNPACKED_LIMIT + 1))(folder)
+
+
+def member_twice(folder):
+    with zipfile.ZipFile(folder / G1, "a") as archive:
+        data = archive.read("t_s.npy")
+        with warnings.catch_warnings(action="ignore"):
+            archive.writestr("t_s.npy", data)
+
+
+def cut_archive(folder):
+    path = folder / G1
+    path.write_bytes(path.read_bytes()[:-500])
+
+
+def drop_case(folder):
+    (folder / "arrays" / "G3.npz").unlink()
+    edit(folder, "arrays.json", lambda a: a["cases"].pop("G3"))
+
+
+def variable(**values):
+    return lambda folder: edit(
+        folder,
+        "arrays.json",
+        lambda a: a["cases"]["G2"]["variables"]["q_rad_or_m"].update(values),
+    )
+
+
+# --- metrics, checks, frames ----------------------------------------------------------------
+
+
+def metrics(change):
+    return lambda folder: edit(folder, "metrics.json", change)
+
+
+def metric(**values):
+    return metrics(lambda m: m["G2"]["overshoot"].update(values))
+
+
+def check(index, **values):
+    return manifest(lambda m: m["predicate"]["checks"][index].update(values))
+
+
+def frame(name="initial", size=None, run_id=None, copy_of=None):
+    """Write a frame anew: of another size, stamp or content."""
+
+    def change(folder):
+        path = folder / "frames" / f"{name}.png"
+        with Image.open(folder / "frames" / f"{copy_of or name}.png") as picture:
+            copy, own = picture.copy(), picture.info.get("run_id")
+        stamp = PngInfo()
+        if run_id != "":
+            stamp.add_text("run_id", run_id or own)
+        (copy.resize(size) if size else copy).save(path, pnginfo=stamp)
+
+    return change
+
+
+def off_law(array):
+    return np.array(array * np.float32(0.9))
+
+
+SPOILED = {
+    # Form of the files, before anything is believed.
+    "no manifest": ("missing-file",) * 2 + (lambda f: (f / "manifest.json").unlink(),),
+    "a link instead of a file": ("path", "path", link_out),
+    "a link instead of the folder": ("path", "path", link_folder),
+    "a pipe among the files": ("path", "path", pipe),
+    "a manifest that is too long": ("too-big", None, pad("manifest.json")),
+    "a log that is too long": ("too-big", "too-big", pad("log.txt")),
+    "an archive that is too long": ("too-big", "too-big", pad(G1)),
+    "too many files": ("too-big", "too-big", crowd),
+    "a key twice": ("bad-json", None, text("manifest.json", '"seed"', '"seed": 0, "seed"')),
+    "a key twice in the metrics": (
+        "digest", "bad-json", text("metrics.json", '"model"', '"model": {}, "model"')),
+    "a byte order mark": ("bad-json", None, lambda f: (f / "manifest.json").write_bytes(
+        b"\xef\xbb\xbf" + (f / "manifest.json").read_bytes())),
+    "NaN in the manifest": ("bad-json", None, predicate(seed=float("nan"))),
+    "infinity in the parameters": ("bad-json", None, text(
+        "manifest.json", '"settling_band_rad": 0.01', '"settling_band_rad": 1e999')),
+    "half a character": ("bad-json", None, predicate(command="\ud800")),
+    "a number beyond JSON": ("bad-json", None, predicate(seed=2**60)),
+    "a manifest too deep": ("bad-json", None, lambda f: (f / "manifest.json").write_text(
+        "[" * 200_000)),
+    "NaN in the metrics": ("digest", "bad-json", metric(value=float("nan"))),
+    "an unknown field": ("bad-schema", "bad-schema", predicate(mood="good")),
+    "a missing field": ("bad-schema", "bad-schema", manifest(
+        lambda m: m["predicate"].pop("warnings"))),
+    "a number as text": ("bad-schema", "bad-schema", predicate(seed="0")),
+    "an unknown backend": ("bad-schema", "bad-schema", part("backend", actual="tpu")),
+    "metrics as a list": ("digest", "bad-schema", lambda f: (f / "metrics.json").write_text("[]")),
+    "a newer schema": ("schema", "schema", predicate(schema_version=2)),
+    "an older schema": ("schema", "schema", predicate(schema_version=0)),
+    "a newer schema of other fields": ("schema", None, manifest(
+        lambda m: m.update(predicateType="urn:robo-genesis:evidence:v2", more=1))),
+    # Identity.
+    "another lesson": ("lesson", "lesson", predicate(lesson="l05")),
+    "a page that the book lacks": ("key", "lesson", predicate(page="exam")),
+    "ended before it began": ("time", "time", predicate(ended="2020-01-01T00:00:00Z")),
+    "a day that no month has": ("time", "time", predicate(started="2026-13-45T00:00:00Z")),
+    "another key": ("key", None, predicate(evidence_key="0" * 64)),
+    # The list of files.
+    "a listed path above": ("path", None, add_subject("../cpu/log.txt")),
+    "a listed absolute path": ("path", None, add_subject("/etc/hostname")),
+    "a listed path with a backslash": ("path", None, add_subject("..\\log.txt")),
+    "a file listed twice": ("path", None, repeat_subject(str)),
+    "names that differ in case": ("path", None, repeat_subject(str.upper)),
+    "a missing file": ("files", "cases", lambda f: (f / G1).unlink()),
+    "no log": ("files", "files", lambda f: (f / "log.txt").unlink()),
+    "an extra file": ("files", "files", lambda f: (f / "extra.txt").write_text("x")),
+    "an extra picture": ("files", "frames", lambda f: (f / "frames" / "third.png").write_bytes(
+        (f / "frames" / "final.png").read_bytes())),
+    "a flipped byte": ("digest", "metrics", flip_byte),
+    # Backend, Torch, renderer, log.
+    "the CPU's run filed as amdgpu": ("backend", "backend", both(
+        part("backend", requested="auto"), lambda f: f.rename(f.with_name("amdgpu")))),
+    "a backend claimed in the folder alone": ("backend", "backend", lambda f: f.rename(
+        f.with_name("cuda"))),
+    "another backend at the end": ("backend", "backend", part("backend", actual_at_end="cuda")),
+    "cpu requested, amdgpu claimed": ("backend", "backend", both(
+        on("amdgpu"), part("backend", requested="cpu"))),
+    "cuda filed as amdgpu": ("backend", "backend", both(
+        on("cuda"), lambda f: f.rename(f.with_name("amdgpu")))),
+    "amdgpu without HIP": ("torch", "torch", both(on("amdgpu"), part(
+        "backend", hip_version=None))),
+    "amdgpu with an empty HIP": ("torch", "torch", both(on("amdgpu"), part(
+        "backend", hip_version=""))),
+    "cuda with HIP": ("torch", "torch", both(on("cuda"), part("backend", hip_version="7.1"))),
+    "cuda without CUDA": ("torch", "torch", both(on("cuda"), part("backend", cuda_version=None))),
+    "Torch forced to the CPU": ("torch", "torch", both(on("amdgpu"), part(
+        "backend", torch_device="cpu"))),
+    "another architecture": ("torch", "torch", both(on("amdgpu"), part("backend", arch="x64"))),
+    "software drawing claimed as a GPU's": ("render", "render", part("render", software=False)),
+    "software drawing on an accelerator, hidden": ("render", "render", both(on("amdgpu"), part(
+        "render", renderer="llvmpipe (LLVM 19)", software=False))),
+    "a camera without a renderer": ("render", "render", part("render", renderer=None)),
+    "a renderer without a camera": ("render", "render", part("render", mode="skip")),
+    "a log of another backend": ("digest", "log", log("gs.cpu", "gs.cuda")),
+    "a CPU's log under amdgpu": ("digest", "log", both(
+        on("amdgpu"), log("gs.amdgpu", "gs.cpu"))),
+    "a log of another device": ("digest", "log", log("[a CPU]", "[a GPU]")),
+    "a log of another engine": ("digest", "log", log("version: ", "version: 0.")),
+    "a log of another seed": ("digest", "log", log("seed: 0", "seed: 1")),
+    "a warning left out": ("log", "log", predicate(warnings=[])),
+    "a warning taken from the log": ("digest", "log", log("WARNING", "INFO")),
+    "a log of software drawing": ("digest", "log", both(on("cuda"), lambda f: (
+        f / "log.txt").write_text((f / "log.txt").read_text("utf8")
+                                  + "INFO Software rendering context detected.\n", "utf8"))),
+    "a log that is no text": ("digest", "log", lambda f: (f / "log.txt").write_bytes(b"\xff")),
+    "a patched engine": ("engine-files", "engine-files", part("engine", files_match_wheel=False)),
+    # The question.
+    "an older engine": ("key", "stale", both(part("engine", version="1.2.0"), log(
+        "version: ", "version: 1.2.0, was: "))),
+    "another Quadrants": ("key", "stale", part("engine", quadrants_version="1.2.9")),
+    "another precision": ("key", "stale", both(part("engine", precision="64"), log(
+        "precision: 32", "precision: 64"))),
+    "another seed": ("key", "stale", both(predicate(seed=1), log("seed: 0", "seed: 1"))),
+    "other parameters": ("key", "stale", manifest(
+        lambda m: m["predicate"]["parameters"]["cases"]["G1"]["kp"].reverse())),
+    "another module": ("key", "stale", manifest(
+        lambda m: m["predicate"]["source"]["modules"].update(metrics="0" * 64))),
+    "a module more": ("key", "stale", manifest(
+        lambda m: m["predicate"]["source"]["modules"].update(luck="0" * 64))),
+    "another lab page": ("key", "stale", part("source", page="0" * 64)),
+    "no page digest": ("key", "stale", part("source", page=None)),
+    "true for one": ("key", "stale", manifest(lambda m: m["predicate"]["parameters"].update(
+        rise_fraction=str(m["predicate"]["parameters"]["rise_fraction"])))),
+    # Arrays.
+    "a dropped case": ("files", "cases", drop_case),
+    "a case without its archive": ("digest", "cases", lambda f: edit(
+        f, "arrays.json", lambda a: a["cases"].pop("G3"))),
+    "arrays outside the bundle": ("digest", "path", lambda f: edit(
+        f, "arrays.json", lambda a: a["cases"]["G1"].update(file="../elsewhere/G1.npz"))),
+    "a wrong unit": ("digest", "labels", variable(unit=["deg"] * 9)),
+    "other dimensions": ("digest", "labels", variable(dims=["dof", "state"])),
+    "another long name": ("digest", "labels", variable(long_name="velocity")),
+    "another type described": ("digest", "labels", variable(dtype="float64")),
+    "one dimension too few": ("digest", "labels", variable(shape=[121])),
+    "another number of joints": ("digest", "labels", variable(shape=[121, 8])),
+    "DOF names left out": ("digest", "labels", lambda f: edit(
+        f, "arrays.json", lambda a: a["coords"].pop("dof"))),
+    "DOF names in another order": ("digest", "labels", lambda f: edit(
+        f, "arrays.json", lambda a: a["coords"]["dof"].reverse())),
+    "one link twice": ("digest", "labels", lambda f: edit(
+        f, "arrays.json", lambda a: a["coords"].update(link=["hand"] * 3))),
+    "an undescribed array": ("digest", "labels", lambda f: edit(
+        f, "arrays.json", lambda a: a["cases"]["G1"]["variables"].pop("t_s"))),
+    "another shape described": ("digest", "bad-array", variable(shape=[120, 9])),
+    "a cut archive": ("digest", "bad-array", cut_archive),
+    "pickled objects": ("digest", "bad-array", pickled),
+    "a header that promises too much": ("digest", "bad-array", giant_header),
+    "a member twice": ("digest", "bad-array", member_twice),
+    "a member more": ("digest", "bad-array", member("luck.npy", b"")),
+    "arrays of another type": ("digest", "bad-array", rewrite(q=np.float64)),
+    "arrays in Fortran's order": ("digest", "bad-array", rewrite(q=np.asfortranarray)),
+    "a zip bomb": ("digest", "too-big", bomb),
+    "arrays that are not finite": ("digest", "bad-trace", rewrite(
+        q=changed_at((-1, 0), np.nan))),
+    "a shifted time axis": ("digest", "bad-trace", rewrite(t=lambda t: t + 0.01)),
+    "a target that wanders": ("digest", "bad-trace", rewrite(target=changed_at((5, 3), 0.0))),
+    "stamps of another dt": ("digest", "stamps", rewrite(t=lambda t: t * 2)),
+    "a short run": ("digest", "stamps", both(
+        rewrite(**dict.fromkeys(NAMES, short)), described, measured_again)),
+    "a joint that stands still": ("digest", "constant", rewrite(
+        q=changed_at((slice(None), 3), -2.0))),
+    "a velocity that stands still": ("digest", "constant", rewrite(
+        qd=changed_at((slice(None), 3), 0.0))),
+    "no control force": ("digest", "constant", rewrite(control_force=np.zeros_like)),
+    "no internal force": ("digest", "constant", rewrite(internal_force=np.zeros_like)),
+    # Frames.
+    "a camera without frames": ("files", "frames", lambda f: shutil.rmtree(f / "frames")),
+    "a frame without a stamp": ("digest", "frames", frame(run_id="")),
+    "a frame of another run": ("digest", "frames", frame(run_id="f" * 32)),
+    "a frame of another size": ("digest", "frames", frame(size=(8, 8))),
+    "a frame that is no picture": ("digest", "frames", lambda f: (
+        f / "frames" / "final.png").write_text("x")),
+    "frames without a camera": ("frames", "frames", part(
+        "render", mode="skip", vendor=None, renderer=None, software=None)),
+    # Metrics and checks.
+    "an edited metric": ("digest", "metrics", metric(value=0.0)),
+    "a metric of another unit": ("digest", "metrics", metric(unit="degree")),
+    "a metric of another class": ("digest", "metrics", metric(**{"class": "performance"})),
+    "a metric of another source": ("digest", "metrics", metric(**{"from": ["luck"]})),
+    "a metric that is missing": ("digest", "metrics", metrics(lambda m: m["G1"].pop("rise_time"))),
+    "a metric too many": ("digest", "metrics", metrics(
+        lambda m: m["G1"].update(grace=m["G1"]["overshoot"]))),
+    "a group that is missing": ("digest", "metrics", metrics(lambda m: m.pop("G1"))),
+    "a group too many": ("digest", "metrics", metrics(lambda m: m.update(G4={}))),
+    "an edited count": ("digest", "metrics", metrics(
+        lambda m: m["model"]["links"].update(value=12))),
+    "edited arrays": ("digest", "metrics", rewrite(qd=off_law)),
+    "edited arrays, metrics made right": ("digest", "checks", both(
+        rewrite(control_force=off_law), measured_again)),
+    "one and the same picture twice": ("digest", "checks", frame("final", copy_of="initial")),
+    "a failure claimed where none is": ("checks", "checks", check(3, passed=False)),
+    "another explanation of a check": ("checks", "checks", check(3, detail="luck")),
+    "a check left out": ("checks", "checks", manifest(lambda m: m["predicate"]["checks"].pop())),
+    "no check": ("checks", "checks", predicate(checks=[])),
+    "a check that failed, and says so": ("failed", "failed", check(
+        0, passed=False, detail="local DOFs are not nine distinct ones")),
+    "arrays that fail a check, and say so": ("digest", "failed", both(
+        rewrite(control_force=off_law), measured_again, check(
+            7, passed=False, detail="G1: control force is off its case's control law"))),
+}  # fmt: skip
