@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 AGAIN = "Record the bundle again."
-LONGEST_SHOWN, LONGEST_DIGEST = 160, 13
+LONGEST_SHOWN = 160
 
 
 class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepted or refused
@@ -20,8 +20,9 @@ class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepte
 def shown(value: object) -> str:
     """Return a value as Python writes it, cut where it is long: a message is read by people."""
     text = repr(value)
-    longest = LONGEST_DIGEST if re.fullmatch("'[0-9a-f]{64}'", text) else LONGEST_SHOWN
-    return text if len(text) <= longest else f"{text[:longest]}…"
+    if re.fullmatch("'[0-9a-f]{64}'", text):
+        return f"{text[:13]}…'"
+    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
 
 
 def expect(

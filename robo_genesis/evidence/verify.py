@@ -13,6 +13,7 @@ def verify_bundle(
     folder: Path,
     run_id: str | None = None,
     *,
+    lesson: str | None = None,
     page: str | None = None,
     root: Path = project.ROOT,
     book: Path = project.BOOK,
@@ -24,6 +25,7 @@ def verify_bundle(
     Args:
         folder: the bundle, named by its actual backend.
         run_id: the run that it must belong to, where that is known.
+        lesson: whose it must be, where that is known.
         page: the page that it must come from, where that is known.
         root: the checkout, for pin, lock and modules.
         book: the folder of the pages.
@@ -37,7 +39,7 @@ def verify_bundle(
     """
     present = files.scan(folder)
     manifest = bundle.read_manifest(folder)
-    rules.check_identity(manifest, run_id, l04.LESSON, page)
+    rules.check_identity(manifest, run_id, lesson or l04.LESSON, page)
     files.check_files(folder, present, manifest)
     rules.check_backend(folder, manifest)
     rules.check_render(manifest)
