@@ -1,4 +1,5 @@
 # `make` lists the targets. Overrides: RENDER=0|1 (default 1), JOBS=n, PORT=8000,
+# BUNDLE=path (for verify),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
 
 SHELL := /bin/bash
@@ -21,6 +22,7 @@ BASE_PYTHON ?= python3
 export PYTHONPATH := $(CURDIR)
 export RENDER ?= 1
 export JOBS
+export BUNDLE
 
 .PHONY: help
 help: ## list the targets
@@ -35,6 +37,10 @@ book: $(ENVIRONMENT) ## measure every lesson on CPU, verify, render and check th
 .PHONY: evidence
 evidence: $(ENVIRONMENT) ## record a lab here (LESSON=l04 BACKEND=amdgpu|cuda|cpu TO=folder)
 	@"$(PY)" build_scripts/evidence.py
+
+.PHONY: verify
+verify: $(ENVIRONMENT) ## verify recorded and built evidence (BUNDLE=path: one folder)
+	@"$(PY)" build_scripts/verify.py
 
 .PHONY: test
 test: $(ENVIRONMENT) ## run all tests (needs Debian's chromium)

@@ -1,0 +1,87 @@
+"""`make verify`: a line for each bundle, and the exit status of the worst."""
+
+import importlib.util
+import shutil
+
+import pytest
+from spoilers import on, part, seal
+
+from robo_genesis.project import ROOT, engine_pin
+
+
+@pytest.fixture
+def command(tmp_path, monkeypatch, courses_pages):
+    """The script, on a book without bundles."""
+    spec = importlib.util.spec_from_file_location("verify", ROOT / "build_scripts" / "verify.py")
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    monkeypatch.setattr(script, "BOOK", tmp_path / "book")
+    monkeypatch.delenv("BUNDLE", raising=False)
+    return script
+
+
+@pytest.fixture
+def recorded(folder, tmp_path):
+    place = tmp_path / "book" / "evidence" / "l04"
+    return on("amdgpu")(shutil.copytree(folder, place / "cpu"))
+
+
+@pytest.fixture
+def built(folder, tmp_path):
+    return shutil.copytree(folder, tmp_path / "book" / "_build" / "evidence" / "l04" / "cpu")
+
+
+def test_no_bundle_is_said_and_no_error(command, capsys):
+    assert command.main() == 0
+    assert capsys.readouterr().out.startswith("No bundle is recorded in book/evidence")
+
+
+def test_each_bundle_has_a_line(command, recorded, built, capsys):
+    assert command.main() == 0
+    lines = [line.split(maxsplit=4) for line in capsys.readouterr().out.splitlines()]
+    assert [line[:4] for line in lines] == [
+        ["l04", "recorded", "amdgpu", "verified"],
+        ["l04", "built", "cpu", "verified"],
+    ]
+    assert all(line[4].endswith(f"Genesis {engine_pin()}") for line in lines)
+
+
+def stale(folder):
+    part("engine", quadrants_version="1.2.9")(folder)
+    seal(folder)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (stale, "stale     stale: manifest.json: engine.quadrants_version is '1.2.9', expected"),
+        (lambda folder: (folder / "log.txt").unlink(), "refused   files: listed but absent"),
+        (lambda folder: folder.rename(folder.with_name("rocm")), "rocm     refused   backend: "),
+    ],
+)
+def test_what_is_not_current_is_status_1(command, recorded, built, capsys, spoil, said):
+    spoil(recorded)
+    assert command.main() == 1
+    out = capsys.readouterr().out
+    assert said in out
+    assert "l04 built      cpu      verified" in out
+
+
+def test_one_folder_is_checked_alone(command, recorded, folder, monkeypatch, capsys):
+    stale(recorded)
+    monkeypatch.setenv("BUNDLE", str(folder))
+    assert command.main() == 0
+    assert len(capsys.readouterr().out.splitlines()) == 1
+
+
+def test_a_folder_that_is_not_there_is_status_1(command, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("BUNDLE", str(tmp_path / "cpu"))
+    assert command.main() == 1
+    assert "missing   There is no such folder." in capsys.readouterr().out
+
+
+def test_a_broken_book_is_named(command, recorded, monkeypatch, capsys):
+    monkeypatch.undo()
+    monkeypatch.setattr(command, "BOOK", recorded.parents[2])
+    assert command.main() == 1
+    assert "Nothing can be verified: The table of contents" in capsys.readouterr().err
