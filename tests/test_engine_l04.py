@@ -236,7 +236,7 @@ def test_the_renderer_names_itself(lab):
 
 def test_a_recorded_run_is_accepted(bundle_folder, lab):
     predicate = verify_bundle(bundle_folder).predicate
-    assert predicate.source.page is None
+    assert predicate.source.page == page_digest("l04", "lab", project.BOOK)
     assert predicate.engine.files_match_wheel
     assert predicate.render.mode == "camera"
     assert predicate.warnings == lab.engine.log.warnings
