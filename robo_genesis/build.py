@@ -7,12 +7,14 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from sqlalchemy.exc import OperationalError
 
 from robo_genesis import project
+from robo_genesis.evidence import place
 from robo_genesis.execute import TIMEOUT, execute_pages
 from robo_genesis.page_results import PageResult, failure_report
 from robo_genesis.pages import Page, find_pages, fingerprint
@@ -71,6 +73,7 @@ def run_build(build: Build) -> list[str]:
     """
     with only_build(build.cache):
         recover(build.book)
+        place.recover(build.book / "evidence")
         progress = Progress(build.say)
         engine = project.require_pinned_engine(build.root)
         project.remove_stale_kernel_lock(build.cache)
@@ -123,11 +126,15 @@ def _kernel_environment(build: Build) -> dict[str, str]:
 
 
 def _verify(build: Build, results: Sequence[PageResult], progress: Progress) -> Mapping[str, Any]:
-    """Return the accepted manifests of all bundles, by page name."""
+    """Return the accepted manifests of this build's bundles, by page name.
+
+    A recorded bundle that is neither current nor stale stops the build as well.
+    """
     from robo_genesis.evidence.bundle import BundleRefused
+    from robo_genesis.evidence.status import refused_records
     from robo_genesis.evidence.verify import verify_bundle
 
-    verify = build.verify or verify_bundle
+    verify = build.verify or partial(verify_bundle, book=build.book)
     manifests, refused = {}, []
     for result in results:
         if result.bundle is None:
@@ -139,6 +146,7 @@ def _verify(build: Build, results: Sequence[PageResult], progress: Progress) -> 
             progress("verify", result.page.docname, "accepted")
         except BundleRefused as error:
             refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
+    refused += refused_records(build.book)
     if refused:
         raise BuildError("\n".join(refused))
     return manifests

@@ -91,8 +91,9 @@ class LessonStatus(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Return one line a backend."""
         lesson = self.arguments[0]
-        cpu = page_status(outputs_folder(), lesson, "lab", BACKEND)
-        reference = recorded_status(Path(self.env.srcdir), lesson, REFERENCE)
+        book = Path(self.env.srcdir)
+        cpu = page_status(outputs_folder(), lesson, "lab", BACKEND, book)
+        reference = recorded_status(book, lesson, REFERENCE)
         lines = nodes.bullet_list(classes=["lesson-status", f"status-{cpu.state}"])
         for status in (cpu, reference):
             lines += nodes.list_item("", nodes.paragraph("", status.sentence))
@@ -104,7 +105,8 @@ class LessonState(SphinxRole):
 
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
         """Return state and backend."""
-        status = page_status(outputs_folder(), self.text, "lab", BACKEND)
+        book = Path(self.env.srcdir)
+        status = page_status(outputs_folder(), self.text, "lab", BACKEND, book)
         return [nodes.inline(self.rawtext, f"{status.state} ({status.backend})")], []
 
 

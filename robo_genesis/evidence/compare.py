@@ -152,7 +152,6 @@ def _obstacles(old: Predicate, new: Predicate, spec: Specification) -> Iterator[
     required = (
         ("lesson", old.lesson, new.lesson),
         ("page", old.page, new.page),
-        ("schema version", old.schema_version, new.schema_version),
         ("seed", old.seed, new.seed),
         ("precision", old.engine.precision, new.engine.precision),
     )
@@ -164,9 +163,6 @@ def _obstacles(old: Predicate, new: Predicate, spec: Specification) -> Iterator[
     for word, side in (("old", old), ("new", new)):
         if side.lesson != spec.lesson:
             yield f"The {word} bundle is of {side.lesson!r}, not of {spec.lesson!r}."
-        if side.schema_version != bundle.SCHEMA_VERSION:
-            schema = side.schema_version
-            yield f"The {word} bundle's schema is {schema}, not {bundle.SCHEMA_VERSION}."
         if side.backend.actual != side.backend.actual_at_end:
             actual, end = side.backend.actual, side.backend.actual_at_end
             yield f"The {word} bundle's backend was {actual} at first and {end} at the end."

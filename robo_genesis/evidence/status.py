@@ -56,10 +56,12 @@ class Status:
         )
 
 
-def page_status(outputs: Path, lesson: str, page: str, backend: str) -> Status:
-    """Return the state of one bundle below the outputs folder of a build."""
+def page_status(
+    outputs: Path, lesson: str, page: str, backend: str, book: Path = project.BOOK
+) -> Status:
+    """Return the state of one bundle below the outputs folder of a build of a book."""
     absent = f"No bundle was recorded for {lesson}/{page}."
-    return bundle_status(outputs / lesson / page / backend, lesson, page, absent)
+    return bundle_status(outputs / lesson / page / backend, lesson, page, absent, book)
 
 
 def recorded_status(book: Path, lesson: str, backend: str) -> Status:

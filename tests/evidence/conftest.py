@@ -1,6 +1,7 @@
 """A bundle of the synthetic run, written by a recorder whose engine is not real."""
 
 import shutil
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -47,15 +48,21 @@ def measured(experiment):
     )
 
 
-@pytest.fixture(scope="session")
-def quiet(backend):
+@contextmanager
+def without_engine(backend):
     """Keep the recorder from asking an engine that is not there, and from hashing its wheel."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(runtime, "probe", lambda requested: backend)
         patch.setattr(record, "files_match_wheel", lambda *names: True)
         for name in ("RUN_ID", "COMMAND", "PAGE_SHA256"):
             patch.delenv(f"ROBO_GENESIS_{name}", raising=False)
-        yield
+        yield patch
+
+
+@pytest.fixture
+def quiet(backend):
+    with without_engine(backend) as patch:
+        yield patch
 
 
 @pytest.fixture
@@ -67,8 +74,8 @@ def recorder(quiet, tmp_path, engine, monkeypatch):
 
 
 @pytest.fixture(scope="session")
-def pristine(quiet, tmp_path_factory, engine, measured) -> Path:
-    with pytest.MonkeyPatch.context() as patch:
+def pristine(backend, tmp_path_factory, engine, measured) -> Path:
+    with without_engine(backend) as patch:
         patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
         patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lab", project.BOOK))
         contract = runtime.Contract("cpu", True, tmp_path_factory.mktemp("pristine"))
