@@ -7,11 +7,11 @@ Exit status: 0 published, 1 failed, 130 interrupted; unless it is 0, the old sit
 
 import argparse
 import os
-import signal
 import sys
 from pathlib import Path
 
 from robo_genesis.build import Build, BuildError, run_build
+from robo_genesis.command import run
 from robo_genesis.execute import TIMEOUT
 from robo_genesis.pages import PageError
 from robo_genesis.project import BOOK, CACHE, ProjectError
@@ -46,12 +46,6 @@ def require_cpu() -> None:
     os.environ["ROBO_GENESIS_BACKEND"] = "cpu"
 
 
-def failed(report: str) -> int:
-    """Print why nothing was published; return the exit status."""
-    print(f"\n{report}\n\nFAILED: nothing was published.", file=sys.stderr)
-    return 1
-
-
 def main() -> int:
     """Run the build and return its exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -61,8 +55,6 @@ def main() -> int:
     args = parser.parse_args()
     os.environ["ROBO_GENESIS_RENDER"] = choice("RENDER", "1", ("0", "1"))
     require_cpu()
-    # A cancelled CI job sends SIGTERM: the same way out as Ctrl-C, so that no kernel stays behind.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     build = Build(
         book=args.book.absolute(),
         cache=args.cache.absolute(),
@@ -70,16 +62,9 @@ def main() -> int:
         timeout=args.timeout,
         say=lambda line: print(line, flush=True),
     )
-    try:
-        print("\n".join(run_build(build)))
-    except (BuildError, PageError, ProjectError, RenderError) as error:
-        return failed(str(error))
-    except OSError as error:
-        return failed(f"A file cannot be used: {error}. Give it free space or write access.")
-    except KeyboardInterrupt:
-        print("\nInterrupted: nothing was published.", file=sys.stderr)
-        return 130
-    return 0
+    return run(
+        lambda: run_build(build), "published", (BuildError, PageError, ProjectError, RenderError)
+    )
 
 
 if __name__ == "__main__":

@@ -7,11 +7,11 @@ Exit status: 0 recorded, 1 failed, 130 interrupted; unless it is 0, the old bund
 
 import argparse
 import os
-import signal
 import sys
 from pathlib import Path
 
 from robo_genesis.build import BuildError
+from robo_genesis.command import run
 from robo_genesis.execute import TIMEOUT
 from robo_genesis.pages import PageError
 from robo_genesis.project import BOOK, CACHE, ProjectError
@@ -29,12 +29,6 @@ def require_camera() -> None:
             )
 
 
-def failed(report: str) -> int:
-    """Print why nothing was recorded; return the exit status."""
-    print(f"\n{report}\n\nFAILED: nothing was recorded.", file=sys.stderr)
-    return 1
-
-
 def main() -> int:
     """Record and return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -43,8 +37,6 @@ def main() -> int:
     parser.add_argument("--timeout", type=int, default=TIMEOUT, help="seconds for one cell")
     args = parser.parse_args()
     require_camera()
-    # SIGTERM takes the same way out as Ctrl-C, so that no kernel stays behind.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     to = os.environ.get("TO")
     recording = Recording(
         lesson=os.environ.get("LESSON") or "",
@@ -55,16 +47,9 @@ def main() -> int:
         timeout=args.timeout,
         say=lambda line: print(line, flush=True),
     )
-    try:
-        print("\n".join(record(recording)))
-    except (RecordingError, BuildError, PageError, ProjectError) as error:
-        return failed(str(error))
-    except OSError as error:
-        return failed(f"A file cannot be used: {error}. Give it free space or write access.")
-    except KeyboardInterrupt:
-        print("\nInterrupted: nothing was recorded.", file=sys.stderr)
-        return 130
-    return 0
+    return run(
+        lambda: record(recording), "recorded", (RecordingError, BuildError, PageError, ProjectError)
+    )
 
 
 if __name__ == "__main__":

@@ -4,12 +4,12 @@ Nothing here is copied from an earlier run: each sentence is chosen and filled b
 it is given.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.comparison import compare, comparison_sentence, prediction_sentence
+from robo_genesis.comparison import INSPECT, compare, comparison_sentence, prediction_sentence
 from robo_genesis.metrics import (
     SATURATION_THRESHOLD,
     SETTLING_BAND,
@@ -86,12 +86,17 @@ def factor_sentence(names: tuple[str, str], changed: list[str]) -> str:
 
 
 def start_sentence(
-    names: tuple[str, str], traces: Mapping[str, Trace], entry: int, resolution: Mapping
+    names: tuple[str, str],
+    traces: Mapping[str, Trace],
+    changed: Sequence[str],
+    entry: int,
+    resolution: Mapping,
 ) -> str:
     """Say what two cases did while both were clipped to the same effort, if they were.
 
     Under one and the same effort a difference in motion is no work of the controller. The engine's
-    implicit integrator adds substep length · KV to the inertia of a position-controlled DOF.
+    implicit integrator adds substep length · KV to the inertia of a position-controlled DOF: that
+    explains it where KV alone was `changed`, and nowhere else.
     """
     one, other = (traces[name] for name in names)
     alike = _clipped_alike(one, other, entry)
@@ -105,6 +110,11 @@ def start_sentence(
     lead = f"Up to {time} both were clipped to the same effort at each sample"
     if abs(speeds[0] - speeds[1]) <= resolution["rad/s"]:
         return f"{lead}, and they moved alike ({told}): a gain cannot act while it is clipped."
+    if not (len(changed) == 1 and changed[0].startswith("kv[")):
+        return (
+            f"{lead}, and yet they differ in speed there ({told}). The effort cannot be the "
+            f"reason, and KV is not the one factor that changed. {INSPECT}"
+        )
     return (
         f"{lead}, and yet they differ in speed there ({told}). The effort cannot be the reason: "
         "the engine's implicit integrator adds substep length × KV to the inertia of a position-"
@@ -252,12 +262,12 @@ def interpret(
         f"1. {kp_pair[0]} → {kp_pair[1]}: what KP did",
         kp_pair, metrics, kp_changed, predictions[kp_pair], resolution,
     )  # fmt: skip
-    kp_start = start_sentence(kp_pair, traces, entry, resolution)
+    kp_start = start_sentence(kp_pair, traces, kp_changed, entry, resolution)
     kv = pair_block(
         f"2. {kv_pair[0]} → {kv_pair[1]}: what KV did, and its cost",
         kv_pair, metrics, kv_changed, predictions[kv_pair], resolution,
     )  # fmt: skip
-    kv_start = start_sentence(kv_pair, traces, entry, resolution)
+    kv_start = start_sentence(kv_pair, traces, kv_changed, entry, resolution)
     cost = cost_sentence(kv_pair, metrics, resolution)
     limit = float(traces[kp_pair[0]].effort_limit[entry])
     return (

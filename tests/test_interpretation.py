@@ -284,8 +284,8 @@ def interpreted(metrics, limit=87.0):
     return interpret(metrics, ONE_FACTOR, PREDICTIONS, RESOLUTION, traces, 0)
 
 
-def started(one, other):
-    return start_sentence(("G1", "G2"), {"G1": one, "G2": other}, 0, RESOLUTION)
+def started(one, other, changed="kv[joint4]"):
+    return start_sentence(("G1", "G2"), {"G1": one, "G2": other}, [changed], 0, RESOLUTION)
 
 
 def test_clipped_alike_and_moving_alike_says_that_a_gain_cannot_act():
@@ -301,6 +301,10 @@ def test_clipped_alike_and_moving_apart_is_called_numerical():
     says = started(one, other)
     assert "differ in speed there (G1 1.000 rad/s and G2 0.600 rad/s)" in says
     assert "numerical" in says
+    without_kv = started(one, other, changed="kp[joint4]")
+    assert "numerical" not in without_kv
+    assert "KV is not the one factor that changed" in without_kv
+    assert INSPECT in without_kv
 
 
 @pytest.mark.parametrize("efforts", [(0.0, 0.0), (87.0, -87.0), (87.0, 20.0)])
