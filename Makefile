@@ -1,5 +1,5 @@
-# `make` lists the targets. Overrides: RENDER=0|1 (default 1), JOBS=n, PORT=8000,
-# BUNDLE=path (for verify),
+# `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
+# PORT=8000, BUNDLE=path (for verify),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
 
 SHELL := /bin/bash
@@ -22,6 +22,7 @@ BASE_PYTHON ?= python3
 export PYTHONPATH := $(CURDIR)
 export RENDER ?= 1
 export JOBS
+export RELEASE
 export BUNDLE
 
 .PHONY: help

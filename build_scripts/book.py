@@ -1,7 +1,8 @@
 """Build the course site: `make book`.
 
-Environment: RENDER=0|1 (default 1: the labs' camera is used) and JOBS (pages at once; default one
-for each core). Backend is always the CPU; results of accelerators are recorded apart.
+Environment: RENDER=0|1 (default 1: the labs' camera is used), JOBS (pages at once; default one
+for each core) and RELEASE=0|1 (1: from a clean tree alone, with all required evidence current).
+Backend is always the CPU; results of accelerators are recorded apart.
 Exit status: 0 published, 1 failed, 130 interrupted; unless it is 0, the old site still stands.
 """
 
@@ -55,11 +56,15 @@ def main() -> int:
     args = parser.parse_args()
     os.environ["ROBO_GENESIS_RENDER"] = choice("RENDER", "1", ("0", "1"))
     require_cpu()
+    release = choice("RELEASE", "0", ("0", "1")) == "1"
+    if release and os.environ["ROBO_GENESIS_RENDER"] == "0":
+        sys.exit("RENDER='0' is not valid with RELEASE=1, which needs camera frames. Unset one.")
     build = Build(
         book=args.book.absolute(),
         cache=args.cache.absolute(),
         jobs=jobs(),
         timeout=args.timeout,
+        release=release,
         say=lambda line: print(line, flush=True),
     )
     return run(

@@ -2,6 +2,7 @@
 
 import fcntl
 import os
+import shutil
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -19,6 +20,7 @@ from robo_genesis.execute import TIMEOUT, execute_pages
 from robo_genesis.page_results import PageResult, failure_report
 from robo_genesis.pages import Page, find_pages, fingerprint
 from robo_genesis.publish import publish, recover
+from robo_genesis.release import lacking, unclean
 from robo_genesis.render import render
 from robo_genesis.site_checks import check_site
 
@@ -34,7 +36,8 @@ class Build:
     """What to build, with which resources, and where progress is printed.
 
     `jobs` None means one for each core; `verify` takes a bundle folder and its run id, returns the
-    manifest or raises; None is the course's own verification.
+    manifest or raises; None is the course's own verification. `release` demands a clean tree and
+    every lesson's required evidence, and executes all pages anew.
     """
 
     root: Path = project.ROOT
@@ -43,6 +46,7 @@ class Build:
     jobs: int | None = None
     timeout: int = TIMEOUT
     verify: Verify | None = None
+    release: bool = False
     say: Callable[[str], None] = print
 
 
@@ -79,8 +83,15 @@ def run_build(build: Build) -> list[str]:
         project.remove_stale_kernel_lock(build.cache)
         pages = find_pages(build.book)
         folder = project.page_cache_folder(fingerprint(pages, build.root), build.cache)
+        if build.release:
+            _require_for_release(unclean(build.root))
+            shutil.rmtree(folder, ignore_errors=True)  # what is released was run at this commit
         results = _execute(build, pages, folder, progress)
         manifests = _verify(build, results, progress)
+        if build.release:
+            problems = lacking(build.book, _labs(results), build.root)
+            _require_for_release([*unclean(build.root), *problems])
+            progress("release", "clean tree, current evidence")
         progress("render", "all pages")
         staging, log = build.cache / "staging", build.cache / "render.log"
         html = render(build.book, staging, folder, log)
@@ -89,6 +100,18 @@ def run_build(build: Build) -> list[str]:
         html = publish(build.book, html, results)  # last: after it, nothing may fail
         progress("publish", str(html))
         return [f"Site: {html / 'index.html'}", *_summary(engine, results, manifests, checked)]
+
+
+def _require_for_release(problems: Sequence[str]) -> None:
+    """Raise BuildError where anything stands against a release."""
+    if problems:
+        raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
+
+
+def _labs(results: Sequence[PageResult]) -> dict[str, Path]:
+    """Return lesson to the folder of its lab's bundle of this build."""
+    found = [result for result in results if result.bundle and result.page.page == "lab"]
+    return {str(result.page.lesson): Path(str(result.bundle)) for result in found}
 
 
 def _execute(

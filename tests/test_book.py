@@ -232,6 +232,7 @@ def test_ctrl_c_and_cancelling_end_with_130_no_kernel_and_the_old_site(tmp_path,
         ("RENDER", "yes", "0, 1"),
         ("ROBO_GENESIS_BACKEND", "auto", "accelerators are recorded apart. Unset it. Choices: cpu"),
         ("JOBS", "0", "1"),
+        ("RELEASE", "yes", "0, 1"),
     ],
 )
 def test_invalid_settings_are_refused_with_name_value_and_choices(tmp_path, name, value, choices):
@@ -240,6 +241,40 @@ def test_invalid_settings_are_refused_with_name_value_and_choices(tmp_path, name
     assert process.returncode == 1
     assert f"{name}={value!r}" in err
     assert choices in err
+
+
+def test_a_release_without_camera_frames_is_refused(tmp_path):
+    process = command(tmp_path, RELEASE="1", RENDER="0")
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert "RENDER='0' is not valid with RELEASE=1" in err
+
+
+def test_a_release_from_a_changed_tree_stops_before_any_page(tmp_path, monkeypatch):
+    marker = published_marker(make_book(tmp_path, page=notebook(cell("1"))))
+    monkeypatch.setattr("robo_genesis.build.unclean", lambda root: ["The tree has 1 changed file"])
+    said: list[str] = []
+    with pytest.raises(BuildError, match=r"RELEASE=1 cannot be met\.\nThe tree has 1 changed file"):
+        build(tmp_path, said, release=True)
+    assert said == []
+    assert marker.read_text() == "the old site"
+
+
+def test_a_release_that_lacks_evidence_leaves_the_old_site(tmp_path, monkeypatch):
+    marker = published_marker(make_book(tmp_path, page=notebook(cell("1"))))
+    monkeypatch.setattr("robo_genesis.build.unclean", lambda root: [])
+    monkeypatch.setattr("robo_genesis.build.lacking", lambda *given: ["l04 requires evidence"])
+    with pytest.raises(BuildError, match="l04 requires evidence"):
+        build(tmp_path, release=True)
+    assert marker.read_text() == "the old site"
+
+
+def test_a_release_executes_what_an_ordinary_build_would_reuse(tmp_path, monkeypatch):
+    make_book(tmp_path, page=notebook(cell("1")))
+    monkeypatch.setattr("robo_genesis.build.unclean", lambda root: [])
+    build(tmp_path)
+    assert "Pages: 0 executed, 1 reused." in build(tmp_path)
+    assert "Pages: 1 executed, 0 reused." in build(tmp_path, release=True)
 
 
 def test_another_installed_engine_stops_the_build_before_any_page(tmp_path, monkeypatch):
