@@ -12,8 +12,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy.exc import OperationalError
-
 from robo_genesis import project
 from robo_genesis.evidence import place
 from robo_genesis.execute import TIMEOUT, execute_pages
@@ -120,20 +118,14 @@ def _execute(
     """Run the execution stage; every page is tried before the report."""
     cores = os.cpu_count() or 1
     progress("execute", f"{len(pages)} pages", f"fingerprint {folder.name}")
-    try:
-        results = execute_pages(
-            pages,
-            folder,
-            jobs=build.jobs or max(1, min(cores, len(pages))),
-            timeout=build.timeout,
-            environment=_kernel_environment(build),
-            on_progress=lambda what, event: progress("execute", what, event),
-        )
-    except (OperationalError, RuntimeError) as error:  # jupyter-cache's database, bare or wrapped
-        raise BuildError(
-            f"The executed pages in {folder} cannot be kept: {error.__cause__ or error}\n"
-            "Give them free space or write access, or remove that folder."
-        ) from error
+    results = execute_pages(
+        pages,
+        folder,
+        jobs=build.jobs or max(1, min(cores, len(pages))),
+        timeout=build.timeout,
+        environment=_kernel_environment(build),
+        on_progress=lambda what, event: progress("execute", what, event),
+    )
     if any(result.failure for result in results):
         raise BuildError(failure_report(results))
     return results

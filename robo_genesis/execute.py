@@ -14,12 +14,14 @@ from typing import Any
 from jupyter_cache.base import JupyterCacheAbstract
 from jupyter_cache.executors.base import ExecutorRunResult
 from jupyter_cache.executors.basic import JupyterExecutorTempMproc, ProcessData
+from sqlalchemy.exc import OperationalError
 
 from robo_genesis.kernels import interrupts_blocked, kill_with_descendants
 from robo_genesis.page_cache import PageCache, cached_results, notebooks_folder, outputs_folder
 from robo_genesis.page_results import Failure, PageResult, find_bundle
 from robo_genesis.page_worker import PageRun, work
 from robo_genesis.pages import Page, code_digest
+from robo_genesis.project import ProjectError
 
 TIMEOUT = 1500
 HEARTBEAT = 30.0
@@ -181,8 +183,24 @@ def execute_pages(
 
     Returns:
         One result for each page, in the order of `pages`.
+
+    Raises:
+        ProjectError: the cache folder cannot be used.
     """
     execution = Execution(folder.absolute(), jobs, environment or {}, on_progress, heartbeat)
+    try:
+        results = _execute(pages, execution, timeout)
+    except (OperationalError, RuntimeError) as error:  # jupyter-cache's database, bare or wrapped
+        raise ProjectError(
+            f"The executed pages in {folder} cannot be kept: {error.__cause__ or error}\n"
+            "Give them free space or write access, or remove that folder."
+        ) from error
+    return [results[page.docname] for page in pages]
+
+
+def _execute(pages: Sequence[Page], execution: Execution, timeout: int) -> dict[str, PageResult]:
+    """Return the results by page name: those that the cache holds, and those of a run now."""
+    on_progress = execution.on_progress
     cache = PageCache(notebooks_folder(execution.folder))
     cached = cached_results(pages, cache, outputs_folder(execution.folder))
     for result in cached.values():
@@ -192,5 +210,4 @@ def execute_pages(
         cache.add_nb_to_project(uri, read_data=READER)
     executor = PageExecutor(cache, pages=waiting, execution=execution)
     executor.run_and_cache(filter_uris=list(waiting), timeout=timeout)
-    results = cached | executor.results
-    return [results[page.docname] for page in pages]
+    return cached | executor.results

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy.exc import OperationalError
-
 from robo_genesis import project
 from robo_genesis.build import Progress, Verify, only_build
 from robo_genesis.evidence.bundle import BundleRefused
@@ -137,19 +135,13 @@ def require_expected(recording: Recording, actual: str) -> None:
 def _execute(recording: Recording, page: Page, folder: Path, progress: Progress) -> PageResult:
     """Run the lab in a clean kernel and return what came of it."""
     progress("execute", page.docname, f"ROBO_GENESIS_BACKEND={recording.requested}")
-    try:
-        [result] = execute_pages(
-            [page],
-            folder,
-            timeout=recording.timeout,
-            environment=kernel_environment(recording),
-            on_progress=lambda what, event: progress("execute", what, event),
-        )
-    except (OperationalError, RuntimeError) as error:  # jupyter-cache's database, bare or wrapped
-        raise RecordingError(
-            f"The run in {folder} cannot be kept: {error.__cause__ or error}\n"
-            "Give it free space or write access."
-        ) from error
+    [result] = execute_pages(
+        [page],
+        folder,
+        timeout=recording.timeout,
+        environment=kernel_environment(recording),
+        on_progress=lambda what, event: progress("execute", what, event),
+    )
     if result.failure:
         raise RecordingError(failure_report([result]))
     return result
