@@ -63,10 +63,12 @@ def mapping(run: StepExperiment) -> list[str]:
         problems.append(f"names are {run.joints.names}, expected {JOINT_NAMES}")
     if run.joints.types != l04.EXPECTED_TYPES:
         problems.append(f"types are {run.joints.types}, expected {l04.EXPECTED_TYPES}")
-    if len(set(run.joints.dofs_idx_local.tolist())) != len(JOINT_NAMES):
-        problems.append(
-            f"local DOFs {run.joints.dofs_idx_local.tolist()} are not nine distinct ones"
-        )
+    for what, indices, count in (
+        ("DOFs", run.joints.dofs_idx_local.tolist(), run.model["dofs"]),
+        ("qpos", run.joints.qs_idx_local.tolist(), run.model["qpos"]),
+    ):
+        if len(set(indices)) != len(JOINT_NAMES) or not all(0 <= k < count for k in indices):
+            problems.append(f"local {what} {indices} are not nine distinct ones of {count}")
     return problems
 
 

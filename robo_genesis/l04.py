@@ -1,22 +1,17 @@
 """Specification of lesson L04: cases, predictions and what they are compared by.
 
-Pages, checks, verification and tests read the experiment here; none of them repeats it.
+Pages, checks, verification and tests read the experiment here; none of them repeats it. It is data
+and computes nothing: what of it decides a measured value or a check is in `parameters()`, and only
+a change there makes evidence stale.
 """
 
-from collections.abc import Mapping
 from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.joint_control import ControlCase
-from robo_genesis.metrics import (
-    RISE_FRACTION,
-    SATURATION_THRESHOLD,
-    SETTLING_BAND,
-    StepMetrics,
-    step_metrics,
-)
+from robo_genesis.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
 from robo_genesis.scene_config import (
     DT,
     EFFORT_LIMIT,
@@ -27,7 +22,6 @@ from robo_genesis.scene_config import (
     Q_START,
     FloatArray,
 )
-from robo_genesis.trace import Trace
 
 LESSON = "l04"
 MINIMUM_HARDWARE = "cpu"
@@ -118,10 +112,18 @@ engine versions or backends. A time on the grid of samples may not move at all; 
 
 
 def parameters() -> dict[str, Any]:
-    """Return every configured input of the lesson as JSON values, for the evidence key."""
+    """Return every configured input of the lesson as JSON values, for the evidence key.
+
+    Predictions, margins, tolerances and resolutions are no inputs: they are held against what was
+    measured, and do not change it.
+    """
     return {
+        "joints": list(JOINT_NAMES),
         "stepped_joint": STEPPED_JOINT,
         "model": FRANKA_MJCF,
+        "expected_model": dict(EXPECTED_MODEL),
+        "expected_types": list(EXPECTED_TYPES),
+        "one_factor": [[*pair, *entries] for pair, entries in ONE_FACTOR.items()],
         "rise_fraction": RISE_FRACTION,
         "settling_band_rad": SETTLING_BAND,
         "saturation_threshold": SATURATION_THRESHOLD,
@@ -130,46 +132,3 @@ def parameters() -> dict[str, Any]:
             for name, case in CASES.items()
         },
     }
-
-
-def measure(traces: Mapping[str, Trace], entry: int) -> dict[str, StepMetrics]:
-    """Return the metrics of each case of the lesson, from its trace alone."""
-    return {name: step_metrics(traces[name], entry) for name in CASES}
-
-
-SOURCES = {
-    "initial_error": ("q_rad_or_m", "target_rad_or_m"),
-    "rise_time": ("q_rad_or_m", "target_rad_or_m", "t_s"),
-    "overshoot": ("q_rad_or_m", "target_rad_or_m"),
-    "settling_time": ("q_rad_or_m", "target_rad_or_m", "t_s"),
-    "final_error": ("q_rad_or_m", "target_rad_or_m"),
-    "final_velocity": ("qd_rad_s_or_m_s",),
-    "peak_speed": ("qd_rad_s_or_m_s",),
-    "peak_control": ("control_force_Nm_or_N",),
-    "saturation_samples": ("control_force_Nm_or_N", "effort_limit_Nm_or_N"),
-    "saturation_duration": ("control_force_Nm_or_N", "effort_limit_Nm_or_N", "t_s"),
-}
-"""The arrays that each metric is computed from."""
-
-
-def metric_records(
-    metrics: Mapping[str, StepMetrics], model: Mapping[str, int]
-) -> dict[str, dict[str, dict[str, Any]]]:
-    """Return `metrics.json`: the model's counts and each case's metrics, with class and source."""
-    records = {
-        "model": {
-            name: {"value": count, "unit": "1", "class": "exact", "from": ["engine"]}
-            for name, count in model.items()
-        }
-    }
-    for case, measured in metrics.items():
-        records[case] = {
-            name: {
-                "value": value,
-                "unit": unit,
-                "class": "exact" if unit == "1" else "value",
-                "from": list(SOURCES[name]),
-            }
-            for name, value, unit in measured.items()
-        }
-    return records

@@ -1,10 +1,12 @@
-"""Step-response metrics of one joint, from a trace alone.
+"""Step-response metrics of one joint, from a trace alone, and their form in `metrics.json`.
 
 All of them look through a finite window at samples dt apart. They say what was seen there; none of
 them is a proof of stability. What was not seen is None, written `not observed`.
 """
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +34,20 @@ UNITS = {
     "saturation_duration": "s",
 }
 """Unit of every metric for a revolute joint."""
+
+SOURCES = {
+    "initial_error": ("q_rad_or_m", "target_rad_or_m"),
+    "rise_time": ("q_rad_or_m", "target_rad_or_m", "t_s"),
+    "overshoot": ("q_rad_or_m", "target_rad_or_m"),
+    "settling_time": ("q_rad_or_m", "target_rad_or_m", "t_s"),
+    "final_error": ("q_rad_or_m", "target_rad_or_m"),
+    "final_velocity": ("qd_rad_s_or_m_s",),
+    "peak_speed": ("qd_rad_s_or_m_s",),
+    "peak_control": ("control_force_Nm_or_N",),
+    "saturation_samples": ("control_force_Nm_or_N", "effort_limit_Nm_or_N"),
+    "saturation_duration": ("control_force_Nm_or_N", "effort_limit_Nm_or_N", "t_s"),
+}
+"""The arrays that each metric is computed from, by their names in a bundle."""
 
 NOT_OBSERVED = "not observed"
 
@@ -106,6 +122,46 @@ def step_metrics(trace: Trace, entry: int) -> StepMetrics:
         saturation_samples=saturation_samples,
         saturation_duration=saturation_samples * trace.dt,
     )
+
+
+def measure(
+    traces: Mapping[str, Trace], cases: Iterable[str], entry: int
+) -> dict[str, StepMetrics]:
+    """Return the metrics of each of the cases, from its trace alone.
+
+    Args:
+        traces: the runs by case; others than the cases are left out.
+        cases: whose metrics are wanted.
+        entry: column of the joint in the traces' arrays.
+
+    Raises:
+        KeyError: a case has no trace.
+        ValueError: as `step_metrics`.
+    """
+    return {case: step_metrics(traces[case], entry) for case in cases}
+
+
+def metric_records(
+    metrics: Mapping[str, StepMetrics], model: Mapping[str, int]
+) -> dict[str, dict[str, dict[str, Any]]]:
+    """Return `metrics.json`: the model's counts and each case's metrics, with class and source."""
+    records = {
+        "model": {
+            name: {"value": count, "unit": "1", "class": "exact", "from": ["engine"]}
+            for name, count in model.items()
+        }
+    }
+    for case, measured in metrics.items():
+        records[case] = {
+            name: {
+                "value": value,
+                "unit": unit,
+                "class": "exact" if unit == "1" else "value",
+                "from": list(SOURCES[name]),
+            }
+            for name, value, unit in measured.items()
+        }
+    return records
 
 
 def first_time(t: np.ndarray, reached: np.ndarray) -> float | None:

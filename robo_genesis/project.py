@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import shutil
 import tomllib
 from collections.abc import Mapping
@@ -17,6 +18,7 @@ ENGINE = "genesis-world"
 
 # Variables that switch the engine, its compiler and the drivers below it.
 ENGINE_PREFIXES = ("GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "HSA_", "CUDA_")
+HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
 CACHE_FOLDERS = {
     "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
     "NUMBA_CACHE_DIR": "numba",
@@ -177,6 +179,18 @@ def environment_contract(environment: Mapping[str, str] | None = None) -> dict[s
     given = os.environ if environment is None else environment
     defaults = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "1"}
     asked = {name: given.get(name) or default for name, default in defaults.items()}
+    return asked | engine_switches(given)
+
+
+def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables among some that switch the engine, its compiler or its drivers."""
     elsewhere = CACHE_FOLDERS.keys() | CACHE_LIMIT.keys()
-    switches = {name for name in given if name.startswith(ENGINE_PREFIXES)} - elsewhere
-    return asked | {name: given[name] for name in sorted(switches)}
+    switches = {name for name in environment if name.startswith(ENGINE_PREFIXES)} - elsewhere
+    return {name: environment[name] for name in sorted(switches)}
+
+
+def without_home(text: str) -> str:
+    """Return a text with each home folder in it written `~`: its name is nobody else's business."""
+    own = re.escape(os.path.expanduser("~"))
+    text = re.sub(rf"{own}(?![\w.-])", "~", text) if own != "/" else text
+    return HOME_FOLDER.sub("~", text)

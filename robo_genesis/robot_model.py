@@ -91,7 +91,8 @@ def resolve_joints(robot: Any, names: Sequence[str]) -> JointMap:
     qs_idx_local = np.array([joint.qs_idx_local[0] for joint in joints])  # (n,)
     if len(set(dofs_idx_local.tolist())) != len(names):
         raise JointError(f"Names {', '.join(names)} share DOFs: {dofs_idx_local.tolist()}.")
-    lower, upper = (to_numpy(bound) for bound in robot.get_dofs_limit(dofs_idx_local.tolist()))
+    limits = robot.get_dofs_limit(dofs_idx_local.tolist())
+    lower, upper = (to_numpy(bound).astype(np.float64) for bound in limits)  # as JSON keeps them
     for array in (dofs_idx_local, qs_idx_local, lower, upper):
         array.setflags(write=False)
     types = tuple(joint.type.name for joint in joints)

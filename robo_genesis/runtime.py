@@ -8,12 +8,13 @@ import re
 import sys
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from robo_genesis import project
 from robo_genesis.scene_config import FRAME_SHAPE, SEED
 
 BACKENDS = ("auto", "cpu")
@@ -124,7 +125,10 @@ class WithoutInstallPath(logging.Filter):
 
 @dataclass(frozen=True, slots=True)
 class Engine:
-    """The started engine: its versions, its backend and its log."""
+    """The started engine: its versions, its backend, its log.
+
+    `switches` are the variables that were set for engine, compiler or drivers before the start.
+    """
 
     version: str
     quadrants_version: str
@@ -132,6 +136,7 @@ class Engine:
     seed: int
     backend: Backend
     log: EngineLog
+    switches: Mapping[str, str] = field(default_factory=dict)
 
 
 def start(contract: Contract, seed: int = SEED) -> Engine:
@@ -141,6 +146,7 @@ def start(contract: Contract, seed: int = SEED) -> Engine:
         EngineError: Genesis is missing or already initialised, a graphics library is missing, or
             engine, Quadrants and Torch disagree on the backend.
     """
+    switches = project.engine_switches(os.environ)  # now: importing the engine sets some itself
     gs = import_engine()
     if getattr(gs, "_initialized", False):
         raise EngineError(
@@ -159,7 +165,8 @@ def start(contract: Contract, seed: int = SEED) -> Engine:
         use_deterministic_algorithms=True,
     )
     quadrants_version = ".".join(map(str, importlib.import_module("quadrants").__version__))
-    return Engine(gs.__version__, quadrants_version, PRECISION, seed, probe(contract.backend), log)
+    backend = probe(contract.backend)
+    return Engine(gs.__version__, quadrants_version, PRECISION, seed, backend, log, switches)
 
 
 def import_engine() -> Any:

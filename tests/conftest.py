@@ -15,6 +15,7 @@ from hypothesis import settings
 from matplotlib.figure import Figure
 
 from robo_genesis import build, checks, l04, plots, project, robot_model, runtime
+from robo_genesis.metrics import measure
 from robo_genesis.robot_model import JointMap
 from robo_genesis.scene_config import (
     CAMERA,
@@ -149,7 +150,7 @@ def experiment(joints, traces, frames) -> checks.StepExperiment:
         model=l04.EXPECTED_MODEL,
         cases=l04.CASES,
         traces=traces,
-        metrics=l04.measure(traces, joints.entry(l04.STEPPED_JOINT)),
+        metrics=measure(traces, l04.CASES, joints.entry(l04.STEPPED_JOINT)),
         posture="camera",
         frames=frames,
     )

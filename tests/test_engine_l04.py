@@ -10,6 +10,7 @@ from robo_genesis.evidence.record import Measured, Recorder
 from robo_genesis.evidence.traces import read_trace
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.joint_control import CaseError, differences, reset, run_case
+from robo_genesis.metrics import measure, metric_records
 from robo_genesis.robot_model import JointError, one_dof_joint, resolve_joints, to_numpy
 from robo_genesis.scene_config import DT, JOINT_NAMES, SUBSTEPS
 from robo_genesis.trace import Trace
@@ -42,7 +43,7 @@ def measured_run(lab, run):
         model=dict(zip(l04.EXPECTED_MODEL, counts, strict=True)),
         cases=l04.CASES,
         traces=traces,
-        metrics=l04.measure(traces, lab.joints.entry(l04.STEPPED_JOINT)),
+        metrics=measure(traces, l04.CASES, lab.joints.entry(l04.STEPPED_JOINT)),
         posture="camera",
         frames=frames,
     )
@@ -59,7 +60,7 @@ def bundle_folder(lab, measured_run):
                 joints=lab.joints,
                 links=[link.name for link in lab.franka.links],
                 traces=measured_run.traces,
-                metrics=l04.metric_records(measured_run.metrics, measured_run.model),
+                metrics=metric_records(measured_run.metrics, measured_run.model),
                 checks=checks.run_checks(measured_run),
                 frames=measured_run.frames,
                 parameters=l04.parameters(),

@@ -1,5 +1,6 @@
+import ast
 import json
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -7,8 +8,9 @@ import pytest
 
 from robo_genesis import l04, project
 from robo_genesis.comparison import LABELS
+from robo_genesis.evidence.record import COMPUTING_MODULES
 from robo_genesis.joint_control import ControlCase, differences, validate
-from robo_genesis.metrics import UNITS, StepMetrics
+from robo_genesis.metrics import UNITS
 from robo_genesis.scene_config import EFFORT_LIMIT, JOINT_NAMES, Q_START, per_joint
 
 PACKAGE = Path(l04.__file__).parent
@@ -93,35 +95,59 @@ def test_parameters_are_json_and_complete():
         }
 
 
-@pytest.fixture(scope="module")
-def records(experiment):
-    return l04.metric_records(experiment.metrics, experiment.model)
+OTHER = {
+    "STEPPED_JOINT": "joint2",
+    "EXPECTED_MODEL": {**l04.EXPECTED_MODEL, "links": 12},
+    "EXPECTED_TYPES": ("PRISMATIC",) * 9,
+    "ONE_FACTOR": {("G1", "G3"): ["kp[joint4]"]},
+    "FRANKA_MJCF": "another.xml",
+    "JOINT_NAMES": JOINT_NAMES[::-1],
+    "RISE_FRACTION": 0.8,
+    "SETTLING_BAND": 0.02,
+    "SATURATION_THRESHOLD": 0.9,
+}
 
 
-def test_records_are_the_metrics(records, experiment):
-    assert list(records) == ["model", *l04.CASES]
-    for case, m in experiment.metrics.items():
-        assert {n: (r["value"], r["unit"]) for n, r in records[case].items()} == {
-            name: (value, unit) for name, value, unit in m.items()
-        }
-    assert {n: r["value"] for n, r in records["model"].items()} == l04.EXPECTED_MODEL
+@pytest.mark.parametrize("name", OTHER)
+def test_what_decides_a_run_is_a_parameter(name, monkeypatch):
+    before = l04.parameters()
+    monkeypatch.setattr(l04, name, OTHER[name])
+    assert l04.parameters() != before
 
 
-def test_counts_are_exact_and_measurements_are_values(records):
-    classes = {r["class"] for r in records["model"].values()}
-    assert classes == {"exact"}
-    assert {name for name, r in records["G1"].items() if r["class"] == "exact"} == {
-        "saturation_samples"
+@pytest.mark.parametrize("field", [field.name for field in fields(ControlCase)])
+def test_every_field_of_a_case_is_a_parameter(field, monkeypatch):
+    before, value = l04.parameters(), getattr(l04.G1, field)
+    monkeypatch.setitem(l04.CASES, "G1", replace(l04.G1, **{field: value + 1}))
+    assert l04.parameters() != before
+
+
+@pytest.mark.parametrize(
+    "name", ["PREDICTIONS", "MARGINS", "RELATIONS", "TOLERANCES", "RESOLUTION"]
+)
+def test_what_results_are_held_against_is_none(name, monkeypatch):
+    before = l04.parameters()
+    monkeypatch.setattr(l04, name, {})
+    assert l04.parameters() == before
+
+
+def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():
+    trees = [ast.parse((PACKAGE / f"{name}.py").read_text("utf8")) for name in COMPUTING_MODULES]
+    read = {
+        node.attr
+        for tree in trees
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and getattr(node.value, "id", None) == "l04"
     }
+    assert read
+    assert read <= {*OTHER, "CASES"}
+    assert "l04" not in COMPUTING_MODULES
 
 
-def test_every_metric_names_its_source_arrays():
-    assert list(l04.SOURCES) == [field.name for field in fields(StepMetrics)]
-
-
-def test_measure_needs_every_case(traces):
-    with pytest.raises(KeyError, match="G3"):
-        l04.measure({name: traces[name] for name in ("baseline", "G1", "G2")}, ENTRY)
+def test_the_lesson_is_data(monkeypatch):
+    tree = ast.parse(Path(l04.__file__).read_text("utf8"))
+    functions = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
+    assert functions == ["with_entry", "parameters"]
 
 
 def test_the_pin_is_not_repeated():

@@ -6,12 +6,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robo_genesis import l04
+from robo_genesis.evidence.traces import FIELDS
 from robo_genesis.metrics import (
     NOT_OBSERVED,
+    SOURCES,
     UNITS,
     StepMetrics,
     first_time,
     format_value,
+    measure,
+    metric_records,
     settled_from,
     step_metrics,
 )
@@ -246,3 +251,37 @@ def test_settled_from_is_the_start_of_the_last_run_inside(inside):
     tail = len(inside) - (inside[::-1].index(False) if False in inside else len(inside))
     expected = tail * 0.5 if inside[-1] else None
     assert settled_from(np.arange(len(inside)) * 0.5, np.array(inside)) == expected
+
+
+@pytest.fixture(scope="module")
+def records(experiment):
+    return metric_records(experiment.metrics, experiment.model)
+
+
+def test_records_are_the_metrics(records, experiment):
+    assert list(records) == ["model", *l04.CASES]
+    for case, m in experiment.metrics.items():
+        assert {n: (r["value"], r["unit"]) for n, r in records[case].items()} == {
+            name: (value, unit) for name, value, unit in m.items()
+        }
+    assert {n: r["value"] for n, r in records["model"].items()} == l04.EXPECTED_MODEL
+
+
+def test_counts_are_exact_and_measurements_are_values(records):
+    classes = {r["class"] for r in records["model"].values()}
+    assert classes == {"exact"}
+    assert {name for name, r in records["G1"].items() if r["class"] == "exact"} == {
+        "saturation_samples"
+    }
+
+
+def test_every_metric_names_its_source_arrays():
+    assert list(SOURCES) == [field.name for field in fields(StepMetrics)]
+    assert {name for names in SOURCES.values() for name in names} <= {
+        n for n, *_ in FIELDS.values()
+    }
+
+
+def test_measure_needs_every_case(traces):
+    with pytest.raises(KeyError, match="G3"):
+        measure({name: traces[name] for name in ("baseline", "G1", "G2")}, l04.CASES, 3)

@@ -104,6 +104,23 @@ def test_the_environment_contract_fills_in_defaults():
     }
 
 
+@pytest.mark.parametrize(
+    ("text", "kept"),
+    [
+        ("/usr/lib:/srv/me/mesa", "/usr/lib:~/mesa"),
+        ("/srv/me", "~"),
+        ("/srv/men/x", "/srv/men/x"),
+        ("/home/other/x:/Users/other", "~/x:~"),
+        ("/root/.cache,/opt/root/x", "~/.cache,/opt/root/x"),
+        ("0,1", "0,1"),
+    ],
+)
+def test_a_home_folder_is_not_named(text, kept, monkeypatch):
+    monkeypatch.setenv("HOME", "/srv/me")
+    assert project.without_home(text) == kept
+    assert not project.HOME_FOLDER.search(project.without_home(text))
+
+
 def test_the_environment_contract_holds_the_engines_switches_and_not_its_cache_folders(tmp_path):
     switches = {f"{prefix}X": "1" for prefix in project.ENGINE_PREFIXES}
     folders = project.engine_cache_environment(checkout(tmp_path, "genesis-world==9.8.7"))

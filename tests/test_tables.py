@@ -1,8 +1,8 @@
 import pytest
 
-from robo_genesis import l04, tables
+from robo_genesis import tables
 from robo_genesis.checks import Check
-from robo_genesis.metrics import NOT_OBSERVED
+from robo_genesis.metrics import NOT_OBSERVED, step_metrics
 
 
 def test_numbers_stand_to_the_right_and_words_to_the_left():
@@ -24,14 +24,14 @@ def test_rows_that_form_no_table_are_refused(rows):
 
 def test_metric_table_has_units_and_says_what_was_not_observed(make_trace):
     trace = make_trace([0.0, 0.125, 0.25, 0.25], 1.0)
-    metrics = l04.step_metrics(trace, 0)
+    metrics = step_metrics(trace, 0)
     text = tables.metric_table({"G1": metrics})
     assert f"| rise time | {NOT_OBSERVED} |" in text
     assert "| final error | 0.7500 rad |" in text
 
 
 def test_every_metric_has_a_label(make_trace):
-    metrics = l04.step_metrics(make_trace([0.0, 1.0], 1.0), 0)
+    metrics = step_metrics(make_trace([0.0, 1.0], 1.0), 0)
     assert {name for name, _, _ in metrics.items()} == set(tables.METRIC_LABELS)
 
 

@@ -2,13 +2,14 @@
 
 manifest.json   in-toto Statement: every other file with its sha256, one strict predicate
 metrics.json    value, unit, class and source array of each metric; null = not observed
-arrays.json     dims, dtype, unit and long name of every array
+arrays.json     the joint behind each DOF; dims, dtype, unit and long name of every array
 arrays/<case>.npz
 frames/*.png    camera frames only
 log.txt         the engine's own log
 """
 
 import hashlib
+import re
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -23,6 +24,7 @@ SCHEMA_VERSION = 1
 
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
+Index = Annotated[int, Field(ge=0, lt=2**31)]
 Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z$")]
 
 
@@ -125,6 +127,7 @@ class Predicate(Strict):
     backend: BackendRecord
     render: RenderRecord
     host: HostRecord
+    environment: dict[str, str]
     parameters: dict[str, Any]
     seed: int
     checks: list[CheckRecord]
@@ -170,10 +173,23 @@ class CaseArrays(Strict):
     variables: dict[str, Variable]
 
 
+class JointRecord(Strict):
+    """The joint behind one DOF of the arrays; a limit is null where the model has none."""
+
+    name: str
+    type_: str = Field(alias="type")
+    dof_idx_local: Index
+    q_idx_local: Index
+    lower: float | None
+    upper: float | None
+    unit: str
+
+
 class Arrays(Strict):
-    """`arrays.json`: labels of the dimensions, and every array of every case."""
+    """`arrays.json`: labels of the dimensions, the joints, and every array of every case."""
 
     coords: dict[str, list[str]]
+    joints: list[JointRecord]
     cases: dict[str, CaseArrays]
 
 
@@ -220,18 +236,38 @@ def read_manifest(folder: Path) -> Manifest:
     """Return a bundle's manifest after checking its form, and its form only.
 
     Raises:
-        BundleRefused: `schema` for another version of the form, which comes before all else:
-            what its fields mean is not known here.
+        BundleRefused: for another version of the form, which comes before all else, since what its
+            fields mean is not known here: `older-schema` for one that this form followed, `schema`
+            for any other.
     """
     found = read_json(folder, "manifest.json")
-    kind = found.get("predicateType") if isinstance(found, dict) else None
-    if isinstance(kind, str):
-        expect("schema", "manifest.json", "predicateType", kind, PREDICATE_TYPE)
-    predicate = found.get("predicate") if isinstance(found, dict) else None
-    version = predicate.get("schema_version") if isinstance(predicate, dict) else None
-    if isinstance(version, int):
-        expect("schema", "manifest.json", "schema_version", version, SCHEMA_VERSION)
+    _check_version(found)
     return _validated(Manifest, found, "manifest.json")
+
+
+def _check_version(found: Any) -> None:
+    """What an older version of the course wrote is honest; any other form is unknown here."""
+    predicate = found.get("predicate") if isinstance(found, dict) else None
+    kind = found.get("predicateType") if isinstance(found, dict) else None
+    version = predicate.get("schema_version") if isinstance(predicate, dict) else None
+    stated: list[tuple[str, str | int, str | int]] = []
+    if isinstance(kind, str):
+        stated.append(("predicateType", kind, PREDICATE_TYPE))
+    if type(version) is int:  # True is no version
+        stated.append(("schema_version", version, SCHEMA_VERSION))
+    for field, value, today in stated:
+        if _version(value) not in range(_version(today)):
+            expect("schema", "manifest.json", field, value, today)
+    for field, value, today in stated:
+        expect("older-schema", "manifest.json", field, value, today)
+
+
+def _version(stated: str | int) -> int:
+    """Return the number of a version or of a predicate type, -1 where it has none."""
+    if isinstance(stated, int):
+        return stated
+    match = re.fullmatch(r"urn:robo-genesis:evidence:v(\d{1,9})", stated)
+    return int(match[1]) if match else -1
 
 
 def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:

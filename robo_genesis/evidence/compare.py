@@ -22,6 +22,7 @@ from robo_genesis.evidence.findings import (  # fmt: skip
 )
 from robo_genesis.evidence.relations import relations
 from robo_genesis.evidence.traces import read_trace
+from robo_genesis.metrics import SOURCES
 
 LESSONS = {l04.LESSON: l04}
 LARGEST = 2**53
@@ -63,7 +64,7 @@ def specification(lesson: str) -> Specification:
         raise BundleRefused("lesson", f"{lesson!r} is no lesson. Choices: {', '.join(LESSONS)}.")
     module = LESSONS[lesson]
     return Specification(
-        lesson, tuple(module.CASES), tuple(module.SOURCES), module.TOLERANCES, module.RELATIONS
+        lesson, tuple(module.CASES), tuple(SOURCES), module.TOLERANCES, module.RELATIONS
     )
 
 

@@ -1,6 +1,5 @@
-"""Everything that the arrays and frames of a bundle decide, computed again from them."""
+"""Everything that the arrays, joints and frames of a bundle decide, computed again from them."""
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -10,26 +9,46 @@ from robo_genesis import checks, l04
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Manifest
 from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect
-from robo_genesis.evidence.traces import read_trace
-from robo_genesis.metrics import StepMetrics
-from robo_genesis.robot_model import JointMap
+from robo_genesis.evidence.traces import read_joints, read_trace
+from robo_genesis.metrics import measure, metric_records
 from robo_genesis.runtime import require_frame
 from robo_genesis.scene_config import CAMERA_RES, JOINT_NAMES
 from robo_genesis.trace import Trace
 
-FROM_THE_MODEL = ("mapping", "configuration", "target_limits")
-"""Checks that also look at what no array holds: local DOF indices and the model's limits."""
-
 ENTRY = JOINT_NAMES.index(l04.STEPPED_JOINT)
 
 
-def read_traces(folder: Path) -> dict[str, Trace]:
+def read_run(folder: Path, manifest: Manifest) -> checks.StepExperiment:
+    """Return the experiment as its page had it, with metrics computed again from the arrays.
+
+    Raises:
+        BundleRefused: as `read_traces`, `read_frames` and `read_counts`; `bad-trace` where the
+            arrays give no metrics.
+    """
+    arrays = bundle.read_arrays(folder)
+    traces = read_traces(folder, arrays)
+    frames = read_frames(folder, manifest)
+    try:
+        metrics = measure(traces, l04.CASES, ENTRY)
+    except ValueError as error:
+        raise BundleRefused("bad-trace", f"arrays: {error} {AGAIN}") from error
+    return checks.StepExperiment(
+        joints=read_joints(arrays),
+        model=read_counts(folder),
+        cases=l04.CASES,
+        traces={case: traces[case] for case in l04.CASES},
+        metrics=metrics,
+        posture="camera" if manifest.predicate.render.mode == "camera" else "schematic",
+        frames=frames,
+    )
+
+
+def read_traces(folder: Path, arrays: Arrays) -> dict[str, Trace]:
     """Return the traces of a bundle by case, each of them a run that can have happened.
 
     Raises:
         BundleRefused: `cases`, `labels`, `stamps`, `constant`, or as `read_trace`.
     """
-    arrays = bundle.read_arrays(folder)
     missing = sorted(set(l04.CASES) - set(arrays.cases))
     expect("cases", "arrays.json", "list of missing cases", missing, [])
     present = sorted(path.stem for path in (folder / "arrays").glob("*.npz"))
@@ -101,17 +120,33 @@ def read_frames(folder: Path, manifest: Manifest) -> dict[str, np.ndarray]:
     return frames
 
 
-def check_metrics(folder: Path, traces: Mapping[str, Trace]) -> dict[str, StepMetrics]:
-    """Require that metrics.json is what the arrays give; return the metrics.
+def read_counts(folder: Path) -> dict[str, int]:
+    """Return the engine's counts of links, joints, DOFs and qpos, as they were recorded.
 
     Raises:
-        BundleRefused: `metrics`, or `bad-trace` where the arrays give none.
+        BundleRefused: `metrics`, where a count is missing or is no count.
     """
-    try:
-        measured = l04.measure(traces, ENTRY)
-    except ValueError as error:
-        raise BundleRefused("bad-trace", f"arrays: {error} {AGAIN}") from error
-    expected = l04.metric_records(measured, l04.EXPECTED_MODEL)
+    recorded = bundle.read_metrics(folder).get("model", {})
+    names = sorted(l04.EXPECTED_MODEL)
+    expect("metrics", "metrics.json", "list of counts in model", sorted(recorded), names)
+    counts = {}
+    for name, metric in recorded.items():
+        if not isinstance(metric.value, int):
+            raise BundleRefused(
+                "metrics",
+                f"metrics.json: model.{name} is {metric.value}, expected an integer. {AGAIN}",
+            )
+        counts[name] = metric.value
+    return counts
+
+
+def check_metrics(folder: Path, run: checks.StepExperiment) -> None:
+    """Require that metrics.json is what the run gives, with units, classes and sources.
+
+    Raises:
+        BundleRefused: `metrics`.
+    """
+    expected = metric_records(run.metrics, run.model)
     found = {
         group: {name: metric.model_dump(by_alias=True) for name, metric in metrics.items()}
         for group, metrics in bundle.read_metrics(folder).items()
@@ -122,16 +157,10 @@ def check_metrics(folder: Path, traces: Mapping[str, Trace]) -> dict[str, StepMe
         here, there = found[group], expected[group]
         for name in sorted(here.keys() | there.keys()):
             expect("metrics", file, f"{group}.{name}", here.get(name), there.get(name))
-    return measured
 
 
-def check_outcomes(
-    manifest: Manifest,
-    traces: Mapping[str, Trace],
-    metrics: Mapping[str, StepMetrics],
-    frames: Mapping[str, np.ndarray],
-) -> None:
-    """Require that the recorded outcomes are those of the arrays, and that all passed.
+def check_outcomes(manifest: Manifest, run: checks.StepExperiment) -> None:
+    """Require that the recorded outcomes are those of the run, and that all passed.
 
     Raises:
         BundleRefused: `checks` where they are not; `failed` where they are, and one failed.
@@ -139,20 +168,11 @@ def check_outcomes(
     recorded = manifest.predicate.checks
     names = [check.__name__ for check in checks.CHECKS]
     expect("checks", "manifest.json", "list of checks", [c.name for c in recorded], names)
-    posture = "camera" if manifest.predicate.render.mode == "camera" else "schematic"
-    again = checks.run_checks(
-        checks.StepExperiment(
-            joints=_joints(), model=l04.EXPECTED_MODEL, cases=l04.CASES, traces=traces,
-            metrics=metrics, posture=posture, frames=frames,
-        )
-    )  # fmt: skip
-    for said, found in zip(recorded, again, strict=True):
+    for said, found in zip(recorded, checks.run_checks(run), strict=True):
         what = f"outcome of check {said.name}, computed again as '{found.detail}',"
-        if said.passed or said.name not in FROM_THE_MODEL:
-            expect("checks", "manifest.json", what, said.passed, found.passed)
-        if said.passed:
-            what = f"detail of check {said.name}"
-            expect("checks", "manifest.json", what, said.detail, found.detail)
+        expect("checks", "manifest.json", what, said.passed, found.passed)
+        what = f"detail of check {said.name}"
+        expect("checks", "manifest.json", what, said.detail, found.detail)
     failed = [f"[{c.name}] {c.detail}" for c in recorded if not c.passed]
     if failed:
         raise BundleRefused(
@@ -160,9 +180,3 @@ def check_outcomes(
             f"manifest.json: failed checks {' '.join(failed)}, expected none. Mend the cause in "
             "the lesson or report it to the engine's developers, then record again.",
         )
-
-
-def _joints() -> JointMap:
-    """Return the lesson's joints, with limits that nothing passes: a bundle keeps none."""
-    indices, widest = np.arange(len(JOINT_NAMES)), np.full(len(JOINT_NAMES), 1e9)
-    return JointMap(JOINT_NAMES, l04.EXPECTED_TYPES, indices, indices, -widest, widest)

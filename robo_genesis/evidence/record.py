@@ -19,7 +19,7 @@ import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from robo_genesis import runtime
+from robo_genesis import project, runtime
 from robo_genesis.checks import Check
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import write_traces
@@ -27,9 +27,10 @@ from robo_genesis.robot_model import JointMap
 from robo_genesis.trace import Trace
 
 COMPUTING_MODULES = (
-    "checks", "joint_control", "l04", "metrics", "robot_model", "runtime", "scene_config", "trace",
+    "checks", "joint_control", "metrics", "robot_model", "runtime", "scene_config", "trace",
 )  # fmt: skip
-"""Modules whose source decides what is measured; a change in one makes evidence stale."""
+"""Modules whose source decides what is measured; a change in one makes evidence stale. A lesson's
+module is none of them: what it decides is in its `parameters()`, which the key covers."""
 
 PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -159,6 +160,9 @@ class Recorder:
                 "software": renderer.software if renderer else None,
             },
             "host": host_record(backend.device_name if backend.actual == "cpu" else None),
+            "environment": {
+                name: project.without_home(value) for name, value in self.engine.switches.items()
+            },
             "parameters": dict(measured.parameters),
             "seed": self.engine.seed,
             "checks": [asdict(check) for check in measured.checks],

@@ -4,6 +4,7 @@ import re
 from datetime import datetime
 from pathlib import Path
 
+from robo_genesis import project
 from robo_genesis.evidence.bundle import BackendRecord, Manifest, Predicate, evidence_key
 from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect
 from robo_genesis.runtime import Renderer
@@ -13,6 +14,9 @@ RELABEL = "File it under the backend that computed; nothing is relabelled."
 TORCH = (
     "Use a Torch build for this backend, unset GS_TORCH_FORCE_CPU_DEVICE and QD_ARCH, run again."
 )
+
+FORCED = ("GS_TORCH_FORCE_CPU_DEVICE", "QD_ARCH")
+"""Switches that can send engine and Torch to different devices."""
 
 AGREEMENT = {
     "cpu": (("x64", "arm64"), "cpu"),
@@ -86,6 +90,22 @@ def _check_torch_build(backend: BackendRecord) -> None:
     for name, expected in needed.items():
         what = f"whether Torch has {name} for {backend.actual}"
         expect("torch", MANIFEST, what, built[name], expected, TORCH)
+
+
+def check_environment(manifest: Manifest) -> None:
+    """Require that the variables named are the engine's switches, none of which forces a device.
+
+    Raises:
+        BundleRefused: `torch` for one that does; `environment` for any other variable, and for a
+            value that names somebody's home folder.
+    """
+    found = manifest.predicate.environment
+    forced = [name for name in FORCED if name in found]
+    expect("torch", MANIFEST, "list of set variables that must stay unset", forced, [], TORCH)
+    others = sorted(found.keys() - project.engine_switches(found).keys())
+    expect("environment", MANIFEST, "list of variables that switch no engine", others, [])
+    private = sorted(name for name, value in found.items() if project.HOME_FOLDER.search(value))
+    expect("environment", MANIFEST, "list of variables that name a home folder", private, [])
 
 
 def check_engine_files(manifest: Manifest) -> None:

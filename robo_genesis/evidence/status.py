@@ -12,7 +12,7 @@ from robo_genesis.evidence.verify import verify_bundle
 RECORDED_PAGE = "lab"
 """Only labs are recorded on accelerators and kept in the repository."""
 
-STATE_OF_CODE = {"stale": "stale", "failed": "failed"}
+STATE_OF_CODE = {"stale": "stale", "older-schema": "stale", "failed": "failed"}
 """Refusals that are a state of their own; every other code is `refused`."""
 
 PASSING = ("verified", "missing", "stale")
@@ -27,9 +27,9 @@ class Status:
     |---|---|
     | `verified` | accepted; `manifest` is given |
     | `missing` | no bundle stands there |
-    | `stale` | sound, but it answers an older question than the checkout asks |
+    | `stale` | honest, but of an older form, or the answer to an older question |
     | `failed` | sound, and its own checks did not pass |
-    | `refused` | damaged, mislabelled, incomplete or of another form |
+    | `refused` | damaged, mislabelled, incomplete or of an unknown form |
 
     `code` is that of the refusal, None where there was none; `reason` names expected and found.
     """

@@ -1,4 +1,4 @@
-"""A trace as files and back: npz with units in the names, described in `arrays.json`."""
+"""Traces and joints as files and back: npz with units in the names, described in `arrays.json`."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -6,9 +6,14 @@ from pathlib import Path
 import numpy as np
 
 from robo_genesis.evidence.archive import read_archive
-from robo_genesis.evidence.bundle import Arrays, BundleRefused, CaseArrays, Variable
+from robo_genesis.evidence.bundle import (
+    Arrays,
+    BundleRefused,
+    CaseArrays,
+    JointRecord,
+    Variable,
+)
 from robo_genesis.evidence.strict_json import AGAIN, expect
-from robo_genesis.l04 import EXPECTED_TYPES
 from robo_genesis.robot_model import EFFORT_UNIT, POSITION_UNIT, JointMap
 from robo_genesis.trace import Trace, TraceError
 
@@ -52,7 +57,7 @@ def write_traces(
     links: list[str],
     notes: Mapping[str, str] | None = None,
 ) -> Arrays:
-    """Write `arrays/<case>.npz` for every trace and return their description.
+    """Write `arrays/<case>.npz` for every trace and return their description, with the joints.
 
     `notes` says by case in what its arrays differ from the long names; most cases need none.
     """
@@ -74,7 +79,53 @@ def write_traces(
         cases[case] = CaseArrays(
             file=f"arrays/{case}.npz", note=(notes or {}).get(case, ""), variables=variables
         )
-    return Arrays(coords={"dof": list(joints.names), "link": links}, cases=cases)
+    return Arrays(
+        coords={"dof": list(joints.names), "link": links},
+        joints=joint_records(joints),
+        cases=cases,
+    )
+
+
+def joint_records(joints: JointMap) -> list[JointRecord]:
+    """Return a record of each joint, in the map's order.
+
+    Raises:
+        ValueError: a limit is not a number.
+    """
+    return [
+        JointRecord(
+            name=name,
+            type=joints.types[k],
+            dof_idx_local=int(joints.dofs_idx_local[k]),
+            q_idx_local=int(joints.qs_idx_local[k]),
+            lower=None if joints.lower[k] == -np.inf else float(joints.lower[k]),
+            upper=None if joints.upper[k] == np.inf else float(joints.upper[k]),
+            unit=joints.position_units[k],
+        )
+        for k, name in enumerate(joints.names)
+    ]
+
+
+def read_joints(arrays: Arrays) -> JointMap:
+    """Return the joint map of a run as it was recorded, held against the labels of its arrays.
+
+    Raises:
+        BundleRefused: `labels`, where names, types or units contradict each other.
+    """
+    joints, file = arrays.joints, "arrays.json joints"
+    expect("labels", file, "list of names", [j.name for j in joints], arrays.coords.get("dof"))
+    for joint in joints:
+        if joint.type_ not in POSITION_UNIT:
+            expect("labels", file, f"type of {joint.name}", joint.type_, sorted(POSITION_UNIT))
+        expect("labels", file, f"unit of {joint.name}", joint.unit, POSITION_UNIT[joint.type_])
+    return JointMap(
+        names=tuple(joint.name for joint in joints),
+        types=tuple(joint.type_ for joint in joints),
+        dofs_idx_local=np.array([joint.dof_idx_local for joint in joints]),
+        qs_idx_local=np.array([joint.q_idx_local for joint in joints]),
+        lower=np.array([-np.inf if j.lower is None else j.lower for j in joints]),
+        upper=np.array([np.inf if j.upper is None else j.upper for j in joints]),
+    )
 
 
 def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
@@ -100,13 +151,13 @@ def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
 
 def _check_labels(arrays: Arrays, case: str) -> None:
     """Require that names, dimensions, units and types are those that `write_traces` gives."""
-    variables = arrays.cases[case].variables
+    variables, types = arrays.cases[case].variables, read_joints(arrays).types
     names = sorted(name for name, *_ in FIELDS.values())
     expect("labels", "arrays.json", f"list of arrays of {case}", sorted(variables), names)
     lengths = {"axis": 3, "wxyz": 4} | {dim: len(them) for dim, them in arrays.coords.items()}
     for field, (name, dims, unit, long_name) in FIELDS.items():
         found, file = variables[name], f"arrays.json {case}.{name}"
-        units = dof_units(name, EXPECTED_TYPES) if unit is None else unit
+        units = dof_units(name, types) if unit is None else unit
         expect("labels", file, "unit", found.unit, units)
         expect("labels", file, "dims", found.dims, dims)
         expect("labels", file, "long_name", found.long_name, long_name)

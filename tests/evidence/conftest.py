@@ -11,6 +11,7 @@ from robo_genesis.checks import run_checks
 from robo_genesis.evidence import current, record
 from robo_genesis.evidence.current import page_digest
 from robo_genesis.evidence.record import Measured, Recorder
+from robo_genesis.metrics import metric_records
 
 RUN_ID = "0123456789abcdef" * 2
 LOG = (
@@ -40,7 +41,7 @@ def measured(experiment):
         joints=experiment.joints,
         links=("link0", "link4", "hand"),
         traces=experiment.traces,
-        metrics=l04.metric_records(experiment.metrics, experiment.model),
+        metrics=metric_records(experiment.metrics, experiment.model),
         checks=run_checks(experiment),
         frames=experiment.frames,
         parameters=l04.parameters(),

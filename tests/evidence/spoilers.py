@@ -11,15 +11,17 @@ import shutil
 import struct
 import warnings
 import zipfile
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from robo_genesis import l04
-from robo_genesis.evidence import bundle, files, traces
+from robo_genesis import checks, l04
+from robo_genesis.evidence import bundle, files, recompute, traces
 from robo_genesis.evidence.archive import UNPACKED_LIMIT
+from robo_genesis.metrics import measure, metric_records
 
 
 def edit(folder, name, change):
@@ -200,8 +202,37 @@ def measured_again(folder):
     """Make metrics.json what the arrays now give."""
     arrays = bundle.read_arrays(folder)
     found = {case: traces.read_trace(folder, arrays, case) for case in arrays.cases}
-    records = l04.metric_records(l04.measure(found, 3), l04.EXPECTED_MODEL)
+    records = metric_records(measure(found, l04.CASES, 3), l04.EXPECTED_MODEL)
     (folder / "metrics.json").write_text(json.dumps(records), "utf8")
+
+
+def checked_again(folder):
+    """Make the recorded checks those of the arrays and joints, failures included."""
+    run = recompute.read_run(folder, bundle.read_manifest(folder))
+    predicate(checks=[asdict(outcome) for outcome in checks.run_checks(run)])(folder)
+
+
+def joint(index, **values):
+    """Change one record of the joint map."""
+    return lambda folder: edit(folder, "arrays.json", lambda a: a["joints"][index].update(values))
+
+
+def joints(change):
+    return lambda folder: edit(folder, "arrays.json", lambda a: change(a["joints"]))
+
+
+def as_revolute(folder):
+    """Call the first finger revolute, in the joint map and in every unit."""
+    joint(7, type="REVOLUTE", unit="rad")(folder)
+
+    def change(arrays):
+        of_type = [record["type"] for record in arrays["joints"]]
+        for case in arrays["cases"].values():
+            for name, variable in case["variables"].items():
+                if isinstance(variable["unit"], list):
+                    variable["unit"] = traces.dof_units(name, of_type)
+
+    edit(folder, "arrays.json", change)
 
 
 def changed_at(index, value):
@@ -306,6 +337,20 @@ def off_law(array):
     return np.array(array * np.float32(0.9))
 
 
+FAILING = {
+    "off its control law": both(rewrite(control_force=off_law), measured_again),
+    "two joints on one DOF": joint(1, dof_idx_local=0),
+    "a target outside its limits": joint(3, upper=-1.9),
+    "a joint without a limit": joint(0, lower=None),
+}
+"""Runs that fail a check of their own, as they would have been measured."""
+
+
+def failing(how, *more):
+    """Fail a check, and say so."""
+    return both(FAILING[how], checked_again, *more)
+
+
 SPOILED = {
     # Form of the files, before anything is believed.
     "no manifest": ("missing-file",) * 2 + (lambda f: (f / "manifest.json").unlink(),),
@@ -336,7 +381,16 @@ SPOILED = {
     "an unknown backend": ("bad-schema", "bad-schema", part("backend", actual="tpu")),
     "metrics as a list": ("digest", "bad-schema", lambda f: (f / "metrics.json").write_text("[]")),
     "a newer schema": ("schema", "schema", predicate(schema_version=2)),
-    "an older schema": ("schema", "schema", predicate(schema_version=0)),
+    "an older schema": ("older-schema", "older-schema", predicate(schema_version=0)),
+    "an older schema of other fields": ("older-schema", None, manifest(lambda m: m.update(
+        predicateType="urn:robo-genesis:evidence:v0", predicate={"backend": "cpu"}))),
+    "an older type of a newer schema": ("schema", "schema", manifest(lambda m: (
+        m.update(predicateType="urn:robo-genesis:evidence:v0"),
+        m["predicate"].update(schema_version=2)))),
+    "a schema below all": ("schema", "schema", predicate(schema_version=-1)),
+    "a type of no number": ("schema", "schema", manifest(
+        lambda m: m.update(predicateType="urn:robo-genesis:evidence:v0x"))),
+    "a schema that is true": ("bad-schema", "bad-schema", predicate(schema_version=True)),
     "a newer schema of other fields": ("schema", None, manifest(
         lambda m: m.update(predicateType="urn:robo-genesis:evidence:v2", more=1))),
     # Identity.
@@ -375,6 +429,16 @@ SPOILED = {
     "cuda without CUDA": ("torch", "torch", both(on("cuda"), part("backend", cuda_version=None))),
     "Torch forced to the CPU": ("torch", "torch", both(on("amdgpu"), part(
         "backend", torch_device="cpu"))),
+    "Torch forced to the CPU by a switch": ("torch", "torch", predicate(
+        environment={"GS_TORCH_FORCE_CPU_DEVICE": "1"})),
+    "an architecture forced by a switch": ("torch", "torch", both(on("amdgpu"), predicate(
+        environment={"HIP_VISIBLE_DEVICES": "0", "QD_ARCH": "amdgpu"}))),
+    "a variable that is no switch": ("environment", "environment", predicate(
+        environment={"LOGNAME": "somebody"})),
+    "a folder of caches": ("environment", "environment", predicate(
+        environment={"QD_OFFLINE_CACHE_FILE_PATH": "kernels"})),
+    "somebody's home": ("environment", "environment", predicate(
+        environment={"LIBGL_DRIVERS_PATH": "/usr/lib:/home/somebody/mesa"})),
     "another architecture": ("torch", "torch", both(on("amdgpu"), part("backend", arch="x64"))),
     "software drawing claimed as a GPU's": ("render", "render", part("render", software=False)),
     "software drawing on an accelerator, hidden": ("render", "render", both(on("amdgpu"), part(
@@ -429,6 +493,21 @@ SPOILED = {
         f, "arrays.json", lambda a: a["coords"]["dof"].reverse())),
     "one link twice": ("digest", "labels", lambda f: edit(
         f, "arrays.json", lambda a: a["coords"].update(link=["hand"] * 3))),
+    "no joints": ("digest", "bad-schema", lambda f: edit(
+        f, "arrays.json", lambda a: a.pop("joints"))),
+    "a joint without its limits": ("digest", "bad-schema", joints(lambda j: j[0].pop("lower"))),
+    "a joint before the first DOF": ("digest", "bad-schema", joint(0, dof_idx_local=-1)),
+    "a limit that is no number": ("digest", "bad-json", joint(0, lower=float("nan"))),
+    "a joint too few": ("digest", "labels", joints(lambda j: j.pop())),
+    "a joint too many": ("digest", "labels", joints(lambda j: j.append(j[0]))),
+    "joints in another order": ("digest", "labels", joints(lambda j: j.reverse())),
+    "another name of a joint": ("digest", "labels", joint(6, name="joint8")),
+    "a joint of no known type": ("digest", "labels", joint(0, type="SPHERICAL")),
+    "a joint of another unit": ("digest", "labels", joint(0, unit="m")),
+    "a finger called revolute": ("digest", "labels", joint(7, type="REVOLUTE", unit="rad")),
+    "a finger called revolute throughout": ("digest", "checks", as_revolute),
+    "a DOF that the model lacks": ("digest", "checks", joint(8, dof_idx_local=9)),
+    "a qpos that the model lacks": ("digest", "checks", joint(8, q_idx_local=9)),
     "an undescribed array": ("digest", "labels", lambda f: edit(
         f, "arrays.json", lambda a: a["cases"]["G1"]["variables"].pop("t_s"))),
     "another shape described": ("digest", "bad-array", variable(shape=[120, 9])),
@@ -474,19 +553,24 @@ SPOILED = {
         lambda m: m["G1"].update(grace=m["G1"]["overshoot"]))),
     "a group that is missing": ("digest", "metrics", metrics(lambda m: m.pop("G1"))),
     "a group too many": ("digest", "metrics", metrics(lambda m: m.update(G4={}))),
-    "an edited count": ("digest", "metrics", metrics(
+    "an edited count": ("digest", "checks", metrics(
         lambda m: m["model"]["links"].update(value=12))),
+    "a count that is none": ("digest", "metrics", metrics(
+        lambda m: m["model"]["links"].update(value=11.0))),
+    "a count that is missing": ("digest", "metrics", metrics(lambda m: m["model"].pop("links"))),
+    "no counts": ("digest", "metrics", metrics(lambda m: m.pop("model"))),
+    "a count of another source": ("digest", "metrics", metrics(
+        lambda m: m["model"]["links"].update({"from": ["luck"]}))),
     "edited arrays": ("digest", "metrics", rewrite(qd=off_law)),
-    "edited arrays, metrics made right": ("digest", "checks", both(
-        rewrite(control_force=off_law), measured_again)),
     "one and the same picture twice": ("digest", "checks", frame("final", copy_of="initial")),
     "a failure claimed where none is": ("checks", "checks", check(3, passed=False)),
     "another explanation of a check": ("checks", "checks", check(3, detail="luck")),
     "a check left out": ("checks", "checks", manifest(lambda m: m["predicate"]["checks"].pop())),
     "no check": ("checks", "checks", predicate(checks=[])),
-    "a check that failed, and says so": ("failed", "failed", check(
+    "a failure of the model claimed": ("checks", "checks", check(
         0, passed=False, detail="local DOFs are not nine distinct ones")),
-    "arrays that fail a check, and say so": ("digest", "failed", both(
-        rewrite(control_force=off_law), measured_again, check(
-            7, passed=False, detail="G1: control force is off its case's control law"))),
+    **{f"{how}, kept quiet": ("digest", "checks", FAILING[how]) for how in FAILING},
+    **{f"{how}, and it says so": ("digest", "failed", failing(how)) for how in FAILING},
+    "a failure explained otherwise": ("digest", "checks", failing(
+        "two joints on one DOF", check(0, detail="luck"))),
 }  # fmt: skip

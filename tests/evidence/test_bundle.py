@@ -167,6 +167,7 @@ def test_the_key_covers_the_engine(predicate, name):
         "host",
         "git",
         "backend",
+        "environment",
         "render",
         "checks",
         "warnings",

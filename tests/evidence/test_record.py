@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -82,6 +83,19 @@ def test_who_computed_and_drew_is_recorded(predicate, engine, backend):
     assert predicate.backend.torch_version == backend.torch_version
     assert (predicate.render.mode, predicate.render.renderer) == ("camera", "llvmpipe")
     assert predicate.render.software is True
+
+
+def test_the_switches_that_were_set_are_recorded_without_a_home(quiet, tmp_path, engine, measured):
+    home = Path.home()
+    switches = {"GS_ENABLE_ZEROCOPY": "0", "LIBGL_DRIVERS_PATH": f"/usr/lib:{home}/mesa"}
+    contract = runtime.Contract("cpu", True, tmp_path)
+    recorder = Recorder("l04", "lab", contract, replace(engine, switches=switches))
+    found = read_manifest(recorder.write(measured)).predicate.environment
+    assert found == {"GS_ENABLE_ZEROCOPY": "0", "LIBGL_DRIVERS_PATH": "/usr/lib:~/mesa"}
+
+
+def test_where_none_was_set_none_is_recorded(predicate):
+    assert predicate.environment == {}
 
 
 def test_the_backend_is_probed_again_at_the_end(recorder, measured, backend, monkeypatch):

@@ -2,7 +2,7 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from spoilers import check, on, part, seal
+from spoilers import failing, on, part, predicate, seal
 
 from robo_genesis import project
 from robo_genesis.evidence.status import (
@@ -72,10 +72,15 @@ def spoil_stale(folder):
     seal(folder)
 
 
+def spoil_failed(folder):
+    failing("two joints on one DOF")(folder)
+    seal(folder)
+
+
 STATES = {
     "verified": lambda folder: None,
     "stale": spoil_stale,
-    "failed": check(0, passed=False, detail="local DOFs are not nine distinct ones"),
+    "failed": spoil_failed,
     "refused": lambda folder: (folder / "log.txt").unlink(),
     "missing": shutil.rmtree,
 }
@@ -88,6 +93,18 @@ def test_each_state_comes_from_the_bundle_alone(folder, state):
     assert status.state == state
     assert (status.manifest is not None) == (state == "verified")
     assert bool(status.reason) == (state != "verified")
+
+
+def test_an_older_form_is_stale_and_nothing_of_it_is_read(folder):
+    predicate(schema_version=0, mood="good")(folder)
+    status = bundle_status(folder, "l04", "lab")
+    assert (status.state, status.code, status.manifest) == ("stale", "older-schema", None)
+    assert status.reason.endswith("schema_version is 0, expected 1. Record the bundle again.")
+
+
+def test_a_newer_form_is_refused(folder):
+    predicate(schema_version=2)(folder)
+    assert (bundle_status(folder).state, bundle_status(folder).code) == ("refused", "schema")
 
 
 def test_what_is_stale_says_found_and_expected(folder):
@@ -119,6 +136,8 @@ def test_a_build_goes_on_with_what_is_verified_missing_or_stale(book, courses_pa
     assert refused_records(book) == []
     spoil_stale(book / "evidence" / "l04" / "cpu")
     assert recorded_status(book, "l04", "cpu").state == "stale"
+    assert refused_records(book) == []
+    predicate(schema_version=0)(book / "evidence" / "l04" / "cpu")
     assert refused_records(book) == []
 
 

@@ -1,10 +1,17 @@
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 from robo_genesis.evidence.bundle import BundleRefused, read_arrays
-from robo_genesis.evidence.traces import FIELDS, dof_units, read_trace, write_traces
+from robo_genesis.evidence.traces import (
+    FIELDS,
+    dof_units,
+    joint_records,
+    read_joints,
+    read_trace,
+    write_traces,
+)
 from robo_genesis.scene_config import JOINT_NAMES
 from robo_genesis.trace import Trace
 
@@ -52,6 +59,30 @@ def test_dimensions_have_the_lengths_that_are_described(written):
     lengths = {"state": 121, "step": 120, "dof": 9, "link": 3, "axis": 3, "wxyz": 4}
     for variable in arrays.cases["G1"].variables.values():
         assert variable.shape == [lengths[dim] for dim in variable.dims]
+
+
+def test_joints_come_back_as_they_were(written, joints):
+    found = read_joints(written[1])
+    assert (found.names, found.types) == (joints.names, joints.types)
+    for name in ("dofs_idx_local", "qs_idx_local", "lower", "upper"):
+        assert getattr(found, name).tolist() == getattr(joints, name).tolist()
+
+
+def test_a_joint_without_a_limit_has_null(written, joints):
+    lower, upper = np.array(joints.lower), np.array(joints.upper)
+    lower[2], upper[5] = -np.inf, np.inf
+    free = replace(joints, lower=lower, upper=upper)
+    records = joint_records(free)
+    assert [r.name for r in records if r.lower is None] == ["joint3"]
+    found = read_joints(written[1].model_copy(update={"joints": records}))
+    assert (found.lower.tolist(), found.upper.tolist()) == (lower.tolist(), upper.tolist())
+
+
+def test_a_limit_that_is_no_number_is_not_written(joints):
+    lower = np.array(joints.lower)
+    lower[0] = np.nan
+    with pytest.raises(ValueError, match="lower"):
+        joint_records(replace(joints, lower=lower))
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,8 @@
 import ast
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -138,6 +141,46 @@ def test_an_edit_of_pin_lock_lab_or_module_makes_a_bundle_stale(
     (checkout / name).write_text(source.replace(old, new), "utf8")
     with pytest.raises(BundleRefused, match=rf"^stale: manifest.json: {named} is .*, expected "):
         verify_bundle(folder, root=checkout, book=checkout / "book")
+
+
+VERIFY = (
+    "import sys; from pathlib import Path; from robo_genesis.evidence.status import bundle_status; "
+    "print(bundle_status(Path(sys.argv[1])).state)"
+)
+LESSON, METRICS = "robo_genesis/l04.py", "robo_genesis/metrics.py"
+
+
+def test_an_edit_of_the_lesson_makes_stale_what_it_decides_and_nothing_else(folder, checkout):
+    """The bundle is verified by the edited checkout itself, in a process of its own."""
+
+    def state(*edits):
+        kept = {name: (checkout / name).read_text("utf8") for name in (LESSON, METRICS)}
+        for name, old, new in edits:
+            assert kept[name].count(old) == 1
+            (checkout / name).write_text(kept[name].replace(old, new), "utf8")
+        command = [sys.executable, "-B", "-c", VERIFY, str(folder)]
+        environment = {**os.environ, "PYTHONPATH": str(checkout)}
+        done = subprocess.run(
+            command, cwd=checkout, env=environment, capture_output=True, text=True, check=True
+        )
+        for name, text in kept.items():
+            (checkout / name).write_text(text, "utf8")
+        return done.stdout.strip()
+
+    found = {
+        what: state(edit)
+        for what, edit in {
+            "tolerance": (LESSON, '"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'),
+            "margin": (LESSON, '"overshoot": 1e-3', '"overshoot": 1e-2'),
+            "prediction": (LESSON, '("rise_time", "no later")', '("rise_time", "later")'),
+            "gain": (LESSON, "7000.0", "7100.0"),
+            "window": (LESSON, "WINDOW = 1.2", "WINDOW = 1.3"),
+            "band": (METRICS, "SETTLING_BAND = 0.01", "SETTLING_BAND = 0.02"),
+            "module": (METRICS, "Share of the step that counts", "The share that counts"),
+        }.items()
+    }
+    current = dict.fromkeys(("tolerance", "margin", "prediction"), "verified")
+    assert found == current | dict.fromkeys(("gain", "window", "band", "module"), "stale")
 
 
 def test_an_edit_of_prose_or_plots_does_not(folder, checkout):
