@@ -6,13 +6,12 @@ A page writes ```` ```{evidence} l04 ````. Everything shown comes from an accept
 
 import base64
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
-import numpy as np
 from docutils import nodes
 from matplotlib.figure import Figure
 from PIL import Image
@@ -21,13 +20,13 @@ from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis import l04, plots, tables
 from robo_genesis.evidence import bundle
+from robo_genesis.evidence.compare import Comparison, compare, specification
 from robo_genesis.evidence.status import Status, recorded_status
-from robo_genesis.evidence.traces import read_trace
-from robo_genesis.metrics import format_value
-from robo_genesis.robot_model import JointMap
+from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.sphinx_evidence import BACKEND, REFERENCE, outputs_folder
 
 COMPARED = ("G1", "G2", "G3")
+VALUES = ("Values", "Exact counts")
 
 
 class Evidence(SphinxDirective):
@@ -53,7 +52,7 @@ class Evidence(SphinxDirective):
         panel += self.parse_text_to_nodes(backend_text(status))
         panel += nodes.raw("", figure_html(folder, status), format="html")
         panel += nodes.raw("", frames_html(folder, status), format="html")
-        panel += self.parse_text_to_nodes(metrics_text(here, folder, status.backend))
+        panel += self.parse_text_to_nodes(metrics_text(lesson, here, folder))
         panel += nodes.raw("", warnings_html(status.manifest.predicate.warnings), format="html")
         return panel
 
@@ -80,6 +79,7 @@ def backend_text(status: Status) -> str:
         "HIP, CUDA": f"{backend.hip_version or '–'}, {backend.cuda_version or '–'}",
         "driver": backend.driver or "–",
         "renderer": predicate.render.renderer or "SKIP",
+        "engine switches": switches_text(predicate.environment),
         "recorded": predicate.started[:10],
         "run": predicate.run_id[:8],
     }
@@ -87,11 +87,18 @@ def backend_text(status: Status) -> str:
     return f"**Reference run.** {status.sentence}\n\n{tables.markdown(rows)}"
 
 
+def switches_text(switches: Mapping[str, str]) -> str:
+    """Return the variables that were set for the engine as code, fit for a cell of a table."""
+    pairs = (" ".join(f"{name}={value}".split()) for name, value in switches.items())
+    marks = str.maketrans({"`": "'", "|": "\\|"})
+    return ", ".join(f"`{pair.translate(marks)}`" for pair in pairs) or "none set"
+
+
 def figure_html(folder: Path, status: Status) -> str:
     """Return the response of the three cases, drawn from the bundle's arrays, as HTML."""
     arrays = bundle.read_arrays(folder)
     traces = {case: read_trace(folder, arrays, case) for case in COMPARED}
-    joints = described_joints(arrays)
+    joints = read_joints(arrays)
     stream = io.BytesIO()
     with mpl.rc_context():
         plots.use_course_style()
@@ -104,13 +111,6 @@ def figure_html(folder: Path, status: Status) -> str:
     )
     caption = f"{l04.STEPPED_JOINT} on {status.backend}, drawn from the arrays of the recorded run."
     return _figure("image/svg+xml", stream.getvalue(), alt, caption)
-
-
-def described_joints(arrays: bundle.Arrays) -> JointMap:
-    """Return the names, types and units that figures need, in the order of a bundle's arrays."""
-    names = tuple(arrays.coords["dof"])
-    unknown = np.zeros(len(names))
-    return JointMap(names, l04.EXPECTED_TYPES, unknown, unknown, unknown, unknown)
 
 
 def frames_html(folder: Path, status: Status) -> str:
@@ -127,20 +127,56 @@ def frames_html(folder: Path, status: Status) -> str:
     return "".join(html)
 
 
-def metrics_text(here: Path, folder: Path, backend: str) -> str:
-    """Return CPU beside accelerator for each metric of the three cases, as Markdown."""
-    ours, theirs = bundle.read_metrics(here), bundle.read_metrics(folder)
-    rows = [
+def metrics_text(lesson: str, here: Path, folder: Path) -> str:
+    """Return this build's CPU run beside the recorded run, as `make compare` holds them.
+
+    Args:
+        lesson: whose tolerances and orderings are held against both.
+        here: bundle of this build.
+        folder: the recorded bundle.
+    """
+    found = compare(here, folder, specification(lesson))
+    if found.obstacles:
+        reasons = "".join(f"- {reason}\n" for reason in found.obstacles)
+        return f"**Not comparable with this build's run on {BACKEND}.**\n\n{reasons}"
+    both = f"{BACKEND}, this build", f"{found.new.backend.actual}, recorded"
+    return (
+        f"**Against this build's run on {BACKEND}: {found.state}.** What the lesson allows is "
+        "declared before the runs; counts must be equal.\n\n"
+        f"{tables.markdown(value_rows(found, both))}\n"
+        "The orderings that the lesson claims, in both runs:\n\n"
+        f"{tables.markdown(ordering_rows(found, both))}"
+    )
+
+
+def value_rows(found: Comparison, both: tuple[str, str]) -> list[dict[str, str]]:
+    """Return a row for each metric of each case, in the lesson's order."""
+    spec = specification(found.new.lesson)
+    rows = {f.what: f for s in found.sections if s.title in VALUES for f in s.findings}
+    names = [(case, name) for case in spec.cases for name in spec.metrics]
+    return [
         {
             "case": case,
             "metric": tables.METRIC_LABELS[name],
-            f"{BACKEND}, this build": format_value(ours[case][name].value, metric.unit),
-            f"{backend}, recorded": format_value(metric.value, metric.unit),
+            both[0]: row.old,
+            both[1]: row.new,
+            "difference": row.delta or "–",
+            "allowed": row.allowed or "–",
+            "verdict": row.state,
         }
-        for case in COMPARED
-        for name, metric in theirs[case].items()
+        for case, name in names
+        if (row := rows.get(f"{case}.{name}"))
     ]
-    return tables.markdown(rows)
+
+
+def ordering_rows(found: Comparison, both: tuple[str, str]) -> list[dict[str, str]]:
+    """Return a row for each ordering that the lesson claims: what each run shows of it."""
+    return [
+        {"claim": f.what, both[0]: f.old, both[1]: f.new, "margin": f.allowed, "verdict": f.state}
+        for section in found.sections
+        if section.title == "Relations"
+        for f in section.findings
+    ]
 
 
 def warnings_html(warnings: Sequence[str]) -> str:

@@ -2,15 +2,18 @@
 
 import base64
 import re
+import shutil
 
 import pytest
+from spoilers import metrics, on, part, predicate, seal
 
-from robo_genesis import sphinx_panel
+from robo_genesis import l04, sphinx_panel
 from robo_genesis.evidence import bundle
+from robo_genesis.evidence.findings import number
 from robo_genesis.evidence.status import Status, recorded_status
 from robo_genesis.evidence.traces import read_trace
 from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.metrics import format_value
+from robo_genesis.tables import METRIC_LABELS
 
 
 @pytest.fixture
@@ -50,12 +53,93 @@ def test_frames_are_shown_small_and_only_where_there_are_any(folder, verified):
     assert sphinx_panel.frames_html(folder, verified) == ""
 
 
-def test_metrics_stand_side_by_side(folder):
-    text = sphinx_panel.metrics_text(folder, folder, "cuda")
+def test_switches_are_shown_as_they_were_set(folder):
+    switches = {"GS_ENABLE_ZEROCOPY": "0", "EGL_LOG": "a|b`c"}
+    predicate(environment=switches)(folder)
+    text = sphinx_panel.backend_text(Status("verified", "cpu", "", bundle.read_manifest(folder)))
+    assert "| engine switches | `GS_ENABLE_ZEROCOPY=0`, `EGL_LOG=a\\|b'c` |" in text
+
+
+def test_without_switches_none_are_shown(verified):
+    assert "| engine switches | none set |" in sphinx_panel.backend_text(verified)
+
+
+@pytest.fixture
+def there(folder, tmp_path):
+    """A bundle of an accelerator, otherwise the same."""
+    return on("amdgpu")(shutil.copytree(folder, tmp_path / "there" / "cpu"))
+
+
+def moved(folder, case, metric, by):
+    """Move one metric, as another machine might have measured it."""
+    metrics(lambda m: m[case][metric].update(value=m[case][metric]["value"] + by))(folder)
+    seal(folder)
+
+
+def rows(text):
+    """Cells of every line of the tables."""
+    lines = [line for line in text.splitlines() if line.startswith("| ")]
+    return [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in lines]
+
+
+def of_metric(text, case, name):
+    return next(row for row in rows(text) if row[:2] == [case, name])
+
+
+def test_equal_runs_stand_side_by_side(folder, there):
+    text = sphinx_panel.metrics_text("l04", folder, there)
+    assert text.startswith("**Against this build's run on cpu: equal.**")
     record = bundle.read_metrics(folder)["G2"]["overshoot"]
-    value = format_value(record.value, record.unit)
-    assert f"| G2 | overshoot | {value} | {value} |" in text
-    assert "cuda, recorded" in text.splitlines()[0]
+    value = number(record.value, record.unit)
+    assert of_metric(text, "G2", "overshoot")[2:5] == [value, value, "0 rad"]
+    assert rows(text)[0] == [
+        "case", "metric", "cpu, this build", "amdgpu, recorded", "difference", "allowed", "verdict",
+    ]  # fmt: skip
+    assert len([row for row in rows(text) if row[0] in l04.CASES]) == 4 * len(METRIC_LABELS)
+
+
+@pytest.mark.parametrize(("by", "verdict"), [(5e-5, "within tolerance"), (0.5, "differs")])
+def test_a_difference_has_what_is_allowed_and_a_verdict(folder, there, by, verdict):
+    moved(there, "G2", "overshoot", by)
+    text = sphinx_panel.metrics_text("l04", folder, there)
+    value = bundle.read_metrics(there)["G2"]["overshoot"].value
+    atol, rtol = l04.TOLERANCES["rad"]
+    expected = [number(by, "rad"), number(atol + rtol * value, "rad"), verdict]
+    assert of_metric(text, "G2", "overshoot")[4:] == expected
+    assert f": {verdict}.**" in text
+
+
+def test_the_lesson_s_own_tolerance_is_shown(folder, there, monkeypatch):
+    monkeypatch.setitem(l04.TOLERANCES, "overshoot", (7.0, 0.0))
+    text = sphinx_panel.metrics_text("l04", folder, there)
+    assert of_metric(text, "G2", "overshoot")[5] == "7 rad"
+
+
+def test_a_count_may_not_move(folder, there):
+    moved(there, "G2", "saturation_samples", 1)
+    text = sphinx_panel.metrics_text("l04", folder, there)
+    assert of_metric(text, "G2", "saturation")[4:] == ["1", "0", "differs"]
+
+
+def test_each_claimed_ordering_says_what_both_runs_show(folder, there):
+    text = sphinx_panel.metrics_text("l04", folder, there)
+    claims = [row for row in rows(text) if row[0].endswith("held in both")]
+    assert len(claims) == len(l04.RELATIONS)
+    assert all(row[1].startswith("held: G") and row[2].startswith("held: G") for row in claims)
+    moved(there, "G1", "overshoot", 1.0)
+    text = sphinx_panel.metrics_text("l04", folder, there)
+    (flipped,) = [row for row in rows(text) if row[0].endswith("flipped")]
+    assert flipped[1].startswith("held: ")
+    assert flipped[2].startswith("broken: ")
+    assert flipped[3:] == ["margin 0.001 rad", "differs"]
+
+
+def test_runs_that_cannot_be_compared_say_why(folder, there):
+    part("parameters", rise_fraction=0.5)(there)
+    text = sphinx_panel.metrics_text("l04", folder, there)
+    assert text.startswith("**Not comparable with this build's run on cpu.**")
+    assert "- parameters.rise_fraction differs: 0.9 and 0.5." in text
+    assert rows(text) == []
 
 
 def test_warnings_are_escaped_and_folded():
