@@ -21,12 +21,14 @@ from sphinx.util.docutils import SphinxDirective
 from robo_genesis import l04, plots, tables
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import Comparison, compare, specification
+from robo_genesis.evidence.findings import DIFFERS
 from robo_genesis.evidence.status import Status, recorded_status
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.sphinx_evidence import BACKEND, REFERENCE, outputs_folder
 
 COMPARED = ("G1", "G2", "G3")
-VALUES = ("Values", "Exact counts")
+VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
+TABLES = (*VALUES, RELATIONS)
 
 
 class Evidence(SphinxDirective):
@@ -140,9 +142,15 @@ def metrics_text(lesson: str, here: Path, folder: Path) -> str:
         reasons = "".join(f"- {reason}\n" for reason in found.obstacles)
         return f"**Not comparable with this build's run on {BACKEND}.**\n\n{reasons}"
     both = f"{BACKEND}, this build", f"{found.new.backend.actual}, recorded"
+    elsewhere = [
+        s.title.lower() for s in found.sections if s.title not in TABLES and s.state == DIFFERS
+    ]
+    more = (
+        f" They differ in {' and '.join(elsewhere)}, too: see `make compare`." if elsewhere else ""
+    )
     return (
-        f"**Against this build's run on {BACKEND}: {found.state}.** What the lesson allows is "
-        "declared before the runs; counts must be equal.\n\n"
+        f"**Against this build's run on {BACKEND}: {found.state}.**{more} What is allowed "
+        "and claimed is declared in the lesson's specification; counts must be equal.\n\n"
         f"{tables.markdown(value_rows(found, both))}\n"
         "The orderings that the lesson claims, in both runs:\n\n"
         f"{tables.markdown(ordering_rows(found, both))}"
@@ -171,12 +179,20 @@ def value_rows(found: Comparison, both: tuple[str, str]) -> list[dict[str, str]]
 
 def ordering_rows(found: Comparison, both: tuple[str, str]) -> list[dict[str, str]]:
     """Return a row for each ordering that the lesson claims: what each run shows of it."""
-    return [
-        {"claim": f.what, both[0]: f.old, both[1]: f.new, "margin": f.allowed, "verdict": f.state}
-        for section in found.sections
-        if section.title == "Relations"
-        for f in section.findings
-    ]
+    rows = []
+    for f in (f for s in found.sections if s.title == RELATIONS for f in s.findings):
+        claim, _, verdict = f.what.partition(", ")
+        metric, _, order = claim.partition(": ")
+        rows.append(
+            {
+                "claim": f"{tables.METRIC_LABELS[metric]}: {order}",
+                both[0]: f.old,
+                both[1]: f.new,
+                "margin": f.allowed.removeprefix("margin "),
+                "verdict": verdict,
+            }
+        )
+    return rows
 
 
 def warnings_html(warnings: Sequence[str]) -> str:

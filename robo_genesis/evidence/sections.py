@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.evidence.bundle import Metric
+from robo_genesis.evidence.bundle import JointRecord, Metric
 from robo_genesis.evidence.findings import (
     DIFFERS,
     EQUAL,
@@ -37,6 +37,25 @@ def coverage(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
         state = EQUAL if labels[0] == labels[1] else DIFFERS
         here, there = (", ".join(of) if state == DIFFERS else str(len(of)) for of in labels)
         yield Finding(state, f"labels of {axis}", here, there)
+    yield from _joints(old, new)
+
+
+def _joints(old: Side, new: Side) -> Iterator[Finding]:
+    """A name owns the same DOF, with the same type and limits, on both sides."""
+    here, there = ({j.name: _owned(j) for j in side.arrays.joints} for side in (old, new))
+    for name in [n for n in here if here[n] != there.get(n, here[n])]:
+        yield Finding(DIFFERS, f"joint {name}", here[name], there[name])
+    if here == there:
+        yield Finding(EQUAL, "joint map", str(len(here)), str(len(there)))
+
+
+def _owned(joint: JointRecord) -> str:
+    limits = (
+        "no limit" if limit is None else number(limit, joint.unit)
+        for limit in (joint.lower, joint.upper)
+    )
+    places = f"DOF {joint.dof_idx_local}, qpos {joint.q_idx_local}"
+    return f"{joint.type_}, {places}, {' to '.join(limits)}"
 
 
 def _present(kind: str, old: set[str], new: set[str], expected: set[str]) -> Iterator[Finding]:

@@ -93,6 +93,19 @@ def test_a_backend_is_one_axis(folder, other):
     assert compare(folder, other, SPEC).axis == "backend cpu → cuda"
 
 
+def test_a_joint_that_owns_another_dof_is_a_difference(folder, other):
+    edit(other, "arrays.json", lambda a: a["joints"][3].update(dof_idx_local=4, lower=None))
+    (row,) = (f for f in rows(compare(folder, other, SPEC), "Coverage") if f.state == "differs")
+    assert row.what == "joint joint4"
+    assert row.old == "REVOLUTE, DOF 3, qpos 3, -3.0718 rad to -0.0698 rad"
+    assert row.new == "REVOLUTE, DOF 4, qpos 3, no limit to -0.0698 rad"
+
+
+def test_limits_that_differ_in_the_last_digits_do_not(folder, other):
+    edit(other, "arrays.json", lambda a: a["joints"][3].update(lower=-3.07180000001))
+    assert compare(folder, other, SPEC).state == "equal"
+
+
 def test_two_axes_are_refused_and_both_named(folder, other):
     part(other, "backend", actual="cuda", actual_at_end="cuda")
     part(other, "engine", version="9.9.9")

@@ -5,7 +5,7 @@ import re
 import shutil
 
 import pytest
-from spoilers import metrics, on, part, predicate, seal
+from spoilers import edit, metrics, on, part, predicate, seal
 
 from robo_genesis import l04, sphinx_panel
 from robo_genesis.evidence import bundle
@@ -123,15 +123,34 @@ def test_a_count_may_not_move(folder, there):
 
 def test_each_claimed_ordering_says_what_both_runs_show(folder, there):
     text = sphinx_panel.metrics_text("l04", folder, there)
-    claims = [row for row in rows(text) if row[0].endswith("held in both")]
+    claims = [row for row in rows(text) if row[-1] == "held in both"]
     assert len(claims) == len(l04.RELATIONS)
     assert all(row[1].startswith("held: G") and row[2].startswith("held: G") for row in claims)
     moved(there, "G1", "overshoot", 1.0)
     text = sphinx_panel.metrics_text("l04", folder, there)
-    (flipped,) = [row for row in rows(text) if row[0].endswith("flipped")]
+    (flipped,) = [row for row in rows(text) if row[-1] == "flipped"]
+    assert flipped[0] == "overshoot: G2 higher than G1"
     assert flipped[1].startswith("held: ")
     assert flipped[2].startswith("broken: ")
-    assert flipped[3:] == ["margin 0.001 rad", "differs"]
+    assert flipped[3] == "0.001 rad"
+
+
+def test_an_ordering_within_the_margin_is_decided_on_neither_side(folder, there):
+    g1, g2 = (bundle.read_metrics(folder)[case]["overshoot"].value for case in ("G1", "G2"))
+    moved(there, "G1", "overshoot", g2 - g1)
+    (row,) = [
+        row
+        for row in rows(sphinx_panel.metrics_text("l04", folder, there))
+        if row[-1] == "inconclusive"
+    ]
+    assert row[2].startswith("within the margin: ")
+
+
+def test_a_difference_outside_the_tables_is_named(folder, there):
+    edit(there, "arrays.json", lambda a: a["joints"][3].update(dof_idx_local=0))
+    seal(there)
+    text = sphinx_panel.metrics_text("l04", folder, there)
+    assert ": differs.** They differ in coverage, too: see `make compare`." in text
 
 
 def test_runs_that_cannot_be_compared_say_why(folder, there):
