@@ -1,5 +1,6 @@
 import ast
 import json
+import re
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -144,7 +145,14 @@ def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():
     assert "l04" not in COMPUTING_MODULES
 
 
-def test_the_lesson_is_data(monkeypatch):
+def test_the_lab_runs_with_parameters_and_words_its_result_with_the_rest():
+    (lab,) = (project.BOOK / "lessons").glob("l04-*/lab.md")
+    read = set(re.findall(r"\bl04\.([A-Za-z]\w*)", lab.read_text("utf8")))
+    assert read - {*OTHER, "CASES"} == {"BASELINE", "PREDICTIONS", "RESOLUTION", "parameters"}
+    assert l04.CASES["baseline"] is l04.BASELINE
+
+
+def test_the_lesson_is_data():
     tree = ast.parse(Path(l04.__file__).read_text("utf8"))
     functions = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
     assert functions == ["with_entry", "parameters"]

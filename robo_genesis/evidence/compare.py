@@ -191,6 +191,12 @@ def _notes(old: Predicate, new: Predicate) -> Iterator[str]:
             yield f"The {word} bundle was not recorded from a clean checkout."
     if old.backend.device_name != new.backend.device_name or old.host.cpu != new.host.cpu:
         yield "The devices are not the same."
+    if old.environment != new.environment:
+        was, now = (
+            ", ".join(f"{name}={value}" for name, value in p.environment.items()) or "none"
+            for p in (old, new)
+        )
+        yield f"The engine's switches are not the same: {was}; {now}."
     for word, one, other in (("gained", new, old), ("lost", old, new)):
         for warning in dict.fromkeys(one.warnings):
             if warning not in other.warnings:

@@ -93,6 +93,14 @@ def test_a_backend_is_one_axis(folder, other):
     assert compare(folder, other, SPEC).axis == "backend cpu → cuda"
 
 
+def test_other_switches_are_noted_and_no_difference(folder, other):
+    predicate(other, environment={"QD_DEBUG": "1", "GS_ENABLE_ZEROCOPY": "0"})
+    comparison = compare(folder, other, SPEC)
+    said = "The engine's switches are not the same: none; QD_DEBUG=1, GS_ENABLE_ZEROCOPY=0."
+    assert said in comparison.notes
+    assert comparison.state == "equal"
+
+
 def test_a_joint_that_owns_another_dof_is_a_difference(folder, other):
     edit(other, "arrays.json", lambda a: a["joints"][3].update(dof_idx_local=4, lower=None))
     (row,) = (f for f in rows(compare(folder, other, SPEC), "Coverage") if f.state == "differs")
