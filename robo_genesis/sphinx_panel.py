@@ -24,6 +24,7 @@ from robo_genesis.evidence.compare import Comparison, compare, specification
 from robo_genesis.evidence.findings import DIFFERS
 from robo_genesis.evidence.status import Status, recorded_status
 from robo_genesis.evidence.traces import read_joints, read_trace
+from robo_genesis.metrics import format_value
 from robo_genesis.sphinx_evidence import BACKEND, REFERENCE, outputs_folder
 
 COMPARED = ("G1", "G2", "G3")
@@ -151,23 +152,25 @@ def metrics_text(lesson: str, here: Path, folder: Path) -> str:
     return (
         f"**Against this build's run on {BACKEND}: {found.state}.**{more} What is allowed "
         "and claimed is declared in the lesson's specification; counts must be equal.\n\n"
-        f"{tables.markdown(value_rows(found, both))}\n"
+        f"{tables.markdown(value_rows(found, both, (here, folder)))}\n"
         "The orderings that the lesson claims, in both runs:\n\n"
         f"{tables.markdown(ordering_rows(found, both))}"
     )
 
 
-def value_rows(found: Comparison, both: tuple[str, str]) -> list[dict[str, str]]:
-    """Return a row for each metric of each case, in the lesson's order."""
+def value_rows(
+    found: Comparison, both: tuple[str, str], folders: tuple[Path, Path]
+) -> list[dict[str, str]]:
+    """Return a row for each metric of each case, in the lesson's order, values as in prose."""
     spec = specification(found.new.lesson)
+    ours, theirs = (bundle.read_metrics(folder) for folder in folders)
     rows = {f.what: f for s in found.sections if s.title in VALUES for f in s.findings}
     names = [(case, name) for case in spec.cases for name in spec.metrics]
     return [
         {
-            "case": case,
-            "metric": tables.METRIC_LABELS[name],
-            both[0]: row.old,
-            both[1]: row.new,
+            "metric": f"{case} {tables.METRIC_LABELS[name]}",
+            both[0]: format_value(ours[case][name].value, ours[case][name].unit),
+            both[1]: format_value(theirs[case][name].value, theirs[case][name].unit),
             "difference": row.delta or "–",
             "allowed": row.allowed or "–",
             "verdict": row.state,
