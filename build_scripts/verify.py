@@ -1,7 +1,8 @@
 """Verify evidence: `make verify` (BUNDLE=path checks one folder).
 
 One line for each bundle that is recorded in the book and for each of the last build: lesson,
-backend, state, reason. Exit status: 0 all verified, or none there; 1 any stale, failed or refused.
+backend, state, reason. Exit status: 0 all verified, or none there; 1 any that is inconclusive,
+stale, failed or refused.
 """
 
 import os
@@ -27,7 +28,7 @@ def all_bundles() -> Iterator[tuple[str, Status]]:
 def line(place: str, status: Status) -> str:
     """Return one bundle's line."""
     text = status.reason or f"run {_run(status)}"
-    return f"{place:14} {status.backend:8} {status.state:9} {text}"
+    return f"{place:14} {status.backend:8} {status.state:12} {text}"
 
 
 def _run(status: Status) -> str:

@@ -102,12 +102,12 @@ def joints() -> JointMap:
 
 
 @pytest.fixture(scope="session")
-def traces(second_order) -> dict[str, Trace]:
-    """Synthetic runs of the four cases of L04: float32 as from the engine, efforts clipped."""
+def make_run(second_order) -> Callable[..., Trace]:
+    """Make a synthetic run of a case of L04: float32 as from the engine, efforts clipped."""
 
-    def run(name: str) -> Trace:
+    def run(name: str, omega: float, zeta: float) -> Trace:
         case, t = l04.CASES[name], np.arange(l04.STEPS + 1) * DT
-        y, yd = second_order(t, *SHAPES[name])
+        y, yd = second_order(t, omega, zeta)
         step = case.q_target - case.q_start
         q = (case.q_start + y[:, None] * step).astype(np.float32)
         qd = (yd[:, None] * step).astype(np.float32)
@@ -130,7 +130,13 @@ def traces(second_order) -> dict[str, Trace]:
             link_quat=np.tile(np.float32([1, 0, 0, 0]), (len(t), len(LINKS), 1)),
         )
 
-    return {name: run(name) for name in l04.CASES}
+    return run
+
+
+@pytest.fixture(scope="session")
+def traces(make_run) -> dict[str, Trace]:
+    """Synthetic runs of the four cases of L04."""
+    return {name: make_run(name, *SHAPES[name]) for name in l04.CASES}
 
 
 @pytest.fixture(scope="session")

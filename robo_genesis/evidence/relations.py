@@ -1,7 +1,8 @@
 """The orderings between cases that a lesson claims, held in two runs, flipped, or not decidable."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
+from robo_genesis.evidence.bundle import Metric
 from robo_genesis.evidence.findings import (
     DIFFERS,
     EQUAL,
@@ -24,7 +25,7 @@ def relations(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
     """
     for relation in spec.relations:
         (first, second), metric, order, margin = relation
-        outcomes = [outcome(side, relation) for side in (old, new)]
+        outcomes = [outcome(side.numbers, relation) for side in (old, new)]
         units = [m.unit for side in (old, new) if (m := side.numbers.get(f"{first}.{metric}"))]
         found = {held for held, _ in outcomes}
         if BROKEN in found:
@@ -41,14 +42,30 @@ def relations(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
         yield Finding(state, what, old_text, new_text, allowed=allowed)
 
 
-def outcome(side: Side, relation: Relation) -> tuple[str, str]:
+def not_shown(numbers: Mapping[str, Metric], claimed: Sequence[Relation]) -> list[str]:
+    """Return a line for each claimed ordering that one run breaks or leaves undecided.
+
+    Args:
+        numbers: the run's metrics by `case.metric`.
+        claimed: what the lesson claims.
+    """
+    lines = []
+    for relation in claimed:
+        (first, second), metric, order, _ = relation
+        held, values = outcome(numbers, relation)
+        if held != HELD:
+            lines.append(f"{metric} {order} in {second} than in {first} is {held} ({values})")
+    return lines
+
+
+def outcome(numbers: Mapping[str, Metric], relation: Relation) -> tuple[str, str]:
     """Return whether one run holds an ordering, and the two values it is read from.
 
     A time that the window did not reach is later than any time within it. What two values within
     the margin of each other show is nothing, unless the claim allows them to be equal and they are.
     """
     (first, second), metric, order, margin = relation
-    a, b = (side.numbers.get(f"{case}.{metric}") for case in (first, second))
+    a, b = (numbers.get(f"{case}.{metric}") for case in (first, second))
     if a is None or b is None:
         return WITHIN_MARGIN, f"{first} or {second} is missing"
     text = f"{first} {number(a.value, a.unit)}, {second} {number(b.value, b.unit)}"

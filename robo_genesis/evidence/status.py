@@ -6,7 +6,10 @@ from pathlib import Path
 
 from robo_genesis import project
 from robo_genesis.checks import CHECKS
+from robo_genesis.evidence import bundle, current
 from robo_genesis.evidence.bundle import BundleRefused, Manifest
+from robo_genesis.evidence.compare import specification
+from robo_genesis.evidence.relations import not_shown
 from robo_genesis.evidence.verify import verify_bundle
 
 RECORDED_PAGE = "lab"
@@ -15,8 +18,12 @@ RECORDED_PAGE = "lab"
 STATE_OF_CODE = {"stale": "stale", "older-schema": "stale", "failed": "failed"}
 """Refusals that are a state of their own; every other code is `refused`."""
 
-PASSING = ("verified", "missing", "stale")
-"""States that a build goes on with; without `verified` a panel stands in the figures' place."""
+STATES = ("verified", "inconclusive", "missing", "stale", "failed", "refused")
+
+PASSING = ("verified", "inconclusive", "missing", "stale")
+"""States that a build goes on with; without a manifest a panel stands in the figures' place."""
+
+UNREADABLE = "The bundle was refused; `make verify` says what it found and what it expected."
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,12 +33,14 @@ class Status:
     | state | means |
     |---|---|
     | `verified` | accepted; `manifest` is given |
+    | `inconclusive` | accepted, but it does not show every ordering that the lesson claims |
     | `missing` | no bundle stands there |
     | `stale` | honest, but of an older form, or the answer to an older question |
     | `failed` | sound, and its own checks did not pass |
     | `refused` | damaged, mislabelled, incomplete or of an unknown form |
 
-    `code` is that of the refusal, None where there was none; `reason` names expected and found.
+    `code` is that of the refusal, None where there was none; `reason` names expected and found,
+    `summary` says the same to a reader of the site.
     """
 
     state: str
@@ -39,20 +48,27 @@ class Status:
     reason: str
     manifest: Manifest | None
     code: str | None = None
+    summary: str = ""
+
+    @property
+    def badge(self) -> str:
+        """The one word that the site shows: backend and state."""
+        return f"{self.backend}-{self.state}"
 
     @property
     def sentence(self) -> str:
         """Say what was run, for a reader."""
         if self.manifest is None:
-            return f"{self.backend}: {self.state}. {self.reason}"
+            return f"{self.backend}: {self.state}. {self.summary or self.reason}"
         predicate = self.manifest.predicate
         render = predicate.render
         kernel = "Clean kernel" if predicate.command.startswith("make ") else "Run by hand"
         passed = sum(check.passed for check in predicate.checks)
         camera = f"camera frames by {render.renderer}" if render.mode == "camera" else "camera SKIP"
+        more = f" {self.summary}" if self.summary else ""
         return (
             f"{self.backend}: {self.state}. {kernel}, Genesis {predicate.engine.version}, "
-            f"{passed} of {len(CHECKS)} checks passed, {camera}, measured {predicate.started[:10]}."
+            f"{passed} of {len(CHECKS)} checks passed, {camera}, measured {predicate.started[:10]}.{more}"
         )
 
 
@@ -96,8 +112,49 @@ def bundle_status(
         manifest = verify_bundle(folder, lesson=lesson, page=page, book=book)
     except BundleRefused as refusal:
         state = STATE_OF_CODE.get(refusal.code, "refused")
-        return Status(state, folder.name, str(refusal), None, refusal.code)
-    return Status("verified", folder.name, "", manifest)
+        summary = {
+            "stale": lambda: why_stale(bundle.read_manifest(folder), book),
+            "failed": lambda: "Its own checks did not all pass.",
+        }.get(state, lambda: UNREADABLE)()
+        return Status(state, folder.name, str(refusal), None, refusal.code, summary)
+    return _shown(folder, manifest)
+
+
+def _shown(folder: Path, manifest: Manifest) -> Status:
+    """Return the state of an accepted bundle: whether it shows what its lesson claims."""
+    metrics = bundle.read_metrics(folder)
+    numbers = {f"{group}.{name}": m for group, of in metrics.items() for name, m in of.items()}
+    open_ones = not_shown(numbers, specification(manifest.predicate.lesson).relations)
+    if not open_ones:
+        return Status("verified", folder.name, "", manifest)
+    reason = f"Not shown of what the lesson claims: {'; '.join(open_ones)}."
+    return Status("inconclusive", folder.name, reason, manifest, summary=reason)
+
+
+def why_stale(manifest: Manifest, book: Path) -> str:
+    """Say to a reader what changed since a bundle was recorded.
+
+    Args:
+        manifest: of a bundle that was refused as stale.
+        book: the pages of this checkout.
+    """
+    found = manifest.predicate.model_dump()
+    asked = current.question(found["lesson"], found["page"], project.ROOT, book)
+    versions = (("Genesis", "version"), ("Quadrants", "quadrants_version"))
+    changed = [
+        f"it was recorded with {name} {found['engine'][key]}; this site uses {asked['engine'][key]}"
+        for name, key in versions
+        if found["engine"][key] != asked["engine"][key]
+    ]
+    for what, here, there in (
+        (f"the {found['page']}'s code", found["source"]["page"], asked["source"]["page"]),
+        ("the course's code", found["source"]["modules"], asked["source"]["modules"]),
+        ("the parameters", found["parameters"], asked["parameters"]),
+        ("the seed", found["seed"], asked["seed"]),
+    ):
+        changed += [f"{what} changed since"] if here != there else []
+    text = "; ".join(changed) or "it answers an older question"
+    return f"{text[0].upper()}{text[1:]}."
 
 
 def recorded_folders(book: Path) -> list[Path]:

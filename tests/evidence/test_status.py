@@ -2,9 +2,23 @@ import shutil
 from dataclasses import replace
 
 import pytest
-from spoilers import failing, on, part, predicate, seal
+from spoilers import (
+    both,
+    check,
+    failing,
+    log,
+    manifest,
+    measured_again,
+    off_law,
+    on,
+    part,
+    predicate,
+    rewrite,
+    seal,
+)
 
-from robo_genesis import project
+from robo_genesis import l04, project
+from robo_genesis.checks import StepExperiment, run_checks
 from robo_genesis.evidence.status import (
     bundle_status,
     page_status,
@@ -44,7 +58,7 @@ def test_another_backend_s_evidence_is_missing_until_it_is_recorded(
 
 def test_no_bundle_is_missing(outputs):
     status = page_status(outputs, "l04", "lab", "amdgpu")
-    assert (status.state, status.manifest) == ("missing", None)
+    assert (status.state, status.manifest, status.badge) == ("missing", None, "amdgpu-missing")
     assert status.sentence == "amdgpu: missing. No bundle was recorded for l04/lab."
 
 
@@ -52,7 +66,8 @@ def test_a_spoiled_bundle_is_refused_with_its_reason(outputs, folder):
     (folder / "log.txt").unlink()
     status = page_status(outputs, "l04", "lab", "cpu")
     assert (status.state, status.manifest, status.code) == ("refused", None, "files")
-    assert status.sentence.startswith("cpu: refused. files: listed but absent: ['log.txt']")
+    assert status.reason.startswith("files: listed but absent: ['log.txt']")
+    assert "make verify" in status.sentence
 
 
 def test_a_copy_for_another_backend_is_refused(outputs, folder):
@@ -157,3 +172,76 @@ def test_an_accelerator_s_bundle_is_verified(book, courses_pages):
     on("amdgpu")(book / "evidence" / "l04" / "cpu")
     assert recorded_status(book, "l04", "amdgpu").state == "verified"
     assert recorded_status(book, "l04", "cpu").state == "missing"
+
+
+@pytest.fixture
+def undecided(recorder, measured, experiment, make_run):
+    """A sound bundle whose G2 responds as G1 does, with G2's own controller."""
+    traces = experiment.traces | {"G2": make_run("G2", 20.0, 0.8)}
+    metrics = l04.measure(traces, experiment.joints.entry(l04.STEPPED_JOINT))
+    again = StepExperiment(
+        experiment.joints, experiment.model, l04.CASES, traces, metrics, "camera", experiment.frames
+    )
+    records = l04.metric_records(metrics, experiment.model)
+    outcomes = run_checks(again)
+    assert all(check.passed for check in outcomes)
+    return recorder.write(
+        replace(measured, traces=traces, metrics=records, checks=outcomes)
+    ), metrics
+
+
+def test_a_sound_bundle_that_does_not_show_the_claims_is_inconclusive(undecided):
+    folder, metrics = undecided
+    status = bundle_status(folder, "l04", "lab")
+    assert (status.state, status.badge) == ("inconclusive", "cpu-inconclusive")
+    assert status.manifest is not None
+    values = " and ".join(f"{metrics[case].peak_speed:.6g} rad/s" for case in ("G1", "G2"))
+    first, second = values.split(" and ")
+    said = f"peak_speed higher in G2 than in G1 is within the margin (G1 {first}, G2 {second})"
+    assert said in status.reason
+    assert "overshoot higher in G2 than in G1" in status.reason
+    assert "rise_time no later in G2" not in status.reason
+    assert status.summary in status.sentence
+
+
+def test_a_build_goes_on_with_what_is_inconclusive(undecided, tmp_path, courses_pages):
+    folder, _ = undecided
+    shutil.copytree(folder, tmp_path / "book" / "evidence" / "l04" / "cpu")
+    assert recorded_status(tmp_path / "book", "l04", "cpu").state == "inconclusive"
+    assert refused_records(tmp_path / "book") == []
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (part("engine", version="1.2.0"), f"Genesis 1.2.0; this site uses {project.engine_pin()}."),
+        (part("source", page="0" * 64), "The lab's code changed since."),
+        (manifest(lambda m: m["predicate"]["source"]["modules"].update(metrics="0" * 64)),
+         "The course's code changed since."),
+    ],
+)  # fmt: skip
+def test_what_is_stale_tells_a_reader_what_changed(folder, change, said):
+    change(folder)
+    if "1.2.0" in said:
+        log("version: ", "version: 1.2.0, was: ")(folder)
+    seal(folder)
+    status = bundle_status(folder)
+    assert status.state == "stale"
+    assert status.summary.endswith(said)
+    assert status.summary not in status.reason
+
+
+@pytest.mark.parametrize(
+    ("forge", "state"),
+    [
+        (predicate(status="verified", state="verified"), "refused"),
+        (manifest(lambda m: m.update(badge="cpu-verified")), "refused"),
+        (both(rewrite(control_force=off_law), measured_again), "refused"),
+    ],
+    ids=["a state in the predicate", "a badge in the manifest", "checks said to have passed"],
+)
+def test_no_manifest_can_set_its_state(folder, forge, state):
+    forge(folder)
+    seal(folder)
+    status = bundle_status(folder)
+    assert (status.state, status.badge, status.manifest) == (state, f"cpu-{state}", None)

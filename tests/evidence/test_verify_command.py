@@ -6,6 +6,7 @@ import shutil
 import pytest
 from spoilers import on, part, seal
 
+from robo_genesis import l04
 from robo_genesis.project import ROOT, engine_pin
 
 
@@ -54,9 +55,9 @@ def stale(folder):
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
-        (stale, "stale     stale: manifest.json: engine.quadrants_version is '1.2.9', expected"),
-        (lambda folder: (folder / "log.txt").unlink(), "refused   files: listed but absent"),
-        (lambda folder: folder.rename(folder.with_name("rocm")), "rocm     refused   backend: "),
+        (stale, "stale        stale: manifest.json: engine.quadrants_version is '1.2.9', expected"),
+        (lambda folder: (folder / "log.txt").unlink(), "refused      files: listed but absent"),
+        (lambda folder: folder.rename(folder.with_name("rocm")), "rocm     refused      backend: "),
     ],
 )
 def test_what_is_not_current_is_status_1(command, recorded, built, capsys, spoil, said):
@@ -65,6 +66,13 @@ def test_what_is_not_current_is_status_1(command, recorded, built, capsys, spoil
     out = capsys.readouterr().out
     assert said in out
     assert "l04 built      cpu      verified" in out
+
+
+def test_what_does_not_show_the_claims_is_status_1(command, recorded, monkeypatch, capsys):
+    wide = tuple((pair, metric, order, 1e6) for pair, metric, order, _ in l04.RELATIONS)
+    monkeypatch.setattr(l04, "RELATIONS", wide)
+    assert command.main() == 1
+    assert "inconclusive Not shown of what the lesson claims: peak_speed" in capsys.readouterr().out
 
 
 def test_one_folder_is_checked_alone(command, recorded, folder, monkeypatch, capsys):
@@ -77,7 +85,7 @@ def test_one_folder_is_checked_alone(command, recorded, folder, monkeypatch, cap
 def test_a_folder_that_is_not_there_is_status_1(command, tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("BUNDLE", str(tmp_path / "cpu"))
     assert command.main() == 1
-    assert "missing   There is no such folder." in capsys.readouterr().out
+    assert "missing      There is no such folder." in capsys.readouterr().out
 
 
 def test_a_broken_book_is_named(command, recorded, monkeypatch, capsys):
