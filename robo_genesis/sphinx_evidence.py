@@ -8,7 +8,7 @@ Roles and directive, as pages write them:
 | {measured}`l04/lab engine` | the engine version that the page ran on |
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
-| {lesson-state}`l04` | the state of a lesson on CPU, in a word |
+| {lesson-state}`l04` | a badge for each backend of a lesson: backend and state |
 | {lesson-status} l04 (directive) | what was run for a lesson, and its state |
 """
 
@@ -23,7 +23,7 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 from robo_genesis import l04, project
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.status import page_status, recorded_status
+from robo_genesis.evidence.status import Status, page_status, recorded_folders, recorded_status
 from robo_genesis.metrics import format_value
 
 BUILD_OUTPUTS = "ROBO_GENESIS_BUILD_OUTPUTS"
@@ -83,31 +83,54 @@ class Measured(SphinxRole):
         return [node], []
 
 
+def lesson_backends(book: Path, lesson: str) -> list[str]:
+    """Return the backends of a lesson's recorded runs, the reference first, recorded or not."""
+    recorded = [path.name for path in recorded_folders(book) if path.parent.name == lesson]
+    return [REFERENCE, *(name for name in recorded if name != REFERENCE)]
+
+
+def lesson_statuses(book: Path, lesson: str) -> list[Status]:
+    """Return the states of a lesson's lab: of this build on CPU, then of the recorded runs."""
+    recorded = [recorded_status(book, lesson, name) for name in lesson_backends(book, lesson)]
+    return [page_status(outputs_folder(), lesson, "lab", BACKEND, book), *recorded]
+
+
+def badge_node(status: Status) -> nodes.Node:
+    """Return a state as the site shows it everywhere: one word, and a colour that follows it."""
+    return nodes.inline("", status.badge, classes=["evidence-badge", f"state-{status.state}"])
+
+
+def make_command(lesson: str, status: Status) -> nodes.Node:
+    """Return the command that makes the evidence which is not there."""
+    command = f"$ make evidence LESSON={lesson} BACKEND={status.backend}"
+    if status.backend == BACKEND:
+        command = "$ make book"
+    return nodes.literal_block(command, command, language="console")
+
+
 class LessonStatus(SphinxDirective):
-    """Say what was run for a lesson: the state of its lab on CPU and on the reference backend."""
+    """Say what was run for a lesson: the states of its lab, each with a badge and a sentence."""
 
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
         """Return one line a backend."""
-        lesson = self.arguments[0]
-        book = Path(self.env.srcdir)
-        cpu = page_status(outputs_folder(), lesson, "lab", BACKEND, book)
-        reference = recorded_status(book, lesson, REFERENCE)
-        lines = nodes.bullet_list(classes=["lesson-status", f"status-{cpu.state}"])
-        for status in (cpu, reference):
-            lines += nodes.list_item("", nodes.paragraph("", status.sentence))
+        lines = nodes.bullet_list(classes=["lesson-status"])
+        for status in lesson_statuses(Path(self.env.srcdir), self.arguments[0]):
+            line = nodes.paragraph("", "", badge_node(status), nodes.Text(f" {status.sentence}"))
+            lines += nodes.list_item("", line)
         return [lines]
 
 
 class LessonState(SphinxRole):
-    """Say in a word what state a lesson's lab is in on CPU."""
+    """Show the badges of a lesson."""
 
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        """Return state and backend."""
-        book = Path(self.env.srcdir)
-        status = page_status(outputs_folder(), self.text, "lab", BACKEND, book)
-        return [nodes.inline(self.rawtext, f"{status.state} ({status.backend})")], []
+        """Return one badge a backend."""
+        shown: list[nodes.Node] = []
+        for status in lesson_statuses(Path(self.env.srcdir), self.text):
+            shown += [badge_node(status), nodes.Text(" ")]
+        return shown[:-1], []
 
 
 class EngineSource(SphinxRole):

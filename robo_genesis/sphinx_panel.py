@@ -4,9 +4,10 @@ A page writes ```` ```{evidence} l04 ````. Everything shown comes from an accept
 `book/evidence/<lesson>/<backend>/`; where there is none, the panel says why and what makes one.
 """
 
-import base64
 import io
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -14,18 +15,29 @@ from typing import Any
 import matplotlib as mpl
 from docutils import nodes
 from matplotlib.figure import Figure
-from PIL import Image
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis import l04, plots, tables
+from robo_genesis import l04, plots, project, tables
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import Comparison, compare, specification
 from robo_genesis.evidence.findings import DIFFERS
-from robo_genesis.evidence.status import Status, recorded_status
+from robo_genesis.evidence.status import RECORDED_PAGE, Status, recorded_status
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.metrics import format_value
-from robo_genesis.sphinx_evidence import BACKEND, REFERENCE, outputs_folder
+from robo_genesis.sphinx_evidence import BACKEND, lesson_backends, outputs_folder
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A picture of a bundle, and the words that stand with it."""
+
+    name: str
+    suffix: str
+    content: bytes
+    alt: str
+    caption: str
+
 
 COMPARED = ("G1", "G2", "G3")
 VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
@@ -40,8 +52,7 @@ class Evidence(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Return one panel a backend; the reference backend has one even where it is missing."""
         lesson, book = self.arguments[0], Path(self.env.srcdir)
-        recorded = [path.name for path in sorted((book / "evidence" / lesson).glob("[!.]*/"))]
-        backends = [REFERENCE, *(name for name in recorded if name != REFERENCE)]
+        backends = lesson_backends(book, lesson)
         return [self.panel(lesson, recorded_status(book, lesson, name)) for name in backends]
 
     def panel(self, lesson: str, status: Status) -> nodes.Node:
@@ -53,18 +64,28 @@ class Evidence(SphinxDirective):
         folder = Path(self.env.srcdir) / "evidence" / lesson / status.backend
         here = outputs_folder() / lesson / "lab" / BACKEND
         panel += self.parse_text_to_nodes(backend_text(status))
-        panel += nodes.raw("", figure_html(folder, status), format="html")
-        panel += nodes.raw("", frames_html(folder, status), format="html")
+        panel["evidence_run"] = f"{lesson}/{RECORDED_PAGE}/{status.backend}/recorded"
+        for picture in (response(folder, status), *frames(folder, status)):
+            panel += self.figure(f"{lesson}-{status.backend}-{picture.name}", picture)
         panel += self.parse_text_to_nodes(metrics_text(lesson, here, folder))
         panel += nodes.raw("", warnings_html(status.manifest.predicate.warnings), format="html")
         return panel
+
+    def figure(self, anchor: str, picture: Picture) -> nodes.Node:
+        """Return a figure; its file stands beside the site until Sphinx copies it."""
+        file = Path(self.env.app.outdir).parent / "panel" / f"{anchor}{picture.suffix}"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(picture.content)
+        image = nodes.image(uri=f"/{os.path.relpath(file, self.env.srcdir)}", alt=picture.alt)
+        return nodes.figure("", image, nodes.caption("", picture.caption), ids=[anchor])
 
 
 def missing_text(lesson: str, status: Status) -> str:
     """Say which evidence is not here, why, and the command that makes it."""
     return (
-        f"**Reference run on {status.backend}: {status.state}.** {status.reason} "
-        "On a machine with this backend:\n\n"
+        f"**No evidence from {status.backend} for Genesis {project.engine_pin()} "
+        f"({status.badge}).** {status.summary or status.reason} On a machine with this backend, "
+        "this makes it:\n\n"
         f"```console\n$ make evidence LESSON={lesson} BACKEND={status.backend}\n```\n\n"
         "{doc}`/evidence/recording` says what that machine needs.\n"
     )
@@ -97,8 +118,8 @@ def switches_text(switches: Mapping[str, str]) -> str:
     return ", ".join(f"`{pair.translate(marks)}`" for pair in pairs) or "none set"
 
 
-def figure_html(folder: Path, status: Status) -> str:
-    """Return the response of the three cases, drawn from the bundle's arrays, as HTML."""
+def response(folder: Path, status: Status) -> Picture:
+    """Return the response of the three cases, drawn from the bundle's arrays."""
     arrays = bundle.read_arrays(folder)
     traces = {case: read_trace(folder, arrays, case) for case in COMPARED}
     joints = read_joints(arrays)
@@ -113,21 +134,17 @@ def figure_html(folder: Path, status: Status) -> str:
         f"{status.backend}, with the cases G1, G2 and G3 drawn over each other."
     )
     caption = f"{l04.STEPPED_JOINT} on {status.backend}, drawn from the arrays of the recorded run."
-    return _figure("image/svg+xml", stream.getvalue(), alt, caption)
+    return Picture("response", ".svg", stream.getvalue(), alt, caption)
 
 
-def frames_html(folder: Path, status: Status) -> str:
-    """Return the camera frames at both ends as small pictures, nothing where rendering was off."""
-    html = []
+def frames(folder: Path, status: Status) -> Iterator[Picture]:
+    """Yield the camera frames as they came, nothing where rendering was off."""
     for name in ("initial", "final"):
         path = folder / "frames" / f"{name}.png"
         if path.is_file():
-            stream = io.BytesIO()
-            with Image.open(path) as picture:
-                picture.save(stream, format="webp", quality=80)
             alt = f"Camera frame of the Franka, {name} state of the baseline on {status.backend}."
-            html.append(_figure("image/webp", stream.getvalue(), alt, f"Camera frame, {name}."))
-    return "".join(html)
+            caption = f"Camera frame on {status.backend}, {name} state of the baseline."
+            yield Picture(name, ".png", path.read_bytes(), alt, caption)
 
 
 def metrics_text(lesson: str, here: Path, folder: Path) -> str:
@@ -202,14 +219,6 @@ def warnings_html(warnings: Sequence[str]) -> str:
     """Return the engine's warnings in a fold."""
     lines = "".join(f"<li>{escape(text)}</li>" for text in warnings)
     return f"<details><summary>{len(warnings)} engine warnings</summary><ol>{lines}</ol></details>"
-
-
-def _figure(kind: str, content: bytes, alt: str, caption: str) -> str:
-    source = f"data:{kind};base64,{base64.b64encode(content).decode()}"
-    return (
-        f'<figure><img alt="{escape(alt)}" src="{source}" loading="lazy"/>'
-        f"<figcaption>{escape(caption)}</figcaption></figure>"
-    )
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -68,7 +68,8 @@ class Status:
         more = f" {self.summary}" if self.summary else ""
         return (
             f"{self.backend}: {self.state}. {kernel}, Genesis {predicate.engine.version}, "
-            f"{passed} of {len(CHECKS)} checks passed, {camera}, measured {predicate.started[:10]}.{more}"
+            f"{passed} of {len(CHECKS)} checks passed, {camera}, "
+            f"measured {predicate.started[:10]}.{more}"
         )
 
 

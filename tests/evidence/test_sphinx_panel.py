@@ -1,13 +1,11 @@
 """The panel of a reference run shows what its bundle holds, or what is missing and makes it."""
 
-import base64
-import re
 import shutil
 
 import pytest
 from spoilers import edit, metrics, on, part, predicate, seal
 
-from robo_genesis import l04, sphinx_panel
+from robo_genesis import l04, ledger, project, sphinx_panel
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.findings import number
 from robo_genesis.evidence.status import Status, recorded_status
@@ -24,7 +22,7 @@ def verified(folder) -> Status:
 
 def test_a_missing_run_is_named_with_its_command(tmp_path):
     text = sphinx_panel.missing_text("l04", recorded_status(tmp_path, "l04", "amdgpu"))
-    assert "**Reference run on amdgpu: missing.**" in text
+    assert f"No evidence from amdgpu for Genesis {project.engine_pin()} (amdgpu-missing)." in text
     assert "$ make evidence LESSON=l04 BACKEND=amdgpu" in text
 
 
@@ -36,22 +34,25 @@ def test_backend_facts_are_the_manifest_s(verified):
 
 
 def test_the_figure_changes_with_the_bundle_s_arrays(folder, verified, monkeypatch):
-    html = sphinx_panel.figure_html(folder, verified)
-    assert base64.b64decode(re.search(r"base64,([^\"]+)", html)[1]).startswith(b"<?xml")
-    assert "joint4 over time on cpu" in html
-    assert sphinx_panel.figure_html(folder, verified) == html
+    picture = sphinx_panel.response(folder, verified)
+    assert picture.content.startswith(b"<?xml")
+    assert "joint4 over time on cpu" in picture.alt
+    assert sphinx_panel.response(folder, verified) == picture
     shown = {"G1": "G2", "G2": "G1", "G3": "G3"}
     monkeypatch.setattr(
         sphinx_panel, "read_trace", lambda f, a, case: read_trace(f, a, shown[case])
     )
-    assert sphinx_panel.figure_html(folder, verified) != html
+    assert sphinx_panel.response(folder, verified) != picture
 
 
-def test_frames_are_shown_small_and_only_where_there_are_any(folder, verified):
-    assert sphinx_panel.frames_html(folder, verified).count("data:image/webp") == 2
+def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder, verified):
+    listed = {s.name: s.digest.sha256 for s in verified.manifest.subject}
+    for picture in sphinx_panel.frames(folder, verified):
+        assert ledger.sha256(picture.content) == listed[f"frames/{picture.name}.png"]
+    assert len(list(sphinx_panel.frames(folder, verified))) == 2
     for frame in (folder / "frames").glob("*.png"):
         frame.unlink()
-    assert sphinx_panel.frames_html(folder, verified) == ""
+    assert list(sphinx_panel.frames(folder, verified)) == []
 
 
 def test_switches_are_shown_as_they_were_set(folder):

@@ -4,7 +4,6 @@ from dataclasses import replace
 import pytest
 from spoilers import (
     both,
-    check,
     failing,
     log,
     manifest,

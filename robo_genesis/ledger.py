@@ -1,0 +1,135 @@
+"""What the ledger lists: runs with their bundles, items with their digests, files to download."""
+
+import csv
+import hashlib
+import io
+import zipfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence.status import Status
+
+ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)
+"""The oldest time that a zip can hold: the same bundle gives the same bytes on any day."""
+
+RASTERS = (".png", ".webp", ".jpg", ".jpeg")
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One run of a page on a backend: where its bundle stands, or would, and its state."""
+
+    page: str  # as `l04/lab`
+    folder: Path
+    status: Status
+
+    @property
+    def key(self) -> str:
+        """Page and backend, as items name their run."""
+        return f"{self.page}/{self.status.backend}"
+
+    @property
+    def predicate(self) -> Predicate | None:
+        """What the accepted manifest says, None where there is none."""
+        return self.status.manifest.predicate if self.status.manifest else None
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """One figure, table, camera frame or illustration; `run` is None where no run made it.
+
+    `file` is the picture's path below the book, or of a table the name of its CSV; `data` is that
+    CSV, None for a picture.
+    """
+
+    kind: str
+    title: str
+    docname: str
+    anchor: str
+    run: str | None
+    sha256: str
+    file: str
+    data: bytes | None = None
+
+    @property
+    def row(self) -> str:
+        """The anchor of its row in the ledger."""
+        return f"row-{self.docname}-{self.anchor}".replace("/", "-").lower()
+
+
+def provenance(run: Run | None) -> str:
+    """Return the line that stands below a figure or table, without its link.
+
+    Args:
+        run: what made it, None for an illustration.
+    """
+    if run is None:
+        return "Illustration, not measured."
+    if run.predicate is None:
+        return f"No accepted evidence: {run.status.badge}."
+    engine, short = run.predicate.engine.version, run.predicate.run_id[:8]
+    return f"Measured on {run.status.backend} · Genesis {engine} · run {short}"
+
+
+def passed(predicate: Predicate) -> str:
+    """Return how many of a run's checks passed."""
+    checks = predicate.checks
+    return f"{sum(check.passed for check in checks)} of {len(checks)}"
+
+
+def facts(run: Run) -> dict[str, str]:
+    """Return what the ledger says of a run, empty without an accepted bundle."""
+    predicate = run.predicate
+    if predicate is None:
+        return {}
+    return {
+        "run": predicate.run_id[:8],
+        "backend": run.status.backend,
+        "device": predicate.backend.device_name,
+        "engine": f"Genesis {predicate.engine.version}",
+        "started (UTC)": predicate.started,
+        "command": predicate.command,
+        "checks passed": passed(predicate),
+        "evidence key": predicate.evidence_key,
+    }
+
+
+def picture_kind(path: Path) -> str:
+    """Return what a measured picture is: camera frames are pixels, a plot is drawn in lines."""
+    is_raster = path.suffix in RASTERS or b"<image" in path.read_bytes()
+    return "camera frame" if is_raster else "figure"
+
+
+def csv_bytes(rows: Sequence[Sequence[str]]) -> bytes:
+    """Return the rows of a table, its head first, as CSV (RFC 4180, UTF-8)."""
+    stream = io.StringIO()
+    csv.writer(stream).writerows(rows)
+    return stream.getvalue().encode()
+
+
+def sha256(data: bytes) -> str:
+    """Return the hexadecimal SHA-256 of some bytes."""
+    return hashlib.sha256(data).hexdigest()
+
+
+def archive_name(run: Run) -> str:
+    """Return the file name of a run's bundle."""
+    assert run.predicate is not None
+    return f"{run.key.replace('/', '-')}-{run.predicate.run_id[:8]}.zip"
+
+
+def archive(folder: Path) -> bytes:
+    """Return a bundle as a zip whose bytes depend on names and contents of its files alone.
+
+    Args:
+        folder: an accepted bundle.
+    """
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as packed:
+        for path in sorted(path for path in folder.rglob("*") if path.is_file()):
+            entry = zipfile.ZipInfo(path.relative_to(folder).as_posix(), ZIP_EPOCH)
+            entry.create_system, entry.external_attr = 3, 0o644 << 16
+            packed.writestr(entry, path.read_bytes())
+    return stream.getvalue()

@@ -1,0 +1,161 @@
+"""Finds each figure and measured table of a page, and says below it where it comes from.
+
+Measured is every picture and table that a code cell put out or that was read from a bundle. A
+picture that no run made is an illustration; a table typed in prose is not listed.
+"""
+
+import textwrap
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
+from sphinx.util import logging
+
+from robo_genesis import ledger
+from robo_genesis.evidence.status import page_status, recorded_status
+from robo_genesis.ledger import Item, Run
+from robo_genesis.pages import find_pages
+from robo_genesis.sphinx_evidence import BACKEND, lesson_backends, outputs_folder
+
+TITLE = 80
+"""Longest title in the ledger, in characters."""
+
+logger = logging.getLogger(__name__)
+
+
+@lru_cache(maxsize=4)
+def measured_pages(book: Path) -> dict[str, str]:
+    """Return docname → `lesson/page` of the pages that run the engine."""
+    return {p.docname: f"{p.lesson}/{p.page}" for p in find_pages(book) if p.declares_bundle}
+
+
+@lru_cache(maxsize=4)
+def all_runs(book: Path) -> dict[str, Run]:
+    """Return the runs of this build and the recorded ones by key, those that are missing too."""
+    here = outputs_folder()
+    declared = [page.split("/") for page in measured_pages(book).values()]
+    runs = [
+        Run(f"{lesson}/{page}", here / lesson / page / BACKEND,
+            page_status(here, lesson, page, BACKEND, book))
+        for lesson, page in declared
+    ]  # fmt: skip
+    for lesson in dict.fromkeys(lesson for lesson, _ in declared):
+        for backend in lesson_backends(book, lesson):
+            folder = book / "evidence" / lesson / backend
+            runs.append(Run(f"{lesson}/lab", folder, recorded_status(book, lesson, backend)))
+    return {f"{run.key}{'' if here in run.folder.parents else '/recorded'}": run for run in runs}
+
+
+def read_page(app: Sphinx, doctree: nodes.document) -> None:
+    """List what a page shows, and say below each item where it comes from."""
+    env = app.env
+    book, items = Path(env.srcdir), []
+    shown = list(doctree.findall(lambda n: isinstance(n, nodes.table | nodes.image)))
+    for node in shown:
+        key = run_key(node, measured_pages(book).get(env.docname))
+        if key is None and isinstance(node, nodes.table):
+            continue
+        holder = node.parent if isinstance(node.parent, nodes.figure) else node
+        item = describe(holder, node, env.docname, key, book)
+        items.append(item)
+        run = all_runs(book).get(key or "")
+        if key == "":
+            logger.warning(
+                "a cell shows a %s, but the page declares no bundle. Give its front matter "
+                "`robo_genesis: {lesson, page}`.", item.kind, location=env.docname
+            )  # fmt: skip
+        add_line(holder, ledger.provenance(run), item.row)
+    all_items(env)[env.docname] = items
+
+
+def run_key(node: nodes.Node, page: str | None) -> str | None:
+    """Return the run that made a node: None for none, "" for a cell of a page without a bundle."""
+    above = node.parent
+    while above is not None:
+        if "evidence_run" in above.attributes:
+            return str(above["evidence_run"])
+        if "cell_output" in above["classes"]:
+            return f"{page}/{BACKEND}" if page else ""
+        above = above.parent
+    return None
+
+
+def describe(
+    holder: nodes.Element, node: nodes.Element, docname: str, key: str | None, book: Path
+) -> Item:
+    """Return the ledger's item of a table or picture, and give `holder` an anchor."""
+    section = next(_above(holder, nodes.section), None)
+    if not holder["ids"]:
+        _name(holder, "table" if isinstance(node, nodes.table) else "picture", section)
+    anchor = holder["ids"][0]
+    if isinstance(node, nodes.table):
+        rows = [[e.astext() for e in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
+        data = ledger.csv_bytes(rows)
+        heading = section.next_node(nodes.title).astext() if section is not None else docname
+        title = f"{heading}: {', '.join(filter(None, rows[0]))}"
+        name = f"{docname}-{anchor}.csv".replace("/", "-")
+        return Item("table", _short(title), docname, anchor, key, ledger.sha256(data), name, data)
+    caption = holder.next_node(nodes.caption)
+    title = caption.astext() if caption is not None else str(node.get("alt", anchor))
+    path = book / node["uri"]
+    kind = "illustration" if key is None else ledger.picture_kind(path)
+    digest = ledger.sha256(path.read_bytes())
+    return Item(kind, _short(title), docname, anchor, key, digest, node["uri"])
+
+
+def _above(node: nodes.Node, kind: type) -> Iterator[Any]:
+    while node.parent is not None:
+        node = node.parent
+        if isinstance(node, kind):
+            yield node
+
+
+def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:
+    """Give an anchor from the section's, which stands still when other sections change."""
+    base = f"{word}-{section['ids'][0]}" if section is not None else word
+    document, name, number = holder.document, base, 1
+    while name in document.ids:
+        number += 1
+        name = f"{base}-{number}"
+    document.ids[name] = holder
+    holder["ids"].append(name)
+
+
+def _short(text: str) -> str:
+    first = text.split(". ")[0].removesuffix(".")
+    return textwrap.shorten(first, TITLE, placeholder=" …")
+
+
+def add_line(holder: nodes.Element, text: str, row: str) -> None:
+    """Put the line of provenance at the end of a caption, or below what has none."""
+    link = nodes.reference("", "ledger", internal=True, refuri="", ledger_row=row)
+    caption = holder.next_node(nodes.caption) if isinstance(holder, nodes.figure) else None
+    parts = [nodes.Text(f"{text} · " if text[-1] != "." else f"{text} "), link]
+    if caption is not None:
+        caption += [nodes.Text(" "), nodes.inline("", "", *parts, classes=["provenance"])]
+    else:
+        line = nodes.paragraph("", "", *parts, classes=["provenance"])
+        holder.parent.insert(holder.parent.index(holder) + 1, line)
+
+
+def all_items(env: BuildEnvironment) -> dict[str, list[Item]]:
+    """Return the items of all pages read so far, by page."""
+    if not hasattr(env, "robo_genesis_items"):
+        env.robo_genesis_items = {}  # type: ignore[attr-defined]
+    return env.robo_genesis_items  # type: ignore[attr-defined]
+
+
+def forget_page(app: Sphinx, env: BuildEnvironment, docname: str) -> None:
+    """Forget the items of a page that is read again."""
+    all_items(env).pop(docname, None)
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the pass over each page that was read."""
+    app.connect("env-purge-doc", forget_page)
+    app.connect("doctree-read", read_page, priority=900)  # pictures are collected before
+    return {"version": "1", "parallel_read_safe": False, "parallel_write_safe": True}
