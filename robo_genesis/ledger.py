@@ -79,6 +79,11 @@ def passed(predicate: Predicate) -> str:
     return f"{sum(check.passed for check in checks)} of {len(checks)}"
 
 
+def moment(predicate: Predicate) -> str:
+    """Return when a run started, in UTC and to the second."""
+    return predicate.started[:19].replace("T", " ")
+
+
 def facts(run: Run) -> dict[str, str]:
     """Return what the ledger says of a run, empty without an accepted bundle."""
     predicate = run.predicate
@@ -89,7 +94,7 @@ def facts(run: Run) -> dict[str, str]:
         "backend": run.status.backend,
         "device": predicate.backend.device_name,
         "engine": f"Genesis {predicate.engine.version}",
-        "started (UTC)": predicate.started,
+        "started (UTC)": moment(predicate),
         "command": predicate.command,
         "checks passed": passed(predicate),
         "evidence key": predicate.evidence_key,

@@ -70,8 +70,8 @@ def run_blocks(app: Sphinx, docname: str) -> list[nodes.Node]:
     blocks = []
     for key, run in all_runs(Path(app.srcdir)).items():
         block = nodes.container(ids=[run_anchor(key)], classes=["run-block"])
-        head = nodes.paragraph("", "", nodes.strong("", run.page), nodes.Text(" "))
-        block += head + badge_node(run.status)
+        title = nodes.strong("", run.page)
+        block += nodes.paragraph("", "", title, nodes.Text(" "), badge_node(run.status))
         if run.status.summary or run.predicate is None:
             block += nodes.paragraph("", run.status.summary or run.status.reason)
         if run.predicate is None:
@@ -82,7 +82,7 @@ def run_blocks(app: Sphinx, docname: str) -> list[nodes.Node]:
             href = _address(docname, f"{DOWNLOADS}/{ledger.archive_name(run)}")
             rows.append([_cell("bundle"), _link(ledger.archive_name(run), href)])
             rows.append([_cell("its sha256"), _digest(ledger.sha256(data))])
-            block += scroll(f"Run {run.page} on {run.status.backend}", [["what", "value"]], rows)
+            block += scroll(f"Run {run.page} on {run.status.backend}", (), rows)
         blocks.append(block)
     return blocks
 
@@ -107,7 +107,7 @@ def item_table(app: Sphinx, docname: str) -> list[nodes.Node]:
             ]
         )
         anchors.append(item.row)
-    return [scroll("Figures and tables", [COLUMNS], rows, anchors)]
+    return [scroll("Figures and tables", COLUMNS, rows, anchors)]
 
 
 def _of_run(key: str | None, run: Run | None) -> list[nodes.Node]:
@@ -119,7 +119,7 @@ def _of_run(key: str | None, run: Run | None) -> list[nodes.Node]:
     return [
         _link(predicate.run_id[:8], f"#{run_anchor(key)}"),
         badge_node(run.status),
-        *map(_cell, (predicate.engine.version, predicate.started, ledger.passed(predicate))),
+        *map(_cell, (predicate.engine.version, ledger.moment(predicate), ledger.passed(predicate))),
     ]
 
 
@@ -162,14 +162,15 @@ def _image(env: BuildEnvironment, uri: str) -> str:
 
 def scroll(
     label: str,
-    head: Sequence[Sequence[str]],
+    head: Sequence[str],
     rows: Sequence[Sequence[nodes.Node]],
     anchors: Sequence[str] = (),
 ) -> nodes.Node:
-    """Return a table in a scroll box; `anchors` names its rows."""
-    width = len(head[0])
+    """Return a table in a scroll box; `head` may be empty, `anchors` names the rows."""
+    width = len(rows[0])
     group = nodes.tgroup("", *(nodes.colspec(colwidth=1) for _ in range(width)), cols=width)
-    group += nodes.thead("", *(_row(map(_cell, line)) for line in head))
+    if head:
+        group += nodes.thead("", _row(map(_cell, head)))
     body = nodes.tbody("", *(_row(line) for line in rows))
     for row, anchor in zip(body, anchors, strict=False):
         row["ids"].append(anchor)

@@ -4,6 +4,7 @@ Measured is every picture and table that a code cell put out or that was read fr
 picture that no run made is an illustration; a table typed in prose is not listed.
 """
 
+import re
 import textwrap
 from collections.abc import Iterator
 from functools import lru_cache
@@ -59,7 +60,7 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
         key = run_key(node, measured_pages(book).get(env.docname))
         if key is None and isinstance(node, nodes.table):
             continue
-        holder = node.parent if isinstance(node.parent, nodes.figure) else node
+        holder = node if isinstance(node, nodes.table) else next(_above(node, nodes.figure), node)
         item = describe(holder, node, env.docname, key, book)
         items.append(item)
         run = all_runs(book).get(key or "")
@@ -126,7 +127,7 @@ def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> No
 
 
 def _short(text: str) -> str:
-    first = text.split(". ")[0].removesuffix(".")
+    first = re.sub(r"^\d+\. ", "", text).split(". ")[0].removesuffix(".")
     return textwrap.shorten(first, TITLE, placeholder=" …")
 
 

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 from bs4 import BeautifulSoup
-from tiny_book import cell, make_book, notebook
+from tiny_book import WRITE_BUNDLE, cell, make_book, notebook
 
 from robo_genesis.execute import execute_pages
 from robo_genesis.pages import find_pages
@@ -94,3 +94,23 @@ def test_a_warning_fails_the_build_and_is_shown_with_page_and_line(folder, markd
         build(folder)
     assert "text.md:10" in str(caught.value)
     assert str(folder / "render.log") in str(caught.value)
+
+
+CLAIMS = "status: amdgpu-verified\nbadge: cpu-verified\n"
+LAB = "robo_genesis: {lesson: l04, page: lab, state: verified, status: verified}\n"
+
+
+def test_no_front_matter_or_bundle_s_word_can_set_a_badge(tmp_path):
+    """The lab's bundle is a manifest that says it was verified, and nothing more."""
+    said = WRITE_BUNDLE.replace('"predicate": {', '"state": "verified", "predicate": {')
+    shown = "\n```{lesson-status} l04\n```\n\n{lesson-state}`l04`\n"
+    lab = notebook(cell(said), front=CLAIMS + LAB) + shown
+    text = f"---\n{CLAIMS}---\n# Text\n{shown}"
+    book = make_book(tmp_path, text=text, lab=lab)
+    (result,) = execute_pages(find_pages(book), tmp_path / "cache")
+    assert result.status == "executed"
+    html = build(tmp_path)
+    for name in ("text", "lab"):
+        page = BeautifulSoup((html / f"{name}.html").read_text(), "html.parser")
+        badges = [badge.get_text() for badge in page.select("article .evidence-badge")]
+        assert badges == ["cpu-refused", "amdgpu-missing"] * 2

@@ -57,9 +57,9 @@ class Status:
 
     @property
     def sentence(self) -> str:
-        """Say what was run, for a reader."""
+        """Say what was run, for a reader who sees the badge beside it."""
         if self.manifest is None:
-            return f"{self.backend}: {self.state}. {self.summary or self.reason}"
+            return self.summary or self.reason
         predicate = self.manifest.predicate
         render = predicate.render
         kernel = "Clean kernel" if predicate.command.startswith("make ") else "Run by hand"
@@ -67,7 +67,7 @@ class Status:
         camera = f"camera frames by {render.renderer}" if render.mode == "camera" else "camera SKIP"
         more = f" {self.summary}" if self.summary else ""
         return (
-            f"{self.backend}: {self.state}. {kernel}, Genesis {predicate.engine.version}, "
+            f"{kernel}, Genesis {predicate.engine.version}, "
             f"{passed} of {len(CHECKS)} checks passed, {camera}, "
             f"measured {predicate.started[:10]}.{more}"
         )

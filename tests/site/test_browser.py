@@ -5,12 +5,15 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 
+from robo_genesis.evidence.status import STATES
+
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 CHROMIUM = "/usr/bin/chromium"
 PAGES = (
     "index",
     "glossary",
+    "evidence/ledger",
     "evidence/recording",
     "lessons/l04-joint-control/lecture",
     "lessons/l04-joint-control/lab",
@@ -58,4 +61,39 @@ def test_folded_log_opens_by_keyboard(browser, address):
     summary.focus()
     page.keyboard.press("Enter")
     assert page.locator("details.hide").first.evaluate("fold => fold.open")
+    page.close()
+
+
+CONTRAST = """() => {
+  const light = text => text.match(/[\\d.]+/g).slice(0, 3)
+    .map(v => v / 255).map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+    .reduce((sum, v, k) => sum + v * [0.2126, 0.7152, 0.0722][k], 0);
+  const badge = document.querySelector(".evidence-badge");
+  return STATES.map(state => {
+    badge.className = `evidence-badge state-${state}`;
+    const style = getComputedStyle(badge);
+    const pair = [light(style.color), light(style.backgroundColor)].sort((a, b) => b - a);
+    return (pair[0] + 0.05) / (pair[1] + 0.05);
+  });
+}"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_word_of_each_badge_can_be_read(browser, address, scheme):
+    page = browser.new_page(color_scheme=scheme)
+    page.goto(f"{address}/index.html")
+    contrasts = page.evaluate(CONTRAST.replace("STATES", str(list(STATES))))
+    assert len(contrasts) == len(STATES)
+    assert min(contrasts) >= 4.5, dict(zip(STATES, contrasts, strict=True))
+    page.close()
+
+
+def test_the_ledger_scrolls_by_keyboard_on_a_phone(browser, address):
+    page = browser.new_page(viewport={"width": 320, "height": 700})
+    page.goto(f"{address}/evidence/ledger.html")
+    box = page.locator("#figures-and-tables .scroll-box")
+    assert box.evaluate("box => box.scrollWidth > box.clientWidth")
+    box.focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_function("document.activeElement.scrollLeft > 0")
     page.close()

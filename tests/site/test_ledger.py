@@ -1,0 +1,109 @@
+"""The ledger and the pages agree in both directions, and what it offers is what it says."""
+
+import hashlib
+import io
+import zipfile
+
+import pytest
+from bs4 import BeautifulSoup
+
+from robo_genesis.evidence.verify import verify_bundle
+
+pytestmark = pytest.mark.engine
+LEDGER = "evidence/ledger.html"
+SHOWN = "article img, .cell_output table, .evidence-panel table"
+
+
+def parsed(site) -> dict[str, BeautifulSoup]:
+    """Every page, by its path; the ledger's own tables are no measurement."""
+    pages = sorted(site.glob("*.html")) + sorted(site.glob("[!_]*/**/*.html"))
+    return {
+        p.relative_to(site).as_posix(): BeautifulSoup(p.read_text(), "html.parser") for p in pages
+    }
+
+
+def shown(pages) -> set[tuple[str, str]]:
+    """Return (page, anchor) of each picture and measured table, found by what HTML they are."""
+    found = set()
+    for name, page in pages.items():
+        for tag in page.select(SHOWN):
+            holder = tag.find_parent("figure") or tag
+            found.add((name, holder.get("id", f"no anchor: {str(tag)[:80]}")))
+    return found
+
+
+def listed(pages) -> list[tuple[str, str]]:
+    """Return (page, anchor) that each row of the ledger leads to."""
+    rows = pages[LEDGER].select("#figures-and-tables tbody tr")
+    links = [row.select_one("td a")["href"] for row in rows]
+    return [tuple(link.removeprefix("../").split("#")) for link in links]
+
+
+def differences(pages) -> tuple[set, set]:
+    return shown(pages) - set(listed(pages)), set(listed(pages)) - shown(pages)
+
+
+@pytest.fixture
+def pages(site):
+    return parsed(site)
+
+
+def test_each_figure_and_measured_table_has_one_row_and_each_row_its_place(pages):
+    assert differences(pages) == (set(), set())
+    assert len(listed(pages)) == len(set(listed(pages))) >= 25
+
+
+def test_what_is_left_out_or_leads_nowhere_would_be_found(pages):
+    rows = pages[LEDGER].select("#figures-and-tables tbody tr")
+    rows[4].decompose()
+    rows[6].select_one("td a")["href"] += "-gone"
+    missing, nowhere = differences(pages)
+    assert len(missing) == 2
+    assert len(nowhere) == 1
+
+
+def test_each_line_of_provenance_leads_to_the_row_that_leads_back(pages):
+    rows = {row["id"]: row for row in pages[LEDGER].select("tr[id]")}
+    for name, page in pages.items():
+        for line in page.select(".provenance"):
+            row = rows[line.select_one("a")["href"].split("#")[1]]
+            target, anchor = row.select_one("td a")["href"].removeprefix("../").split("#")
+            assert target == name
+            run = row.select("td")[3].get_text(strip=True)
+            assert f"run {run}" in line.get_text() or (run, anchor) == ("no run", anchor)
+            holder = line.find_parent("figure")
+            assert holder is None or holder["id"] == anchor
+    assert sum(len(page.select(".provenance")) for page in pages.values()) == len(rows)
+
+
+def test_illustrations_say_so_and_nothing_else_does(pages):
+    said = [
+        (n, line.find_parent("figure").img["src"])
+        for n, page in pages.items()
+        for line in page.select(".provenance")
+        if "Illustration, not measured." in line.text
+    ]
+    assert [source.rpartition("/")[2] for _, source in said] == ["chain.svg", "chain.svg"]
+
+
+def test_digests_are_those_of_the_files(site, pages):
+    for row in pages[LEDGER].select("#figures-and-tables tbody tr"):
+        file = (site / LEDGER).parent / row.select("td")[-1].a["href"]
+        assert hashlib.sha256(file.read_bytes()).hexdigest() == row.select_one(".digest").text
+
+
+def test_a_downloaded_bundle_is_accepted_and_has_the_digest_that_is_given(site, pages, tmp_path):
+    blocks = [b for b in pages[LEDGER].select(".run-block") if b.select("a")]
+    assert len(blocks) == 2
+    for block in blocks:
+        data = ((site / LEDGER).parent / block.a["href"]).read_bytes()
+        assert hashlib.sha256(data).hexdigest() == block.select(".digest")[-1].text
+        folder = tmp_path / block["id"] / "cpu"
+        zipfile.ZipFile(io.BytesIO(data)).extractall(folder)
+        assert verify_bundle(folder).predicate.run_id[:8] in block.text
+
+
+def test_what_is_missing_is_named_with_its_command(pages):
+    block = pages[LEDGER].select_one(".run-block:has(.state-missing)")
+    assert "amdgpu-missing" in block.text
+    assert "make evidence LESSON=l04 BACKEND=amdgpu" in block.text

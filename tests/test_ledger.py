@@ -1,0 +1,57 @@
+import io
+import zipfile
+
+import pytest
+
+from robo_genesis import ledger
+from robo_genesis.evidence.status import Status
+from robo_genesis.ledger import Item, Run
+
+
+@pytest.fixture
+def bundle(tmp_path):
+    (tmp_path / "arrays").mkdir()
+    (tmp_path / "arrays" / "G1.npz").write_bytes(b"numbers")
+    (tmp_path / "log.txt").write_text("a log")
+    return tmp_path
+
+
+def test_the_same_bundle_gives_the_same_bytes_whenever_it_was_written(bundle):
+    before = ledger.archive(bundle)
+    (bundle / "log.txt").touch()
+    (bundle / "log.txt").chmod(0o600)
+    assert ledger.archive(bundle) == before
+    assert zipfile.ZipFile(io.BytesIO(before)).namelist() == ["arrays/G1.npz", "log.txt"]
+    (bundle / "log.txt").write_text("another log")
+    assert ledger.archive(bundle) != before
+
+
+def test_a_table_becomes_csv_with_what_needs_quoting_quoted():
+    assert ledger.csv_bytes([["a", "b"], ["1, 2", 'say "no"']]) == (
+        b'a,b\r\n"1, 2","say ""no"""\r\n'
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "kind"),
+    [
+        ("a.svg", b"<svg><path/></svg>", "figure"),
+        ("a.svg", b"<svg><image href='data:'/></svg>", "camera frame"),
+        ("a.png", b"", "camera frame"),
+    ],
+)
+def test_a_picture_of_pixels_is_a_camera_frame(tmp_path, name, content, kind):
+    (tmp_path / name).write_bytes(content)
+    assert ledger.picture_kind(tmp_path / name) == kind
+
+
+def test_without_an_accepted_bundle_nothing_is_called_measured(tmp_path):
+    run = Run("l04/lab", tmp_path, Status("refused", "cpu", "files: gone", None, "files"))
+    assert ledger.provenance(run) == "No accepted evidence: cpu-refused."
+    assert ledger.facts(run) == {}
+    assert ledger.provenance(None) == "Illustration, not measured."
+
+
+def test_a_row_s_anchor_is_made_of_page_and_item():
+    item = Item("table", "T", "lessons/L04/lab", "table-1-x", None, "0", "x.csv", b"")
+    assert item.row == "row-lessons-l04-lab-table-1-x"
