@@ -1,5 +1,6 @@
 import itertools
 import logging
+import os
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -7,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from robo_genesis import runtime
+from robo_genesis import project, runtime
 from robo_genesis.runtime import (
     Backend,
     Contract,
@@ -110,6 +111,25 @@ def test_a_started_engine_is_not_started_again(tmp_path, monkeypatch):
     monkeypatch.setattr(runtime, "import_engine", lambda: started)
     with pytest.raises(EngineError, match=r"backend cuda.*restart the kernel"):
         start(Contract("cpu", True, tmp_path))
+
+
+def test_the_switches_are_those_of_before_the_engine(tmp_path, monkeypatch):
+    """The engine sets some itself while it is imported, and again when it starts."""
+    for name in [name for name in os.environ if name.startswith(project.ENGINE_PREFIXES)]:
+        monkeypatch.delenv(name)
+    monkeypatch.setenv("GS_ENABLE_ZEROCOPY", "0")
+    engine = SimpleNamespace(cpu="cpu", __version__="1", init=lambda **options: None)
+
+    def imported():
+        monkeypatch.setenv("QD_ENABLE_PYBUF", "1")
+        return engine
+
+    monkeypatch.setattr(runtime, "import_engine", imported)
+    monkeypatch.setitem(sys.modules, "quadrants", SimpleNamespace(__version__=(1, 2)))
+    monkeypatch.setattr(runtime, "probe", lambda requested: None)
+    for kept in ("handlers", "filters"):
+        monkeypatch.setattr(logging.getLogger("genesis"), kept, [])
+    assert start(Contract("cpu", True, tmp_path)).switches == {"GS_ENABLE_ZEROCOPY": "0"}
 
 
 AGREEING = [
