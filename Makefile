@@ -87,6 +87,8 @@ has-packages:
 .venv/.installed: requirements.lock
 	@"$(BASE_PYTHON)" -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 14) else \
 	  "The course needs Python 3.11 to 3.13, found %d.%d. Name another with BASE_PYTHON=python3.11." % v)'
+	@! test -L .venv || { echo ".venv is a link to $$(readlink .venv), which setting it up would empty." \
+	  "Remove the link, or use that environment as it is: make PYTHON=.venv/bin/python ..." >&2; exit 1; }
 	@echo "Setting up .venv from requirements.lock (once; some minutes)"
 	@"$(BASE_PYTHON)" -m venv --clear .venv
 	@.venv/bin/python -m pip install -qq --disable-pip-version-check --requirement requirements.lock
