@@ -1,5 +1,5 @@
 # `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
-# PORT=8000, BUNDLE=path (for verify),
+# PORT=8000, BUNDLE=path (for verify), GENESIS=version (for repin),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
 
 SHELL := /bin/bash
@@ -18,12 +18,22 @@ else
 endif
 BASE_PYTHON ?= python3
 
+# Pin and lock change together. A make repin that was killed just then is completed first of all:
+# before any target, and before make holds the lock against .venv.
+ifneq ($(wildcard .cache/repin/apply),)
+  RECOVERED := $(shell "$(BASE_PYTHON)" robo_genesis/apply.py)
+  ifneq ($(.SHELLSTATUS),0)
+    $(error The checkout is between two pins, see above)
+  endif
+endif
+
 # The code under test is this checkout's, whatever environment runs it.
 export PYTHONPATH := $(CURDIR)
 export RENDER ?= 1
 export JOBS
 export RELEASE
 export BUNDLE
+export GENESIS
 
 .PHONY: help
 help: ## list the targets
@@ -74,6 +84,15 @@ distclean: clean ## remove the environment and every cache too
 .PHONY: lock
 lock: $(ENVIRONMENT) ## resolve requirements.lock anew from pyproject.toml
 	@"$(PY)" build_scripts/lock.py
+
+# GENESIS reaches the script as an environment variable.
+.PHONY: repin
+repin: $(ENVIRONMENT) ## try another engine version, then change pin and lock (GENESIS=version)
+	@"$(PY)" build_scripts/repin.py
+
+.PHONY: test-repin
+test-repin: $(ENVIRONMENT) ## change the pin there and back in a clone (network; an hour)
+	@"$(PY)" -m pytest -m repin tests/test_repin_round_trip.py
 
 .PHONY: has-packages
 has-packages:

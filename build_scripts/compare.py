@@ -6,31 +6,16 @@ Exit status: 0 equal or within tolerance, 1 differs or inconclusive, 2 not compa
 """
 
 import argparse
-import os
 import sys
 from pathlib import Path
 
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import BundleRefused, read_manifest
-from robo_genesis.evidence.compare import Comparison, compare, specification
+from robo_genesis.evidence.compare import compare, specification
 from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE
 from robo_genesis.project import CACHE
 
 STATUS = {DIFFERS: 1, INCONCLUSIVE: 1, NOT_COMPARABLE: 2}
-
-
-def write(comparison: Comparison, folder: Path) -> list[Path]:
-    """Write both pages, each in one step; return their paths."""
-    folder.mkdir(parents=True, exist_ok=True)
-    pages = {"report.md": report.markdown, "report.html": report.html}
-    for name, page in pages.items():
-        partial = folder / f".{name}.{os.getpid()}.partial"
-        try:
-            partial.write_text(page(comparison), encoding="utf-8")
-            partial.replace(folder / name)
-        finally:
-            partial.unlink(missing_ok=True)
-    return [folder / name for name in pages]
 
 
 def refused(message: str) -> int:
@@ -61,7 +46,7 @@ def main() -> int:
     runs = [predicate.run_id[:8] for predicate in (comparison.old, comparison.new)]
     folder = Path(args.report or CACHE / "reports" / "-".join(["compare", *runs]))
     try:
-        written = write(comparison, folder)
+        written = report.write(folder, report.markdown(comparison), report.html(comparison))
     except OSError as error:
         return refused(f"REPORT={folder} cannot be written: {error}. Give another folder.")
     print(report.summary(comparison))

@@ -160,13 +160,19 @@ def start(contract: Contract, seed: int = SEED) -> Engine:
         backend=gs.cpu if contract.backend == "cpu" else gs.gpu,
         seed=seed,
         precision=PRECISION,
-        theme="dumb",  # no colour codes in a page's output
+        theme=plain_theme(),
         logging_level="info",
         use_deterministic_algorithms=True,
     )
     quadrants_version = ".".join(map(str, importlib.import_module("quadrants").__version__))
     backend = probe(contract.backend)
     return Engine(gs.__version__, quadrants_version, PRECISION, seed, backend, log, switches)
+
+
+def plain_theme() -> str:
+    """Return the engine's name for a log without colour codes: `raw`, in older versions `dumb`."""
+    styles = importlib.import_module("genesis.styles")
+    return "raw" if hasattr(styles, "THEME") else "dumb"
 
 
 def import_engine() -> Any:

@@ -1,8 +1,10 @@
 """A comparison for readers: a summary, a Markdown page, an HTML page that fetches nothing."""
 
+import os
 from collections.abc import Iterator
 from html import escape
 from itertools import groupby
+from pathlib import Path
 
 from robo_genesis import tables
 from robo_genesis.evidence.bundle import Predicate
@@ -63,37 +65,64 @@ def summary(comparison: Comparison) -> str:
     return "\n".join([*lines, *comparison.notes])
 
 
-def markdown(comparison: Comparison) -> str:
-    """Return the report as a Markdown page."""
-    parts = [f"# {_plain(title(comparison))}", f"**{verdict(comparison)}**"]
-    parts += ["\n".join(f"- {_plain(line)}" for line in _remarks(comparison))]
+def markdown(comparison: Comparison, level: int = 1) -> str:
+    """Return the report as Markdown, its heading at a level."""
+    mark = "#" * level
+    parts = [f"{mark} {plain(title(comparison))}", f"**{verdict(comparison)}**"]
+    parts += ["\n".join(f"- {plain(line)}" for line in _remarks(comparison))]
     for part in comparison.sections:
-        parts.append(f"## {part.title}: {part.state}" if part.findings else f"## {part.title}")
-        parts.append(_markdown_table(_table(part)) if part.findings else part.empty)
-    parts += ["## The two bundles", _markdown_table(_origin(comparison))]
+        state = f": {part.state}" if part.findings else ""
+        parts.append(f"{mark}# {part.title}{state}")
+        parts.append(markdown_table(_table(part)) if part.findings else part.empty)
+    parts += [f"{mark}# The two bundles", markdown_table(_origin(comparison))]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
 
 def html(comparison: Comparison) -> str:
     """Return the report as one HTML page without scripts, fonts or pictures from elsewhere."""
-    name, state = escape(title(comparison)), _css(comparison.state)
-    body = [f"<h1>{name}</h1>"]
+    return html_page(title(comparison), html_body(comparison))
+
+
+def html_body(comparison: Comparison, level: int = 1) -> list[str]:
+    """Return the report's elements, its heading at a level."""
+    top, below = f"h{level}", f"h{level + 1}"
+    body = [f"<{top}>{escape(title(comparison))}</{top}>"]
+    state = _css(comparison.state)
     body.append(f'<p class="verdict {state}">{escape(verdict(comparison))}</p>')
     remarks = "".join(f"<li>{escape(line)}</li>\n" for line in _remarks(comparison))
     body += [f"<ul>\n{remarks}</ul>"] if remarks else []
     for part in comparison.sections:
         mark = f': <span class="{_css(part.state)}">{part.state}</span>' if part.findings else ""
-        body.append(f"<h2>{part.title}{mark}</h2>")
+        body.append(f"<{below}>{part.title}{mark}</{below}>")
         body.append(
-            _html_table(part.title, _table(part)) if part.findings else f"<p>{part.empty}</p>"
+            html_table(part.title, _table(part)) if part.findings else f"<p>{part.empty}</p>"
         )
-    body += ["<h2>The two bundles</h2>", _html_table("The two bundles", _origin(comparison))]
+    table = html_table("The two bundles", _origin(comparison))
+    return [*body, f"<{below}>The two bundles</{below}>", table]
+
+
+def html_page(name: str, body: list[str]) -> str:
+    """Return a whole page in the reports' look."""
     head = (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{name}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<main>\n"
+        f"<title>{escape(name)}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<main>\n"
     )
     return head + "\n".join(body) + "\n</main>\n</body>\n</html>\n"
+
+
+def write(folder: Path, markdown_text: str, html_text: str) -> list[Path]:
+    """Write both pages of a report, each in one step; return their paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    pages = {"report.md": markdown_text, "report.html": html_text}
+    for name, text in pages.items():
+        partial = folder / f".{name}.{os.getpid()}.partial"
+        try:
+            partial.write_text(text, encoding="utf-8")
+            partial.replace(folder / name)
+        finally:
+            partial.unlink(missing_ok=True)
+    return [folder / name for name in pages]
 
 
 def _remarks(comparison: Comparison) -> Iterator[str]:
@@ -130,14 +159,16 @@ def _facts(predicate: Predicate) -> dict[str, str]:
     }
 
 
-def _markdown_table(rows: list[Row]) -> str:
-    head = [_plain(cell) for cell in rows[0]]
+def markdown_table(rows: list[Row]) -> str:
+    """Return rows of text as a Markdown table, the first as its head."""
+    head = [plain(cell) for cell in rows[0]]
     return tables.markdown(
-        [dict(zip(head, map(_plain, row), strict=True)) for row in rows[1:]]
+        [dict(zip(head, map(plain, row), strict=True)) for row in rows[1:]]
     ).strip()
 
 
-def _html_table(label: str, rows: list[Row]) -> str:
+def html_table(label: str, rows: list[Row]) -> str:
+    """Return rows of text as a table that scrolls by itself, the first row as its head."""
     head = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in rows[0])
     lines = ["".join(map(_cell, row)) for row in rows[1:]]
     body = "".join(f"<tr>{line}</tr>\n" for line in lines)
@@ -157,7 +188,7 @@ def _css(state: str) -> str:
     return state.replace(" ", "-")
 
 
-def _plain(text: str) -> str:
-    """Keep a bundle's words from acting as Markdown."""
+def plain(text: str) -> str:
+    """Keep a bundle's or a page's words from acting as Markdown."""
     one_line = " ".join(text.split())
     return "".join(f"\\{c}" if c in "\\`*_|[]<>#" else c for c in one_line)

@@ -1,0 +1,32 @@
+"""Change the engine pin: `make repin GENESIS=1.2.3`.
+
+Tries the version in a copy of the checkout with an environment of its own: all lessons, all tests.
+Then pin and lock change together; a report says what moved. Nothing is committed.
+Exit status: 0 changed, 1 refused or failed, 130 interrupted; unless it is 0, the tree is as it was.
+"""
+
+import os
+import sys
+
+from robo_genesis.apply import ApplyError
+from robo_genesis.command import run
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.project import CACHE, ROOT, ProjectError
+from robo_genesis.repin import Repin, RepinError, installable_versions, run_repin
+
+
+def main() -> int:
+    """Change the pin and return the exit status."""
+    asked = Repin(
+        genesis=os.environ.get("GENESIS", ""),
+        root=ROOT,
+        cache=CACHE,
+        versions=installable_versions,
+        say=lambda line: print(line, flush=True),
+    )
+    failures = (RepinError, ProjectError, ApplyError, BundleRefused)
+    return run(lambda: run_repin(asked), "changed", failures)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

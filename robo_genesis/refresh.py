@@ -1,0 +1,162 @@
+"""The refresh report: what another engine version changes in packages, evidence and sentences."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from html import escape
+from itertools import groupby
+from pathlib import Path
+
+from robo_genesis.evidence import report
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.compare import Comparison, compare, specification
+from robo_genesis.evidence.findings import SEVERITY, worst
+from robo_genesis.evidence.report import Row
+from robo_genesis.evidence.status import RECORDED_PAGE, STATE_OF_CODE, recorded_folders
+from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.moved import Moved, moved_sentences
+
+Pair = tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """State of one recorded bundle, and the reason where it is not verified."""
+
+    state: str
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Refresh:
+    """What two builds of one checkout, each with its engine version, say of one another.
+
+    `packages` is name → versions in both locks, "" where there is none; `missing` names the lessons
+    with a bundle in one build alone; `recorded` is lesson/backend → state under both pins.
+    """
+
+    versions: Pair
+    packages: dict[str, Pair]
+    comparisons: tuple[Comparison, ...]
+    missing: tuple[str, ...]
+    recorded: dict[str, tuple[Recorded, Recorded]]
+    moved: tuple[Moved, ...]
+
+    @property
+    def state(self) -> str:
+        """The worst state of a lesson; a lesson that one build lacks cannot be compared."""
+        lacking = [SEVERITY[-1]] if self.missing else []
+        return worst([comparison.state for comparison in self.comparisons] + lacking)
+
+    @property
+    def title(self) -> str:
+        """The heading of the report."""
+        return f"Engine {self.versions[0]} → {self.versions[1]}"
+
+    @property
+    def stale(self) -> list[str]:
+        """Recorded bundles that the new pin makes stale."""
+        both = self.recorded.items()
+        return [name for name, (was, now) in both if now.state == "stale" != was.state]
+
+
+def compare_builds(
+    versions: Pair,
+    builds: tuple[Path, Path],
+    recorded: tuple[dict[str, Recorded], dict[str, Recorded]],
+    locks: Pair,
+) -> Refresh:
+    """Hold the build with the old version against that with the new one.
+
+    Args:
+        versions: of the engine, old and new, as all pairs here.
+        builds: folders with `html` and `evidence`.
+        recorded: what `recorded` returned under each pin.
+        locks: texts of requirements.lock.
+
+    Raises:
+        BundleRefused: a built bundle cannot be read.
+    """
+    old, new = (
+        {"/".join(f.parts[-2:]): f for f in recorded_folders(build)} for build in builds
+    )  # lesson/backend → folder
+    shared = sorted(old.keys() & new.keys())
+    return Refresh(
+        versions,
+        moved_packages(*locks),
+        tuple(compare(old[n], new[n], specification(n.split("/")[0])) for n in shared),
+        tuple(sorted(old.keys() ^ new.keys())),
+        {name: (recorded[0][name], recorded[1][name]) for name in recorded[0]},
+        tuple(moved_sentences(builds[0] / "html", builds[1] / "html")),
+    )
+
+
+def recorded(root: Path) -> dict[str, Recorded]:
+    """Return lesson/backend → state of every recorded bundle under a checkout's own pin."""
+    book, found = root / "book", {}
+    for folder in recorded_folders(book):
+        lesson = folder.parent.name
+        try:
+            verify_bundle(folder, lesson=lesson, page=RECORDED_PAGE, root=root, book=book)
+            state = Recorded("verified")
+        except BundleRefused as refusal:
+            state = Recorded(STATE_OF_CODE.get(refusal.code, "refused"), str(refusal))
+        found[f"{lesson}/{folder.name}"] = state
+    return found
+
+
+def moved_packages(old: str, new: str) -> dict[str, Pair]:
+    """Return name → (old, new) version of each package that two locks do not agree on."""
+    was, now = (
+        dict(line.split("==") for line in text.splitlines() if "==" in line and line[0] != "#")
+        for text in (old, new)
+    )
+    both = {name: (was.get(name, ""), now.get(name, "")) for name in {**was, **now}}
+    return {name: pair for name, pair in both.items() if pair[0] != pair[1]}
+
+
+def summary(refresh: Refresh) -> str:
+    """Say the result in one line."""
+    return (
+        f"{refresh.state}; {len(refresh.packages)} packages, {len(refresh.moved)} sentences moved, "
+        f"{len(refresh.stale)} recorded bundles became stale"
+    )
+
+
+def markdown(refresh: Refresh) -> str:
+    """Return the report as a Markdown page."""
+    parts = [f"# {refresh.title}", f"**{summary(refresh).capitalize()}.**"]
+    parts += [report.markdown(comparison, level=2) for comparison in refresh.comparisons]
+    for name, rows, empty in _tables(refresh):
+        parts += [f"## {name}", report.markdown_table(rows) if len(rows) > 1 else empty]
+    return "\n\n".join(part.strip() for part in parts) + "\n"
+
+
+def html(refresh: Refresh) -> str:
+    """Return the report as one HTML page that fetches nothing."""
+    state = refresh.state.replace(" ", "-")
+    body = [f"<h1>{escape(refresh.title)}</h1>"]
+    body.append(f'<p class="verdict {state}">{escape(summary(refresh).capitalize())}.</p>')
+    for comparison in refresh.comparisons:
+        body += report.html_body(comparison, level=2)
+    for name, rows, empty in _tables(refresh):
+        table = report.html_table(name, rows) if len(rows) > 1 else f"<p>{empty}</p>"
+        body += [f"<h2>{escape(name)}</h2>", table]
+    return report.html_page(refresh.title, body)
+
+
+def _tables(refresh: Refresh) -> Iterator[tuple[str, list[Row], str]]:
+    """Yield (heading, rows with their head, what stands there without rows)."""
+    lacking = [(name, "in one build alone") for name in refresh.missing]
+    if lacking:
+        yield "Lessons without a counterpart", [("lesson", "evidence"), *lacking], ""
+    packages = [(name, *versions) for name, versions in refresh.packages.items()]
+    yield "Packages", [("package", "old", "new"), *packages], "No other package moved."
+    rows = [(name, was.state, now.state, now.reason)
+            for name, (was, now) in refresh.recorded.items()]  # fmt: skip
+    head = ("bundle", f"under {refresh.versions[0]}", f"under {refresh.versions[1]}", "reason")
+    yield "Recorded bundles", [head, *rows], "No bundle is recorded."
+    for page, moved in groupby(refresh.moved, key=lambda one: one.page):
+        sentences = [(one.kind, one.old, one.new) for one in moved]
+        yield f"Sentences of {page}", [("written by", "old", "new"), *sentences], ""
+    if not refresh.moved:
+        yield "Sentences", [("", "")], "No sentence of the site moved."
