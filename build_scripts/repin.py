@@ -11,8 +11,9 @@ import sys
 from robo_genesis.apply import ApplyError
 from robo_genesis.command import run
 from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.pin import RepinError, installable_versions
 from robo_genesis.project import CACHE, ROOT, ProjectError
-from robo_genesis.repin import Repin, RepinError, installable_versions, run_repin
+from robo_genesis.repin import Repin, run_repin
 
 
 def main() -> int:

@@ -17,6 +17,9 @@ SHARED = ("engine", "pages")
 OWN = ("GENESIS", "PYTHON", "PYTHONPATH", "BUNDLE", "MAKEFLAGS", "MFLAGS", "MAKELEVEL")
 """Variables of the outer make that mean nothing to a make in the copy, or the wrong thing."""
 
+ANEW = (".venv", ".cache")
+"""Links of these names are no folders for git to ignore, and lead to what others use."""
+
 HEARTBEAT = 60.0
 TAIL = 25
 
@@ -44,7 +47,7 @@ def copy_tree(root: Path, work: Path, cache: Path) -> None:
     for name in _git(work, "ls-files", "-z"):
         (work / name).unlink(missing_ok=True)
     for name in names:
-        if os.path.lexists(root / name) and not (root / name).is_dir():
+        if name not in ANEW and os.path.lexists(root / name):
             (work / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(root / name, work / name, follow_symlinks=False)
     (work / ".cache").mkdir()

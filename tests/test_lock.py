@@ -45,6 +45,35 @@ def test_parts_of_torch_s_cuda_build_are_left_out_unless_others_need_them():
     assert script["needed"](packages) == {"torch", "engine", "sympy", "nvidia-nvrtc-cu12"}
 
 
+def test_what_the_project_does_not_need_is_left_out():
+    script = runpy.run_path(str(ROOT / "build_scripts" / "lock.py"))
+    packages = {
+        "robo-genesis": {"requires_dist": ["engine[fast]==1", 'tester; extra == "dev"']},
+        "engine": {
+            "requires_dist": [
+                'old-helper; python_version < "3"',
+                'quick; extra == "fast"',
+                'unasked; extra == "slow"',
+            ]
+        },
+        "stranger": {"requires_dist": ["engine"]},
+        **{key: {} for key in ("tester", "old-helper", "quick", "unasked")},
+    }
+    assert script["needed"](packages) == {"engine", "quick", "tester"}
+
+
+def test_the_lock_is_what_is_needed_of_what_is_installed():
+    """So that a resolution which keeps what is installed leaves the lock as it is."""
+    script = runpy.run_path(str(ROOT / "build_scripts" / "lock.py"))
+    installed = {
+        canonicalize_name(d.name): d.metadata.json for d in importlib.metadata.distributions()
+    }
+    extras = PROJECT["optional-dependencies"].values()
+    direct = [*PROJECT["dependencies"], *(line for lines in extras for line in lines)]
+    found = script["needed"](installed | {"robo-genesis": {"requires_dist": direct}})
+    assert found == LOCKED.keys()
+
+
 def test_every_line_names_one_exact_public_version():
     assert len(LOCKED) == len(LINES)
     assert all(re.fullmatch(r"[\w.]+", version) for version in LOCKED.values())

@@ -13,6 +13,7 @@ from robo_genesis.evidence.current import page_digest
 from robo_genesis.evidence.record import Measured, Recorder
 from robo_genesis.metrics import metric_records
 
+QUADRANTS = current.locked_version("quadrants", project.ROOT)
 RUN_ID = "0123456789abcdef" * 2
 LOG = (
     ("INFO", "Running on [a CPU] with backend gs.cpu. Device memory: 23.54 GB."),
@@ -32,7 +33,7 @@ def backend():
 def engine(backend):
     log = runtime.EngineLog()
     log.lines += LOG
-    return runtime.Engine(project.engine_pin(), "1.3.0", "32", 0, backend, log)
+    return runtime.Engine(project.engine_pin(), QUADRANTS, "32", 0, backend, log)
 
 
 @pytest.fixture(scope="session")

@@ -1,0 +1,114 @@
+"""The refresh report on bundles: metrics, relations, warnings and what became stale."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from spoilers import part, seal
+
+from robo_genesis import project, refresh
+from robo_genesis.evidence import bundle
+from robo_genesis.refresh import Recorded, compare_builds, recorded
+
+
+@pytest.fixture
+def builds(pristine, tmp_path) -> tuple[Path, Path]:
+    """Two builds with one lab each, and a site of one sentence."""
+    both = tmp_path / "old", tmp_path / "new"
+    for build in both:
+        shutil.copytree(pristine, build / "evidence" / "l04" / "cpu")
+        (build / "html").mkdir()
+        (build / "html" / "index.html").write_text("<p>Same.</p>")
+    engine(both[1], "9.9.9")
+    return both
+
+
+def engine(build: Path, version: str, **more) -> None:
+    part("engine", version=version, **more)(build / "evidence" / "l04" / "cpu")
+
+
+def metric(build: Path, case: str, name: str, factor: float) -> None:
+    folder = build / "evidence" / "l04" / "cpu"
+    metrics = json.loads((folder / "metrics.json").read_text())
+    metrics[case][name]["value"] *= factor
+    (folder / "metrics.json").write_text(json.dumps(metrics))
+    seal(folder)
+
+
+def compared(builds: tuple[Path, Path], **records) -> refresh.Refresh:
+    before, after = records.get("recorded", ({}, {}))
+    return compare_builds(("1.0", "9.9.9"), builds, (before, after), ("a==1\n", "a==1\nb==2\n"))
+
+
+def test_equal_metrics_are_reported_as_such(builds):
+    found = compared(builds)
+    assert (found.state, found.packages, found.moved) == ("equal", {"b": ("", "2")}, ())
+    text = refresh.markdown(found)
+    assert text.startswith("# Engine 1.0 → 9.9.9\n\n**Equal; 1 packages, 0 sentences moved, 0 ")
+    assert "## L04 lab: engine version" in text
+    assert "### Relations: equal" in text
+    assert "No bundle is recorded." in text
+    assert "No sentence of the site moved." in text
+
+
+def test_a_metric_beyond_tolerance_a_warning_and_a_flipped_relation_are_named(builds):
+    metric(builds[1], "G2", "overshoot", 0.01)
+    folder = builds[1] / "evidence" / "l04" / "cpu"
+    manifest = json.loads((folder / "manifest.json").read_text())
+    manifest["predicate"]["warnings"] = ["Something new."]
+    (folder / "manifest.json").write_text(json.dumps(manifest))
+    found = compared(builds)
+    assert found.state == "differs"
+    text, page = refresh.markdown(found), refresh.html(found)
+    assert "- Engine warning gained: Something new." in text
+    assert "- Engine warning lost: Approximating tendon." in text
+    assert "flipped" in text
+    assert "| differs | G2.overshoot |" in text
+    assert page.count("<h1>") == 1
+    assert "<h2>L04 lab: engine version" in page
+    assert "flipped" in page
+    assert "http" not in page
+
+
+def test_a_lesson_that_one_build_lacks_makes_the_builds_not_comparable(builds):
+    shutil.rmtree(builds[1] / "evidence" / "l04")
+    found = compared(builds)
+    assert (found.state, found.missing) == ("not comparable", ("l04/cpu",))
+    assert "| l04/cpu | in one build alone |" in refresh.markdown(found)
+
+
+def test_a_bundle_that_a_new_pin_makes_stale_is_named_with_both_states(builds):
+    states = {"l04/amdgpu": Recorded("verified")}, {"l04/amdgpu": Recorded("stale", "older")}
+    found = compared(builds, recorded=states)
+    assert found.stale == ["l04/amdgpu"]
+    assert "| l04/amdgpu | verified | stale | older |" in refresh.markdown(found)
+    already = {"l04/cuda": Recorded("stale", "a")}, {"l04/cuda": Recorded("stale", "b")}
+    assert compared(builds, recorded=already).stale == []
+
+
+def test_recorded_bundles_are_judged_by_the_pin_of_their_own_checkout(
+    folder, tmp_path, courses_pages
+):
+    root = tmp_path / "copy"
+    (root / "book" / "evidence" / "l04").mkdir(parents=True)
+    shutil.copytree(folder, root / "book" / "evidence" / "l04" / "cpu")
+    shutil.copytree(project.ROOT / "robo_genesis", root / "robo_genesis")
+    for name in ("pyproject.toml", "requirements.lock"):
+        shutil.copy(project.ROOT / name, root)
+    assert recorded(root) == {"l04/cpu": Recorded("verified")}
+    pin = root / "pyproject.toml"
+    pin.write_text(pin.read_text().replace(f"=={project.engine_pin()}", "==9.9.9"))
+    found = recorded(root)["l04/cpu"]
+    assert found.state == "stale"
+    assert "engine.version is" in found.reason
+    assert "9.9.9" in found.reason
+    manifest = root / "book" / "evidence" / "l04" / "cpu" / "manifest.json"
+    manifest.write_text("{}")
+    assert recorded(root)["l04/cpu"].state == "refused"
+
+
+def test_a_built_bundle_that_cannot_be_read_is_an_error(builds):
+    (builds[1] / "evidence" / "l04" / "cpu" / "metrics.json").write_text("{}")
+    with pytest.raises(bundle.BundleRefused):
+        compared(builds)
