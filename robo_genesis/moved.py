@@ -19,6 +19,9 @@ GENERATED = ("genindex.html", "search.html")
 RUN = re.compile(r"\b[0-9a-f]{8}(?:[0-9a-f]{24})?\b|\b\d{4}-\d\d-\d\d(?:T[\d:.]+Z?)?\b")
 """What differs between any two runs of one version: run ids and dates."""
 
+LOG = re.compile(r"\[(Genesis\b|[TDIWEC] \d\d/\d\d/)")
+"""How a line of the engine's or its compiler's log begins; warnings are compared from bundles."""
+
 END = re.compile(r"(?<=[.!?])\s+(?=[^\s\d])")
 
 
@@ -77,14 +80,15 @@ def _changes(page: str, old: list[Sentence], new: list[Sentence]) -> Iterator[Mo
 def sentences(html: str) -> Iterator[Sentence]:
     """Yield the sentences of a page's article; the source of cells and the formulas are left out.
 
-    A table row is one sentence, a line of printed output as well.
+    A table row is one sentence, a line of printed output as well; the engine's log is none.
     """
     soup = BeautifulSoup(html, "html.parser")
     article = soup.select_one("article") or soup
     for block, strings in _by_block(article):
         kind = _kind(block)
         if block.name == "pre":
-            pieces = "".join(strings).splitlines()
+            lines = "".join(strings).splitlines()
+            pieces = [line for line in lines if not LOG.match(line)]
         elif block.name == "tr":
             pieces = [" | ".join(cell.get_text() for cell in block.find_all(["th", "td"]))]
         else:

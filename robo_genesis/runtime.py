@@ -113,13 +113,14 @@ class EngineLog(logging.Handler):
         return "".join(f"{level} {text}\n" for level, text in self.lines)
 
 
-class WithoutInstallPath(logging.Filter):
-    """Takes the folder of installed packages out of the engine's lines: it is the builder's own."""
+class WithoutPrivatePaths(logging.Filter):
+    """Takes the folders of packages and of the user out of the engine's lines: both are private."""
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Rewrite the message; keep every record."""
         installed = Path(importlib.import_module("genesis").__file__ or "").parents[1]
-        record.msg = str(record.msg).replace(str(installed), "site-packages")
+        message = str(record.msg).replace(str(installed), "site-packages")
+        record.msg = message.replace(f"{Path.home()}/", "~/")
         return True
 
 
@@ -154,7 +155,7 @@ def start(contract: Contract, seed: int = SEED) -> Engine:
             "backend, seed or precision cannot be changed afterwards: restart the kernel."
         )
     log = EngineLog()
-    logging.getLogger("genesis").addFilter(WithoutInstallPath())
+    logging.getLogger("genesis").addFilter(WithoutPrivatePaths())
     logging.getLogger("genesis").addHandler(log)
     gs.init(
         backend=gs.cpu if contract.backend == "cpu" else gs.gpu,

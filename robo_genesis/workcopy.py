@@ -112,7 +112,7 @@ def run_logged(
 
 
 def _end_with_parent() -> None:
-    """Ask Linux for a SIGTERM when the parent is gone, killed for good included; make passes it."""
+    """Ask Linux for a SIGTERM when the parent is gone, by SIGKILL too; make passes it on."""
     set_parent_death_signal = 1  # PR_SET_PDEATHSIG of <sys/prctl.h>
     ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGTERM)
 

@@ -15,7 +15,10 @@ stayed. The rest holds.</p>
 <div class="cell_output"><p>The overshoot goes {way} (G1 1.5 %, G2 2.5 %).</p>
 <table><tr><th>case</th><th>value</th></tr><tr><td>G1</td><td><p>{cell}</p></td></tr></table>
 <pre>line one
-[WARNING] {line}</pre></div>
+[Genesis] [04:28:32] [INFO] Scene {source} created.
+[Genesis 04:39:15 WARNING] Neutral {source}.
+[W 11/21/26 04:41:27.754 12581] [frontend.cpp:b@1] {source}
+counted {line}</pre></div>
 <p class="lesson-status">measured {date}, run {run}.</p>
 <script>var n = {source};</script>
 </article></body></html>"""
@@ -53,7 +56,7 @@ def test_sentences_rows_and_lines_are_read_once_each_and_sources_never(tmp_path)
         ("case | value", COMPUTED),
         ("G1 | 7.5", COMPUTED),
         ("line one", COMPUTED),
-        ("[WARNING] neutral", COMPUTED),
+        ("counted neutral", COMPUTED),
         ("measured 2026-11-21, run 0123456789abcdef0123456789abcdef.", STATUS),
     ]
 
@@ -63,7 +66,7 @@ def test_sentences_rows_and_lines_are_read_once_each_and_sources_never(tmp_path)
     [
         ({"time": "0.32"}, INSERTED, "It rose in 0.31 s.", "It rose in 0.32 s."),
         ({"cell": "7.6"}, COMPUTED, "G1 | 7.5", "G1 | 7.6"),
-        ({"line": "limits"}, COMPUTED, "[WARNING] neutral", "[WARNING] limits"),
+        ({"line": "limits"}, COMPUTED, "counted neutral", "counted limits"),
         ({"way": "down"}, COMPUTED, "The overshoot goes up (G1 1.5 %, G2 2.5 %).",
          "The overshoot goes down (G1 1.5 %, G2 2.5 %)."),
     ],
@@ -81,8 +84,8 @@ def test_what_differs_between_any_two_runs_is_not_reported(tmp_path, change):
 
 
 def test_a_line_that_comes_does_not_move_its_neighbours(tmp_path):
-    found = moved(tmp_path, line="neutral\n[WARNING] more")
-    assert found == [Moved("lab", COMPUTED, "", "[WARNING] more")]
+    found = moved(tmp_path, line="neutral\nmore")
+    assert found == [Moved("lab", COMPUTED, "", "more")]
 
 
 def test_a_page_of_one_build_alone_is_reported(tmp_path):

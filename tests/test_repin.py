@@ -43,7 +43,7 @@ book:
 \t@test -n "$(PYTHON)" || test -f .venv/.installed
 \t@mkdir -p book/_build/html
 \t@echo '<p>Measured with $(PIN).</p><p>Same.</p>' > book/_build/html/index.html
-\t@if test "$(PIN)" = %(hangs)s; then sleep 600 & echo $$! > sleeper; wait; fi
+\t@if test "$(PIN)" = %(hangs)s; then echo $$$$ > sleeper; exec sleep 600; fi
 .venv/.installed: requirements.lock
 \t@test "$(PIN)" != %(install)s
 \t@mkdir -p .venv && touch .venv/.installed

@@ -282,3 +282,20 @@ def test_outputs_are_absolute(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     contract = read_contract({"ROBO_GENESIS_OUTPUTS_DIR": "here"})
     assert contract.outputs == Path(tmp_path, "here")
+
+
+def test_the_log_names_neither_the_environment_nor_the_user(monkeypatch, tmp_path):
+    engine = SimpleNamespace(__file__=str(tmp_path / "packages" / "genesis" / "__init__.py"))
+    monkeypatch.setitem(sys.modules, "genesis", engine)
+    monkeypatch.setenv("HOME", str(tmp_path / "someone"))
+    text = f"Read {tmp_path}/packages/genesis/a.xml, wrote ~<{tmp_path}/someone/.cache/b.gsd>~."
+    record = logging.LogRecord("genesis", logging.INFO, "", 0, text, None, None)
+    assert runtime.WithoutPrivatePaths().filter(record)
+    assert record.getMessage() == "Read site-packages/genesis/a.xml, wrote ~<~/.cache/b.gsd>~."
+
+
+@pytest.mark.parametrize(("newer", "name"), [(True, "raw"), (False, "dumb")])
+def test_the_theme_without_colours_has_the_name_that_the_engine_gives_it(monkeypatch, newer, name):
+    styles = SimpleNamespace(**({"THEME": object} if newer else {}))
+    monkeypatch.setitem(sys.modules, "genesis.styles", styles)
+    assert runtime.plain_theme() == name
