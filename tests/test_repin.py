@@ -1,6 +1,7 @@
 """The steps of make repin on a made-up course: no network, no engine, pages in a moment."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,7 +14,7 @@ import pytest
 
 from robo_genesis.apply import ApplyError
 from robo_genesis.pin import RepinError
-from robo_genesis.project import ROOT, engine_pin
+from robo_genesis.project import ROOT, ProjectError, engine_pin
 from robo_genesis.repin import Repin, only_repin, run_repin
 
 OLD, NEW = engine_pin(), "99.1"
@@ -194,6 +195,13 @@ def test_a_pin_that_is_edited_meanwhile_is_kept(root):
         run_repin(asked(root, NEW, say=edit_during_the_tests))
     assert (root / "pyproject.toml").read_text() == mine
     assert (root / "requirements.lock").read_text() == LOCK.format(OLD)
+
+
+def test_a_checkout_that_is_no_repository_is_refused(root):
+    shutil.rmtree(root / ".git")
+    with pytest.raises(ProjectError, match=r"git cannot read the checkout .*\n.*git clone"):
+        run_repin(asked(root, NEW))
+    assert (root / "pyproject.toml").read_text() == PROJECT.format(OLD)
 
 
 def test_what_the_users_environment_links_to_is_never_copied(root, tmp_path):
