@@ -117,8 +117,8 @@ def moved_packages(old: str, new: str) -> dict[str, Pair]:
 def summary(refresh: Refresh) -> str:
     """Say the result in one line."""
     return (
-        f"{refresh.state}; {len(refresh.packages)} packages, {len(refresh.moved)} sentences moved, "
-        f"{len(refresh.stale)} recorded bundles became stale"
+        f"{refresh.state}; packages that moved: {len(refresh.packages)}, sentences: "
+        f"{len(refresh.moved)}; recorded bundles that became stale: {len(refresh.stale)}"
     )
 
 

@@ -2,6 +2,7 @@
 
 import io
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -27,6 +28,9 @@ from robo_genesis.scene_config import (
     per_joint,
 )
 from robo_genesis.trace import Trace
+
+# Tests send it to the commands they start; a shell that starts pytest with & has it ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The same examples each time, and no time limit: shared machines stall.
 settings.register_profile("course", derandomize=True, deadline=None)

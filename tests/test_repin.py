@@ -228,12 +228,11 @@ def test_the_command_refuses_without_a_traceback():
 
 
 RUN = """
-import signal, sys
+import sys
 from pathlib import Path
 from robo_genesis.command import run
 from robo_genesis.pin import RepinError
 from robo_genesis.repin import Repin, run_repin
-signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where tests run behind a shell
 root = Path(sys.argv[1])
 asked = Repin(sys.argv[2], root, root / ".cache", lambda prereleases: [sys.argv[2]])
 sys.exit(run(lambda: run_repin(asked), "changed", (RepinError,)))

@@ -45,7 +45,9 @@ def test_equal_metrics_are_reported_as_such(builds):
     found = compared(builds)
     assert (found.state, found.packages, found.moved) == ("equal", {"b": ("", "2")}, ())
     text = refresh.markdown(found)
-    assert text.startswith("# Engine 1.0 → 9.9.9\n\n**Equal; 1 packages, 0 sentences moved, 0 ")
+    assert text.startswith(
+        "# Engine 1.0 → 9.9.9\n\n**Equal; packages that moved: 1, sentences: 0; "
+    )
     assert "## L04 lab: engine version" in text
     assert "### Relations: equal" in text
     assert "No bundle is recorded." in text
