@@ -7,6 +7,7 @@ at the old or the new state.
 import fcntl
 import os
 import shutil
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -58,26 +59,45 @@ def run_repin(asked: Repin) -> list[str]:
         ApplyError: pin or lock were edited meanwhile; nothing was changed.
     """
     folder = asked.cache / "repin"
+    recover(asked.root)
+    old = project.engine_pin(asked.root)
+    new = chosen_version(asked.genesis, old, asked.versions)
+    require_locked_packages(asked.root)
     with only_repin(folder):
-        recover(asked.root)
-        old = project.engine_pin(asked.root)
-        new = chosen_version(asked.genesis, old, asked.versions)
-        require_locked_packages(asked.root)
         work = folder / "work"
         try:
             steps = Steps(asked, old, new, work, folder / "logs", Progress(asked.say))
             before = steps.copy()
             pages = steps.try_version()
-            apply(asked.root, work, before)
+            with uninterrupted():
+                apply(asked.root, work, before)
+                tidy(folder)
         finally:
-            for rubbish in (work, folder / "old"):
-                shutil.rmtree(rubbish, ignore_errors=True)
+            tidy(folder)
     return [
         f"Pinned: {ENGINE} {old} → {new}, in {' and '.join(FILES)}. Nothing is committed.",
         *(f"Report: {page}" for page in pages),
         "Review both; say in CHANGELOG.md under \"Evidence changed\" what changed. The next make "
         "book sets up .venv anew (with PYTHON=…, install the lock there first).",
     ]  # fmt: skip
+
+
+def tidy(folder: Path) -> None:
+    """Remove the copy and the old build; what a kill leaves, the next make repin removes."""
+    for rubbish in (folder / "work", folder / "old"):
+        shutil.rmtree(rubbish, ignore_errors=True)
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Ignore a Ctrl-C that comes too late: it would say that nothing was changed."""
+    signals = (signal.SIGINT, signal.SIGTERM)
+    handlers = [signal.signal(one, signal.SIG_IGN) for one in signals]
+    try:
+        yield
+    finally:
+        for one, handler in zip(signals, handlers, strict=True):
+            signal.signal(one, handler)
 
 
 @contextmanager

@@ -12,7 +12,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from robo_genesis.apply import ApplyError
+from robo_genesis.apply import ApplyError, apply
 from robo_genesis.pin import RepinError
 from robo_genesis.project import ROOT, ProjectError, engine_pin
 from robo_genesis.repin import Repin, only_repin, run_repin
@@ -93,7 +93,8 @@ def state(root: Path) -> tuple[str, str, str]:
 
 
 def left(root: Path) -> list[str]:
-    return sorted(path.name for path in (root / ".cache" / "repin").iterdir())
+    """Return what stands in the folder of make repin; nothing before its lock was taken."""
+    return sorted(path.name for path in (root / ".cache" / "repin").glob("*"))
 
 
 def test_pin_and_lock_change_together_and_the_users_changes_stay(root):
@@ -158,7 +159,7 @@ def test_a_wrong_wish_is_refused_before_anything_is_asked_or_copied(root, genesi
     with pytest.raises(RepinError, match=says):
         run_repin(asked(root, genesis, versions=None))
     assert state(root) == before
-    assert left(root) == ["lock"]
+    assert left(root) == []
 
 
 def test_a_version_that_is_not_there_is_refused_with_those_there_are(root):
@@ -166,14 +167,14 @@ def test_a_version_that_is_not_there_is_refused_with_those_there_are(root):
     with pytest.raises(RepinError, match=r"no genesis-world 9\.9\.9 .*: 99\.6, 99\.5, .* one of"):
         run_repin(asked(root, "9.9.9"))
     assert state(root) == before
-    assert left(root) == ["lock"]
+    assert left(root) == []
 
 
 def test_an_environment_that_is_not_the_locked_one_is_refused(root):
     (root / "requirements.lock").write_text(LOCK.format(OLD) + "pip==0.1\n")
     with pytest.raises(RepinError, match=r"does not hold .*: pip \S+ instead of 0\.1\. Install"):
         run_repin(asked(root, NEW))
-    assert left(root) == ["lock"]
+    assert left(root) == []
 
 
 def test_two_at_once_are_refused(root):
@@ -202,6 +203,19 @@ def test_a_checkout_that_is_no_repository_is_refused(root):
     with pytest.raises(ProjectError, match=r"git cannot read the checkout .*\n.*git clone"):
         run_repin(asked(root, NEW))
     assert (root / "pyproject.toml").read_text() == PROJECT.format(OLD)
+
+
+def test_an_interrupt_while_the_change_is_applied_comes_too_late(root, monkeypatch):
+    def interrupted(*arguments) -> None:
+        for sent in (signal.SIGINT, signal.SIGTERM):
+            os.kill(os.getpid(), sent)
+        apply(*arguments)
+
+    handlers = [signal.getsignal(sent) for sent in (signal.SIGINT, signal.SIGTERM)]
+    monkeypatch.setattr("robo_genesis.repin.apply", interrupted)
+    assert "Nothing is committed" in run_repin(asked(root, NEW))[0]
+    assert (root / "pyproject.toml").read_text() == PROJECT.format(NEW)
+    assert [signal.getsignal(sent) for sent in (signal.SIGINT, signal.SIGTERM)] == handlers
 
 
 def test_what_the_users_environment_links_to_is_never_copied(root, tmp_path):
