@@ -14,8 +14,9 @@ from robo_genesis.project import ProjectError
 SHARED = ("engine", "pages")
 """Caches that the copy shares with the checkout: named by what decides their content."""
 
-OWN = ("GENESIS", "PYTHON", "PYTHONPATH", "BUNDLE", "MAKEFLAGS", "MFLAGS", "MAKELEVEL")
-"""Variables of the outer make that mean nothing to a make in the copy, or the wrong thing."""
+OWN = ("GENESIS", "PYTHON", "PYTHONPATH", "BUNDLE", "RELEASE", "MAKEFLAGS", "MFLAGS", "MAKELEVEL")
+"""Variables of the outer make that mean nothing to a make in the copy, or the wrong thing: a new
+pin makes recorded bundles stale, which a release would refuse."""
 
 ANEW = (".venv", ".cache")
 """Links of these names are no folders for git to ignore, and lead to what others use."""

@@ -127,6 +127,7 @@ def test_the_switches_are_those_of_before_the_engine(tmp_path, monkeypatch):
     monkeypatch.setattr(runtime, "import_engine", imported)
     monkeypatch.setitem(sys.modules, "quadrants", SimpleNamespace(__version__=(1, 2)))
     monkeypatch.setattr(runtime, "probe", lambda requested: None)
+    monkeypatch.setitem(sys.modules, "genesis.styles", SimpleNamespace())
     for kept in ("handlers", "filters"):
         monkeypatch.setattr(logging.getLogger("genesis"), kept, [])
     assert start(Contract("cpu", True, tmp_path)).switches == {"GS_ENABLE_ZEROCOPY": "0"}
