@@ -115,8 +115,9 @@ def bundle_status(
         state = STATE_OF_CODE.get(refusal.code, "refused")
         summary = {
             "stale": lambda: why_stale(bundle.read_manifest(folder), book),
+            "older-schema": lambda: "It was recorded in an older form of the bundle.",
             "failed": lambda: "Its own checks did not all pass.",
-        }.get(state, lambda: UNREADABLE)()
+        }.get(refusal.code, lambda: UNREADABLE)()
         return Status(state, folder.name, str(refusal), None, refusal.code, summary)
     return _shown(folder, manifest)
 

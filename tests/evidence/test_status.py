@@ -25,6 +25,7 @@ from robo_genesis.evidence.status import (
     recorded_status,
     refused_records,
 )
+from robo_genesis.metrics import measure, metric_records
 
 
 @pytest.fixture
@@ -114,6 +115,7 @@ def test_an_older_form_is_stale_and_nothing_of_it_is_read(folder):
     status = bundle_status(folder, "l04", "lab")
     assert (status.state, status.code, status.manifest) == ("stale", "older-schema", None)
     assert status.reason.endswith("schema_version is 0, expected 1. Record the bundle again.")
+    assert status.summary == "It was recorded in an older form of the bundle."
 
 
 def test_a_newer_form_is_refused(folder):
@@ -177,11 +179,11 @@ def test_an_accelerator_s_bundle_is_verified(book, courses_pages):
 def undecided(recorder, measured, experiment, make_run):
     """A sound bundle whose G2 responds as G1 does, with G2's own controller."""
     traces = experiment.traces | {"G2": make_run("G2", 20.0, 0.8)}
-    metrics = l04.measure(traces, experiment.joints.entry(l04.STEPPED_JOINT))
+    metrics = measure(traces, l04.CASES, experiment.joints.entry(l04.STEPPED_JOINT))
     again = StepExperiment(
         experiment.joints, experiment.model, l04.CASES, traces, metrics, "camera", experiment.frames
     )
-    records = l04.metric_records(metrics, experiment.model)
+    records = metric_records(metrics, experiment.model)
     outcomes = run_checks(again)
     assert all(check.passed for check in outcomes)
     return recorder.write(
