@@ -106,10 +106,12 @@ def _require_for_release(problems: Sequence[str]) -> None:
         raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
 
 
-def _labs(results: Sequence[PageResult]) -> dict[str, Path]:
-    """Return lesson to the folder of its lab's bundle of this build."""
-    found = [result for result in results if result.bundle and result.page.page == "lab"]
-    return {str(result.page.lesson): Path(str(result.bundle)) for result in found}
+def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
+    """Return each lesson of the book to the folder of its lab's bundle of this build."""
+    labs: dict[str, Path | None] = {
+        str(result.page.lesson): None for result in results if result.page.declares_bundle
+    }
+    return labs | {str(r.page.lesson): r.bundle for r in results if r.page.page == "lab"}
 
 
 def _execute(

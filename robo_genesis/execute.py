@@ -191,6 +191,8 @@ def execute_pages(
     try:
         results = _execute(pages, execution, timeout)
     except (OperationalError, RuntimeError) as error:  # jupyter-cache's database, bare or wrapped
+        if not isinstance(error.__cause__ or error, OperationalError):
+            raise
         raise ProjectError(
             f"The executed pages in {folder} cannot be kept: {error.__cause__ or error}\n"
             "Give them free space or write access, or remove that folder."

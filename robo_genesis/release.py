@@ -17,7 +17,7 @@ def unclean(root: Path) -> list[str]:
     Args:
         root: the checkout.
     """
-    command = ["git", "-C", str(root), "status", "--porcelain"]
+    command = ["git", "-C", str(root), "status", "--porcelain", "--untracked-files=all"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError) as error:
@@ -37,7 +37,7 @@ def unclean(root: Path) -> list[str]:
     ]
 
 
-def lacking(book: Path, built: Mapping[str, Path], root: Path) -> list[str]:
+def lacking(book: Path, built: Mapping[str, Path | None], root: Path) -> list[str]:
     """Return a line for each thing that the evidence of a book lacks for a release.
 
     A lesson requires the evidence of its minimum hardware. Where that is the CPU it is this
@@ -46,7 +46,8 @@ def lacking(book: Path, built: Mapping[str, Path], root: Path) -> list[str]:
 
     Args:
         book: the folder of the pages.
-        built: lesson to the folder of this build's bundle of its lab.
+        built: each lesson of the book to the folder of this build's bundle of its lab, None where
+            it has no lab.
         root: the checkout that the build's bundles must name.
     """
     return [
@@ -55,7 +56,10 @@ def lacking(book: Path, built: Mapping[str, Path], root: Path) -> list[str]:
     ]
 
 
-def _required(book: Path, lesson: str, folder: Path, root: Path) -> Iterator[str]:
+def _required(book: Path, lesson: str, folder: Path | None, root: Path) -> Iterator[str]:
+    if folder is None:
+        yield f"{lesson} has no lab in the table of contents, so nothing of it is measured for it."
+        return
     here = bundle_status(folder, lesson, "lab", book=book)
     hardware = LESSONS[lesson].MINIMUM_HARDWARE
     needed = here if hardware == here.backend else recorded_status(book, lesson, hardware)

@@ -119,8 +119,7 @@ class WithoutPrivatePaths(logging.Filter):
     def filter(self, record: logging.LogRecord) -> bool:
         """Rewrite the message; keep every record."""
         installed = Path(importlib.import_module("genesis").__file__ or "").parents[1]
-        message = str(record.msg).replace(str(installed), "site-packages")
-        record.msg = message.replace(f"{Path.home()}/", "~/")
+        record.msg = project.without_home(str(record.msg).replace(str(installed), "site-packages"))
         return True
 
 

@@ -230,7 +230,10 @@ def git_record() -> dict[str, Any] | None:
     try:
         commit, status = (
             subprocess.run([*command, *rest], capture_output=True, text=True, check=True).stdout
-            for rest in (["rev-parse", "HEAD"], ["status", "--porcelain"])
+            for rest in (
+                ["rev-parse", "HEAD"],
+                ["status", "--porcelain", "--untracked-files=normal"],
+            )
         )
     except (OSError, subprocess.CalledProcessError):
         return None

@@ -10,6 +10,7 @@ from robo_genesis.evidence import bundle, current
 from robo_genesis.evidence.bundle import BundleRefused, Manifest
 from robo_genesis.evidence.compare import specification
 from robo_genesis.evidence.relations import not_shown
+from robo_genesis.evidence.rules import AGREEMENT
 from robo_genesis.evidence.verify import verify_bundle
 
 RECORDED_PAGE = "lab"
@@ -85,6 +86,9 @@ def recorded_status(book: Path, lesson: str, backend: str) -> Status:
     """Return the state of the lab's bundle that was recorded on a backend and committed."""
     absent = f"No run on this backend is recorded for Genesis {project.engine_pin()}."
     folder = book / "evidence" / lesson / backend
+    if folder.parent.is_symlink():
+        reason = f"evidence/{lesson} is a link, expected the folder itself. Put the folder there."
+        return Status("refused", backend, reason, None, "path", UNREADABLE)
     return bundle_status(folder, lesson, RECORDED_PAGE, absent, book)
 
 
@@ -160,11 +164,15 @@ def why_stale(manifest: Manifest, book: Path) -> str:
 
 
 def recorded_folders(book: Path) -> list[Path]:
-    """Return what stands where recorded bundles do: `evidence/<lesson>/<backend>` of a book."""
+    """Return what stands where recorded bundles do: `evidence/<lesson>/<backend>` of a book.
+
+    A backend's name on something that is no folder counts: it must be refused, not overlooked.
+    """
     return [
         path
         for path in sorted((book / "evidence").glob("*/*"))
-        if (path.is_dir() or path.is_symlink()) and not path.name.startswith(".")
+        if (path.is_dir() or path.is_symlink() or path.name in AGREEMENT)
+        and not path.name.startswith(".")
     ]
 
 

@@ -65,6 +65,17 @@ def test_a_changed_or_new_file_is_named(checkout, name):
     assert "commit or stash" in line
 
 
+def test_a_new_file_is_seen_whatever_the_user_s_git_shows(checkout):
+    git(checkout, "config", "status.showUntrackedFiles", "no")
+    (checkout / "new.md").write_text("New.\n")
+    assert "new.md" in unclean(checkout)[0]
+
+
+def test_a_lesson_without_a_lab_is_named(checkout, book):
+    [line] = lacking(book, {"l04": None}, checkout)
+    assert line.startswith("l04 has no lab in the table of contents")
+
+
 def test_a_copy_without_git_is_refused(tmp_path, monkeypatch):
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
     [line] = unclean(tmp_path)

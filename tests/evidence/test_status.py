@@ -246,3 +246,24 @@ def test_no_manifest_can_set_its_state(folder, forge, state):
     seal(folder)
     status = bundle_status(folder)
     assert (status.state, status.badge, status.manifest) == (state, f"cpu-{state}", None)
+
+
+def test_a_file_in_the_place_of_a_bundle_is_refused_and_not_overlooked(tmp_path):
+    place = tmp_path / "evidence" / "l04" / "amdgpu"
+    place.parent.mkdir(parents=True)
+    place.write_text("no bundle")
+    place.with_name("amdgpu.sigstore.json").write_text("{}")
+    assert recorded_folders(tmp_path) == [place]
+    [line] = refused_records(tmp_path)
+    assert line.startswith("evidence/l04/amdgpu: the recorded bundle is refused: missing-file:")
+
+
+def test_a_lesson_s_folder_that_is_a_link_is_refused(folder, tmp_path, courses_pages):
+    elsewhere = tmp_path / "elsewhere" / "l04"
+    shutil.copytree(folder, elsewhere / "cpu")
+    (tmp_path / "evidence").mkdir()
+    (tmp_path / "evidence" / "l04").symlink_to(elsewhere)
+    status = recorded_status(tmp_path, "l04", "cpu")
+    assert (status.state, status.code, status.manifest) == ("refused", "path", None)
+    assert "evidence/l04 is a link" in status.reason
+    assert len(refused_records(tmp_path)) == 1
