@@ -191,7 +191,7 @@ def execute_pages(
     try:
         results = _execute(pages, execution, timeout)
     except (OperationalError, RuntimeError) as error:  # jupyter-cache's database, bare or wrapped
-        if not isinstance(error.__cause__ or error, OperationalError):
+        if not any(isinstance(one, OperationalError) for one in (error, error.__cause__)):
             raise
         raise ProjectError(
             f"The executed pages in {folder} cannot be kept: {error.__cause__ or error}\n"
