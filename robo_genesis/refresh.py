@@ -7,23 +7,13 @@ from itertools import groupby
 from pathlib import Path
 
 from robo_genesis.evidence import report
-from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import Comparison, compare, specification
 from robo_genesis.evidence.findings import SEVERITY, worst
 from robo_genesis.evidence.report import Row
-from robo_genesis.evidence.status import RECORDED_PAGE, STATE_OF_CODE, recorded_folders
-from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.evidence.status import Status, recorded_folders, recorded_status
 from robo_genesis.moved import Moved, moved_sentences
 
 Pair = tuple[str, str]
-
-
-@dataclass(frozen=True, slots=True)
-class Recorded:
-    """State of one recorded bundle, and the reason where it is not verified."""
-
-    state: str
-    reason: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +28,7 @@ class Refresh:
     packages: dict[str, Pair]
     comparisons: tuple[Comparison, ...]
     missing: tuple[str, ...]
-    recorded: dict[str, tuple[Recorded, Recorded]]
+    recorded: dict[str, tuple[Status, Status]]
     moved: tuple[Moved, ...]
 
     @property
@@ -62,7 +52,7 @@ class Refresh:
 def compare_builds(
     versions: Pair,
     builds: tuple[Path, Path],
-    recorded: tuple[dict[str, Recorded], dict[str, Recorded]],
+    recorded: tuple[dict[str, Status], dict[str, Status]],
     locks: Pair,
 ) -> Refresh:
     """Hold the build with the old version against that with the new one.
@@ -90,18 +80,11 @@ def compare_builds(
     )
 
 
-def recorded(root: Path) -> dict[str, Recorded]:
+def recorded(root: Path) -> dict[str, Status]:
     """Return lesson/backend → state of every recorded bundle under a checkout's own pin."""
-    book, found = root / "book", {}
-    for folder in recorded_folders(book):
-        lesson = folder.parent.name
-        try:
-            verify_bundle(folder, lesson=lesson, page=RECORDED_PAGE, root=root, book=book)
-            state = Recorded("verified")
-        except BundleRefused as refusal:
-            state = Recorded(STATE_OF_CODE.get(refusal.code, "refused"), str(refusal))
-        found[f"{lesson}/{folder.name}"] = state
-    return found
+    book = root / "book"
+    keys = [folder.parts[-2:] for folder in recorded_folders(book)]
+    return {"/".join(key): recorded_status(book, *key, root=root) for key in keys}
 
 
 def moved_packages(old: str, new: str) -> dict[str, Pair]:

@@ -18,6 +18,7 @@ from robo_genesis import project, refresh
 from robo_genesis.apply import apply, digest, recover
 from robo_genesis.build import Progress
 from robo_genesis.evidence import report
+from robo_genesis.evidence.status import Status
 from robo_genesis.pin import (
     FILES,
     RepinError,
@@ -159,7 +160,7 @@ class Steps:
         script = str(self.work / "build_scripts" / "lock.py")
         self._run("resolve", f"{ENGINE} {self.new}", sys.executable, script, "--keep")
 
-    def build_old(self) -> tuple[Path, dict[str, refresh.Recorded]]:
+    def build_old(self) -> tuple[Path, dict[str, Status]]:
         """Build the book as it stands, with this environment; return it and what is recorded."""
         self._run("book", f"with {self.old}", "make", "book", f"PYTHON={sys.executable}")
         aside = self.work.parent / "old"
@@ -174,7 +175,7 @@ class Steps:
         self._run("book", f"with {self.new}", "make", "book")
 
     def report(
-        self, old_texts: dict[str, bytes], before: tuple[Path, dict[str, refresh.Recorded]]
+        self, old_texts: dict[str, bytes], before: tuple[Path, dict[str, Status]]
     ) -> list[Path]:
         """Hold both builds one against the other and write the refresh report."""
         aside, recorded = before

@@ -4,7 +4,16 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.moved import COMPUTED, INSERTED, STATUS, Moved, moved_sentences, sentences
+from robo_genesis.moved import (
+    COMPUTED,
+    INSERTED,
+    STATUS,
+    Moved,
+    Sentence,
+    moved_sentences,
+    sentences,
+)
+from robo_genesis.sphinx_ledger import LEDGER
 
 PAGE = """<html><body><nav><p>Menu 1.</p></nav><article>
 <h1>Lesson</h1>
@@ -93,3 +102,44 @@ def test_a_page_of_one_build_alone_is_reported(tmp_path):
     assert moved_sentences(site(tmp_path / "old"), tmp_path / "new") == [
         Moved("more", STATUS, "", "New.")
     ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("run 7c694fce · ledger", "run 12345678 · ledger"),
+        ("run | 7c694fce", "run | 0e55e7aa"),
+        ("measured 2026-11-21.", "measured 2027-01-02."),
+        ("from 2026-11-21 05:11:12", "from 2027-01-02 23:59:01"),
+        ("at 2026-11-21T05:11:12.25Z", "at 2026-11-21T05:11:13.5Z"),
+        (f"run {'0123456789abcdef' * 2}, 2026-11-21", f"run {'f' * 32}, 2027-01-02"),
+    ],
+)
+def test_run_ids_and_moments_have_the_same_content(old, new):
+    assert Sentence(old, STATUS).content == Sentence(new, STATUS).content
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("It is 0.12345678 rad.", "It is 0.87654321 rad."),
+        ("12345678 steps", "87654321 steps"),
+        ("they run 12345678.5 steps", "they run 87654321.5 steps"),
+        ("seed | 12345678", "seed | 87654321"),
+        ("sha256 7c694fce", "sha256 0e55e7aa"),
+        ("from 2026-11-21 to 5", "from 2026-11-21 to 6"),
+        ("2026-11-21 12 of 12", "2026-11-21 11 of 12"),
+    ],
+)
+def test_numbers_and_digests_have_a_content_of_their_own(old, new):
+    assert Sentence(old, STATUS).content != Sentence(new, STATUS).content
+
+
+def test_the_ledger_repeats_what_the_report_says_elsewhere_and_is_left_out(tmp_path):
+    for text, build in (("One.", "old"), ("Another.", "new")):
+        page = tmp_path / build / f"{LEDGER}.html"
+        page.parent.mkdir(parents=True)
+        page.write_text(f"<p>{text}</p>")
+        page.with_name("other-ledger.html").write_text(f"<p>{text}</p>")
+    found = moved_sentences(tmp_path / "old", tmp_path / "new")
+    assert found == [Moved("evidence/other-ledger", STATUS, "One.", "Another.")]

@@ -75,21 +75,27 @@ class Status:
 
 
 def page_status(
-    outputs: Path, lesson: str, page: str, backend: str, book: Path = project.BOOK
+    outputs: Path,
+    lesson: str,
+    page: str,
+    backend: str,
+    book: Path = project.BOOK,
+    *,
+    root: Path = project.ROOT,
 ) -> Status:
     """Return the state of one bundle below the outputs folder of a build of a book."""
     absent = f"No bundle was recorded for {lesson}/{page}."
-    return bundle_status(outputs / lesson / page / backend, lesson, page, absent, book)
+    return bundle_status(outputs / lesson / page / backend, lesson, page, absent, book, root=root)
 
 
-def recorded_status(book: Path, lesson: str, backend: str) -> Status:
+def recorded_status(book: Path, lesson: str, backend: str, *, root: Path = project.ROOT) -> Status:
     """Return the state of the lab's bundle that was recorded on a backend and committed."""
-    absent = f"No run on this backend is recorded for Genesis {project.engine_pin()}."
+    absent = f"No run on this backend is recorded for Genesis {project.engine_pin(root)}."
     folder = book / "evidence" / lesson / backend
     if folder.parent.is_symlink():
         reason = f"evidence/{lesson} is a link, expected the folder itself. Put the folder there."
         return Status("refused", backend, reason, None, "path", UNREADABLE)
-    return bundle_status(folder, lesson, RECORDED_PAGE, absent, book)
+    return bundle_status(folder, lesson, RECORDED_PAGE, absent, book, root=root)
 
 
 def bundle_status(
@@ -98,6 +104,8 @@ def bundle_status(
     page: str | None = None,
     absent: str = "There is no such folder.",
     book: Path = project.BOOK,
+    *,
+    root: Path = project.ROOT,
 ) -> Status:
     """Return the state of the bundle in a folder that is named by its backend.
 
@@ -107,6 +115,7 @@ def bundle_status(
         page: the page that it must come from, where that is known.
         absent: the reason that is given where there is none.
         book: the pages that it must come from.
+        root: the checkout, for pin, lock and modules.
 
     Raises:
         ProjectError, PageError: the checkout itself cannot be read.
@@ -114,11 +123,11 @@ def bundle_status(
     if not os.path.lexists(folder):
         return Status("missing", folder.name, absent, None)
     try:
-        manifest = verify_bundle(folder, lesson=lesson, page=page, book=book)
+        manifest = verify_bundle(folder, lesson=lesson, page=page, root=root, book=book)
     except BundleRefused as refusal:
         state = STATE_OF_CODE.get(refusal.code, "refused")
         summary = {
-            "stale": lambda: why_stale(bundle.read_manifest(folder), book),
+            "stale": lambda: why_stale(bundle.read_manifest(folder), book, root),
             "older-schema": lambda: "It was recorded in an older form of the bundle.",
             "failed": lambda: "Its own checks did not all pass.",
         }.get(refusal.code, lambda: UNREADABLE)()
@@ -137,15 +146,16 @@ def _shown(folder: Path, manifest: Manifest) -> Status:
     return Status("inconclusive", folder.name, reason, manifest, summary=reason)
 
 
-def why_stale(manifest: Manifest, book: Path) -> str:
+def why_stale(manifest: Manifest, book: Path, root: Path = project.ROOT) -> str:
     """Say to a reader what changed since a bundle was recorded.
 
     Args:
         manifest: of a bundle that was refused as stale.
         book: the pages of this checkout.
+        root: the checkout, for pin, lock and modules.
     """
     found = manifest.predicate.model_dump()
-    asked = current.question(found["lesson"], found["page"], project.ROOT, book)
+    asked = current.question(found["lesson"], found["page"], root, book)
     versions = (("Genesis", "version"), ("Quadrants", "quadrants_version"))
     changed = [
         f"it was recorded with {name} {found['engine'][key]}; this site uses {asked['engine'][key]}"

@@ -8,8 +8,9 @@ import pytest
 from spoilers import part, seal
 
 from robo_genesis import project, refresh
-from robo_genesis.evidence import bundle
-from robo_genesis.refresh import Recorded, compare_builds, recorded
+from robo_genesis.evidence import bundle, status
+from robo_genesis.evidence.status import Status
+from robo_genesis.refresh import compare_builds, recorded
 
 
 @pytest.fixture
@@ -81,33 +82,57 @@ def test_a_lesson_that_one_build_lacks_makes_the_builds_not_comparable(builds):
 
 
 def test_a_bundle_that_a_new_pin_makes_stale_is_named_with_both_states(builds):
-    states = {"l04/amdgpu": Recorded("verified")}, {"l04/amdgpu": Recorded("stale", "older")}
-    found = compared(builds, recorded=states)
+    def state(name: str, reason: str) -> dict[str, Status]:
+        return {"l04/amdgpu": Status(name, "amdgpu", reason, None)}
+
+    found = compared(builds, recorded=(state("verified", ""), state("stale", "older")))
     assert found.stale == ["l04/amdgpu"]
     assert "| l04/amdgpu | verified | stale | older |" in refresh.markdown(found)
-    already = {"l04/cuda": Recorded("stale", "a")}, {"l04/cuda": Recorded("stale", "b")}
-    assert compared(builds, recorded=already).stale == []
+    assert compared(builds, recorded=(state("stale", "a"), state("stale", "b"))).stale == []
 
 
-def test_recorded_bundles_are_judged_by_the_pin_of_their_own_checkout(
-    folder, tmp_path, courses_pages
-):
+@pytest.fixture
+def copy(folder, tmp_path, courses_pages) -> Path:
+    """A checkout of its own pin with a recorded bundle."""
     root = tmp_path / "copy"
     (root / "book" / "evidence" / "l04").mkdir(parents=True)
     shutil.copytree(folder, root / "book" / "evidence" / "l04" / "cpu")
     shutil.copytree(project.ROOT / "robo_genesis", root / "robo_genesis")
     for name in ("pyproject.toml", "requirements.lock"):
         shutil.copy(project.ROOT / name, root)
-    assert recorded(root) == {"l04/cpu": Recorded("verified")}
-    pin = root / "pyproject.toml"
+    return root
+
+
+def test_recorded_bundles_are_judged_by_the_pin_of_their_own_checkout(copy):
+    assert {name: found.state for name, found in recorded(copy).items()} == {"l04/cpu": "verified"}
+    pin = copy / "pyproject.toml"
     pin.write_text(pin.read_text().replace(f"=={project.engine_pin()}", "==9.9.9"))
-    found = recorded(root)["l04/cpu"]
+    found = recorded(copy)["l04/cpu"]
     assert found.state == "stale"
     assert "engine.version is" in found.reason
     assert "9.9.9" in found.reason
-    manifest = root / "book" / "evidence" / "l04" / "cpu" / "manifest.json"
+    assert found.summary.endswith(f"Genesis {project.engine_pin()}; this site uses 9.9.9.")
+    manifest = copy / "book" / "evidence" / "l04" / "cpu" / "manifest.json"
     manifest.write_text("{}")
-    assert recorded(root)["l04/cpu"].state == "refused"
+    assert recorded(copy)["l04/cpu"].state == "refused"
+
+
+def test_a_recorded_bundle_that_does_not_show_the_claims_has_the_state_that_the_site_shows(
+    copy, monkeypatch
+):
+    monkeypatch.setattr(status, "not_shown", lambda metrics, relations: ["one relation"])
+    found = recorded(copy)["l04/cpu"]
+    assert found == status.recorded_status(copy / "book", "l04", "cpu")
+    assert (found.state, found.reason) == (
+        "inconclusive", "Not shown of what the lesson claims: one relation."
+    )  # fmt: skip
+
+
+def test_what_is_missing_is_said_for_the_pin_of_its_own_checkout(copy):
+    pin = copy / "pyproject.toml"
+    pin.write_text(pin.read_text().replace(f"=={project.engine_pin()}", "==9.9.9"))
+    absent = status.recorded_status(copy / "book", "l04", "cuda", root=copy)
+    assert absent.reason == "No run on this backend is recorded for Genesis 9.9.9."
 
 
 def test_a_built_bundle_that_cannot_be_read_is_an_error(builds):
