@@ -93,6 +93,16 @@ def require_locked_packages(root: Path) -> None:
         )
 
 
+def require_plain_files(root: Path) -> None:
+    """Raise RepinError where a file of the pin is a link: the new pin would be written through."""
+    links = [name for name in FILES if (root / name).is_symlink()]
+    if links:
+        raise RepinError(
+            f"{' and '.join(links)} in {root}: a link, expected the file itself, since make repin "
+            "would change what it leads to. Put the file there."
+        )
+
+
 def locked(root: Path) -> dict[str, str]:
     """Return package to version of a checkout's lock."""
     lines = (root / FILES[1]).read_text("utf8").splitlines()

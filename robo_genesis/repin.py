@@ -25,6 +25,7 @@ from robo_genesis.pin import (
     Versions,
     chosen_version,
     require_locked_packages,
+    require_plain_files,
     set_pin,
 )
 from robo_genesis.project import ENGINE
@@ -58,9 +59,11 @@ def run_repin(asked: Repin) -> list[str]:
     Raises:
         RepinError, ProjectError: nothing was changed.
         ApplyError: pin or lock were edited meanwhile; nothing was changed.
+        UnfinishedError: the next make completes the change.
     """
     folder = asked.cache / "repin"
     recover(asked.root)
+    require_plain_files(asked.root)
     old = project.engine_pin(asked.root)
     new = chosen_version(asked.genesis, old, asked.versions)
     require_locked_packages(asked.root)

@@ -38,9 +38,10 @@ def copy_tree(root: Path, work: Path, cache: Path) -> None:
         cache: the cache folder of the checkout.
 
     Raises:
-        ProjectError: the checkout is no git repository, or git cannot copy it.
+        ProjectError: the checkout is no git repository, git cannot copy it, or it holds another.
     """
     names = _git(root, "ls-files", "-z", "--cached", "--others", "--exclude-standard")
+    _refuse_repositories(root, names)
     if work.exists():
         shutil.rmtree(work)
     work.parent.mkdir(parents=True, exist_ok=True)
@@ -48,7 +49,7 @@ def copy_tree(root: Path, work: Path, cache: Path) -> None:
     for name in _git(work, "ls-files", "-z"):
         (work / name).unlink(missing_ok=True)
     for name in names:
-        if name not in ANEW and os.path.lexists(root / name):
+        if name not in ANEW and os.path.lexists(root / name) and not _is_folder(root / name):
             (work / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(root / name, work / name, follow_symlinks=False)
     (work / ".cache").mkdir()
@@ -57,19 +58,39 @@ def copy_tree(root: Path, work: Path, cache: Path) -> None:
         (work / ".cache" / name).symlink_to(cache / name)
 
 
+def _refuse_repositories(root: Path, names: list[str]) -> None:
+    """Raise ProjectError where a name of git's is a repository within the checkout, not a file."""
+    folders = [n for n in names if _is_folder(root / n) and os.path.lexists(root / n / ".git")]
+    if folders:
+        raise ProjectError(
+            f"The checkout {root} holds other repositories: {', '.join(folders)}. A new pin is "
+            "tried in a copy of the files of one repository. Move them away, or name them in "
+            ".gitignore."
+        )
+
+
+def _is_folder(path: Path) -> bool:
+    """Return whether a folder stands there itself; in place of a file, that file was deleted."""
+    return path.is_dir() and not path.is_symlink()
+
+
 def _git(folder: Path, *arguments: str) -> list[str]:
-    """Run git in a folder and return the names that it prints, separated by NUL."""
+    """Run git in a folder and return the names that it prints, separated by NUL.
+
+    A name need not be UTF-8; one that is not is kept as Python keeps names of files.
+    """
     command = ["git", "-C", str(folder), *arguments]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        done = subprocess.run(command, capture_output=True, check=False)
     except FileNotFoundError as error:
         raise ProjectError("There is no git. Install it: apt install git.") from error
     if done.returncode:
+        reason = done.stderr.decode("utf8", "replace").strip()
         raise ProjectError(
-            f"git cannot read the checkout {folder}: {done.stderr.strip()}\n"
+            f"git cannot read the checkout {folder}: {reason}\n"
             "A new pin is tried in a clone of the checkout; get the course with git clone."
         )
-    return [name for name in done.stdout.split("\0") if name]
+    return [os.fsdecode(name) for name in done.stdout.split(b"\0") if name]
 
 
 def run_logged(

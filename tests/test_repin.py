@@ -227,6 +227,17 @@ def test_what_the_users_environment_links_to_is_never_copied(root, tmp_path):
     assert [path.name for path in shared.iterdir()] == ["bin"]
 
 
+@pytest.mark.parametrize("name", ["pyproject.toml", "requirements.lock"])
+def test_a_linked_file_of_the_pin_is_refused_and_what_it_leads_to_is_kept(root, tmp_path, name):
+    elsewhere = (root / name).rename(tmp_path / name)
+    (root / name).symlink_to(elsewhere)
+    text = elsewhere.read_bytes()
+    with pytest.raises(RepinError, match=rf"^{name} in .*: a link, expected the file itself.*"):
+        run_repin(asked(root, NEW))
+    assert elsewhere.read_bytes() == text
+    assert left(root) == []
+
+
 def test_the_command_refuses_without_a_traceback():
     before = [(ROOT / name).read_bytes() for name in ("pyproject.toml", "requirements.lock")]
     command = [sys.executable, str(ROOT / "build_scripts" / "repin.py")]
