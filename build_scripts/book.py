@@ -11,6 +11,7 @@ import os
 import sys
 from pathlib import Path
 
+from robo_genesis.apply import recover_or_exit
 from robo_genesis.build import Build, BuildError, run_build
 from robo_genesis.command import run
 from robo_genesis.execute import TIMEOUT
@@ -49,6 +50,7 @@ def require_cpu() -> None:
 
 def main() -> int:
     """Run the build and return its exit status."""
+    recover_or_exit()
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--book", type=Path, default=BOOK, help="folder of the pages")
     parser.add_argument("--cache", type=Path, default=CACHE, help="folder of the caches")

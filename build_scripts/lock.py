@@ -11,7 +11,9 @@ Torch keeps the version it is locked at, unless a constraint names another.
 
 import argparse
 import json
+import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -24,6 +26,7 @@ from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCK = ROOT / "requirements.lock"
+RECOVER = ROOT / "robo_genesis" / "apply.py"
 PROJECT = "robo-genesis"
 EXTRAS = ("book", "dev")
 CUDA_PART = re.compile(r"nvidia-|cuda-|triton")
@@ -82,8 +85,22 @@ def locked_torch() -> list[str]:
     return [line for line in lines if line.startswith("torch==")]
 
 
+def write(text: str) -> None:
+    """Put the lock in place in one move; what fails before leaves the old one."""
+    partial = LOCK.with_name(f".{LOCK.name}.partial")
+    try:
+        partial.write_text(text)
+        if LOCK.exists():
+            shutil.copymode(LOCK, partial)
+        os.replace(partial, LOCK)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
 def main() -> int:
     """Resolve and write the lock in one step; a failed resolution leaves the old one."""
+    if subprocess.run([sys.executable, str(RECOVER)], check=False).returncode:
+        return 1  # it said why; it runs as a file, since the package need not be importable here
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--keep", action="store_true", help="keep installed versions that fit")
     parser.add_argument("constraints", nargs="*", metavar="NAME==VERSION")
@@ -96,7 +113,7 @@ def main() -> int:
     lines = [f"{name}=={versions[name]}\n" for name in sorted(versions, key=str.lower)]
     text = HEADER + "".join(lines)
     if not LOCK.exists() or LOCK.read_text() != text:  # a new date alone would rebuild .venv
-        LOCK.write_text(text)
+        write(text)
     print(f"{LOCK.name}: {len(lines)} packages, genesis-world {versions['genesis-world']}")
     return 0
 

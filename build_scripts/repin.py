@@ -2,13 +2,14 @@
 
 Tries the version in a copy of the checkout with an environment of its own: all lessons, all tests.
 Then pin and lock change together; a report says what moved. Nothing is committed.
-Exit status: 0 changed, 1 refused or failed, 130 interrupted; unless it is 0, the tree is as it was.
+Exit status: 0 changed, 1 refused or failed, 130 interrupted. Unless it is 0, the tree is as it was;
+where the last line is "the change is not complete", the next make completes it.
 """
 
 import os
 import sys
 
-from robo_genesis.apply import ApplyError
+from robo_genesis.apply import ApplyError, recover_or_exit
 from robo_genesis.command import run
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.pin import RepinError, installable_versions
@@ -18,6 +19,7 @@ from robo_genesis.repin import Repin, run_repin
 
 def main() -> int:
     """Change the pin and return the exit status."""
+    recover_or_exit()
     asked = Repin(
         genesis=os.environ.get("GENESIS", ""),
         root=ROOT,

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from robo_genesis.apply import recover_or_exit
 from robo_genesis.evidence.status import Status, bundle_status, recorded_folders, recorded_status
 from robo_genesis.pages import PageError
 from robo_genesis.project import BOOK, ProjectError
@@ -39,6 +40,7 @@ def _run(status: Status) -> str:
 
 def main() -> int:
     """Print the lines and return the exit status."""
+    recover_or_exit()
     asked = os.environ.get("BUNDLE")
     try:
         if asked:

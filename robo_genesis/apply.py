@@ -5,7 +5,8 @@ From then on the change is decided: `recover` completes it as often as it is bro
 journal nothing has been touched, and what was staged is thrown away.
 
 `make` runs this file before any target, with the Python that `.venv` is made from, so it needs the
-standard library alone and nothing of the package.
+standard library alone and nothing of the package. A script that is run without make calls
+`recover_or_exit` first.
 """
 
 import fcntl
@@ -15,7 +16,7 @@ import os
 import shutil
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -26,6 +27,10 @@ JOURNAL, FILES = "journal.json", "files"
 
 class ApplyError(Exception):
     """The change cannot be applied or completed; the message says what to do."""
+
+
+class UnfinishedError(ApplyError):
+    """The change is decided, and files of both states may stand in the checkout."""
 
 
 def digest(path: Path) -> str:
@@ -43,9 +48,10 @@ def apply(root: Path, source: Path, before: dict[str, str]) -> None:
 
     Raises:
         ApplyError: a file was changed meanwhile; nothing is touched.
-        OSError: nothing is touched where staging failed; else the next `recover` completes it.
+        UnfinishedError: a file cannot be written; the next `recover` completes the change.
+        OSError: the new files cannot be staged; nothing is touched.
     """
-    with _alone(root):
+    with _alone(root), _decided(root):
         _recover(root)
         changed = [name for name, old in before.items() if digest(root / name) != old]
         if changed:
@@ -61,12 +67,21 @@ def recover(root: Path = ROOT) -> None:
     """Complete or throw away what an earlier `apply` left; without anything left, do nothing.
 
     Raises:
-        ApplyError: a file was edited after the kill; the message offers both ways out.
-        OSError: a file cannot be written; the next call goes on.
+        UnfinishedError: a file cannot be written, and the next call goes on; or one was edited
+            after the kill, and the message offers both ways out.
     """
     if (root / STAGED).exists():
-        with _alone(root):
+        with _alone(root), _decided(root):
             _recover(root)
+
+
+def recover_or_exit(status: int = 1) -> None:
+    """Do as `recover` does; where it cannot, say why and exit with a status."""
+    try:
+        recover()
+    except (ApplyError, OSError) as error:
+        print(f"An interrupted make repin cannot be completed: {error}", file=sys.stderr)
+        sys.exit(status)
 
 
 def _stage(folder: Path, source: Path, before: dict[str, str]) -> None:
@@ -96,16 +111,16 @@ def _recover(root: Path) -> None:
                 _replace(target, folder / FILES / entry["name"])
         _flush_folders((root / entry["name"]).parent for entry in entries)
         os.unlink(folder / JOURNAL)
+    with suppress(OSError):  # what is left says nothing any more; the next call removes it
         _flush_folders([folder])
-    if folder.exists():
         shutil.rmtree(folder)
 
 
 def _refuse_edited(root: Path, entries: list[dict[str, str]]) -> None:
-    """Raise ApplyError where a file is neither the old nor the new one: that is someone's work."""
+    """Raise UnfinishedError where a file is neither old nor new: that is someone's work."""
     names = [e["name"] for e in entries if digest(root / e["name"]) not in (e["old"], e["new"])]
     if names:
-        raise ApplyError(
+        raise UnfinishedError(
             f"make repin was killed while it changed {', '.join(e['name'] for e in entries)}, and "
             f"{' and '.join(names)} was edited since. To complete the change, take that edit back; "
             f"to keep what stands there now, remove {root / STAGED}."
@@ -147,8 +162,19 @@ def _alone(root: Path) -> Iterator[None]:
         yield
 
 
-if __name__ == "__main__":
+@contextmanager
+def _decided(root: Path) -> Iterator[None]:
+    """Tell a failure that leaves the journal, and so a decided change, from one before it."""
     try:
-        recover()
-    except (ApplyError, OSError) as error:
-        sys.exit(f"An interrupted make repin cannot be completed: {error}")
+        yield
+    except OSError as error:
+        if not (root / STAGED / JOURNAL).exists():
+            raise
+        raise UnfinishedError(
+            f"The change is decided and not complete: {error}. Clear that away, or give it free "
+            "space or write access; the next command completes the change."
+        ) from error
+
+
+if __name__ == "__main__":
+    recover_or_exit()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis import apply
+from robo_genesis import apply, command
 from robo_genesis.project import ROOT
 
 NAMES = ("pyproject.toml", "requirements.lock", "below/third.txt")
@@ -144,9 +144,59 @@ def test_a_recovery_that_is_killed_as_well_is_completed_by_the_next(root, source
     assert texts(root) == {"new"}
 
 
+def test_a_move_that_fails_half_way_says_that_the_change_is_decided(root, source, capsys):
+    in_the_way = root / "below" / ".third.txt.repin"
+    in_the_way.mkdir()
+    was = before(root)
+
+    def task() -> list[str]:
+        apply.apply(root, source, was)
+        return []
+
+    assert command.run(task, "changed", (apply.ApplyError,)) == 1
+    said = capsys.readouterr().err
+    reason = f"[Errno 21] Is a directory: '{in_the_way}'"
+    assert f"The change is decided and not complete: {reason}" in said
+    assert said.endswith("FAILED: the change is not complete.\n")
+    assert "nothing was changed" not in said
+    assert texts(root) == {"old", "new"}
+    in_the_way.rmdir()
+    apply.recover(root)
+    assert texts(root) == {"new"}
+    assert rubbish(root) == []
+
+
+def test_what_fails_right_after_the_journal_was_written_is_decided_too(root, source, monkeypatch):
+    flush = apply._flush_folders
+
+    def fails(folders) -> None:
+        if (root / apply.STAGED / apply.JOURNAL).exists():
+            raise OSError("no space")
+        flush(folders)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(apply, "_flush_folders", fails)
+        with pytest.raises(apply.UnfinishedError, match="no space"):
+            apply.apply(root, source, before(root))
+    assert texts(root) == {"old"}
+    apply.recover(root)
+    assert texts(root) == {"new"}
+
+
+def test_staged_files_that_cannot_be_removed_do_not_undo_a_whole_change(root, source, monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setattr(shutil, "rmtree", lambda folder: (_ for _ in ()).throw(OSError("busy")))
+        apply.apply(root, source, before(root))
+    assert texts(root) == {"new"}
+    (root / NAMES[0]).write_text("later\n")
+    apply.recover(root)
+    assert texts(root) == {"new", "later"}
+    assert rubbish(root) == []
+
+
 def test_what_was_edited_after_a_kill_is_never_overwritten(root, source, monkeypatch):
     monkeypatch.setattr(apply, "_replace", lambda *paths: (_ for _ in ()).throw(OSError("full")))
-    with pytest.raises(OSError, match="full"):
+    with pytest.raises(apply.UnfinishedError, match=r"is decided and not complete: full\. Clear"):
         apply.apply(root, source, before(root))
     monkeypatch.undo()
     (root / NAMES[1]).write_text("mine\n")

@@ -85,6 +85,37 @@ def test_any_target_first_completes_a_change_of_the_pin(between_pins, target):
     assert not (between_pins / apply.STAGED).exists()
 
 
+SCRIPTS = sorted(path.name for path in (ROOT / "build_scripts").glob("*.py"))
+
+
+def run_script(checkout: Path, name: str) -> subprocess.CompletedProcess[str]:
+    """Run a script without make, with a wish that is refused soon after."""
+    for folder in ("build_scripts", "robo_genesis"):
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / folder, checkout / folder, ignore=ignored, dirs_exist_ok=True)
+    refused = {"RENDER": "7", "PORT": "none", "GENESIS": "", "BUNDLE": str(checkout / "none")}
+    words = [sys.executable, str(checkout / "build_scripts" / name), "--no-such-option"]
+    environment = os.environ | refused | {"PYTHONPATH": str(checkout)}
+    return subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_a_script_without_make_first_completes_a_change_of_the_pin(between_pins, name):
+    done = run_script(between_pins, name)
+    assert (between_pins / "requirements.lock").read_text() == "new", done.stderr
+    assert not (between_pins / apply.STAGED).exists()
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_an_edit_between_two_pins_stops_every_script(between_pins, name):
+    (between_pins / "requirements.lock").write_text("mine")
+    done = run_script(between_pins, name)
+    assert done.returncode == (2 if name == "compare.py" else 1)
+    assert done.stderr.startswith("An interrupted make repin cannot be completed: make repin was")
+    assert "Traceback" not in done.stderr
+    assert (between_pins / "requirements.lock").read_text() == "mine"
+
+
 def test_an_edit_between_two_pins_stops_every_target(between_pins):
     (between_pins / "requirements.lock").write_text("mine")
     done = make(between_pins, "clean")

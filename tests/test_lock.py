@@ -1,10 +1,14 @@
 """The lock names every package that the project needs, in the version that is installed."""
 
 import importlib.metadata
+import importlib.util
 import re
 import runpy
+import sys
 import tomllib
+from pathlib import Path
 
+import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -72,6 +76,44 @@ def test_the_lock_is_what_is_needed_of_what_is_installed():
     direct = [*PROJECT["dependencies"], *(line for lines in extras for line in lines)]
     found = script["needed"](installed | {"robo-genesis": {"requires_dist": direct}})
     assert found == LOCKED.keys()
+
+
+@pytest.fixture
+def script(tmp_path, monkeypatch):
+    """The script with a lock of its own that knows one package; what pip says is made up."""
+    spec = importlib.util.spec_from_file_location("lock", ROOT / "build_scripts" / "lock.py")
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    packages = {
+        "robo-genesis": {"requires_dist": ["genesis-world==2.0"]},
+        "genesis-world": {"name": "genesis-world", "version": "2.0"},
+    }
+    monkeypatch.setattr(script, "resolve", lambda constraints, keep: packages)
+    monkeypatch.setattr(script, "LOCK", tmp_path / "requirements.lock")
+    monkeypatch.setattr(sys, "argv", ["lock.py"])
+    script.LOCK.write_text("the old lock\n")
+    script.LOCK.chmod(0o640)
+    return script
+
+
+def test_the_lock_is_written_whole_with_its_mode(script):
+    assert script.main() == 0
+    assert script.LOCK.read_text() == f"{script.HEADER}genesis-world==2.0\n"
+    assert script.LOCK.stat().st_mode & 0o777 == 0o640
+    assert [path.name for path in script.LOCK.parent.iterdir()] == [script.LOCK.name]
+
+
+def test_a_lock_that_cannot_be_written_whole_leaves_the_old_one(script, monkeypatch):
+    def breaks_off(path: Path, text: str) -> None:
+        with path.open("w") as file:
+            file.write(text[:9])
+        raise OSError("no space")
+
+    monkeypatch.setattr(Path, "write_text", breaks_off)
+    with pytest.raises(OSError, match="no space"):
+        script.main()
+    assert script.LOCK.read_text() == "the old lock\n"
+    assert [path.name for path in script.LOCK.parent.iterdir()] == [script.LOCK.name]
 
 
 def test_every_line_names_one_exact_public_version():
