@@ -16,6 +16,12 @@ ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)
 
 RASTERS = (".png", ".webp", ".jpg", ".jpeg")
 
+UNMEASURED = {
+    "illustration": "Illustration, not measured.",
+    "settings": "Chosen, not measured.",
+}
+"""Kinds of items that no run made, each with the line that stands below it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Run:
@@ -24,11 +30,12 @@ class Run:
     page: str  # as `l04/lab`
     folder: Path
     status: Status
+    recorded: bool = False  # committed with the book; else of this build
 
     @property
     def key(self) -> str:
         """Page and backend, as items name their run."""
-        return f"{self.page}/{self.status.backend}"
+        return f"{self.page}/{self.status.backend}{'/recorded' if self.recorded else ''}"
 
     @property
     def predicate(self) -> Predicate | None:
@@ -38,17 +45,18 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One figure, table, camera frame or illustration; `run` is None where no run made it.
+    """One figure, table, camera frame, illustration or table of settings.
 
-    `file` is the picture's path below the book, or of a table the name of its CSV; `data` is that
-    CSV, None for a picture.
+    `runs` are the keys of the runs that made it, none for the last two kinds. `file` is the
+    picture's path below the book, or of a table the name of its CSV; `data` is that CSV, None for
+    a picture.
     """
 
     kind: str
     title: str
     docname: str
     anchor: str
-    run: str | None
+    runs: tuple[str, ...]
     sha256: str
     file: str
     data: bytes | None = None
@@ -59,18 +67,25 @@ class Item:
         return f"row-{self.docname}-{self.anchor}".replace("/", "-").lower()
 
 
-def provenance(run: Run | None) -> str:
+def provenance(kind: str, runs: Sequence[Run]) -> str:
     """Return the line that stands below a figure or table, without its link.
 
     Args:
-        run: what made it, None for an illustration.
+        kind: of the item.
+        runs: what made it, none for a kind that no run makes.
     """
-    if run is None:
-        return "Illustration, not measured."
-    if run.predicate is None:
-        return f"No accepted evidence: {run.status.badge}."
-    engine, short = run.predicate.engine.version, run.predicate.run_id[:8]
-    return f"Measured on {run.status.backend} · Genesis {engine} · run {short}"
+    if kind in UNMEASURED:
+        return UNMEASURED[kind]
+    lacking = [run.status.badge for run in runs if run.predicate is None]
+    if lacking:
+        return f"No accepted evidence: {', '.join(lacking)}."
+    origins = [
+        f"on {run.status.backend} · Genesis {run.predicate.engine.version} "
+        f"· run {run.predicate.run_id[:8]}"
+        for run in runs
+        if run.predicate
+    ]
+    return f"Measured {' and '.join(origins)}"
 
 
 def passed(predicate: Predicate) -> str:

@@ -95,16 +95,24 @@ def lesson_statuses(book: Path, lesson: str) -> list[Status]:
     return [page_status(outputs_folder(), lesson, "lab", BACKEND, book), *recorded]
 
 
+class evidence_badge(nodes.inline):  # noqa: N801
+    """A state; no markup of a page makes this node, so an imitation is told apart."""
+
+
 def badge_node(status: Status) -> nodes.Node:
     """Return a state as the site shows it everywhere: one word, and a colour that follows it."""
-    return nodes.inline("", status.badge, classes=["evidence-badge", f"state-{status.state}"])
+    return evidence_badge("", status.badge, classes=["evidence-badge", f"state-{status.state}"])
 
 
-def make_command(lesson: str, status: Status) -> nodes.Node:
-    """Return the command that makes the evidence which is not there."""
-    command = f"$ make evidence LESSON={lesson} BACKEND={status.backend}"
-    if status.backend == BACKEND:
-        command = "$ make book"
+def make_command(lesson: str, backend: str, recorded: bool) -> nodes.Node:
+    """Return the command that makes the evidence which is not there.
+
+    Args:
+        lesson: as `l04`.
+        backend: on which it is missing.
+        recorded: whether it is committed with the book; each build makes its own anew.
+    """
+    command = f"$ make evidence LESSON={lesson} BACKEND={backend}" if recorded else "$ make book"
     return nodes.literal_block(command, command, language="console")
 
 

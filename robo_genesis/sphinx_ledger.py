@@ -4,7 +4,7 @@ A page writes ```` ```{ledger} runs ```` and ```` ```{ledger} items ````; both a
 all pages are read.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -66,25 +66,28 @@ def fill_in(app: Sphinx, doctree: nodes.document, docname: str) -> None:
 
 
 def run_blocks(app: Sphinx, docname: str) -> list[nodes.Node]:
-    """Return one block a run: its facts and its bundle, or what is missing and makes it."""
-    blocks = []
-    for key, run in all_runs(Path(app.srcdir)).items():
-        block = nodes.container(ids=[run_anchor(key)], classes=["run-block"])
-        title = nodes.strong("", run.page)
-        block += nodes.paragraph("", "", title, nodes.Text(" "), badge_node(run.status))
-        if run.status.summary or run.predicate is None:
-            block += nodes.paragraph("", run.status.summary or run.status.reason)
-        if run.predicate is None:
-            block += make_command(run.page.split("/")[0], run.status)
-        else:
-            rows = [[_cell(name), _fact(name, value)] for name, value in ledger.facts(run).items()]
-            data = ledger.archive(run.folder)
-            href = _address(docname, f"{DOWNLOADS}/{ledger.archive_name(run)}")
-            rows.append([_cell("bundle"), _link(ledger.archive_name(run), href)])
-            rows.append([_cell("its sha256"), _digest(ledger.sha256(data))])
-            block += scroll(f"Run {run.page} on {run.status.backend}", (), rows)
-        blocks.append(block)
-    return blocks
+    """Return one block a run."""
+    runs = all_runs(Path(app.srcdir))
+    return [run_block(docname, run) for run in runs.values()]
+
+
+def run_block(docname: str, run: Run) -> nodes.Node:
+    """Return a run's facts and its bundle, or what is missing and makes it."""
+    block = nodes.container(ids=[run_anchor(run.key)], classes=["run-block"])
+    title = nodes.strong("", run.page)
+    block += nodes.paragraph("", "", title, nodes.Text(" "), badge_node(run.status))
+    if run.status.summary or run.predicate is None:
+        block += nodes.paragraph("", run.status.summary or run.status.reason)
+    if run.predicate is None:
+        block += make_command(run.page.split("/")[0], run.status.backend, run.recorded)
+    else:
+        rows = [[_cell(name), _fact(name, value)] for name, value in ledger.facts(run).items()]
+        data = ledger.archive(run.folder)
+        href = _address(docname, f"{DOWNLOADS}/{ledger.archive_name(run)}")
+        rows.append([_cell("bundle"), _link(ledger.archive_name(run), href)])
+        rows.append([_cell("its sha256"), _digest(ledger.sha256(data))])
+        block += scroll(f"Run {run.page} on {run.status.backend}", (), rows)
+    return block
 
 
 def item_table(app: Sphinx, docname: str) -> list[nodes.Node]:
@@ -93,7 +96,6 @@ def item_table(app: Sphinx, docname: str) -> list[nodes.Node]:
     order = [name for name in _reading_order(env) if name in all_items(env)]
     rows, anchors = [], []
     for item in (item for name in order for item in all_items(env)[name]):
-        run = runs.get(item.run or "")
         place = app.builder.get_relative_uri(docname, item.docname)
         file = f"{DOWNLOADS}/{item.file}" if item.data is not None else _image(env, item.file)
         page = measured_pages(Path(app.srcdir)).get(item.docname, item.docname)
@@ -101,7 +103,7 @@ def item_table(app: Sphinx, docname: str) -> list[nodes.Node]:
             [
                 _link(item.title, f"{place}#{item.anchor}"),
                 *(_cell(text) for text in (item.kind, page)),
-                *_of_run(item.run, run),
+                *_of_runs([runs[key] for key in item.runs]),
                 _digest(item.sha256),
                 _link("CSV" if item.data is not None else "picture", _address(docname, file)),
             ]
@@ -110,14 +112,19 @@ def item_table(app: Sphinx, docname: str) -> list[nodes.Node]:
     return [scroll("Figures and tables", COLUMNS, rows, anchors)]
 
 
-def _of_run(key: str | None, run: Run | None) -> list[nodes.Node]:
-    if key is None or run is None:
-        return [_cell("no run"), *(_cell("–") for _ in range(4))]
+def _of_runs(runs: Sequence[Run]) -> list[list[nodes.Node]]:
+    """Return five cells with a paragraph for each run."""
+    if not runs:
+        return [[_cell(text)] for text in ("no run", *"––––")]
+    return [list(cell) for cell in zip(*map(_of_run, runs), strict=True)]
+
+
+def _of_run(run: Run) -> list[nodes.Node]:
     if run.predicate is None:
         return [_cell("–"), badge_node(run.status), *(_cell("–") for _ in range(3))]
     predicate = run.predicate
     return [
-        _link(predicate.run_id[:8], f"#{run_anchor(key)}"),
+        _link(predicate.run_id[:8], f"#{run_anchor(run.key)}"),
         badge_node(run.status),
         *map(_cell, (predicate.engine.version, ledger.moment(predicate), ledger.passed(predicate))),
     ]
@@ -163,10 +170,13 @@ def _image(env: BuildEnvironment, uri: str) -> str:
 def scroll(
     label: str,
     head: Sequence[str],
-    rows: Sequence[Sequence[nodes.Node]],
+    rows: Sequence[Sequence[nodes.Node | Sequence[nodes.Node]]],
     anchors: Sequence[str] = (),
 ) -> nodes.Node:
-    """Return a table in a scroll box; `head` may be empty, `anchors` names the rows."""
+    """Return a table in a scroll box; `head` may be empty, `anchors` names the rows.
+
+    A cell is a node, or several that stand below each other.
+    """
     width = len(rows[0])
     group = nodes.tgroup("", *(nodes.colspec(colwidth=1) for _ in range(width)), cols=width)
     if head:
@@ -178,8 +188,12 @@ def scroll(
     return scroll_box("", nodes.table("", group), label=label)
 
 
-def _row(cells: Any) -> nodes.row:
-    return nodes.row("", *(nodes.entry("", nodes.paragraph("", "", cell)) for cell in cells))
+def _row(cells: Iterable[nodes.Node | Sequence[nodes.Node]]) -> nodes.row:
+    row = nodes.row()
+    for cell in cells:
+        parts = [cell] if isinstance(cell, nodes.Node) else cell
+        row += nodes.entry("", *(nodes.paragraph("", "", part) for part in parts))
+    return row
 
 
 def write_downloads(app: Sphinx, exception: Exception | None) -> None:

@@ -24,6 +24,7 @@ from robo_genesis.evidence.compare import Comparison, compare, specification
 from robo_genesis.evidence.findings import DIFFERS
 from robo_genesis.evidence.status import RECORDED_PAGE, Status, recorded_status
 from robo_genesis.evidence.traces import read_joints, read_trace
+from robo_genesis.ledger import Run
 from robo_genesis.metrics import format_value
 from robo_genesis.sphinx_evidence import BACKEND, lesson_backends, outputs_folder
 
@@ -62,12 +63,15 @@ class Evidence(SphinxDirective):
             panel += self.parse_text_to_nodes(missing_text(lesson, status))
             return panel
         folder = Path(self.env.srcdir) / "evidence" / lesson / status.backend
-        here = outputs_folder() / lesson / "lab" / BACKEND
+        here = outputs_folder() / lesson / RECORDED_PAGE / BACKEND
         panel += self.parse_text_to_nodes(backend_text(status))
-        panel["evidence_run"] = f"{lesson}/{RECORDED_PAGE}/{status.backend}/recorded"
+        recorded = Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True).key
+        panel["evidence_runs"] = (recorded,)
         for picture in (response(folder, status), *frames(folder, status)):
             panel += self.figure(f"{lesson}-{status.backend}-{picture.name}", picture)
-        panel += self.parse_text_to_nodes(metrics_text(lesson, here, folder))
+        tables = self.parse_text_to_nodes(metrics_text(lesson, here, folder))
+        both = (f"{lesson}/{RECORDED_PAGE}/{BACKEND}", recorded)
+        panel += nodes.container("", *tables, evidence_runs=both)
         panel += nodes.raw("", warnings_html(status.manifest.predicate.warnings), format="html")
         return panel
 

@@ -1,12 +1,13 @@
 """Finds each figure and measured table of a page, and says below it where it comes from.
 
-Measured is every picture and table that a code cell put out or that was read from a bundle. A
-picture that no run made is an illustration; a table typed in prose is not listed.
+Measured is every picture and table that a code cell put out, in its place or glued elsewhere, or
+that was read from a bundle. The tables of a cell that is tagged `inputs` were chosen; a picture
+that no run made is an illustration; a table typed in prose is not listed.
 """
 
 import re
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -16,11 +17,12 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util import logging
 
-from robo_genesis import ledger
-from robo_genesis.evidence.status import page_status, recorded_status
+from robo_genesis import ledger, sphinx_origin, sphinx_refusals
+from robo_genesis.evidence.status import RECORDED_PAGE, page_status, recorded_status
 from robo_genesis.ledger import Item, Run
 from robo_genesis.pages import find_pages
 from robo_genesis.sphinx_evidence import BACKEND, lesson_backends, outputs_folder
+from robo_genesis.sphinx_origin import INPUTS, above, origin
 
 TITLE = 80
 """Longest title in the ledger, in characters."""
@@ -47,49 +49,55 @@ def all_runs(book: Path) -> dict[str, Run]:
     for lesson in dict.fromkeys(lesson for lesson, _ in declared):
         for backend in lesson_backends(book, lesson):
             folder = book / "evidence" / lesson / backend
-            runs.append(Run(f"{lesson}/lab", folder, recorded_status(book, lesson, backend)))
-    return {f"{run.key}{'' if here in run.folder.parents else '/recorded'}": run for run in runs}
+            status = recorded_status(book, lesson, backend)
+            runs.append(Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True))
+    return {run.key: run for run in runs}
 
 
 def read_page(app: Sphinx, doctree: nodes.document) -> None:
     """List what a page shows, and say below each item where it comes from."""
     env = app.env
     book, items = Path(env.srcdir), []
-    shown = list(doctree.findall(lambda n: isinstance(n, nodes.table | nodes.image)))
-    for node in shown:
-        key = run_key(node, measured_pages(book).get(env.docname))
-        if key is None and isinstance(node, nodes.table):
+    known = all_runs(book)
+    for node in list(doctree.findall(lambda n: isinstance(n, nodes.table | nodes.image))):
+        keys = origin(node, measured_pages(book).get(env.docname))
+        is_table = isinstance(node, nodes.table)
+        if keys is None and is_table:
             continue
-        holder = node if isinstance(node, nodes.table) else next(_above(node, nodes.figure), node)
-        item = describe(holder, node, env.docname, key, book)
+        problem = _problem(keys, known, is_table)
+        if problem:
+            logger.warning(problem, location=env.docname)
+            continue
+        holder = node if is_table else next(above(node, nodes.figure), node)
+        item = describe(holder, node, env.docname, keys, book)
         items.append(item)
-        run = all_runs(book).get(key or "")
-        if key == "":
-            logger.warning(
-                "a cell shows a %s, but the page declares no bundle. Give its front matter "
-                "`robo_genesis: {lesson, page}`.", item.kind, location=env.docname
-            )  # fmt: skip
-        add_line(holder, ledger.provenance(run), item.row)
+        runs = [known[key] for key in item.runs]
+        add_line(holder, ledger.provenance(item.kind, runs), item.row)
     all_items(env)[env.docname] = items
 
 
-def run_key(node: nodes.Node, page: str | None) -> str | None:
-    """Return the run that made a node: None for none, "" for a cell of a page without a bundle."""
-    above = node.parent
-    while above is not None:
-        if "evidence_run" in above.attributes:
-            return str(above["evidence_run"])
-        if "cell_output" in above["classes"]:
-            return f"{page}/{BACKEND}" if page else ""
-        above = above.parent
+def _problem(keys: tuple[str, ...] | None, known: Mapping[str, Run], is_table: bool) -> str | None:
+    """Return why an item cannot be listed."""
+    if keys == () and not is_table:
+        return f"a cell tagged {INPUTS} shows a picture. The tag is for tables: remove it there."
+    if not set(keys or ()) <= known.keys():
+        what = "table" if is_table else "picture"
+        return (
+            f"a cell shows a {what}, but the page declares no bundle. Give its front matter "
+            f"`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values `{INPUTS}`."
+        )
     return None
 
 
 def describe(
-    holder: nodes.Element, node: nodes.Element, docname: str, key: str | None, book: Path
+    holder: nodes.Element,
+    node: nodes.Element,
+    docname: str,
+    keys: tuple[str, ...] | None,
+    book: Path,
 ) -> Item:
     """Return the ledger's item of a table or picture, and give `holder` an anchor."""
-    section = next(_above(holder, nodes.section), None)
+    section = next(above(holder, nodes.section), None)
     if not holder["ids"]:
         _name(holder, "table" if isinstance(node, nodes.table) else "picture", section)
     anchor = holder["ids"][0]
@@ -99,20 +107,16 @@ def describe(
         heading = section.next_node(nodes.title).astext() if section is not None else docname
         title = f"{heading}: {', '.join(filter(None, rows[0]))}"
         name = f"{docname}-{anchor}.csv".replace("/", "-")
-        return Item("table", _short(title), docname, anchor, key, ledger.sha256(data), name, data)
+        kind = "table" if keys else "settings"
+        return Item(
+            kind, _short(title), docname, anchor, keys or (), ledger.sha256(data), name, data
+        )
     caption = holder.next_node(nodes.caption)
     title = caption.astext() if caption is not None else str(node.get("alt", anchor))
     path = book / node["uri"]
-    kind = "illustration" if key is None else ledger.picture_kind(path)
+    kind = "illustration" if keys is None else ledger.picture_kind(path)
     digest = ledger.sha256(path.read_bytes())
-    return Item(kind, _short(title), docname, anchor, key, digest, node["uri"])
-
-
-def _above(node: nodes.Node, kind: type) -> Iterator[Any]:
-    while node.parent is not None:
-        node = node.parent
-        if isinstance(node, kind):
-            yield node
+    return Item(kind, _short(title), docname, anchor, keys or (), digest, node["uri"])
 
 
 def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:
@@ -140,7 +144,8 @@ def add_line(holder: nodes.Element, text: str, row: str) -> None:
         caption += [nodes.Text(" "), nodes.inline("", "", *parts, classes=["provenance"])]
     else:
         line = nodes.paragraph("", "", *parts, classes=["provenance"])
-        holder.parent.insert(holder.parent.index(holder) + 1, line)
+        block = next(above(holder, nodes.paragraph), holder)
+        block.parent.insert(block.parent.index(block) + 1, line)
 
 
 def all_items(env: BuildEnvironment) -> dict[str, list[Item]]:
@@ -156,7 +161,9 @@ def forget_page(app: Sphinx, env: BuildEnvironment, docname: str) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Register the pass over each page that was read."""
+    """Register the passes over each page that was read."""
+    sphinx_origin.register(app)
+    sphinx_refusals.register(app)
     app.connect("env-purge-doc", forget_page)
     app.connect("doctree-read", read_page, priority=900)  # pictures are collected before
     return {"version": "1", "parallel_read_safe": False, "parallel_write_safe": True}

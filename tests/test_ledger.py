@@ -2,10 +2,12 @@ import io
 import zipfile
 
 import pytest
+from docutils import nodes
 
 from robo_genesis import ledger
 from robo_genesis.evidence.status import Status
 from robo_genesis.ledger import Item, Run
+from robo_genesis.sphinx_ledger import run_block
 
 
 @pytest.fixture
@@ -47,11 +49,29 @@ def test_a_picture_of_pixels_is_a_camera_frame(tmp_path, name, content, kind):
 
 def test_without_an_accepted_bundle_nothing_is_called_measured(tmp_path):
     run = Run("l04/lab", tmp_path, Status("refused", "cpu", "files: gone", None, "files"))
-    assert ledger.provenance(run) == "No accepted evidence: cpu-refused."
+    assert ledger.provenance("table", [run]) == "No accepted evidence: cpu-refused."
+    assert ledger.provenance("figure", [run, run]).endswith(": cpu-refused, cpu-refused.")
     assert ledger.facts(run) == {}
-    assert ledger.provenance(None) == "Illustration, not measured."
+    assert ledger.provenance("illustration", []) == "Illustration, not measured."
+    assert ledger.provenance("settings", []) == "Chosen, not measured."
+
+
+@pytest.mark.parametrize(
+    ("recorded", "key", "command"),
+    [
+        (False, "l04/lab/cpu", "$ make book"),
+        (True, "l04/lab/cpu/recorded", "$ make evidence LESSON=l04 BACKEND=cpu"),
+    ],
+)
+def test_a_recorded_run_is_another_than_the_build_s_and_is_made_otherwise(
+    tmp_path, recorded, key, command
+):
+    run = Run("l04/lab", tmp_path, Status("stale", "cpu", "old", None), recorded)
+    assert run.key == key
+    block = run_block("", run)
+    assert [code.astext() for code in block.findall(nodes.literal_block)] == [command]
 
 
 def test_a_row_s_anchor_is_made_of_page_and_item():
-    item = Item("table", "T", "lessons/L04/lab", "table-1-x", None, "0", "x.csv", b"")
+    item = Item("table", "T", "lessons/L04/lab", "table-1-x", (), "0", "x.csv", b"")
     assert item.row == "row-lessons-l04-lab-table-1-x"

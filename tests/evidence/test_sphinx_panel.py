@@ -1,16 +1,22 @@
 """The panel of a reference run shows what its bundle holds, or what is missing and makes it."""
 
 import shutil
+from types import SimpleNamespace
 
 import pytest
+from docutils import nodes
+from docutils.core import publish_doctree
+from docutils.utils import new_document
+from myst_parser.parsers.docutils_ import Parser
 from spoilers import edit, metrics, on, part, predicate, seal
 
-from robo_genesis import l04, ledger, project, sphinx_panel
+from robo_genesis import l04, ledger, project, sphinx_ledger, sphinx_panel, sphinx_provenance
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.findings import number
 from robo_genesis.evidence.status import Status, recorded_status
 from robo_genesis.evidence.traces import read_trace
 from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.ledger import Run
 from robo_genesis.metrics import format_value
 from robo_genesis.tables import METRIC_LABELS
 
@@ -162,6 +168,62 @@ def test_runs_that_cannot_be_compared_say_why(folder, there):
     assert text.startswith("**Not comparable with this build's run on cpu.**")
     assert "- parameters.rise_fraction differs: 0.9 and 0.5." in text
     assert rows(text) == []
+
+
+class Panel(sphinx_panel.Evidence):
+    """The directive without Sphinx: a folder, and a parser of Markdown."""
+
+    def __init__(self, book):
+        app = SimpleNamespace(outdir=book / "_build" / "html")
+        self.state = SimpleNamespace(
+            document=SimpleNamespace(settings=SimpleNamespace(env=SimpleNamespace(
+                srcdir=book, app=app)))
+        )  # fmt: skip
+
+    def parse_text_to_nodes(self, text):
+        return publish_doctree(text, parser=Parser()).children
+
+
+@pytest.mark.parametrize("accelerator", ["amdgpu", "cuda"])
+def test_what_compares_two_runs_names_both_and_all_else_the_recorded_one(
+    folder, tmp_path, monkeypatch, accelerator
+):
+    book = tmp_path / "book"
+    place = shutil.copytree(folder, book / "evidence" / "l04" / "cpu")
+    status = Status("verified", accelerator, "", bundle.read_manifest(on(accelerator)(place)))
+    runs = (
+        Run("l04/lab", folder, Status("verified", "cpu", "", bundle.read_manifest(folder))),
+        Run("l04/lab", book / "evidence" / "l04" / accelerator, status, recorded=True),
+    )
+    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
+    monkeypatch.setattr(sphinx_provenance, "measured_pages", lambda book: {})
+    monkeypatch.setattr(sphinx_provenance, "all_runs", lambda book: {run.key: run for run in runs})
+    app = SimpleNamespace(env=SimpleNamespace(srcdir=book, docname="page"))
+    document = new_document("page")
+    document += Panel(book).panel("l04", status)
+    for image in document.findall(nodes.image):
+        image["uri"] = image["uri"].removeprefix("/")
+    sphinx_provenance.read_page(app, document)
+
+    ours, theirs = (ledger.provenance("table", [run]).removeprefix("Measured ") for run in runs)
+    lines = [n.astext() for n in document.findall(lambda n: "provenance" in classes(n))]
+    alone, compared = f"Measured {theirs} · ledger", f"Measured {ours} and {theirs} · ledger"
+    assert ours.startswith("on cpu · ")
+    assert theirs.startswith(f"on {accelerator} · ")
+    assert lines == [alone] * 4 + [compared] * 2
+    items = app.env.robo_genesis_items["page"]
+    both = ("l04/lab/cpu", f"l04/lab/{accelerator}/recorded")
+    assert [item.runs for item in items] == [both[1:]] * 4 + [both] * 2
+    run, badge, *_ = sphinx_ledger._of_runs(runs)
+    assert [link["refuri"] for link in run] == [
+        "#run-l04-lab-cpu",
+        f"#run-l04-lab-{accelerator}-recorded",
+    ]
+    assert [node.astext() for node in badge] == ["cpu-verified", f"{accelerator}-verified"]
+
+
+def classes(node):
+    return node.get("classes", ()) if isinstance(node, nodes.Element) else ()
 
 
 def test_warnings_are_escaped_and_folded():

@@ -11,7 +11,11 @@ from robo_genesis.evidence.verify import verify_bundle
 
 pytestmark = pytest.mark.engine
 LEDGER = "evidence/ledger.html"
-SHOWN = "article img, .cell_output table, .evidence-panel table"
+SHOWN = "article img, .cell_output table, .glued table, figure table, .evidence-panel table"
+UNMEASURED = {
+    "illustration": "Illustration, not measured.",
+    "settings": "Chosen, not measured.",
+}
 
 
 def parsed(site) -> dict[str, BeautifulSoup]:
@@ -69,8 +73,11 @@ def test_each_line_of_provenance_leads_to_the_row_that_leads_back(pages):
             row = rows[line.select_one("a")["href"].split("#")[1]]
             target, anchor = row.select_one("td a")["href"].removeprefix("../").split("#")
             assert target == name
-            run = row.select("td")[3].get_text(strip=True)
-            assert f"run {run}" in line.get_text() or (run, anchor) == ("no run", anchor)
+            kind, _, run = (cell.get_text(strip=True) for cell in row.select("td")[1:4])
+            runs = [link.text for link in row.select("td")[3].select("a")]
+            assert (runs == []) == (run == "no run") == (kind in UNMEASURED)
+            assert all(f"run {run}" in line.get_text() for run in runs)
+            assert line.get_text().startswith(UNMEASURED.get(kind, "Measured on "))
             holder = line.find_parent("figure")
             assert holder is None or holder["id"] == anchor
     assert sum(len(page.select(".provenance")) for page in pages.values()) == len(rows)
@@ -84,6 +91,14 @@ def test_illustrations_say_so_and_nothing_else_does(pages):
         if "Illustration, not measured." in line.text
     ]
     assert [source.rpartition("/")[2] for _, source in said] == ["chain.svg", "chain.svg"]
+
+
+def test_tables_of_chosen_values_are_called_so(pages):
+    rows = pages[LEDGER].select("#figures-and-tables tbody tr")
+    chosen = [row.a.get_text() for row in rows if row.select("td")[1].text == "settings"]
+    assert len(chosen) == 4
+    for head in ("start, target", "KP of joint4", "angle [rad], speed"):
+        assert [title for title in chosen if head in title]
 
 
 def test_digests_are_those_of_the_files(site, pages):
