@@ -193,7 +193,7 @@ def test_a_cache_of_pages_that_cannot_be_used_is_status_1_and_named(tmp_path, sp
     ("page", "settings", "said"),
     [
         (notebook(cell(WRITE_BUNDLE), front=LAB_FRONT), {"verify": refuse}, "metrics: metrics.js"),
-        ("# Page\n\n<img src='https://example.org/a.png' alt='A picture of it'>\n", {}, "third p"),
+        ("# Page\n\n<script src='https://example.org/a.js'></script>\n", {}, "third p"),
     ],
 )
 def test_a_refused_bundle_or_site_leaves_the_old_site(tmp_path, page, settings, said):
