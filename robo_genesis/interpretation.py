@@ -20,9 +20,6 @@ from robo_genesis.trace import Trace
 
 SATURATION_SHARE = f"{100 * SATURATION_THRESHOLD:.0f} %"
 
-GRAVITY_AGREEMENT = 0.05
-"""Share within which KP × final error and gravity are said to agree."""
-
 AT_REST = 0.01
 """Speed below which the last sample is called nearly at rest [rad/s]."""
 
@@ -128,34 +125,6 @@ def _clipped_alike(one: Trace, other: Trace, entry: int) -> int:
     a, b = one.control_force[:, entry], other.control_force[:, entry]
     alike = (a == b) & (np.abs(a) >= SATURATION_THRESHOLD * one.effort_limit[entry])
     return int(alike.argmin()) if not alike.all() else len(alike)
-
-
-def gravity_sentence(
-    kp: Mapping[str, float], metrics: Mapping[str, StepMetrics], gravity: Mapping[str, float]
-) -> str:
-    """Hold KP × final error of each case against the gravity effort read from the engine.
-
-    Args:
-        kp: by case [N·m/rad].
-        metrics: by case.
-        gravity: by case, the effort that holds its final posture [N·m].
-    """
-    told, apart = [], []
-    for name, effort in gravity.items():
-        support = kp[name] * metrics[name].final_error
-        told.append(f"{name} {format_value(support, 'N·m')} of {format_value(effort, 'N·m')}")
-        apart.append(abs(support - effort) / abs(effort))
-    found = f"KP × final error against the engine's gravity effort: {', '.join(told)}"
-    share = f"{100 * max(apart):.1f} %"
-    if max(apart) <= GRAVITY_AGREEMENT:
-        return (
-            f"{found}. They agree within {share}, as they would if gravity alone kept the "
-            "error up; that is consistent with gravity, and still no proof of a steady state."
-        )
-    return (
-        f"{found}. They differ by up to {share}, so gravity alone does not explain the "
-        "error: look at final velocity, tail and saturation."
-    )
 
 
 def cost_sentence(

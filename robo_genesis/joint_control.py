@@ -182,21 +182,6 @@ def assign_path(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> 
     return assemble(case, states, steps, list(path), start_qd, start_force, effort_limit)
 
 
-def gravity_effort(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> FloatArray:
-    """Return the effort (d,) that would hold a posture against gravity, read from the engine.
-
-    The posture `q` (d,) [rad or m] is assigned at rest, no effort is commanded, and one step is
-    taken. What `get_dofs_force` then reports is gravity's pull, less the little passive damping at
-    the speed gained in that step. No gain enters, so it can be held against KP × error.
-    """
-    dofs = joints.dofs_idx_local.tolist()
-    scene.reset()
-    robot.set_dofs_position(np.array(q, dtype=np.float64), dofs, zero_velocity=True)
-    robot.control_dofs_force(np.zeros(len(dofs)), dofs)
-    scene.step()
-    return -to_numpy(robot.get_dofs_force(dofs))
-
-
 def assemble(
     case: ControlCase,
     states: list[tuple[FloatArray, FloatArray, FloatArray]],

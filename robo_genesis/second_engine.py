@@ -81,7 +81,8 @@ def run_case(
     """Run a case from rest as `joint_control.run_case` does, in MuJoCo.
 
     After each outer step the forces are computed again from the new state, so they carry the same
-    stamps as those of Genesis: the clipped control force, and the net force along each DOF.
+    stamps as those of Genesis: the clipped control force, and the net force along each DOF. The run
+    is computed in float64 and kept in float32, as every trace of the course.
 
     Args:
         case: its `substeps` is not used, `timestep` takes its place.
@@ -97,11 +98,11 @@ def run_case(
 
     def state() -> tuple[FloatArray, FloatArray, FloatArray]:
         mujoco.mj_forward(model, data)  # poses and forces of the state as it is now
-        return data.qpos[q_at].copy(), data.xpos[bodies].copy(), data.xquat[bodies].copy()
+        return _kept(data.qpos[q_at]), _kept(data.xpos[bodies]), _kept(data.xquat[bodies])
 
     def step_reading() -> tuple[FloatArray, FloatArray, FloatArray]:
         net = data.qfrc_smooth + data.qfrc_constraint
-        return data.qvel[dof_at].copy(), data.actuator_force.copy(), net[dof_at].copy()
+        return _kept(data.qvel[dof_at]), _kept(data.actuator_force), _kept(net[dof_at])
 
     states = [state()]
     start_qd, start_control_force, _ = step_reading()
@@ -111,8 +112,13 @@ def run_case(
         states.append(state())
         steps.append(step_reading())
     targets = [case.q_target] * case.steps
-    effort_limit = model.actuator_forcerange[:, 1].copy()
+    effort_limit = _kept(model.actuator_forcerange[:, 1])
     return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)
+
+
+def _kept(values: FloatArray) -> FloatArray:
+    """Return a copy in the precision of the course's traces."""
+    return np.array(values, dtype=np.float32)
 
 
 def at_rest(case: ControlCase, q: FloatArray) -> tuple[FloatArray, FloatArray]:

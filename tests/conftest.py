@@ -5,6 +5,7 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,7 +16,18 @@ import pytest
 from hypothesis import settings
 from matplotlib.figure import Figure
 
-from robo_genesis import build, checks, l04, plots, project, robot_model, runtime
+from robo_genesis import (
+    build,
+    checks,
+    l04,
+    l04_studies,
+    plots,
+    project,
+    robot_model,
+    runtime,
+    second_engine,
+    studies,
+)
 from robo_genesis.metrics import measure
 from robo_genesis.robot_model import JointMap
 from robo_genesis.scene_config import (
@@ -24,6 +36,7 @@ from robo_genesis.scene_config import (
     FRAME_SHAPE,
     FRANKA_MJCF,
     JOINT_NAMES,
+    Q_START,
     SUBSTEPS,
     per_joint,
 )
@@ -172,6 +185,37 @@ def experiment(joints, traces, frames) -> checks.StepExperiment:
         metrics=measure(traces, l04.CASES, joints.entry(l04.STEPPED_JOINT)),
         posture="camera",
         frames=frames,
+    )
+
+
+@pytest.fixture(scope="session")
+def study_runs(joints) -> studies.Studies:
+    """The studies of L04 in order, with MuJoCo in the place of both engines.
+
+    Genesis is played at a fine step, and G2's overshoot is made to fall with the substeps.
+    """
+    k = joints.entry(l04.STEPPED_JOINT)
+    cases = l04.CASES | l04_studies.STEP_CASES
+    traces = {name: second_engine.run_case(case, LINKS, 0.0005) for name, case in cases.items()}
+    for name, run in l04_studies.SECOND_RUNS.items():
+        case = l04.CASES[run.case]
+        traces[name] = second_engine.run_case(case, LINKS, run.timestep, run.integrator)
+    falling = (0.06, 0.05, 0.04, 0.03, 0.025, 0.023)
+    for n, overshoot in zip(l04_studies.SUBSTEPS_STUDIED, falling, strict=True):
+        q = np.array(traces["G2"].q)
+        q[q[:, k].argmax(), k] = traces["G2"].target[0, k] + overshoot
+        traces[studies.run_name("Genesis", "G2", n)] = replace(traces["G2"], q=q)
+    inertia, gravity = (float(v[k]) for v in second_engine.at_rest(l04.G1, Q_START))
+    return studies.Studies(
+        joints=joints,
+        traces=traces,
+        inertia=dict.fromkeys(("Genesis", "MuJoCo"), inertia),
+        gravity_at_start=dict.fromkeys(("Genesis", "MuJoCo"), gravity),
+        passive_damping=1.0,
+        gravity={
+            name: float(second_engine.at_rest(case, traces[name].q[-1])[1][k])
+            for name, case in l04.CASES.items()
+        },
     )
 
 

@@ -21,7 +21,6 @@ from robo_genesis.interpretation import (
     factor_sentence,
     final_error_block,
     final_error_sentence,
-    gravity_sentence,
     interpret,
     pair_block,
     start_sentence,
@@ -311,16 +310,6 @@ def test_clipped_alike_and_moving_apart_is_called_numerical():
 def test_without_a_common_clipped_start_nothing_is_concluded(efforts):
     one, other = (trace(control_force=effort) for effort in efforts)
     assert started(one, other).startswith("No leading samples")
-
-
-@pytest.mark.parametrize(
-    ("effort", "says"), [(21.5, "consistent with gravity"), (30.0, "gravity alone does not")]
-)
-def test_gravity_is_held_against_kp_times_error(effort, says):
-    metrics = {"G1": replace(MEASURED, final_error=0.0062)}
-    text = gravity_sentence({"G1": 3500.0}, metrics, {"G1": effort})
-    assert f"G1 21.70 N·m of {effort:.2f} N·m" in text
-    assert says in text
 
 
 def words(blocks):

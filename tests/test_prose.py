@@ -5,13 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis import interpretation, l04, metrics, scene_config
+from robo_genesis import interpretation, l04, l04_studies, metrics, scene_config
 from robo_genesis.project import BOOK
 
 CONFIGURED = {
     "time step [s]": scene_config.DT,
     "window [s]": l04.WINDOW,
     "step of joint4 [rad]": l04.STEP,
+    "small step of joint4 [rad]": l04_studies.SMALL_STEP,
     "open finger [m]": scene_config.Q_START[-1],
     "rise fraction": metrics.RISE_FRACTION,
     "settling band [rad]": metrics.SETTLING_BAND,

@@ -7,9 +7,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from robo_genesis import l04, pages, project, runtime
+from robo_genesis import l04, l04_studies, pages, project, runtime
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.record import COMPUTING_MODULES
+from robo_genesis.evidence.record import computing_modules
 from robo_genesis.evidence.strict_json import BundleRefused, shown
 from robo_genesis.scene_config import SEED
 
@@ -36,15 +36,20 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
             "precision": runtime.PRECISION,
         },
         "seed": SEED,
-        "parameters": json.loads(json.dumps(l04.parameters())),
+        "parameters": json.loads(json.dumps(parameters(page))),
         "source": {
             "page": page_digest(lesson, page, book),
             "modules": {
                 name: bundle.sha256(root / "robo_genesis" / f"{name}.py")
-                for name in COMPUTING_MODULES
+                for name in computing_modules(page)
             },
         },
     }
+
+
+def parameters(page: str) -> dict[str, Any]:
+    """Return the configured inputs of a page: the lesson's, and its studies' where it runs them."""
+    return l04.parameters() | (l04_studies.parameters() if page == l04_studies.PAGE else {})
 
 
 def locked_version(package: str, root: Path) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from robo_genesis import checks, l04
+from robo_genesis import checks, l04, l04_studies, study_checks
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Manifest
 from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect
@@ -13,6 +13,7 @@ from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.metrics import measure, metric_records
 from robo_genesis.runtime import require_frame
 from robo_genesis.scene_config import CAMERA_RES, JOINT_NAMES
+from robo_genesis.studies import Studies, from_readings, records
 from robo_genesis.trace import Trace
 
 ENTRY = JOINT_NAMES.index(l04.STEPPED_JOINT)
@@ -120,6 +121,32 @@ def read_frames(folder: Path, manifest: Manifest) -> dict[str, np.ndarray]:
     return frames
 
 
+def read_studies(folder: Path, manifest: Manifest) -> Studies | None:
+    """Return the studies as their page had them; None for a page that runs none.
+
+    What the engines said of a posture is in no array: it is taken from metrics.json, and the checks
+    hold it against the runs.
+
+    Raises:
+        BundleRefused: `cases` or `metrics`, where a run or a reading is missing.
+    """
+    if manifest.predicate.page != l04_studies.PAGE:
+        return None
+    arrays = bundle.read_arrays(folder)
+    wanted = (*l04_studies.STEP_CASES, *l04_studies.SUBSTEP_CASES, *l04_studies.SECOND_RUNS)
+    missing = sorted(set(wanted) - set(arrays.cases))
+    expect("cases", "arrays.json", "list of missing study runs", missing, [])
+    traces = {case: read_trace(folder, arrays, case) for case in (*l04.CASES, *wanted)}
+    recorded = bundle.read_metrics(folder).get("readings", {})
+    readings = {name: metric.value for name, metric in recorded.items() if metric.value is not None}
+    try:
+        return from_readings(read_joints(arrays), traces, readings)
+    except KeyError as error:
+        raise BundleRefused(
+            "metrics", f"metrics.json: readings lacks {error}, expected a number. {AGAIN}"
+        ) from error
+
+
 def read_counts(folder: Path) -> dict[str, int]:
     """Return the engine's counts of links, joints, DOFs and qpos, as they were recorded.
 
@@ -140,13 +167,17 @@ def read_counts(folder: Path) -> dict[str, int]:
     return counts
 
 
-def check_metrics(folder: Path, run: checks.StepExperiment) -> None:
-    """Require that metrics.json is what the run gives, with units, classes and sources.
+def check_metrics(folder: Path, run: checks.StepExperiment, studied: Studies | None = None) -> None:
+    """Require that metrics.json is what the runs give, with units, classes and sources.
 
     Raises:
-        BundleRefused: `metrics`.
+        BundleRefused: `metrics`; `bad-trace` where the arrays of a study give none.
     """
     expected = metric_records(run.metrics, run.model)
+    try:
+        expected |= records(studied) if studied else {}
+    except ValueError as error:
+        raise BundleRefused("bad-trace", f"arrays: {error} {AGAIN}") from error
     found = {
         group: {name: metric.model_dump(by_alias=True) for name, metric in metrics.items()}
         for group, metrics in bundle.read_metrics(folder).items()
@@ -159,16 +190,19 @@ def check_metrics(folder: Path, run: checks.StepExperiment) -> None:
             expect("metrics", file, f"{group}.{name}", here.get(name), there.get(name))
 
 
-def check_outcomes(manifest: Manifest, run: checks.StepExperiment) -> None:
+def check_outcomes(
+    manifest: Manifest, run: checks.StepExperiment, studied: Studies | None = None
+) -> None:
     """Require that the recorded outcomes are those of the run, and that all passed.
 
     Raises:
         BundleRefused: `checks` where they are not; `failed` where they are, and one failed.
     """
     recorded = manifest.predicate.checks
-    names = [check.__name__ for check in checks.CHECKS]
+    outcomes = checks.run_checks(run) + (study_checks.run_checks(studied) if studied else ())
+    names = [check.name for check in outcomes]
     expect("checks", "manifest.json", "list of checks", [c.name for c in recorded], names)
-    for said, found in zip(recorded, checks.run_checks(run), strict=True):
+    for said, found in zip(recorded, outcomes, strict=True):
         what = f"outcome of check {said.name}, computed again as '{found.detail}',"
         expect("checks", "manifest.json", what, said.passed, found.passed)
         what = f"detail of check {said.name}"

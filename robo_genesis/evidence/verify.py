@@ -48,6 +48,7 @@ def verify_bundle(
     rules.check_engine_files(manifest)
     current.check_current(manifest, root, book)
     run = recompute.read_run(folder, manifest)
-    recompute.check_metrics(folder, run)
-    recompute.check_outcomes(manifest, run)
+    studied = recompute.read_studies(folder, manifest)
+    recompute.check_metrics(folder, run, studied)
+    recompute.check_outcomes(manifest, run, studied)
     return manifest

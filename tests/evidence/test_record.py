@@ -17,6 +17,7 @@ from robo_genesis.evidence.bundle import read_manifest, read_metrics
 from robo_genesis.evidence.record import (
     COMPUTING_MODULES,
     PACKAGE,
+    STUDY_MODULES,
     Recorder,
     files_match_wheel,
     git_record,
@@ -201,10 +202,13 @@ def test_what_an_earlier_failure_left_does_not_enter(recorder, measured):
     assert not partial.exists()
 
 
-def test_the_source_record_digests_each_computing_module():
-    assert source_record()["modules"] == {
-        name: hashlib.sha256((PACKAGE / f"{name}.py").read_bytes()).hexdigest()
-        for name in COMPUTING_MODULES
+@pytest.mark.parametrize(
+    ("page", "names"),
+    [("lab", COMPUTING_MODULES), ("lecture", (*COMPUTING_MODULES, *STUDY_MODULES))],
+)
+def test_the_source_record_digests_each_computing_module_of_its_page(page, names):
+    assert source_record(page)["modules"] == {
+        name: hashlib.sha256((PACKAGE / f"{name}.py").read_bytes()).hexdigest() for name in names
     }
 
 

@@ -1,0 +1,82 @@
+"""Figures of the studies around lesson L04: axes in, axes out; no numerics, no show()."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+
+from robo_genesis.plots import TARGET, style
+from robo_genesis.scene_config import FloatArray
+
+IDEAL: dict[str, Any] = {"color": "#222222", "linestyle": (0, (1, 1.2)), "linewidth": 1.8}
+ENGINE_STYLES: dict[str, dict[str, Any]] = {
+    "Genesis": {"color": "#d55e00", "linestyle": "-", "marker": "o"},
+    "MuJoCo implicitfast": {"color": "#0072b2", "linestyle": (0, (6, 2)), "marker": "s"},
+    "MuJoCo Euler": {"color": "#00795c", "linestyle": (0, (6, 2, 1.5, 2)), "marker": "^"},
+}
+
+
+def beside_ideal(
+    axes: Sequence[Axes],
+    t: FloatArray,
+    measured: Mapping[str, FloatArray],
+    ideal: Mapping[str, FloatArray],
+    target: float,
+    until: float,
+) -> Sequence[Axes]:
+    """Draw each case's measured position [rad] over the ideal joint's, one axes a case.
+
+    All arrays (n+1,) over `t` [s], shown up to `until` [s].
+    """
+    for ax, (name, q) in zip(axes, measured.items(), strict=True):
+        ax.axhline(target, label="target", **TARGET)
+        ax.plot(t, ideal[name], label="ideal joint", **IDEAL)
+        ax.plot(t, q, label="measured", **style(name))
+        _finish(ax, name, "q of joint4 [rad]", until)
+    return axes
+
+
+def step_sizes(
+    axes: Sequence[Axes],
+    t: FloatArray,
+    shares: Mapping[str, Mapping[str, FloatArray]],
+    until: float,
+) -> Sequence[Axes]:
+    """Draw responses as shares of their step, one axes a case, one curve a label.
+
+    A curve called `ideal joint` is drawn as such. All arrays (n+1,) over `t` [s].
+    """
+    looks = ({"color": "#0072b2", "linestyle": "-"}, {"color": "#a8003d", "linestyle": (0, (6, 2))})
+    for ax, (name, curves) in zip(axes, shares.items(), strict=True):
+        ax.axhline(1.0, **TARGET)
+        measured = iter(looks)
+        for label, curve in curves.items():
+            ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else next(measured)))
+        _finish(ax, name, "share of the step", until)
+    return axes
+
+
+def convergence(ax: Axes, overshoot: Mapping[str, Mapping[float, float]], declared: float) -> Axes:
+    """Draw overshoot [rad] over the solver's step [s], one curve an engine, the finest at the left.
+
+    `declared` [s] marks the step of the lesson's own runs.
+    """
+    for name, values in overshoot.items():
+        ax.plot(list(values), list(values.values()), label=name, markersize=6,
+                **ENGINE_STYLES[name])  # fmt: skip
+    ax.axvline(declared, label="the lesson's step", **TARGET)
+    ax.set_xscale("log")
+    ax.set_ylim(bottom=0)
+    ax.set_xlabel("solver step [s]")
+    ax.set_ylabel("overshoot of G2 [rad]")
+    ax.legend(fontsize="small", loc="upper left")
+    return ax
+
+
+def _finish(ax: Axes, title: str, ylabel: str, until: float) -> None:
+    ax.set_title(title, loc="left")
+    ax.set_xlim(0, until)
+    ax.set_xlabel("time [s]")
+    ax.set_ylabel(ylabel)
+    ax.legend(fontsize="small", loc="lower right")
+    ax.label_outer()

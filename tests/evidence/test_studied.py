@@ -1,0 +1,107 @@
+"""The bundle of the page that runs the studies: their runs, metrics and checks are verified too."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from conftest import RUN_ID, without_engine
+from spoilers import edit, seal
+
+from robo_genesis import checks, l04, l04_studies, project, runtime, studies, study_checks
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.current import page_digest
+from robo_genesis.evidence.record import Measured, Recorder
+from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.metrics import measure, metric_records
+
+LINKS = ("link0", "link4", "hand")
+
+
+@pytest.fixture(scope="module")
+def sound(backend, tmp_path_factory, engine, frames, study_runs) -> Path:
+    traces = dict(study_runs.traces)
+    metrics = measure(traces, l04.CASES, study_runs.entry)
+    run = checks.StepExperiment(
+        study_runs.joints, l04.EXPECTED_MODEL, l04.CASES,
+        {name: traces[name] for name in l04.CASES}, metrics, "camera", frames,
+    )  # fmt: skip
+    measured = Measured(
+        joints=study_runs.joints,
+        links=LINKS,
+        traces=traces,
+        metrics=metric_records(metrics, l04.EXPECTED_MODEL) | studies.records(study_runs),
+        checks=[*checks.run_checks(run), *study_checks.run_checks(study_runs)],
+        frames=frames,
+        parameters=l04.parameters() | l04_studies.parameters(),
+        renderer=runtime.Renderer("Mesa", "llvmpipe"),
+    )
+    with without_engine(backend) as patch:
+        patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
+        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lecture", project.BOOK))
+        contract = runtime.Contract("cpu", True, tmp_path_factory.mktemp("studied"))
+        return Recorder("l04", "lecture", contract, engine).write(measured)
+
+
+@pytest.fixture
+def studied(sound, tmp_path):
+    """A bundle of one's own, to spoil."""
+    return Path(shutil.copytree(sound, tmp_path / "l04" / "lecture" / "cpu"))
+
+
+def refused(folder):
+    seal(folder)
+    with pytest.raises(BundleRefused) as caught:
+        verify_bundle(folder)
+    return str(caught.value)
+
+
+def test_a_sound_one_is_accepted(studied):
+    accepted = verify_bundle(studied)
+    assert [check.name for check in accepted.predicate.checks][-1] == "second_engine_order"
+
+
+def test_a_study_run_that_is_missing_is_refused(studied):
+    (studied / "arrays" / "G2_substeps_10.npz").unlink()
+    edit(studied, "arrays.json", lambda arrays: arrays["cases"].pop("G2_substeps_10"))
+    assert refused(studied).startswith("cases")
+
+
+def test_a_study_metric_that_the_arrays_do_not_give_is_refused(studied):
+    def change(metrics):
+        metrics["G2_substeps_10"]["overshoot"]["value"] += 0.001
+
+    edit(studied, "metrics.json", change)
+    message = refused(studied)
+    assert message.startswith("metrics")
+    assert "G2_substeps_10.overshoot" in message
+
+
+def test_a_missing_reading_is_refused(studied):
+    edit(studied, "metrics.json", lambda metrics: metrics["readings"].pop("inertia_MuJoCo"))
+    message = refused(studied)
+    assert message.startswith("metrics")
+    assert "inertia_MuJoCo" in message
+
+
+def test_a_reading_that_the_runs_contradict_fails_a_check(studied):
+    def change(metrics):
+        metrics["readings"]["gravity_G2"]["value"] *= 1.5
+
+    edit(studied, "metrics.json", change)
+    message = refused(studied)
+    assert message.startswith("checks")
+    assert "gravity_support" in message
+
+
+def test_a_bundle_without_the_studies_checks_is_refused(studied):
+    def change(manifest):
+        manifest["predicate"]["checks"] = manifest["predicate"]["checks"][:-1]
+
+    edit(studied, "manifest.json", change)
+    assert refused(studied).startswith("checks")
+
+
+def test_other_study_cases_make_it_stale(studied, monkeypatch):
+    monkeypatch.setattr(l04_studies, "SECOND_RUNS", {})
+    with pytest.raises(BundleRefused, match=r"^stale: .*parameters\.studies\.second_runs"):
+        verify_bundle(studied)

@@ -1,0 +1,108 @@
+"""Two engines, one model: what they must share, and where their integrators may part."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robo_genesis import dynamics, l04, l04_studies, second_engine, studies
+from robo_genesis.joint_control import run_case
+from robo_genesis.metrics import step_metrics
+from robo_genesis.robot_model import resolve_joints
+from robo_genesis.scene_config import DT, FRANKA_MJCF, JOINT_NAMES, Q_START
+from robo_genesis.theory import overshoot_share, step_share
+
+pytestmark = pytest.mark.engine
+
+K = JOINT_NAMES.index(l04.STEPPED_JOINT)
+LINKS = ["link0", "link4", "hand"]
+EULER_AGREEMENT = 5e-4
+"""What both engines' overshoot may differ by [rad] with one explicit integrator and step."""
+
+
+@pytest.fixture(scope="module")
+def run(lab):
+    """Control cases on the lab's robot."""
+    return lambda case: run_case(lab.scene, lab.franka, lab.joints, case)
+
+
+def overshoot(trace):
+    return step_metrics(trace, K).overshoot
+
+
+def run_in_new_scene(lab, case, **options):
+    scene = lab.gs.Scene(
+        sim_options=lab.gs.options.SimOptions(dt=case.dt, substeps=case.substeps),
+        show_viewer=False,
+        **options,
+    )
+    scene.add_entity(lab.gs.morphs.Plane())
+    robot = scene.add_entity(lab.gs.morphs.MJCF(file=FRANKA_MJCF))
+    scene.build()
+    return run_case(scene, robot, resolve_joints(robot, JOINT_NAMES), case)
+
+
+@pytest.mark.parametrize("raised", [0.0, l04.STEP])
+def test_both_engines_give_one_inertia_and_one_gravity(lab, raised):
+    q = l04.with_entry(Q_START, l04.START_OF_STEP + raised)
+    inertia = dynamics.effective_inertia(lab.scene, lab.franka, lab.joints, q)
+    gravity = dynamics.gravity_effort(lab.scene, lab.franka, lab.joints, q)
+    second_inertia, second_gravity = second_engine.at_rest(l04.BASELINE, q)
+    assert inertia[:7] == pytest.approx(second_inertia[:7], rel=1e-3)
+    assert gravity[:7] == pytest.approx(second_gravity[:7], rel=2e-3, abs=0.05)
+
+
+@pytest.mark.parametrize("name", ["G1", "G3"])
+def test_the_mass_matrix_holds_the_integrators_term_while_clipped(lab, run, name):
+    case = replace(l04.CASES[name], steps=1)
+    trace = run(case)
+    assert trace.control_force[0, K] == case.effort_limit[K]
+    read = dynamics.mass_diagonal(lab.franka, lab.joints.dofs_idx_local.tolist())[K]
+    damping = dynamics.passive_damping(lab.franka, lab.joints.dofs_idx_local.tolist())[K]
+    bare, _ = second_engine.at_rest(case, Q_START)
+    term = dynamics.substep(lab.scene) * (damping + case.kv[K])
+    assert read - term == pytest.approx(bare[K], rel=5e-3)
+    assert read - bare[K] > 0.4
+
+
+def test_inertia_is_not_read_from_the_posture_before(lab):
+    far = l04.with_entry(Q_START, l04.START_OF_STEP + 0.8)
+    fresh = dynamics.effective_inertia(lab.scene, lab.franka, lab.joints, Q_START)
+    dynamics.effective_inertia(lab.scene, lab.franka, lab.joints, far)
+    again = dynamics.effective_inertia(lab.scene, lab.franka, lab.joints, Q_START)
+    assert (fresh == again).all()
+
+
+def test_the_overshoot_converges_with_substeps(lab, run):
+    found = [overshoot(run(l04.G2))]
+    found += [
+        overshoot(run_in_new_scene(lab, l04_studies.SUBSTEP_CASES[f"G2_substeps_{n}"]))
+        for n in (10, 50)
+    ]
+    fine = overshoot(second_engine.run_case(l04.G2, LINKS, DT / 100))
+    off = np.array(found) - fine
+    assert (np.diff(off) < -1e-3).all()
+    assert 0 < off[-1] < 0.2 * off[0]
+
+
+def test_with_one_explicit_integrator_both_engines_agree(lab):
+    """At a step fine enough for Euler to hold the stiff wrist without chatter."""
+    substeps = 20
+    case = replace(l04.G2, substeps=substeps)
+    options = lab.gs.options.RigidOptions(integrator=lab.gs.integrator.Euler)
+    first = run_in_new_scene(lab, case, rigid_options=options)
+    second = second_engine.run_case(case, LINKS, DT / substeps, "Euler")
+    assert overshoot(first) == pytest.approx(overshoot(second), abs=EULER_AGREEMENT)
+    assert np.abs(first.q - second.q)[:, :7].max() < 2e-3
+
+
+@pytest.mark.parametrize("name", l04_studies.SMALL_STEPPED)
+def test_a_small_step_goes_as_theory_says(lab, run, name):
+    step, hold = (run(l04_studies.STEP_CASES[f"{name}_{kind}"]) for kind in ("small", "hold"))
+    inertia = float(dynamics.effective_inertia(lab.scene, lab.franka, lab.joints, Q_START)[K])
+    found = studies.Studies(
+        lab.joints, {name: run(l04.CASES[name])}, {"Genesis": inertia}, {}, 1.0, {}
+    )
+    share = overshoot_share(step_share(step, hold, K))
+    assert share == pytest.approx(found.ideal(name).overshoot, abs=0.03)
+    assert np.abs(step.control_force[:, K]).max() < 0.5 * step.effort_limit[K]
