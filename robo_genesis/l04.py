@@ -105,6 +105,8 @@ TOLERANCES = {
     "rad/s": (1e-3, 1e-3),
     "s": (DT / 2, 0.0),
     "N·m": (1e-2, 1e-3),
+    "kg·m²": (1e-4, 1e-3),
+    "N·m·s/rad": (1e-6, 0.0),
     "initial_error": (1e-6, 0.0),
 }
 """By unit, or by metric where that is stricter: (atol, rtol) that one metric may differ by between

@@ -12,6 +12,8 @@ from robo_genesis.joint_control import CaseError, ControlCase, assemble
 from robo_genesis.scene_config import FRANKA_MJCF, JOINT_NAMES, FloatArray
 from robo_genesis.trace import Trace
 
+VERSION = str(mujoco.__version__)
+
 INTEGRATORS = {
     "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
     "Euler": mujoco.mjtIntegrator.mjINT_EULER,

@@ -104,24 +104,28 @@ STEPPED_RUNS = tuple(
 )
 """The studies' own runs that step: one that holds its start has no metrics of a step."""
 
-READING_UNITS = {"inertia": "kg·m²", "gravity_at_start": "N·m", "gravity": "N·m"}
+READING_UNITS = {
+    "inertia": "kg·m²",
+    "gravity_at_start": "N·m",
+    "gravity": "N·m",
+    "passive_damping": "N·m·s/rad",
+}
+"""Unit of what the engines say of the stepped joint apart from any run."""
 
 
 def records(run: Studies) -> dict[str, dict[str, dict[str, Any]]]:
     """Return the studies' groups of `metrics.json`: each run's metrics, and what engines said."""
     groups = metric_records({name: run.measure(name) for name in STEPPED_RUNS}, {})
     del groups["model"]
-    readings = {
-        f"{what}_{name}": _reading(value, unit)
-        for what, unit in READING_UNITS.items()
-        for name, value in getattr(run, what).items()
+    readings = {"passive_damping": ("passive_damping", run.passive_damping)}
+    for what in ("inertia", "gravity_at_start", "gravity"):
+        readings |= {f"{what}_{k}": (what, value) for k, value in getattr(run, what).items()}
+    return groups | {
+        "readings": {
+            name: {"value": v, "unit": READING_UNITS[what], "class": "value", "from": ["engine"]}
+            for name, (what, v) in readings.items()
+        }
     }
-    readings["passive_damping"] = _reading(run.passive_damping, "N·m·s/rad")
-    return groups | {"readings": readings}
-
-
-def _reading(value: float, unit: str) -> dict[str, Any]:
-    return {"value": value, "unit": unit, "class": "value", "from": ["engine"]}
 
 
 def from_readings(

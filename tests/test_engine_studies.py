@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -63,6 +64,39 @@ def test_the_mass_matrix_holds_the_integrators_term_while_clipped(lab, run, name
     term = dynamics.substep(lab.scene) * (damping + case.kv[K])
     assert read - term == pytest.approx(bare[K], rel=5e-3)
     assert read - bare[K] > 0.4
+
+
+def mass_matrix(case):
+    """MuJoCo's matrix at the case's start: no integrator's term is in it."""
+    model = second_engine.load(case, case.dt, "Euler")
+    data = mujoco.MjData(model)
+    data.qpos[:] = case.q_start
+    mujoco.mj_forward(model, data)
+    columns = np.zeros((model.nv, model.nv))
+    for column, unit in zip(columns, np.eye(model.nv), strict=True):
+        mujoco.mj_mulM(model, data, column, unit)
+    return columns, data.qfrc_bias.copy()
+
+
+def speed_after_one_step(case, mass, bias, passive):
+    """Substeps of `mass` a = clipped effort - d q̇ - g, by hand, the model as it is at the start."""
+    h, q, qd = DT / case.substeps, case.q_start, np.zeros(len(JOINT_NAMES))
+    for _ in range(case.substeps):
+        demand = case.kp * (case.q_target - q) - case.kv * qd
+        effort = np.clip(demand, -case.effort_limit, case.effort_limit)
+        qd = qd + h * np.linalg.solve(mass, effort - passive * qd - bias)
+        q = q + h * qd
+    return qd[K]
+
+
+@pytest.mark.parametrize("name", l04_studies.COMPARED)
+def test_the_first_step_is_that_of_the_heavier_joint(run, name):
+    case, passive = replace(l04.CASES[name], steps=1), 1.0
+    mass, bias = mass_matrix(case)
+    heavier = mass + DT / case.substeps * np.diag(passive + case.kv)
+    measured = run(case).qd[0, K]
+    assert measured == pytest.approx(speed_after_one_step(case, heavier, bias, passive), rel=0.01)
+    assert measured < 0.75 * speed_after_one_step(case, mass, bias, passive)
 
 
 def test_inertia_is_not_read_from_the_posture_before(lab):

@@ -16,6 +16,7 @@ from robo_genesis.evidence.compare import compare, specification
 from robo_genesis.evidence.findings import SEVERITY
 from robo_genesis.metrics import UNITS
 from robo_genesis.project import ROOT
+from robo_genesis.studies import READING_UNITS
 
 SPEC = specification("l04")
 
@@ -362,8 +363,9 @@ def test_an_unknown_lesson_is_refused():
 
 
 def test_the_lesson_declares_every_unit_and_margins_above_the_noise():
-    assert set(UNITS.values()) - {"1"} <= set(l04.TOLERANCES)
-    assert set(l04.TOLERANCES) <= set(UNITS.values()) | set(UNITS)
+    units = set(UNITS.values()) | set(READING_UNITS.values())
+    assert units - {"1"} <= set(l04.TOLERANCES)
+    assert set(l04.TOLERANCES) <= units | set(UNITS)
     assert len(l04.RELATIONS) == sum(map(len, l04.PREDICTIONS.values()))
     for pair, metric, order, margin in l04.RELATIONS:
         assert (metric, order) in l04.PREDICTIONS[pair]

@@ -9,6 +9,7 @@ from spoilers import edit, seal
 
 from robo_genesis import checks, l04, l04_studies, project, runtime, studies, study_checks
 from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.compare import compare, specification
 from robo_genesis.evidence.current import page_digest
 from robo_genesis.evidence.record import Measured, Recorder
 from robo_genesis.evidence.verify import verify_bundle
@@ -105,3 +106,26 @@ def test_other_study_cases_make_it_stale(studied, monkeypatch):
     monkeypatch.setattr(l04_studies, "SECOND_RUNS", {})
     with pytest.raises(BundleRefused, match=r"^stale: .*parameters\.studies\.second_runs"):
         verify_bundle(studied)
+
+
+@pytest.mark.parametrize(
+    ("group", "name", "factor", "state"),
+    [
+        ("readings", "inertia_Genesis", 1.0005, "within tolerance"),
+        ("readings", "inertia_Genesis", 1.01, "differs"),
+        ("G2_substeps_10", "overshoot", 1.5, "differs"),
+    ],
+)
+def test_a_comparison_covers_the_studies(studied, tmp_path, group, name, factor, state):
+    other = Path(shutil.copytree(studied, tmp_path / "new" / "cpu"))
+
+    def change(metrics):
+        metrics[group][name]["value"] *= factor
+
+    edit(other, "metrics.json", change)
+    edit(other, "manifest.json", lambda m: m["predicate"]["engine"].update(version="1.4.5"))
+    seal(other)
+    found = compare(studied, other, specification("l04"))
+    values = next(section for section in found.sections if section.title == "Values")
+    (row,) = [finding for finding in values.findings if finding.what == f"{group}.{name}"]
+    assert row.state == state
