@@ -1,0 +1,65 @@
+"""Worked solutions of exercises, written from the arrays that the exercise asks for."""
+
+import numpy as np
+
+from robo_genesis.metrics import StepMetrics, format_value
+from robo_genesis.tables import METRIC_LABELS as LABELS
+from robo_genesis.trace import Trace
+
+CANNOT = ("initial_error",)
+"""Metrics of the first sample alone."""
+
+
+def same_beginning(short: Trace, long: Trace) -> bool:
+    """Return whether the longer run begins with the very samples of the shorter one."""
+    n = short.steps
+    return (
+        long.steps > n
+        and np.array_equal(short.q, long.q[: n + 1])
+        and np.array_equal(short.qd, long.qd[:n])
+        and np.array_equal(short.control_force, long.control_force[:n])
+    )
+
+
+def longer_window(short: tuple[Trace, StepMetrics], long: tuple[Trace, StepMetrics]) -> str:
+    """Say which metrics of one case changed because its record is longer, as Markdown.
+
+    Args:
+        short: trace and metrics of the case.
+        long: trace and metrics of the same case with more steps.
+    """
+    (a, of_a), (b, of_b) = short, long
+    seconds = [format_value(float(trace.t[-1]), "s") for trace in (a, b)]
+    if not same_beginning(a, b):
+        return (
+            f"The record of {seconds[1]} does not begin with the samples of the one of "
+            f"{seconds[0]}, so this is another experiment, and no metric can be put down to the "
+            "window. Look for what was not reset."
+        )
+    rows = list(zip(of_a.items(), of_b.items(), strict=True))
+    moved = [(name, unit, x, y) for (name, x, unit), (_, y, _) in rows if x != y]
+    kept = [LABELS[name] for (name, x, _), (_, y, _) in rows if x == y and name not in CANNOT]
+    lines = [
+        f"- The first {seconds[0]} of both records are the same samples, bit by bit: the "
+        "physics did not change.",
+        *(
+            f"- The {LABELS[name]} went from {format_value(x, unit)} to {format_value(y, unit)}. "
+            f"{_why(name, x, y)}"
+            for name, unit, x, y in moved
+        ),
+        f"- Unchanged: {', '.join(kept)}." if kept else "- No metric stayed the same.",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _why(name: str, short: float | None, long: float | None) -> str:
+    """Say how a longer record alone can move this metric."""
+    if name in ("final_error", "final_velocity"):
+        return "The last sample is another one."
+    if short is None:
+        return "It happened after the shorter record had ended."
+    if name == "settling_time":
+        return "The response left the band again, after the shorter record had ended."
+    if long is not None:
+        return "A larger value, or further samples, came later."
+    return "No longer record can take back what was seen: inspect the definition."
