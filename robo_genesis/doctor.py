@@ -1,0 +1,94 @@
+"""Walk the lesson's diagnostic order on this machine and stop at the first broken link.
+
+    python -m robo_genesis.doctor           a table for the terminal
+    python -m robo_genesis.doctor --json    the same facts for a bug report
+
+Exit status: 0 all links hold, 1 one is broken, 2 the command was not understood.
+"""
+
+import argparse
+import contextlib
+import io
+import json
+import os
+import platform
+import sys
+import tempfile
+import textwrap
+from collections.abc import Sequence
+from dataclasses import asdict
+
+from robo_genesis import project
+from robo_genesis.diagnosis import LINKS, Bench, Finding, examine, shareable
+
+WIDTH = 80
+REPORT_FORMAT = 1
+PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
+
+
+def table(findings: Sequence[Finding]) -> str:
+    """Return the findings as an aligned table, no line longer than 80 columns."""
+    indent = max(len(f.link) for f in findings) + 15
+    lines = []
+    for number, f in enumerate(findings, start=1):
+        head = f"{number:2}  {f.link:{indent - 15}}  {f.state:7}  "
+        lines.append(
+            textwrap.fill(f.found, WIDTH, initial_indent=head, subsequent_indent=" " * indent)
+            if f.found
+            else head.rstrip()
+        )
+    return "\n".join([*lines, "", verdict(findings)])
+
+
+def verdict(findings: Sequence[Finding]) -> str:
+    """Return the last line: that all links hold, or which is broken."""
+    broken = [f"{number}, {f.link}" for number, f in enumerate(findings, 1) if f.state == "broken"]
+    if not broken:
+        return f"DOCTOR: all {len(findings)} links hold"
+    return f"DOCTOR: link {broken[0]}, is broken; mend it and run this again"
+
+
+def report(findings: Sequence[Finding], bench: Bench) -> str:
+    """Return the findings as JSON, with versions and platform and without anything private."""
+    warnings = bench.engine.log.warnings if bench.engine else []
+    contract = project.environment_contract(bench.environ)
+    facts = {
+        "format": REPORT_FORMAT,
+        "ok": all(f.state == "ok" for f in findings),
+        "broken": next((f.link for f in findings if f.state == "broken"), None),
+        "links": [asdict(f) for f in findings],
+        "versions": {"python": platform.python_version()}
+        | {name: project.installed_version(name) for name in PACKAGES},
+        "platform": {
+            "system": platform.system(),
+            "release": platform.release(),
+            "machine": platform.machine(),
+            "cpus": os.cpu_count(),
+        },
+        "environment": {name: shareable(value) for name, value in contract.items()},
+        "warnings": [shareable(text) for text in warnings],
+    }
+    return json.dumps(facts, indent=2, ensure_ascii=False)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the findings and return the exit status."""
+    parser = argparse.ArgumentParser(
+        "python -m robo_genesis.doctor",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--json", action="store_true", help="a report for a bug, on stdout")
+    asked = parser.parse_args(arguments)
+    print(
+        f"{len(LINKS)} links; the engine's first start on a machine takes minutes", file=sys.stderr
+    )
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+        bench = Bench({"ROBO_GENESIS_OUTPUTS_DIR": folder} | os.environ)  # else `outputs`, here
+        findings = examine(bench)
+    print(report(findings, bench) if asked.json else table(findings))
+    return 0 if all(f.state == "ok" for f in findings) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
