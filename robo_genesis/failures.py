@@ -67,7 +67,7 @@ def wrong_index(scene: Any, robot: Any, joints: JointMap, case: ControlCase, joi
     t = np.arange(len(q)) * case.dt
     return Failure(
         "wrong_index",
-        shown=other != k and moved[other] > 10 * moved[k],
+        shown=bool(other != k and moved[other] > 10 * moved[k]),
         evidence=(
             f"`{joint}` has the entity-local DOF {dofs[k]} and the solver-level DOF {wrong[0]}. "
             f"Commanded with index {wrong[0]}, `{joints.names[other]}` moved most: "
@@ -96,7 +96,7 @@ def past_a_limit(
     short = abs(q_target[k] - q[-1])
     return Failure(
         "past_a_limit",
-        shown=isinstance(refusal, CaseError) and short > 0.5 * beyond,
+        shown=bool(isinstance(refusal, CaseError) and short > 0.5 * beyond),
         evidence=(
             f"The engine took the target without a word. `{joint}` ended "
             f"{in_unit(short, joints, k)} from it, at {in_unit(q[-1], joints, k)} with its limit "
@@ -158,7 +158,8 @@ def fingers_without_gains(
     t, last = np.arange(len(own)) * case.dt, len(joints.names) - 1
     return Failure(
         "fingers_without_gains",
-        shown=abs(unset[-1] - opening) > 0.5 * opening > SMALL * opening > abs(own[-1] - opening),
+        shown=bool(abs(unset[-1] - opening) > 0.5 * opening)
+        and bool(abs(own[-1] - opening) < SMALL * opening),
         evidence=(
             f"Commanded to {in_unit(opening, joints, last)}, `{joints.names[last]}` ended at "
             f"{in_unit(unset[-1], joints, last)} before gains were set and at "

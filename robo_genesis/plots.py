@@ -138,6 +138,13 @@ def assigned_and_commanded(
     return _finish(ax, f"Assigned or commanded, {joint}", f"q [{unit}]", "lower right")
 
 
+def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], title: str, unit: str) -> Axes:
+    """Draw the positions of a failure over time: one curve or two, the mistake first."""
+    for number, (label, (t, q)) in enumerate(curves.items()):
+        ax.plot(t, q, label=label, **style(("G2", "G1")[number]))
+    return _finish(ax, title, f"position [{unit}]", "best")
+
+
 def frames(axes: Sequence[Axes], pictures: Mapping[str, np.ndarray]) -> Sequence[Axes]:
     """Show camera frames side by side."""
     for ax, (name, picture) in zip(axes, pictures.items(), strict=True):

@@ -28,7 +28,7 @@ def assigned_each_step(
     unit = joints.position_units[k]
     return Failure(
         "assigned_each_step",
-        shown=left < SMALL * abs(step) and abs(read) < SMALL * abs(needed),
+        shown=bool(left < SMALL * abs(step) and abs(read) < SMALL * abs(needed)),
         evidence=(
             f"At the first sample after the start, {case.dt:g} s later, `{joint}` is "
             f"{in_unit(left, joints, k)} from its target. To come there in that time it would have "
@@ -54,7 +54,7 @@ def stale_target(
     drift, kept = abs(stale[-1] - stale[0]), abs(held[-1] - held[0])
     return Failure(
         "stale_target",
-        shown=drift > 0.5 * step and kept < SMALL * step,
+        shown=bool(drift > 0.5 * step and kept < SMALL * step),
         evidence=(
             f"Nothing was commanded after the position was put back, and `{joint}` moved "
             f"{in_unit(abs(stale[1] - stale[0]), joints, k)} in the first step and "

@@ -186,3 +186,13 @@ def test_the_style_starts_no_shell_outside_a_notebook():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_failure_draws_each_of_its_curves(ax):
+    t = np.arange(3) * 0.01
+    curves = {"wrong": (t, t + 1), "right": (t, t + 2)}
+    assert plots.failure(ax, curves, "", "m") is ax
+    for label, (x, y) in curves.items():
+        assert_drawn(lines(ax)[label], x, y)
+    assert legend(ax) == ["wrong", "right"]
+    assert ax.get_ylabel() == "position [m]"

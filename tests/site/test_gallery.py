@@ -1,0 +1,77 @@
+"""The failure gallery and the doctor as a reader finds them on the built lecture."""
+
+import re
+
+import pytest
+from bs4 import BeautifulSoup
+
+from robo_genesis import project
+from robo_genesis.diagnosis import LINKS
+
+pytestmark = pytest.mark.engine
+PARTS = ("Symptom.", "Evidence.", "Diagnosis.", "Mend.")
+
+
+@pytest.fixture(scope="module")
+def lecture(site) -> BeautifulSoup:
+    path = site / "lessons" / "l04-joint-control" / "lecture.html"
+    return BeautifulSoup(path.read_text(), "html.parser")
+
+
+@pytest.fixture(scope="module")
+def panels(lecture) -> dict[str, BeautifulSoup]:
+    folds = lecture.select("details.sd-dropdown")
+    return {fold.summary.get_text(strip=True): fold for fold in folds}
+
+
+def test_all_symptoms_showed(lecture):
+    assert "L04 GALLERY CHECK: PASSED" in lecture.get_text()
+
+
+@pytest.mark.parametrize(
+    ("title", "evidence"),
+    [
+        ("The wrong joint moves", r"`?joint7`? moved most: \d\.\d{4} rad"),
+        ("Seven values are refused, one is not", r"GenesisException: Invalid input shape: \(7,\)"),
+        ("The joint stops short, and the motor keeps pushing", r"with its limit at -\d\.\d{4} rad"),
+        ("The target is reached in no time", r"get_dofs_velocity reads -?\d+\.\d{3} rad/s"),
+        ("The arm moves, and nobody told it to", r"it moved \d\.\d{4} rad in as many"),
+        ("The second run hardly moves", r"after a reset it moves over \d\.\d{4} rad"),
+        ("The arm stands, and its motor seems to do nothing", r"get_dofs_force is \d\.\d\d N·m"),
+        ("Everything is a sample too early", r"rise time \d\.\d\d s instead of \d\.\d\d s"),
+        (
+            "An accelerator was asked for",
+            r"raised GenesisException: Backend <gs\.\w+> not available",
+        ),
+    ],
+)
+def test_a_panel_holds_symptom_evidence_diagnosis_and_mend(panels, title, evidence):
+    text = re.sub(r"\s+", " ", panels[title].get_text())
+    assert [text.find(part) for part in PARTS] == sorted(text.find(part) for part in PARTS)
+    assert min(text.find(part) for part in PARTS) >= 0
+    assert re.search(evidence, text)
+
+
+def test_figures_of_panels_say_what_they_show(panels):
+    images = [image for fold in panels.values() for image in fold.select("img")]
+    assert len(images) == 5
+    assert all("joint4" in image["alt"] for image in images)
+
+
+def test_the_doctor_s_own_output_stands_on_the_page(lecture):
+    blocks = [block.get_text() for block in lecture.select("div.cell_output pre")]
+    (found,) = (text for text in blocks if "DOCTOR:" in text)
+    lines = found.strip().splitlines()
+    assert lines[-1] == f"DOCTOR: all {len(LINKS)} links hold"
+    assert f"genesis-world {project.engine_pin()}, as pinned" in lines[0]
+    assert [line.split()[1:3] for line in lines if line[:2].strip().isdigit()] == [
+        [link.__name__, "ok"] for link in LINKS
+    ]
+    assert max(map(len, lines)) <= 80
+
+
+def test_fingers_before_and_after_gains_stand_on_the_page(lecture):
+    text = re.sub(r"\s+", " ", lecture.get_text())
+    pattern = r"finger_joint2 ended at (\S+) m before gains were set and at (\S+) m with gains"
+    before, after = re.search(pattern, text).groups()
+    assert float(before) < 0.1 * float(after)
