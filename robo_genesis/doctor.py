@@ -21,13 +21,13 @@ from dataclasses import asdict
 from robo_genesis import project
 from robo_genesis.diagnosis import LINKS, Bench, Finding, examine, shareable
 
-WIDTH = 80
+WIDTH = 72  # fits a terminal of 80 columns, and the column of a page
 REPORT_FORMAT = 1
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 
 
 def table(findings: Sequence[Finding]) -> str:
-    """Return the findings as an aligned table, no line longer than 80 columns."""
+    """Return the findings as an aligned table, no line longer than `WIDTH`."""
     indent = max(len(f.link) for f in findings) + 15
     lines = []
     for number, f in enumerate(findings, start=1):

@@ -101,7 +101,8 @@ def past_a_limit(
             f"The engine took the target without a word. `{joint}` ended "
             f"{in_unit(short, joints, k)} from it, at {in_unit(q[-1], joints, k)} with its limit "
             f"at {in_unit(joints.upper[k], joints, k)}, and the controller still pushed with "
-            f"{format_value(effort, joints.effort_units[k])}. {quoted(refusal)}"
+            f"{format_value(effort, joints.effort_units[k])}. "
+            f"The course's own test before a run: {quoted(refusal)}"
         ),
         curves={"commanded past its limit": (np.arange(len(q)) * case.dt, q)},
     )
@@ -129,10 +130,10 @@ def lengths_differ(
         and bool(others)
         and isinstance(refusal, CaseError),
         evidence=(
-            f"Seven values for nine joints: {quoted(seven)} One value for nine joints: "
-            f"{quoted(one)} It was meant for `{joint}`; also moved: "
-            f"{', '.join(f'`{name}`' for name in others) or 'none'}. "
-            f"The course's own test before a run: {quoted(refusal)}"
+            f"- Seven values for nine joints: {quoted(seven)}\n"
+            f"- One value for nine joints: {quoted(one)} It was meant for `{joint}`; also moved: "
+            f"{', '.join(f'`{name}`' for name in others) or 'none'}.\n"
+            f"- The course's own test before a run: {quoted(refusal)}"
         ),
     )
 
@@ -165,7 +166,7 @@ def fingers_without_gains(
             f"{in_unit(unset[-1], joints, last)} before gains were set and at "
             f"{in_unit(own[-1], joints, last)} with gains of its own."
         ),
-        curves={"before gains are set": (t, unset), "after": (t, own)},
+        curves={"before gains are set": (t, unset), "with gains set": (t, own)},
     )
 
 

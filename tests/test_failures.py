@@ -62,7 +62,7 @@ def end(failure: Failure, label: str) -> float:
 def test_fingers_close_whatever_is_commanded_until_gains_are_set(fingers):
     assert fingers.shown
     assert end(fingers, "before gains are set") == pytest.approx(0, abs=1e-4)
-    assert end(fingers, "after") == pytest.approx(0.02, abs=1e-4)
+    assert end(fingers, "with gains set") == pytest.approx(0.02, abs=1e-4)
     assert "ended at 0.0000 m before gains were set and at 0.0200 m" in fingers.evidence
 
 
