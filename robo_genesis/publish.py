@@ -8,6 +8,8 @@ from pathlib import Path
 from robo_genesis.page_results import PageResult
 
 PUBLISHED, NEXT, OLD = "_build", "_build.next", "_build.old"
+PAGES = "pages"
+"""Beside `evidence`: the bundles of pages that are no lab, which a refresh compares as well."""
 
 
 def recover(book: Path) -> None:
@@ -28,13 +30,13 @@ def recover(book: Path) -> None:
 
 
 def publish(book: Path, html: Path, results: Iterable[PageResult]) -> Path:
-    """Put a rendered site and its labs' bundles in the place of the old ones.
+    """Put a rendered site and its pages' bundles in the place of the old ones.
 
     Args:
         book: the folder that holds `_build`.
         html: the rendered and checked site; it is moved away.
         results: the executed pages; bundles of pages named `lab` become
-            `evidence/<lesson>/<backend>`.
+            `evidence/<lesson>/<backend>`, others `pages/<lesson>/<page>/<backend>`.
 
     Returns:
         The folder of the published site's HTML.
@@ -48,9 +50,10 @@ def publish(book: Path, html: Path, results: Iterable[PageResult]) -> Path:
         following.mkdir()
         shutil.move(html, following / "html")
         for result in results:
-            if result.bundle is not None and result.page.page == "lab":
-                lesson = following / "evidence" / str(result.page.lesson)
-                shutil.copytree(result.bundle, lesson / result.bundle.name)
+            if result.bundle is not None:
+                lesson, page = str(result.page.lesson), str(result.page.page)
+                own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
+                shutil.copytree(result.bundle, following.joinpath(*own, result.bundle.name))
         _swap(book)
     finally:
         recover(book)

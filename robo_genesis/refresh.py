@@ -12,6 +12,7 @@ from robo_genesis.evidence.findings import SEVERITY, worst
 from robo_genesis.evidence.report import Row
 from robo_genesis.evidence.status import Status, recorded_folders, recorded_status
 from robo_genesis.moved import Moved, moved_sentences
+from robo_genesis.publish import PAGES
 
 Pair = tuple[str, str]
 
@@ -66,9 +67,7 @@ def compare_builds(
     Raises:
         BundleRefused: a built bundle cannot be read.
     """
-    old, new = (
-        {"/".join(f.parts[-2:]): f for f in recorded_folders(build)} for build in builds
-    )  # lesson/backend → folder
+    old, new = (built_bundles(build) for build in builds)
     shared = sorted(old.keys() & new.keys())
     return Refresh(
         versions,
@@ -78,6 +77,12 @@ def compare_builds(
         {name: (recorded[0][name], recorded[1][name]) for name in recorded[0]},
         tuple(moved_sentences(builds[0] / "html", builds[1] / "html")),
     )
+
+
+def built_bundles(build: Path) -> dict[str, Path]:
+    """Return lesson/backend (a lab's) or lesson/page/backend → folder of all bundles of a build."""
+    labs = {"/".join(folder.parts[-2:]): folder for folder in recorded_folders(build)}
+    return labs | {"/".join(f.parts[-3:]): f for f in sorted((build / PAGES).glob("*/*/*"))}
 
 
 def recorded(root: Path) -> dict[str, Status]:

@@ -38,13 +38,14 @@ def test_site_and_lab_bundles_are_published_together(tmp_path, book, html):
     assert names(book) == {"_build"}
 
 
-def test_bundles_of_other_pages_stay_in_the_cache(tmp_path, html):
+def test_bundles_of_other_pages_are_published_apart_from_the_lab_s(tmp_path, html):
     front = "robo_genesis: {lesson: l04, page: lecture}\n"
     book = make_book(tmp_path, lecture=notebook(cell("1"), front=front))
     (page,) = find_pages(book)
     bundle = write_bundle(tmp_path / "outputs", "a")
     publish(book, html, [PageResult(page, "executed", 1.0, "a", bundle)])
     assert not (book / "_build" / "evidence").exists()
+    assert (book / "_build/pages/l04/lecture/cpu/manifest.json").is_file()
 
 
 def test_a_failure_while_copying_leaves_the_old_site(tmp_path, book, html):

@@ -55,6 +55,15 @@ def test_equal_metrics_are_reported_as_such(builds):
     assert "No sentence of the site moved." in text
 
 
+def test_the_lecture_s_bundle_is_compared_as_well(builds):
+    for build in builds:
+        shutil.copytree(build / "evidence/l04/cpu", build / "pages/l04/lecture/cpu")
+    assert len(compared(builds).comparisons) == 2
+    (builds[1] / "pages").rename(builds[1] / "gone")
+    found = compared(builds)
+    assert (len(found.comparisons), found.missing) == (1, ("l04/lecture/cpu",))
+
+
 def test_a_metric_beyond_tolerance_a_warning_and_a_flipped_relation_are_named(builds):
     metric(builds[1], "G2", "overshoot", 0.01)
     folder = builds[1] / "evidence" / "l04" / "cpu"
