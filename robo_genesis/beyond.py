@@ -71,7 +71,7 @@ def parting_sentence(case: str, ideal: IdealJoint, found: Parting, threshold: fl
         )
     return (
         f"{lead} Clipped efforts up to there: {found.clipped} of {found.efforts}. The joint got "
-        "less than the formula assumes, and no gain could change that."
+        "less than the formula assumes, and a higher gain could not change that."
     )
 
 
@@ -119,9 +119,10 @@ def step_size_sentence(
     )
     if off > tolerance:
         return (
-            f"{told} Even the small step is off by more than the declared {share_text(tolerance)}."
+            f"{told} Even the small step is off by more than the declared {share_text(tolerance)} "
+            "of the step."
         )
-    told = f"{told} For the small step that is within the declared {share_text(tolerance)}."
+    told += f" For the small step that is within the declared {share_text(tolerance)} of the step."
     if far <= tolerance:
         return (
             f"{told} So is the large step's, but one number can agree by accident: see how far its "

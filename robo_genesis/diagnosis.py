@@ -76,7 +76,8 @@ def model_file(bench: Bench) -> str:
         pin = project.engine_pin()
         raise LinkError(
             f"{project.ENGINE} has no file {place}. "
-            f"Install it again: pip install --force-reinstall --no-deps {project.ENGINE}=={pin}"
+            f"Install it again: {sys.executable} -m pip install --force-reinstall --no-deps "
+            f"{project.ENGINE}=={pin}"
         )
     return FRANKA_MJCF
 
@@ -154,8 +155,9 @@ def saturation(bench: Bench) -> str:
     errors = " to ".join(metrics.format_value(e, "rad") for e in (m.initial_error, m.final_error))
     if m.final_error >= m.initial_error or m.saturation_samples == bench.trace.steps:
         raise LinkError(
-            f"{clipped}; error of {l04.STEPPED_JOINT} from {errors}. It does not reach its target "
-            "in this window: look at limit, gains and reset before you lengthen the window."
+            f"{clipped}; error of {l04.STEPPED_JOINT} from {errors}. It comes no nearer to its "
+            "target in this window, or is clipped all the way: look at limit, gains and reset "
+            "before you lengthen the window."
         )
     return f"{clipped}; error of {l04.STEPPED_JOINT} from {errors} in {bench.trace.t[-1]:g} s"
 
@@ -217,4 +219,5 @@ def shareable(text: str) -> str:
     for folder in sorted(known, key=lambda path: -len(str(path))):
         if folder != Path(folder.anchor):
             text = text.replace(str(folder), known[folder])
+    text = re.sub(r"([/\\](?:home|Users)[/\\])[^/\\\s'\"]+", r"\1…", text)
     return re.sub(r"(?<![\w.~>/-])/(?:[^/\s'\"]+/)+", "…/", text)

@@ -105,7 +105,7 @@ def first_step_sentence(run: Studies) -> str:
     if alike:
         told += f" They move alike in {listed(alike)}: there KV cannot act while it is clipped."
     if apart:
-        told += f" They differ in {listed(apart)}: there KV is part of what is moved."
+        told += f" They differ in {listed(apart)}: there KV acts although the effort is clipped."
     return told
 
 
@@ -143,9 +143,9 @@ def survival_sentence(run: Studies) -> str:
     count = len(l04.RELATIONS)
     if not failed:
         return (
-            f"All {count} orderings that this lesson claims hold in every column, by more than "
-            "their declared margins. The numbers behind them do not: quote an order, and quote a "
-            "number only together with engine, integrator and solver step."
+            f"All {count} orderings that this lesson claims hold in every column. The numbers "
+            "behind them do not: quote an order, and quote a number only together with engine, "
+            "integrator and solver step."
         )
     return (
         f"Of the {count} orderings that this lesson claims, {count - len(failed)} hold in every "

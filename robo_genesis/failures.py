@@ -11,7 +11,7 @@ import numpy as np
 
 from robo_genesis.checks import Check
 from robo_genesis.joint_control import CaseError, ControlCase, reset, validate
-from robo_genesis.metrics import format_value
+from robo_genesis.metrics import SATURATION_THRESHOLD, format_value
 from robo_genesis.robot_model import JointMap, to_numpy
 from robo_genesis.scene_config import FloatArray
 
@@ -67,11 +67,11 @@ def wrong_index(scene: Any, robot: Any, joints: JointMap, case: ControlCase, joi
     t = np.arange(len(q)) * case.dt
     return Failure(
         "wrong_index",
-        shown=bool(other != k and moved[other] > 10 * moved[k]),
+        shown=bool(dofs[other] == wrong[0] and moved[other] > 10 * moved[k]),
         evidence=(
             f"`{joint}` has the entity-local DOF {dofs[k]} and the solver-level DOF {wrong[0]}. "
-            f"Commanded with index {wrong[0]}, `{joints.names[other]}` moved most: "
-            f"{in_unit(moved[other], joints, other)}. `{joint}` moved "
+            f"Commanded with index {wrong[0]}, `{joints.names[other]}` moved most: at the last "
+            f"sample it was {in_unit(moved[other], joints, other)} from its start. `{joint}` moved "
             f"{in_unit(moved[k], joints, k)}."
         ),
         curves={
@@ -96,7 +96,12 @@ def past_a_limit(
     short = abs(q_target[k] - q[-1])
     return Failure(
         "past_a_limit",
-        shown=bool(isinstance(refusal, CaseError) and short > 0.5 * beyond),
+        shown=bool(
+            isinstance(refusal, CaseError)
+            and short > 0.5 * beyond
+            and abs(effort) >= SATURATION_THRESHOLD * case.effort_limit[k]
+            and abs(q[-1] - q[-2]) < SMALL * beyond
+        ),
         evidence=(
             f"The engine took the target without a word. `{joint}` ended "
             f"{in_unit(short, joints, k)} from it, at {in_unit(q[-1], joints, k)} with its limit "

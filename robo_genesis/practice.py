@@ -37,8 +37,9 @@ def longer_window(short: tuple[Trace, StepMetrics], long: tuple[Trace, StepMetri
             "window. Look for what was not reset."
         )
     rows = list(zip(of_a.items(), of_b.items(), strict=True))
-    moved = [(name, unit, x, y) for (name, x, unit), (_, y, _) in rows if x != y]
-    kept = [LABELS[name] for (name, x, _), (_, y, _) in rows if x == y and name not in CANNOT]
+    apart = [(name, unit, x, y) for (name, x, unit), (_, y, _) in rows if name not in CANNOT]
+    moved = [row for row in apart if format_value(row[2], row[1]) != format_value(row[3], row[1])]
+    kept = [LABELS[row[0]] for row in apart if row not in moved]
     lines = [
         f"- The first {seconds[0]} of both records are the same samples, bit by bit: the "
         "physics did not change.",
@@ -47,7 +48,11 @@ def longer_window(short: tuple[Trace, StepMetrics], long: tuple[Trace, StepMetri
             f"{_why(name, x, y)}"
             for name, unit, x, y in moved
         ),
-        f"- Unchanged: {', '.join(kept)}." if kept else "- No metric stayed the same.",
+        f"- Unchanged, as far as written here: {'; '.join(kept)}."
+        if kept
+        else "- No metric stayed the same.",
+        "- Could not change: the initial error, which is the first sample's"
+        + (", and the rise time, which had been observed." if of_a.rise_time is not None else "."),
     ]
     return "\n".join(lines) + "\n"
 

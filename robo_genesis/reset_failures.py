@@ -21,8 +21,10 @@ def assigned_each_step(
     def mistake() -> None:
         robot.set_dofs_position(case.q_target.copy(), dofs, zero_velocity=True)
 
-    q = positions(scene, robot, joints, case.steps, mistake)[:, k]
+    first = positions(scene, robot, joints, 1, mistake)[:, k]
     read = float(to_numpy(robot.get_dofs_velocity(dofs))[k])
+    rest = positions(scene, robot, joints, case.steps - 1, mistake)[:, k]
+    q = np.append(first, rest[1:])
     step, left = case.q_target[k] - case.q_start[k], abs(case.q_target[k] - q[1])
     needed = (q[1] - q[0]) / case.dt
     unit = joints.position_units[k]

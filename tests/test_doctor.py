@@ -240,6 +240,10 @@ def test_the_report_names_no_user(looked_at, capsys, monkeypatch, tmp_path):
     [
         (f"{project.ROOT}/book/x.md", "<course>/book/x.md"),
         ("'/data/alice/x.xml' is gone", "'…/x.xml' is gone"),
+        ("cannot open /home/alice", "cannot open …/…"),
+        ("file:///home/bob/x", "file:///home/…/x"),
+        ("-I/home/bob/inc", "-I/home/…/inc"),
+        (r"C:\Users\bob\x.py", r"C:\Users\…\x.py"),
         ("see https://host/a/b and N·m/rad", "see https://host/a/b and N·m/rad"),
         ("xml/franka_emika_panda/panda.xml", "xml/franka_emika_panda/panda.xml"),
     ],

@@ -32,7 +32,8 @@ def test_a_longer_record_that_begins_alike_changes_only_what_comes_later(run):
     assert "bit by bit" in text
     assert "The settling time went from not observed to 1.50 s. It happened after" in text
     assert "The final error went from 0.0200 rad to 0.0000 rad. The last sample" in text
-    assert "rise time" in text.split("Unchanged:")[1]
+    assert "rise time" in text.split("Unchanged,")[1].split("Could not change")[0]
+    assert text.endswith("the first sample's, and the rise time, which had been observed.\n")
 
 
 def test_a_band_left_again_moves_settling_to_later_and_a_later_peak_moves_overshoot(run):

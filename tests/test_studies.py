@@ -225,7 +225,7 @@ def test_the_first_step_tells_engines_whose_kv_acts_while_clipped(measured):
     assert "They differ" not in text
     slower = replace(measured.traces["G3"], qd=measured.traces["G3"].qd * 0.5)
     text = engines_compared.first_step_sentence(spoiled(measured, G3=slower))
-    assert "They differ in Genesis: there KV is part of what is moved." in text
+    assert "They differ in Genesis: there KV acts although the effort is clipped." in text
 
 
 def test_a_first_step_that_was_not_clipped_isolates_nothing(measured):
