@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 
 from robo_genesis.plots import TARGET, style
@@ -71,6 +72,47 @@ def convergence(ax: Axes, overshoot: Mapping[str, Mapping[float, float]], declar
     ax.set_ylabel("overshoot of G2 [rad]")
     ax.legend(fontsize="small", loc="upper left")
     return ax
+
+
+def grid_maps(
+    axes: Sequence[Axes],
+    values: FloatArray,
+    labels: Sequence[str],
+    steps: Sequence[float],
+    kp: Sequence[float],
+    kv: Sequence[float],
+) -> Sequence[Axes]:
+    """Draw one value a point of a grid, one axes a step size, KP upwards and KV to the right.
+
+    Args:
+        axes: as many as steps.
+        values: (points,) in the grid's order; one colour scale for all, from zero.
+        labels: (points,), what stands in each cell: the number is read, the colour only helps.
+        steps: step sizes [rad].
+        kp: gains of the rows [N·m/rad].
+        kv: gains of the columns [N·m·s/rad].
+    """
+    shape = (len(steps), len(kp), len(kv))
+    maps, texts = np.reshape(values, shape), np.reshape(np.array(labels), shape)
+    for number, (ax, step) in enumerate(zip(axes, steps, strict=True)):
+        _grid_map(ax, maps[number], texts[number], float(maps.max()))
+        ax.set_xticks(np.arange(len(kv)) + 0.5, [f"{value:g}" for value in kv])
+        ax.set_yticks(np.arange(len(kp)) + 0.5, [f"{value:g}" for value in kp])
+        ax.set_title(f"step {step:g} rad", loc="left")
+        ax.set_xlabel("KV [N·m·s/rad]")
+        ax.set_ylabel("KP [N·m/rad]")
+        ax.label_outer()
+    return axes
+
+
+def _grid_map(ax: Axes, values: FloatArray, texts: np.ndarray, highest: float) -> None:
+    look: dict[str, Any] = {"edgecolors": "#d9d9d9", "linewidth": 1}
+    ax.pcolormesh(values, cmap="Blues", vmin=0, vmax=highest, **look)
+    for (row, column), text in np.ndenumerate(texts):
+        color = "white" if values[row, column] > 0.55 * highest else "black"
+        ax.text(column + 0.5, row + 0.5, text, ha="center", va="center", fontsize="small",
+                color=color)  # fmt: skip
+    ax.grid(visible=False)
 
 
 def _finish(ax: Axes, title: str, ylabel: str, until: float) -> None:

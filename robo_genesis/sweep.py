@@ -1,0 +1,170 @@
+"""Many control cases at once, one in each environment of a batched scene, and what they did."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis import l04
+from robo_genesis.joint_control import (
+    LIMIT_TOLERANCE,
+    CaseError,
+    ControlCase,
+    assemble,
+    read_state,
+    read_step,
+    validate,
+)
+from robo_genesis.l04_grid import GridPoint
+from robo_genesis.metrics import StepMetrics, step_metrics
+from robo_genesis.robot_model import JointMap, to_numpy
+from robo_genesis.scene_config import FloatArray
+from robo_genesis.trace import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """What the stepped joint did at each of p points, in runs of n steps.
+
+    | field | shape | meaning |
+    |---|---|---|
+    | `points` | (p,) | gains and step of each run |
+    | `cases` | (p,) | the whole case that was run there |
+    | `t` | (n+1,) | time of each state [s] |
+    | `q` | (p, n+1) | position [rad] |
+    | `control_force` | (p, n) | control force after each step, stamped t[1] … t[n] [N·m] |
+    | `effort_limit` | (p,) | limit read back [N·m] |
+    | `metrics` | (p,) | of each run |
+    """
+
+    points: tuple[GridPoint, ...]
+    cases: tuple[ControlCase, ...]
+    t: FloatArray
+    q: FloatArray
+    control_force: FloatArray
+    effort_limit: FloatArray
+    metrics: tuple[StepMetrics, ...]
+
+    def at(self, point: GridPoint) -> int:
+        """Return the number of a point.
+
+        Raises:
+            ValueError: it is none of the grid's.
+        """
+        return self.points.index(point)
+
+
+def sweep(scene: Any, robot: Any, joints: JointMap, points: Sequence[GridPoint]) -> Sweep:
+    """Run every point, each in an environment of its own, and keep the stepped joint."""
+    cases = tuple(point.case for point in points)
+    return collect(points, cases, run_batch(scene, robot, joints, cases), joints)
+
+
+def collect(
+    points: Sequence[GridPoint],
+    cases: Sequence[ControlCase],
+    traces: Sequence[Trace],
+    joints: JointMap,
+) -> Sweep:
+    """Return the stepped joint's part of the points' traces, with its metrics."""
+    k = joints.entry(l04.STEPPED_JOINT)
+    found = Sweep(
+        points=tuple(points),
+        cases=tuple(cases),
+        t=traces[0].t,
+        q=np.stack([trace.q[:, k] for trace in traces]),
+        control_force=np.stack([trace.control_force[:, k] for trace in traces]),
+        effort_limit=np.stack([trace.effort_limit[k] for trace in traces]),
+        metrics=tuple(step_metrics(trace, k) for trace in traces),
+    )
+    for array in (found.q, found.control_force, found.effort_limit):
+        array.setflags(write=False)
+    return found
+
+
+def run_batch(
+    scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase]
+) -> list[Trace]:
+    """Do as `joint_control.run_case` does, with case k in environment k.
+
+    Args:
+        scene: built with `n_envs` = number of cases, and with `batch_dofs_info`, without which all
+            environments share one set of gains.
+        robot: the scene's robot.
+        joints: its map.
+        cases: of equal `dt`, `substeps` and `steps`.
+
+    Raises:
+        CaseError: as `reset_batch`.
+
+    Returns:
+        A trace for each case.
+    """
+    reset_batch(scene, robot, joints, cases)
+    dofs = joints.dofs_idx_local.tolist()
+    states, steps = [read_state(robot, dofs)], []
+    start_qd = to_numpy(robot.get_dofs_velocity(dofs))
+    q_target = stacked(cases, "q_target")
+    robot.control_dofs_position(q_target, dofs)
+    start_control_force = to_numpy(robot.get_dofs_control_force(dofs))
+    effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
+    for _ in range(cases[0].steps):
+        robot.control_dofs_position(q_target, dofs)
+        scene.step()
+        states.append(read_state(robot, dofs))
+        steps.append(read_step(robot, dofs))
+    return [
+        assemble(
+            case,
+            [tuple(values[k] for values in state) for state in states],
+            [tuple(values[k] for values in step) for step in steps],
+            [case.q_target] * case.steps,
+            start_qd[k],
+            start_control_force[k],
+            effort_limit[k],
+        )
+        for k, case in enumerate(cases)
+    ]
+
+
+def reset_batch(scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase]) -> None:
+    """Do as `joint_control.reset` does in every environment, and read back what was set.
+
+    Raises:
+        CaseError: the scene does not fit the cases, a case must not be run, or the engine reads
+            back something else than was asked for.
+    """
+    for case in cases:
+        validate(case, joints)
+    found = (scene.n_envs, scene.dt, scene.substeps)
+    asked = {(len(cases), case.dt, case.substeps) for case in cases}
+    if asked != {found} or len({case.steps for case in cases}) != 1:
+        raise CaseError(
+            f"The scene has (environments, dt, substeps) {found}, the cases ask for "
+            f"{sorted(asked)}. Build it with n_envs={len(cases)}, for cases of equal length."
+        )
+    dofs = joints.dofs_idx_local.tolist()
+    kp, kv, q_start = (stacked(cases, name) for name in ("kp", "kv", "q_start"))
+    effort_limit = stacked(cases, "effort_limit")
+    scene.reset()
+    robot.set_dofs_kp(kp, dofs)
+    robot.set_dofs_kv(kv, dofs)
+    robot.set_dofs_force_range(-effort_limit, effort_limit, dofs)
+    robot.set_dofs_position(q_start, dofs, zero_velocity=True)
+    read_back = {
+        "kp": (robot.get_dofs_kp(dofs), kp),
+        "kv": (robot.get_dofs_kv(dofs), kv),
+        "effort_limit": (robot.get_dofs_force_range(dofs)[1], effort_limit),
+        "-effort_limit": (robot.get_dofs_force_range(dofs)[0], -effort_limit),
+        "q_start": (robot.get_dofs_position(dofs), q_start),
+        "velocity": (robot.get_dofs_velocity(dofs), np.zeros_like(q_start)),
+    }
+    for name, (read, wanted) in read_back.items():
+        if not np.allclose(to_numpy(read), wanted, rtol=1e-6, atol=LIMIT_TOLERANCE):
+            raise CaseError(f"{name} reads back otherwise than asked for after the batch's reset.")
+
+
+def stacked(cases: Sequence[ControlCase], field: str) -> FloatArray:
+    """Return one array of the cases as (cases, joints)."""
+    return np.stack([getattr(case, field) for case in cases])
