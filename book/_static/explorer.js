@@ -74,7 +74,7 @@
       draw(svgs.q, {
         curve: { times: point.q.map((_, k) => k * data.dt), values: positions(point) },
         low, high, window,
-        title: "Position of joint4 [rad], target dotted",
+        title: "Position [rad], target dotted",
         ticks: [data.start, data.start + step / 2, target].map((value) => ({
           value, label: value.toFixed(3).replace("-", "−"),
         })),

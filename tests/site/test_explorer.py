@@ -1,0 +1,185 @@
+"""The step explorer in a real browser: it shows the page's own data, by keyboard and offline."""
+
+import json
+from collections.abc import Iterator
+
+import pytest
+from bs4 import BeautifulSoup
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from robo_genesis.evidence import bundle
+from robo_genesis.metrics import UNITS, format_value
+from robo_genesis.tables import METRIC_LABELS
+
+pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+CHROMIUM = "/usr/bin/chromium"
+LECTURE = "lessons/l04-joint-control/lecture.html"
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def lecture(site) -> BeautifulSoup:
+    return BeautifulSoup((site / LECTURE).read_text(), "html.parser")
+
+
+@pytest.fixture(scope="module")
+def data(lecture) -> dict:
+    return json.loads(lecture.select_one(".explorer script").get_text())
+
+
+@pytest.fixture(params=["served", "from disk"])
+def page(request, browser, address, site) -> Iterator[Page]:
+    base = address if request.param == "served" else site.as_uri()
+    page = browser.new_page(viewport={"width": 320, "height": 900})
+    problems: list[str] = []
+    page.on("console", lambda m: problems.append(m.text) if m.type == "error" else None)
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    page.goto(f"{base}/{LECTURE}")
+    yield page
+    assert problems == []
+    page.close()
+
+
+def press(page, name, key):
+    page.locator(f"#explorer-{name}").focus()
+    page.keyboard.press(key)
+
+
+def shown(page):
+    """Return what the widget shows as the packed data has it: (sentence, metrics)."""
+    terms, values = (page.locator(f".explorer {tag}").all_inner_texts() for tag in ("dt", "dd"))
+    return page.locator(".explorer output").inner_text(), dict(zip(terms, values, strict=True))
+
+
+def expected(data, step, kp, kv):
+    sizes = [len(axis["values"]) for axis in data["axes"]]
+    point = data["points"][(step * sizes[1] + kp) * sizes[2] + kv]
+    return point["said"], dict(zip(data["labels"], point["metrics"], strict=True))
+
+
+def test_keys_move_to_a_run_and_all_of_it_is_shown(page, data):
+    for name in ("step", "kp", "kv"):
+        press(page, name, "Home")
+    assert shown(page) == expected(data, 0, 0, 0)
+    curve = page.locator('.explorer svg[data-curve="q"] polyline')
+    before = curve.get_attribute("points")
+    press(page, "step", "End")
+    press(page, "kp", "ArrowRight")
+    press(page, "kp", "ArrowRight")
+    press(page, "kv", "ArrowRight")
+    assert shown(page) == expected(data, 3, 2, 1)
+    assert len({shown(page)[0], expected(data, 0, 0, 0)[0]}) == 2
+    points = curve.get_attribute("points")
+    assert points != before
+    assert len(points.split()) == len(data["points"][0]["q"])
+    assert page.locator("#explorer-kp").get_attribute("aria-valuetext") == "5250 N·m/rad"
+
+
+def test_the_curve_is_drawn_to_scale(page, data):
+    """The lowest and highest point of the drawn force are the packed ones, between the limits."""
+    for name, key in (("step", "End"), ("kp", "End"), ("kv", "Home")):
+        press(page, name, key)
+    force = [value * data["resolution"]["force"] for value in data["points"][95]["force"]]
+    drawn = page.locator('.explorer svg[data-curve="force"]').evaluate("""svg => ({
+        y: svg.querySelector("polyline").getAttribute("points").split(" ")
+          .map(pair => Number(pair.split(",")[1])),
+        limits: [...svg.querySelectorAll("line.limit")].map(l => Number(l.getAttribute("y1")))
+    })""")
+    low, high = drawn["limits"]
+    to_force = [(y - low) / (high - low) * 2 * data["limit"] - data["limit"] for y in drawn["y"]]
+    assert to_force == pytest.approx(force, abs=0.1)  # coordinates have one decimal
+
+
+def test_the_widget_opens_at_g2_with_what_the_bundle_holds(page, site):
+    sentence, metrics = shown(page)
+    assert "(the case G2)" in sentence
+    records = bundle.read_metrics(site.parent / "evidence" / "l04" / "cpu")["G2"]
+    assert metrics == {
+        label: format_value(records[name].value, UNITS[name])
+        for name, label in METRIC_LABELS.items()
+        if name != "initial_error"
+    }
+
+
+def test_controls_and_pictures_have_names(page):
+    names = page.locator(".explorer input").evaluate_all(
+        "all => all.map(i => i.labels[0].textContent)"
+    )
+    assert [name.split()[0] for name in names] == ["Step", "KP", "KV"]
+    pictures = page.locator(".explorer svg").evaluate_all(
+        "all => all.map(svg => [svg.getAttribute('role'), svg.getAttribute('aria-label')])"
+    )
+    assert [role for role, _ in pictures] == ["img", "img"]
+    assert all("joint4 over time. KP 7000" in label for _, label in pictures)
+    assert page.locator(".explorer output").get_attribute("aria-live") == "polite"
+
+
+def test_nothing_in_the_widget_is_cut_off_on_a_phone(page):
+    overflow = page.locator(".explorer").evaluate("""root => {
+      const edge = root.getBoundingClientRect().right;
+      return [...root.querySelectorAll("input, output, svg, svg text, dl div")]
+        .filter(e => e.getBoundingClientRect().right > edge).map(e => e.textContent);
+    }""")
+    assert overflow == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_text_and_curves_stand_out_from_the_ground(browser, address, scheme):
+    page = browser.new_page(color_scheme=scheme)
+    page.goto(f"{address}/{LECTURE}")
+    contrasts = page.locator(".explorer").evaluate("""root => {
+      const light = text => text.match(/[\\d.]+/g).slice(0, 3)
+        .map(v => v / 255).map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
+        .reduce((sum, v, k) => sum + v * [0.2126, 0.7152, 0.0722][k], 0);
+      let ground = root;
+      while (getComputedStyle(ground).backgroundColor === "rgba(0, 0, 0, 0)")
+        ground = ground.parentElement;
+      const of = (name, property) => {
+        const found = getComputedStyle(root.querySelector(name))[property];
+        const pair = [light(found), light(getComputedStyle(ground).backgroundColor)];
+        pair.sort((a, b) => b - a);
+        return (pair[0] + 0.05) / (pair[1] + 0.05);
+      };
+      return {
+        output: of("output", "color"), text: of("svg text", "fill"),
+        curve: of(".measured-run", "stroke"), limit: of(".limit", "stroke"),
+      };
+    }""")
+    assert min(contrasts["output"], contrasts["text"]) >= 4.5, contrasts
+    assert min(contrasts["curve"], contrasts["limit"]) >= 3, contrasts
+    page.close()
+
+
+def test_without_scripts_maps_table_and_a_word_remain(browser, address):
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(f"{address}/{LECTURE}")
+    assert not page.locator(".explorer").is_visible()
+    assert page.get_by_text("The explorer needs JavaScript").is_visible()
+    assert page.locator("#fig-l04-grid-overshoot img").is_visible()
+    context.close()
+
+
+def test_the_script_is_deferred_and_on_no_other_page(site, lecture):
+    (script,) = lecture.select("script[src*='explorer.js']")
+    assert script.has_attr("defer")
+    others = [path for path in site.rglob("*.html") if "explorer.js" in path.read_text()]
+    assert [path.name for path in others] == ["lecture.html"]
+
+
+def test_every_run_stands_in_the_folded_table(lecture, data):
+    tables = [t for t in lecture.select("#explore-the-steps table") if len(t.select("tr")) > 50]
+    (table,) = tables
+    assert len(table.select("tbody tr")) == len(data["points"])
+
+
+def test_the_grid_s_checks_passed(lecture):
+    assert "L04 GRID CHECK: PASSED" in lecture.get_text()
