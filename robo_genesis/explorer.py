@@ -111,7 +111,7 @@ def rows(found: Sweep) -> list[dict[str, str]]:
 
 
 def markup(found: Sweep) -> str:
-    """Return the explorer as HTML: hidden until `_static/explorer.js` fills it.
+    """Return the explorer as HTML: hidden until `_static/explorer.js` fills and draws it.
 
     It opens at the last of the lesson's cases that overshoots, if there is one.
     """
@@ -123,11 +123,11 @@ def markup(found: Sweep) -> str:
         f'value="{list(values).index(getattr(first, name))}"></p>'
         for name, label, values, _ in AXES
     )
-    plots = "".join(f'<svg role="img" data-curve="{curve}"></svg>' for curve in RESOLUTION)
     return (
         f'<div class="explorer" hidden><fieldset><legend>Pick a run of {STEPPED_JOINT}</legend>'
         f'{inputs}</fieldset><output for="{" ".join(f"explorer-{a[0]}" for a in AXES)}" '
-        f'aria-live="polite"></output><div class="plots">{plots}</div><dl></dl>'
+        'aria-live="polite"></output>'
+        f'<div class="plots" data-curves="{" ".join(RESOLUTION)}"></div><dl></dl>'
         f'<script type="application/json">{text.replace("<", chr(92) + "u003c")}</script></div>'
         "<noscript><p>The explorer needs JavaScript. The maps above and the table below hold the "
         "same runs.</p></noscript>"

@@ -44,8 +44,11 @@
   function start(root) {
     const data = JSON.parse(root.querySelector("script").textContent);
     const inputs = data.axes.map((axis) => root.querySelector(`#explorer-${axis.name}`));
+    const plots = root.querySelector(".plots");
     const svgs = Object.fromEntries(
-      [...root.querySelectorAll("svg")].map((svg) => [svg.dataset.curve, svg]),
+      plots.dataset.curves.split(" ").map((curve) => [
+        curve, add(plots, "svg", { role: "img", "data-curve": curve }),
+      ]),
     );
     const positions = (point) => point.q.map((q) => data.start + q * data.resolution.q);
 
@@ -118,7 +121,7 @@
 
     root.hidden = false;
     for (const input of inputs) input.addEventListener("input", show);
-    new ResizeObserver(drawRun).observe(root.querySelector(".plots"));
+    new ResizeObserver(drawRun).observe(plots);
     show();
   }
 
