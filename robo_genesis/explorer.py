@@ -111,7 +111,7 @@ def rows(found: Sweep) -> list[dict[str, str]]:
 
 
 def markup(found: Sweep) -> str:
-    """Return the explorer as HTML: hidden until `_static/explorer.js` fills and draws it.
+    """Return the explorer as HTML: hidden, with a word instead, until `_static/explorer.js` runs.
 
     It opens at the last of the lesson's cases that overshoots, if there is one.
     """
@@ -129,6 +129,6 @@ def markup(found: Sweep) -> str:
         'aria-live="polite"></output>'
         f'<div class="plots" data-curves="{" ".join(RESOLUTION)}"></div><dl></dl>'
         f'<script type="application/json">{text.replace("<", chr(92) + "u003c")}</script></div>'
-        "<noscript><p>The explorer needs JavaScript. The maps above and the table below hold the "
-        "same runs.</p></noscript>"
+        "<p>The explorer needs JavaScript. The maps above and the table below hold the same runs."
+        "</p>"
     )

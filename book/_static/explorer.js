@@ -120,6 +120,7 @@
     }
 
     root.hidden = false;
+    root.nextElementSibling.remove(); // it says that a script is needed
     for (const input of inputs) input.addEventListener("input", show);
     new ResizeObserver(drawRun).observe(plots);
     show();
