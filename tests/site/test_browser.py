@@ -1,15 +1,11 @@
 """The built site in a real browser: light, dark and on a narrow phone."""
 
-from collections.abc import Iterator
-
 import pytest
-from playwright.sync_api import Browser, sync_playwright
 
 from robo_genesis.evidence.status import STATES
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-CHROMIUM = "/usr/bin/chromium"
 PAGES = (
     "index",
     "glossary",
@@ -19,14 +15,6 @@ PAGES = (
     "lessons/l04-joint-control/lab",
 )
 VIEWS = {"light": (1280, "light"), "dark": (1280, "dark"), "phone": (320, "light")}
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 @pytest.mark.parametrize("view", VIEWS)

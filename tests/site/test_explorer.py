@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import pytest
 from bs4 import BeautifulSoup
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Page
 
 from robo_genesis.evidence import bundle
 from robo_genesis.metrics import UNITS, format_value
@@ -13,16 +13,7 @@ from robo_genesis.tables import METRIC_LABELS
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-CHROMIUM = "/usr/bin/chromium"
 LECTURE = "lessons/l04-joint-control/lecture.html"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="module")
