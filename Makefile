@@ -94,6 +94,10 @@ repin: $(ENVIRONMENT) ## try another engine version, then change pin and lock (G
 test-repin: $(ENVIRONMENT) ## change the pin there and back in a clone (network; an hour)
 	@"$(PY)" -m pytest -m repin tests/test_repin_round_trip.py
 
+.PHONY: costs
+costs: $(ENVIRONMENT) ## measure what the pages' kernels cost, cold and warm (minutes; a quiet machine)
+	@"$(PY)" build_scripts/costs.py
+
 .PHONY: has-packages
 has-packages:
 	@"$(PY)" -c 'import sys; from importlib.util import find_spec; \

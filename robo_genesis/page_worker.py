@@ -59,6 +59,8 @@ class PageWorker(ExecutionWorkerTempMProc):
     def __init__(self, run: PageRun):
         self.run = run
         self.started: list[int] = []
+        self.begin = 0.0
+        self.seconds: list[float] = []
         self.failure: Failure | None = None
 
     @property
@@ -69,7 +71,8 @@ class PageWorker(ExecutionWorkerTempMProc):
     def execute(self, project_nb: ProjectNb, data: ProcessData) -> ExecutionResult:
         """Execute a page; called by jupyter-cache, which stores the result unless it has `err`."""
         notebook = project_nb.nb
-        notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = self.run.run_id
+        own = notebook.metadata.setdefault("robo_genesis", NotebookNode())
+        own["run_id"] = self.run.run_id
         begin = time.monotonic()
         with tempfile.TemporaryDirectory(dir=self.run.scratch) as folder:
             try:
@@ -85,6 +88,7 @@ class PageWorker(ExecutionWorkerTempMProc):
                 )
             except Exception as error:  # a dead kernel, or none that starts: a failed page, too
                 result = ExecutionResult(notebook, folder, time.monotonic() - begin, err=error)
+        own["cell_seconds"] = self.seconds
         self.failure = self._judge(notebook, result.err)
         result.err = PageFailed(self.failure) if self.failure else None
         return result
@@ -92,9 +96,11 @@ class PageWorker(ExecutionWorkerTempMProc):
     def _cell_starts(self, cell: NotebookNode, cell_index: int) -> None:
         CleanKernelManager.busy = True
         self.started.append(cell_index)
+        self.begin = time.monotonic()
 
     def _cell_ends(self, cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
         CleanKernelManager.busy = False
+        self.seconds.append(round(time.monotonic() - self.begin, 3))
 
     def _judge(self, notebook: NotebookNode, error: Exception | None) -> Failure | None:
         """Return why the page failed, None if it did not."""

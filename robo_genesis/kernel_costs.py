@@ -1,0 +1,202 @@
+"""What a page's sets of compiled kernels cost: measured cold and warm, kept, told stale.
+
+The engine compiles kernels for each scene whose structure or options it has not met. A page marks
+the cell that brings such a set along by the option `kernels: why it is a set of its own`; the set
+lasts until the next such cell.
+"""
+
+import hashlib
+import json
+import os
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from itertools import accumulate
+from pathlib import Path
+
+from nbformat import NotebookNode
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from robo_genesis import project
+from robo_genesis.execute import TIMEOUT, execute_pages
+from robo_genesis.page_cache import PageCache, notebooks_folder
+from robo_genesis.page_results import failure_report
+from robo_genesis.pages import Page
+
+FOLDER = "performance"
+OPTION = "kernels"
+COMMAND = "make costs"
+
+
+class CostsError(Exception):
+    """A page's costs cannot be measured or read; the message says what to do."""
+
+
+class Cost(BaseModel):
+    """Seconds that the cells of one set took with nothing compiled, and with everything."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    cold: float
+    warm: float
+
+
+class Costs(BaseModel):
+    """One measurement of a page: on what, and the cost of each of its sets in the page's order."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    engine: str
+    lock: str
+    code: str
+    date: str
+    cores: int
+    sets: tuple[Cost, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Measuring:
+    """Where a measurement works: the checkout, its book, and who is told of progress."""
+
+    root: Path = project.ROOT
+    book: Path = project.BOOK
+    timeout: int = TIMEOUT
+    say: Callable[[str], None] = print
+
+
+def code_cells(page: Page) -> list[NotebookNode]:
+    """Return a page's code cells in order."""
+    return [cell for cell in page.notebook.cells if cell.cell_type == "code"]
+
+
+def set_names(page: Page) -> list[str]:
+    """Return what a page says of its sets of kernels, in its order."""
+    return [str(c.metadata[OPTION]) for c in code_cells(page) if OPTION in c.metadata]
+
+
+def marked_code(page: Page) -> str:
+    """Return the sha256 of the cells that bring the sets along."""
+    cells = [cell.source for cell in code_cells(page) if OPTION in cell.metadata]
+    return hashlib.sha256(json.dumps(cells).encode()).hexdigest()
+
+
+def spans(page: Page, seconds: Sequence[float]) -> list[float]:
+    """Add up the seconds of the cells of each set.
+
+    Args:
+        page: a page with marked cells.
+        seconds: of each of its code cells.
+
+    Returns:
+        One sum for each set; cells before the first mark belong to none.
+
+    Raises:
+        ValueError: there is not one entry for each code cell.
+    """
+    numbers = accumulate(OPTION in cell.metadata for cell in code_cells(page))
+    sums = [0.0] * len(set_names(page))
+    for number, own in zip(numbers, seconds, strict=True):
+        if number:
+            sums[number - 1] += own
+    return [round(total, 1) for total in sums]
+
+
+def record_file(book: Path, page: Page) -> Path:
+    """Return where the book keeps what a page's kernels cost."""
+    return book / FOLDER / f"{page.lesson}-{page.page}.json"
+
+
+def read_costs(book: Path, page: Page) -> Costs | None:
+    """Return the kept measurement of a page, None where there is none.
+
+    Raises:
+        CostsError: the file is no such record.
+    """
+    path = record_file(book, page)
+    if not path.is_file():
+        return None
+    try:
+        return Costs.model_validate_json(path.read_bytes())
+    except ValidationError as error:
+        raise CostsError(
+            f"{path} is no record of costs: {error}\n`{COMMAND}` writes it."
+        ) from error
+
+
+def stale(costs: Costs, page: Page, root: Path = project.ROOT) -> str | None:
+    """Return why a measurement no longer speaks of a page as it is, None where it does."""
+    pin = project.engine_pin(root)
+    if costs.engine != pin:
+        return f"measured with Genesis {costs.engine}, pinned is {pin}"
+    if costs.lock != project.lock_digest(root):
+        return "the lock of all packages has changed since"
+    if costs.code != marked_code(page):
+        return "the cells that build the scenes have changed since"
+    return None
+
+
+def measure(pages: Iterable[Page], how: Measuring) -> list[Path]:
+    """Run each marked page twice from one empty cache, first cold, then warm; keep what it cost.
+
+    Args:
+        pages: the pages of the book.
+        how: where to work.
+
+    Returns:
+        The files written, one a page; none is written where a page fails.
+
+    Raises:
+        CostsError: no page is marked, or a page fails.
+    """
+    marked = [page for page in pages if set_names(page)]
+    if not marked:
+        raise CostsError(f"No page of {how.book} has a cell with the option `{OPTION}: why`.")
+    found = {page.docname: _measured(page, how) for page in marked}
+    return [_keep(record_file(how.book, page), found[page.docname]) for page in marked]
+
+
+def _measured(page: Page, how: Measuring) -> Costs:
+    with tempfile.TemporaryDirectory(prefix="robo-costs-") as name:
+        cache = Path(name)
+        cold, warm = (
+            spans(page, _cell_seconds(page, cache, state, how)) for state in ("cold", "warm")
+        )
+    return Costs(
+        engine=project.require_pinned_engine(how.root),
+        lock=project.lock_digest(how.root),
+        code=marked_code(page),
+        date=datetime.now(UTC).date().isoformat(),
+        cores=os.cpu_count() or 1,
+        sets=tuple(Cost(cold=c, warm=w) for c, w in zip(cold, warm, strict=True)),
+    )
+
+
+def _cell_seconds(page: Page, cache: Path, state: str, how: Measuring) -> list[float]:
+    """Run a page in a folder of executed pages of its own, with the engine's cache as it is."""
+    environment: Mapping[str, str] = {
+        **project.engine_cache_environment(how.root, cache),
+        **project.environment_contract(),
+        "ROBO_GENESIS_COMMAND": COMMAND,
+    }
+    [result] = execute_pages(
+        [page],
+        cache / state,
+        timeout=how.timeout,
+        environment=environment,
+        on_progress=lambda what, event: how.say(f"{state}  {what}  {event}".rstrip()),
+    )
+    if result.failure:
+        raise CostsError(failure_report([result]))
+    notebooks = PageCache(notebooks_folder(cache / state))
+    executed: NotebookNode = notebooks.get_cache_bundle(
+        notebooks.match_cache_notebook(page.notebook).pk
+    ).nb
+    return list(executed.metadata["robo_genesis"]["cell_seconds"])
+
+
+def _keep(path: Path, costs: Costs) -> Path:
+    path.parent.mkdir(exist_ok=True)
+    fresh = path.with_suffix(".tmp")
+    fresh.write_text(json.dumps(costs.model_dump(), indent=1) + "\n", "utf8")
+    return fresh.replace(path)
