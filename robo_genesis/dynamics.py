@@ -35,7 +35,7 @@ def gravity_effort(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> F
 
 
 def effective_inertia(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> FloatArray:
-    """Return what each joint would have to accelerate at posture `q` (d,), the others held.
+    """Return the inertia that each joint's motor has to move at posture `q` (d,), the others held.
 
     That is the diagonal (d,) of the mass matrix [kg·m² or kg], freed of the term that the engine's
     implicit integrator adds: substep · passive damping here, where no position is commanded.

@@ -72,10 +72,33 @@ def convergence_sentences(overshoot: Mapping[str, Mapping[int, float]], declared
     return told
 
 
+def alone(run: Studies, case: str, term: float) -> float:
+    """Return the stepped joint's speed [rad/s] after the first step, its neighbours held still.
+
+    Args:
+        run: inertia, passive damping and gravity of the start pose.
+        case: one of the compared cases; its effort is taken to be clipped throughout the step.
+        term: what an integrator adds to the passive damping on the inertia's side [N·m·s/rad].
+    """
+    configured = l04_studies.COMPARED[case]
+    h = configured.dt / configured.substeps
+    effort = float(run.traces[case].start_control_force[run.entry])
+    speed = 0.0
+    for _ in range(configured.substeps):
+        net = effort - run.passive_damping * speed - run.gravity_at_start["Genesis"]
+        speed += h * net / (run.inertia["Genesis"] + h * (run.passive_damping + term))
+    return speed
+
+
 def first_step_rows(run: Studies) -> list[dict[str, Any]]:
     """Return for each compared case the stepped joint's speed after the first step, by engine."""
+    kv = {case: float(l04_studies.COMPARED[case].kv[run.entry]) for case in l04_studies.COMPARED}
     return [
-        {"case": case}
+        {
+            "case": case,
+            "alone, with the term": format_value(alone(run, case, kv[case]), "rad/s"),
+            "alone, without it": format_value(alone(run, case, 0.0), "rad/s"),
+        }
         | {
             ENGINE_LABELS[engine]: format_value(float(trace.qd[0, run.entry]), "rad/s")
             for engine, trace in run.by_engine(case).items()
@@ -103,7 +126,7 @@ def first_step_sentence(run: Studies) -> str:
         "G2 and G3 were clipped to one effort before and after this step, and differ in KV alone."
     )
     if alike:
-        told += f" They move alike in {listed(alike)}: there KV cannot act while it is clipped."
+        told += f" They move alike in {listed(alike)}: there KV is without effect while clipped."
     if apart:
         told += f" They differ in {listed(apart)}: there KV acts although the effort is clipped."
     return told

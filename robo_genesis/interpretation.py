@@ -106,7 +106,8 @@ def start_sentence(
     time = format_value(float(one.t_step[alike - 1]), "s")
     lead = f"Up to {time} both were clipped to the same effort at each sample"
     if abs(speeds[0] - speeds[1]) <= resolution["rad/s"]:
-        return f"{lead}, and they moved alike ({told}): a gain cannot act while it is clipped."
+        what = " and ".join(f"`{entry}`" for entry in changed) or "nothing"
+        return f"{lead}, and they moved alike ({told}): there a change of {what} does not show."
     if not (len(changed) == 1 and changed[0].startswith("kv[")):
         return (
             f"{lead}, and yet they differ in speed there ({told}). The effort cannot be the "
@@ -161,7 +162,7 @@ def final_error_block(metrics: Mapping[str, StepMetrics]) -> Block:
 def final_error_sentence(name: str, m: StepMetrics) -> str:
     """Describe the end of one run."""
     at_rest = abs(m.final_velocity) <= AT_REST
-    motion = "nearly at rest" if at_rest else "still moving"
+    motion = f"nearly at rest (no more than {AT_REST:g} rad/s)" if at_rest else "still moving"
     ends = (
         f"{name} ends {format_value(m.final_error, 'rad')} from its target, {motion} at "
         f"{format_value(m.final_velocity, 'rad/s')}"
@@ -179,7 +180,7 @@ def final_error_sentence(name: str, m: StepMetrics) -> str:
     settled = format_value(m.settling_time, "s")
     tail = f"{ends}; it stays within ±{SETTLING_BAND:g} rad from {settled} on"
     if at_rest:
-        return f"{tail}, and its last speed is no more than {AT_REST:g} rad/s."
+        return f"{tail}."
     return f"{tail}, yet its speed says that the error is not final."
 
 

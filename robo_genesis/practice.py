@@ -1,8 +1,10 @@
 """Worked solutions of exercises, written from the arrays that the exercise asks for."""
 
+from itertools import groupby
+
 import numpy as np
 
-from robo_genesis.metrics import StepMetrics, format_value
+from robo_genesis.metrics import SATURATION_THRESHOLD, StepMetrics, format_value
 from robo_genesis.tables import METRIC_LABELS as LABELS
 from robo_genesis.trace import Trace
 
@@ -55,6 +57,32 @@ def longer_window(short: tuple[Trace, StepMetrics], long: tuple[Trace, StepMetri
         + (", and the rise time, which had been observed." if of_a.rise_time is not None else "."),
     ]
     return "\n".join(lines) + "\n"
+
+
+def saturated_stretches(trace: Trace, entry: int) -> list[str]:
+    """Say of each stretch of saturated samples of a joint what its force did to the motion.
+
+    Force and velocity of one sign: it drives. Of two signs: it brakes.
+
+    Args:
+        trace: one run.
+        entry: the joint's column.
+    """
+    force, speed = trace.control_force[:, entry], trace.qd[:, entry]
+    clipped = np.abs(force) >= SATURATION_THRESHOLD * trace.effort_limit[entry]
+    words = [
+        f"{'positive' if f > 0 else 'negative'}, {'drives' if f * v > 0 else 'brakes'}"
+        for f, v in zip(force, speed, strict=True)
+    ]
+    told = []
+    for (hit, word), group in groupby(range(trace.steps), lambda n: (clipped[n], words[n])):
+        samples = list(group)
+        if hit:
+            first, last = (
+                format_value(float(trace.t_step[n]), "s") for n in (samples[0], samples[-1])
+            )
+            told.append(f"{first} to {last}: {word} the motion.")
+    return told or ["No sample was at the limit."]
 
 
 def _why(name: str, short: float | None, long: float | None) -> str:

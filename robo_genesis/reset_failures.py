@@ -91,8 +91,8 @@ def gains_without_reset(
         shown=bool(found < SMALL * asked and np.ptp(q) < SMALL * np.ptp(fair.q[:, k])),
         evidence=(
             f"The second run began {in_unit(found, joints, k)} from its target instead of "
-            f"{in_unit(asked, joints, k)}. In the whole window `{joint}` moved over "
-            f"{in_unit(np.ptp(q), joints, k)}; after a reset it moves over "
+            f"{in_unit(asked, joints, k)}. In the whole window `{joint}` moved through "
+            f"{in_unit(np.ptp(q), joints, k)}; after a reset it moves through "
             f"{in_unit(np.ptp(fair.q[:, k]), joints, k)}."
         ),
         curves={"no reset": (t, q), "after a reset": (fair.t, fair.q[:, k])},

@@ -218,11 +218,17 @@ def test_the_cost_in_response_time(values, says):
         (
             0.31,
             AT_REST,
-            "nearly at rest at {}; it stays within ±0.01 rad from 0.31 s on, and its",
+            "nearly at rest (no more than 0.01 rad/s) at {}; "
+            "it stays within ±0.01 rad from 0.31 s on.",
         ),
         (0.31, 0.5, "still moving at {}; it stays within ±0.01 rad from 0.31 s on, yet its"),
         (None, 0.5, "still moving at {}; settling into ±0.01 rad was not observed"),
-        (None, AT_REST, "nearly at rest at {}; settling into ±0.01 rad was not observed"),
+        (
+            None,
+            AT_REST,
+            "nearly at rest (no more than 0.01 rad/s) at {}; "
+            "settling into ±0.01 rad was not observed",
+        ),
     ],
 )
 def test_the_final_error_is_read_with_velocity_and_settling(sign, settling, velocity, says):

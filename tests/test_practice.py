@@ -1,10 +1,12 @@
 """The worked solution says what a longer record changed, and refuses to compare two experiments."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from robo_genesis.metrics import step_metrics
-from robo_genesis.practice import longer_window, same_beginning
+from robo_genesis.practice import longer_window, same_beginning, saturated_stretches
 
 DT = 0.01
 
@@ -57,3 +59,25 @@ def test_another_experiment_is_not_explained_by_its_window(run):
 
 def test_a_record_of_equal_length_is_no_longer_one(run):
     assert not same_beginning(run(121), run(121))
+
+
+def test_each_stretch_at_the_limit_is_told_apart_by_what_it_does_to_the_motion(run):
+    trace = run(9)
+    limit = trace.effort_limit[0]
+    force = np.array([[1], [1], [-1], [-1], [0.5], [-1], [1], [1]]) * limit
+    speed = np.array([[1], [2], [2], [-1], [-1], [-1], [-0.5], [0.5]])
+    told = saturated_stretches(replace(trace, control_force=force, qd=speed), 0)
+    assert told == [
+        "0.01 s to 0.02 s: positive, drives the motion.",
+        "0.03 s to 0.03 s: negative, brakes the motion.",
+        "0.04 s to 0.04 s: negative, drives the motion.",
+        "0.06 s to 0.06 s: negative, drives the motion.",
+        "0.07 s to 0.07 s: positive, brakes the motion.",
+        "0.08 s to 0.08 s: positive, drives the motion.",
+    ]
+
+
+def test_a_run_that_is_never_clipped_has_no_stretch(run):
+    trace = run(9)
+    free = replace(trace, control_force=trace.control_force * 0)
+    assert saturated_stretches(free, 0) == ["No sample was at the limit."]

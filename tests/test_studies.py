@@ -228,6 +228,19 @@ def test_the_first_step_tells_engines_whose_kv_acts_while_clipped(measured):
     assert "They differ in Genesis: there KV acts although the effort is clipped." in text
 
 
+def test_the_joint_alone_is_the_equation_by_hand(measured):
+    case = l04_studies.COMPARED["G1"]
+    h, effort = case.dt / case.substeps, measured.traces["G1"].start_control_force[measured.entry]
+    net = effort - measured.gravity_at_start["Genesis"]
+    damping = measured.passive_damping
+    for term in (0.0, 100.0):
+        mass = measured.inertia["Genesis"] + h * (damping + term)
+        after_one = h * net / mass
+        expected = after_one + h * (net - damping * after_one) / mass
+        assert engines_compared.alone(measured, "G1", term) == pytest.approx(expected)
+    assert engines_compared.alone(measured, "G1", 100.0) < engines_compared.alone(measured, "G1", 0)
+
+
 def test_a_first_step_that_was_not_clipped_isolates_nothing(measured):
     free = measured.traces["G3"]
     free = replace(free, start_control_force=free.start_control_force * 0.5)

@@ -63,7 +63,11 @@ class Status:
             return self.summary or self.reason
         predicate = self.manifest.predicate
         render = predicate.render
-        kernel = "Clean kernel" if predicate.command.startswith("make ") else "Run by hand"
+        kernel = (
+            "Lab in a clean notebook kernel"
+            if predicate.command.startswith("make ")
+            else "Lab run by hand"
+        )
         passed = sum(check.passed for check in predicate.checks)
         camera = f"camera frames by {render.renderer}" if render.mode == "camera" else "camera SKIP"
         more = f" {self.summary}" if self.summary else ""

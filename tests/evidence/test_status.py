@@ -36,14 +36,14 @@ def outputs(folder):
 def test_a_sound_bundle_is_verified(outputs):
     status = page_status(outputs, "l04", "lab", "cpu")
     assert (status.state, status.reason) == ("verified", "")
-    assert status.sentence.startswith("Run by hand, Genesis ")
+    assert status.sentence.startswith("Lab run by hand, Genesis ")
     assert "12 of 12 checks passed, camera frames by llvmpipe, measured 20" in status.sentence
 
 
 def test_a_run_by_the_build_is_called_a_clean_kernel(recorder, measured, monkeypatch):
     monkeypatch.setenv("ROBO_GENESIS_COMMAND", "make book")
     written = recorder.write(measured)
-    assert "Clean kernel" in page_status(written.parents[2], "l04", "lab", "cpu").sentence
+    assert "clean notebook kernel" in page_status(written.parents[2], "l04", "lab", "cpu").sentence
 
 
 def test_another_backend_s_evidence_is_missing_until_it_is_recorded(

@@ -28,7 +28,7 @@ def test_pages_show_executed_outputs_and_their_verdict(site, name):
 @pytest.mark.parametrize("name", ["index", f"{LESSON}/lecture", f"{LESSON}/lab"])
 def test_status_is_computed_and_says_what_is_missing(site, name):
     status = page(site, name).select_one(".lesson-status").get_text()
-    assert f"cpu-verified Clean kernel, Genesis {PIN}" in status
+    assert f"cpu-verified Lab in a clean notebook kernel, Genesis {PIN}" in status
     assert "12 of 12 checks passed" in status
     assert f"amdgpu-missing No run on this backend is recorded for Genesis {PIN}" in status
 
