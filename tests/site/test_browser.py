@@ -33,7 +33,7 @@ def test_page_is_whole_quiet_and_fits(browser, address, name, view):
     )
     page.goto(f"{address}/{name}.html", wait_until="networkidle")
     assert problems == []
-    assert page.evaluate("document.documentElement.dataset.theme") == scheme
+    page.wait_for_function(f"document.documentElement.dataset.theme === {scheme!r}")
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     page.evaluate("window.scrollTo(0, document.body.scrollHeight)")
     page.wait_for_function("[...document.images].every(image => image.complete)")

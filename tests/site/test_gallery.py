@@ -39,7 +39,7 @@ def test_all_symptoms_showed(lecture):
         ("The joint stops short, and the motor keeps pushing", r"with its limit at -\d\.\d{4} rad"),
         ("The target is reached in no time", r"get_dofs_velocity reads -?\d+\.\d{3} rad/s"),
         ("The arm moves, and nobody told it to", r"it moved \d\.\d{4} rad in as many"),
-        ("The second run hardly moves", r"after a reset it moves over \d\.\d{4} rad"),
+        ("The second run hardly moves", r"after a reset it moves through \d\.\d{4} rad"),
         ("The arm stands, and its motor seems to do nothing", r"get_dofs_force is \d\.\d\d N·m"),
         ("Everything is a sample too early", r"rise time \d\.\d\d s instead of \d\.\d\d s"),
         (
