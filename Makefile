@@ -69,6 +69,10 @@ lint: $(ENVIRONMENT) ## ruff, mypy and codespell
 compare: $(ENVIRONMENT) ## compare two bundles: OLD=path NEW=path [REPORT=folder]
 	@"$(PY)" build_scripts/compare.py --report "$${REPORT:-}" -- "$${OLD:-}" "$${NEW:-}"
 
+.PHONY: pdf
+pdf: book ## print each lesson and the whole course to book/_build/pdf (needs chromium)
+	@"$(PY)" build_scripts/pdf.py
+
 .PHONY: serve
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
 	@"$(PY)" build_scripts/serve.py

@@ -59,7 +59,7 @@ def find_pages(book: Path) -> list[Page]:
     """
     pages: list[Page] = []
     problems: list[str] = []
-    for docname in _docnames(book / "_toc.yml"):
+    for docname in docnames(book / "_toc.yml"):
         try:
             pages += _read(book, docname)
         except PageError as error:
@@ -69,7 +69,7 @@ def find_pages(book: Path) -> list[Page]:
     return pages
 
 
-def _docnames(toc: Path) -> list[str]:
+def docnames(toc: Path) -> list[str]:
     """Return the names of all pages in the order of the table of contents."""
     try:
         site_map = parse_toc_yaml(toc)
