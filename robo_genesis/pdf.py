@@ -87,7 +87,9 @@ def chromium() -> str:
     """
     path = shutil.which("chromium")
     if path is None:
-        raise PdfError("Chromium is missing, which prints the PDFs. On Debian: apt install chromium")
+        raise PdfError(
+            "Chromium is missing, which prints the PDFs. On Debian: apt install chromium"
+        )
     return path
 
 
@@ -137,9 +139,7 @@ def print_document(
     """
     open_document(page, html, names, title)
     headings = page.eval_on_selector_all(HEADINGS, "all => all.map(one => one.textContent)")
-    page.pdf(
-        path=file, tagged=True, outline=True, prefer_css_page_size=True, print_background=True
-    )
+    page.pdf(path=file, tagged=True, outline=True, prefer_css_page_size=True, print_background=True)
     page.close()
     name_bookmarks(file, [" ".join(text.split()) for text in headings])
 

@@ -1,0 +1,138 @@
+"""A lab as notebooks to take away: one to work in, without outputs or solutions, one as it ran."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import nbformat
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from robo_genesis.page_results import ANSI
+from robo_genesis.pages import Page
+from robo_genesis.plain_markdown import SOLUTION, Writer, plain
+from robo_genesis.project import ENGINE
+
+SITE_ONLY = "site-only"
+"""The tag of a cell that makes sense on the site alone."""
+
+KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
+
+CHECK = """\
+# Is this the engine that the lab was written for?
+from importlib.metadata import PackageNotFoundError, version
+
+NEEDED = {needed!r}
+for package, needed in NEEDED.items():
+    try:
+        found = version(package)
+    except PackageNotFoundError:
+        found = "none"
+    if found != needed:
+        raise RuntimeError(
+            f"This notebook needs {{package}} {{needed}}, found is {{found}}. Install it where\\n"
+            "{wheel} lies, then restart the kernel:\\n"
+            "    {install}\\n"
+            "To try another version on purpose, change NEEDED in this cell."
+        )
+print(*(f"{{package}} {{number}}" for package, number in NEEDED.items()), sep="\\n")"""
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a notebook comes from: its lab, the versions it needs, and the run on the site."""
+
+    title: str
+    engine: str
+    package: str
+    wheel: str
+    commands: Sequence[str]
+    run: str
+    measured: str
+
+    @property
+    def install(self) -> str:
+        """The command that installs package and engine."""
+        return next(line for line in self.commands if " install " in line)
+
+
+def student_notebook(page: Page, origin: Origin, writer: Writer) -> NotebookNode:
+    """Return the lab to work in: no outputs, no solutions, and a first check of the versions.
+
+    Args:
+        page: the lab.
+        origin: said in the first lines.
+        writer: of its prose; no measured value may come from it.
+    """
+    needed = {ENGINE: origin.engine, "robo-genesis": origin.package}
+    check = CHECK.format(needed=needed, wheel=origin.wheel, install=origin.install)
+    cells = [_header(origin, "student notebook"), new_code_cell(check)]
+    for cell in page.notebook.cells:
+        if not {SOLUTION, SITE_ONLY} & set(cell.metadata.get("tags", [])):
+            cells += _prose(cell, writer) if cell.cell_type == "markdown" else _code(cell, writer)
+    return _notebook(cells)
+
+
+def executed_notebook(
+    page: Page, executed: NotebookNode, origin: Origin, writer: Writer
+) -> NotebookNode:
+    """Return the lab as it ran for the site, with its outputs.
+
+    Args:
+        page: the lab.
+        executed: the same code cells with outputs.
+        origin: said in the first lines.
+        writer: of its prose; measured values are those of this run.
+    """
+    ran = (cell for cell in executed.cells if cell.cell_type == "code")
+    cells = [_header(origin, "executed notebook")]
+    for cell in page.notebook.cells:
+        if cell.cell_type == "code":
+            cells += _code(cell, writer, next(ran))
+        elif SITE_ONLY not in cell.metadata.get("tags", []):
+            cells += _prose(cell, writer)
+    return _notebook(cells)
+
+
+def _header(origin: Origin, kind: str) -> NotebookNode:
+    commands = "\n".join(origin.commands)
+    return new_markdown_cell(
+        f"> RoboGenesis, *{origin.title}*: {kind}. Written for Genesis {origin.engine}; the site "
+        f"shows run {origin.run} of {origin.measured}.\n"
+        "> © The RoboGenesis team. Code: MIT licence. Text and figures: CC BY 4.0.\n\n"
+        f"To run it, put `{origin.wheel}` from the lab's page beside it, and in that folder:\n\n"
+        f"```console\n{commands}\n```"
+    )
+
+
+def _prose(cell: NotebookNode, writer: Writer) -> list[NotebookNode]:
+    text = plain(cell.source, writer)
+    return [new_markdown_cell(text)] if text else []
+
+
+def _code(
+    cell: NotebookNode, writer: Writer, ran: NotebookNode | None = None
+) -> list[NotebookNode]:
+    """Return a code cell, and its caption below it where it draws a figure."""
+    tags = list(cell.metadata.get("tags", []))
+    code = new_code_cell(cell.source, metadata={"tags": tags} if tags else {})
+    if ran is not None:
+        code.outputs = [_output(output) for output in ran.outputs]
+        code.execution_count = ran.execution_count
+    caption = cell.metadata.get("mystnb", {}).get("figure", {}).get("caption")
+    return [code, *([new_markdown_cell(f"*{plain(caption, writer)}*")] if caption else [])]
+
+
+def _output(output: NotebookNode) -> NotebookNode:
+    """Return an output; of an expected error the exception alone, its stack names private paths."""
+    if output.output_type != "error":
+        return output
+    return NotebookNode(output | {"traceback": [ANSI.sub("", t) for t in output.traceback[-1:]]})
+
+
+def _notebook(cells: list[NotebookNode]) -> NotebookNode:
+    """Return a valid notebook whose bytes depend on its content alone."""
+    for number, cell in enumerate(cells):
+        cell["id"] = f"cell-{number}"
+    notebook = new_notebook(cells=cells, metadata={"kernelspec": KERNEL})
+    nbformat.validate(notebook)
+    return notebook
