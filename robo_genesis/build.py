@@ -1,4 +1,4 @@
-"""The stages of `make book` in their order: execute, verify, render, check, publish."""
+"""The stages of `make book` in their order: execute, verify, render, pack, check, publish."""
 
 import fcntl
 import os
@@ -15,6 +15,7 @@ from typing import Any
 from robo_genesis import project
 from robo_genesis.evidence import place
 from robo_genesis.execute import TIMEOUT, execute_pages
+from robo_genesis.offline import pack
 from robo_genesis.page_results import PageResult, failure_report
 from robo_genesis.pages import Page, find_pages, fingerprint
 from robo_genesis.publish import publish, recover
@@ -93,6 +94,7 @@ def run_build(build: Build) -> list[str]:
         progress("render", "all pages")
         staging, log = build.cache / "staging", build.cache / "render.log"
         html = render(build.book, staging, folder, log)
+        progress("pack", pack(html).name)  # last of the site's files; the checks know it
         checked = _check(html, progress)
         project.forget_old_pages(folder)
         html = publish(build.book, html, results)  # last: after it, nothing may fail

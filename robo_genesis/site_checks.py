@@ -23,9 +23,6 @@ FILE_NAME = re.compile(r"^\S*\.(?:png|jpe?g|svg|webp|gif)$|^[0-9a-f]{16,}$", re.
 LEFTOVERS = re.compile(r"\{[a-z][a-z:_-]*\}(?=`|\()|\\[\[\(]|\$\$|\[\[[^\]]*\]\]|<Figure size ")
 
 
-TEMPLATE = "webpack-macros.html"  # the theme ships its own templates among its static files
-
-
 @dataclass(frozen=True, slots=True)
 class SiteCheck:
     """One check: how many things it looked at, and a line for each that is wrong."""
@@ -43,7 +40,6 @@ class Site:
         self.pages = {
             path: BeautifulSoup(path.read_text("utf8"), "html.parser")
             for path in sorted(self.root.rglob("*.html"))
-            if not path.name.endswith(TEMPLATE)
         }
         self.anchors = {path: set(_anchors(page)) for path, page in self.pages.items()}
 

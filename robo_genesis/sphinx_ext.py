@@ -100,22 +100,6 @@ def drop_third_parties(
         context[name] = [file for file in files if not ELSEWHERE.match(address(file))]
 
 
-def load_where_needed(
-    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
-) -> None:
-    """Load the explorer's script on the pages that hold one, after the page itself.
-
-    Jupyter Book puts each script of `_static` on all pages, and before their content.
-    """
-    needed = 'class="explorer"' in context.get("body", "")
-    for file in list(context.get("script_files", [])):
-        if address(file).endswith("explorer.js"):
-            if needed:
-                file.attributes["defer"] = "defer"
-            else:
-                context["script_files"].remove(file)
-
-
 def address(file: Any) -> str:
     """Return where a script or style comes from; Sphinx has plain strings and asset objects."""
     return str(getattr(file, "filename", file) or "")
@@ -128,6 +112,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
     app.add_config_value("comments_config", None, "html")
     app.connect("config-inited", use_executed_pages)
     app.connect("html-page-context", drop_third_parties, priority=900)
-    app.connect("html-page-context", load_where_needed, priority=901)  # in a list of the page's own
     mathml.register(app)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

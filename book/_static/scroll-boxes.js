@@ -1,0 +1,44 @@
+/* A box that scrolls sideways can be reached and scrolled by keyboard, and says what it is. */
+"use strict";
+
+(() => {
+  const NAMES = {
+    "div.math": "Formula",
+    "div.cell_output pre": "Output",
+    pre: "Code",
+    ".pst-scrollable-table-container": "Table",
+    ".cell_output > .output": "Output",
+    figure: null, // it is named by its caption
+  };
+  const BOXES = Object.keys(NAMES).map((kind) => `main :is(${kind})`).join(", ");
+
+  function scrolls(box) {
+    const { overflowX, overflowY } = getComputedStyle(box);
+    return (
+      (box.scrollWidth > box.clientWidth && /auto|scroll/.test(overflowX)) ||
+      (box.scrollHeight > box.clientHeight && /auto|scroll/.test(overflowY))
+    );
+  }
+
+  function mark(box) {
+    const name = NAMES[Object.keys(NAMES).find((kind) => box.matches(kind))];
+    if (scrolls(box)) {
+      box.tabIndex = 0;
+      if (name) {
+        box.setAttribute("role", "group");
+        box.setAttribute("aria-label", name);
+      }
+    } else {
+      for (const attribute of ["tabindex", "role", "aria-label"]) box.removeAttribute(attribute);
+    }
+  }
+
+  /* Sizes change with the window, with larger text, and when a fold around the box opens. */
+  const observer = new ResizeObserver((changes) => {
+    const boxes = changes.map(({ target }) => target.closest(BOXES)); // null where it was removed
+    new Set(boxes.filter(Boolean)).forEach(mark);
+  });
+  for (const box of document.querySelectorAll(BOXES)) {
+    for (const element of [box, ...box.children]) observer.observe(element);
+  }
+})();

@@ -1,0 +1,121 @@
+"""What makes a page light: no script blocks it, nothing loads unused, images have their place."""
+
+import re
+import shutil
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+from bs4 import BeautifulSoup, Tag
+from PIL import Image
+
+# Jupyter Book and the theme put every script on all pages; these have work only where something
+# matches. `fontawesome.js` has none anywhere: the icons come from a font.
+NEEDED_BY = {
+    "clipboard.min.js": "div.highlight",
+    "copybutton.js": "div.highlight",
+    "design-tabs.js": ".sd-tab-set",
+    "explorer.js": ".explorer",
+    "fontawesome.js": None,
+    "language_data.js": "#search-results",
+    "search-from-disk.js": "#search-results",
+    "searchindex.js": "#search-results",
+    "searchtools.js": "#search-results",
+    "togglebutton.js": ".toggle, .admonition.dropdown",
+}
+
+# Files of the theme that no page asks for: tools of its makers, and fonts for old browsers.
+UNUSED = (
+    "_static/**/*.map",
+    "_static/**/*.ttf",
+    "_static/*webpack-macros.html",
+    "_static/locales",
+    "_static/scripts/fontawesome.js*",
+)
+
+PIXELS = {"": 1.0, "px": 1.0, "pt": 4 / 3, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
+"""CSS pixels in one unit of length."""
+LENGTH = re.compile(r"([\d.]+)([a-z]*)$")
+
+
+def lighten(page: BeautifulSoup, folder: Path) -> None:
+    """Make one page light, in place.
+
+    Args:
+        page: the complete page as the theme wrote it.
+        folder: the folder that the page's addresses are relative to.
+    """
+    drop_idle_scripts(page)
+    move_scripts_to_the_end(page)
+    place_images(page, folder)
+
+
+def drop_idle_scripts(page: BeautifulSoup) -> None:
+    """Remove the scripts that have nothing to do on this page."""
+    for script in page.select("script[src]"):
+        name = Path(urlsplit(str(script["src"])).path).name
+        needed = NEEDED_BY.get(name, "html")
+        if needed is None or not page.select_one(needed):
+            script.decompose()
+
+
+def move_scripts_to_the_end(page: BeautifulSoup) -> None:
+    """Move the head's scripts behind the page's content, in their order.
+
+    Some are written in place and use what a file before them defines, so `defer` is no choice. The
+    theme's first one stays: it sets light or dark before anything shows. So do scripts of data,
+    and those that do not block.
+    """
+    if page.head and page.body:
+        for script in page.head.select("script:not([data-cfasync], [defer], [async], [type])"):
+            page.body.append(script.extract())
+
+
+def place_images(page: BeautifulSoup, folder: Path) -> None:
+    """Give images their size, so that nothing moves when they come, and load the lower ones late.
+
+    The first image of a page may be in sight at once, so it does not wait.
+    """
+    for number, image in enumerate(page.select("article img[src]")):
+        file = folder / unquote(urlsplit(str(image["src"])).path)
+        if not image.has_attr("width") and file.is_file():
+            width, height = image_size(file)
+            image["width"], image["height"] = str(width), str(height)
+        if number:
+            image["loading"], image["decoding"] = "lazy", "async"
+
+
+def image_size(file: Path) -> tuple[int, int]:
+    """Return an image's width and height [CSS px].
+
+    Raises:
+        ValueError: an SVG states neither its size nor a view box.
+    """
+    if file.suffix != ".svg":
+        with Image.open(file) as image:
+            return image.size
+    for _, root in ElementTree.iterparse(file, events=["start"]):
+        sides = [LENGTH.match(root.get(name, "")) for name in ("width", "height")]
+        if all(side and side[2] in PIXELS for side in sides):
+            return tuple(round(float(s[1]) * PIXELS[s[2]]) for s in sides)  # type: ignore
+        box = root.get("viewBox", "").split()
+        if len(box) == 4:
+            return round(float(box[2])), round(float(box[3]))
+        break
+    raise ValueError(f"{file.name} states no size. Give its root element a viewBox.")
+
+
+def drop_unused_files(html: Path) -> None:
+    """Remove the theme's files that no page asks for.
+
+    Args:
+        html: the folder of the site.
+    """
+    for pattern in UNUSED:
+        for path in list(html.glob(pattern)):
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+
+
+def drop_fallback_fonts(css: str) -> str:
+    """Return a style sheet without the addresses of fonts for browsers that lack woff2."""
+    return re.sub(r""",url\([^)]*\.ttf\) format\("truetype"\)""", "", css)

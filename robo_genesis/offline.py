@@ -1,0 +1,46 @@
+"""The whole site as one archive, for reading without a network: unpack it, open `index.html`."""
+
+import zipfile
+from pathlib import Path
+
+from bs4 import BeautifulSoup
+
+ARCHIVE = "offline/robo-genesis-site.zip"
+"""Where the archive lies in the site, for the link of the home page."""
+FOLDER = "robo-genesis-site"
+"""What unpacking it makes."""
+OFFER = ".offline-offer"
+"""What a page says about the archive; the archive's own copy of the page has no such archive."""
+DATE = (1980, 1, 1, 0, 0, 0)  # the earliest one: the same site makes the same archive
+
+
+def pack(html: Path) -> Path:
+    """Put the archive of a site into the site.
+
+    Args:
+        html: the folder of the complete site; pages are checked after this, links to it included.
+
+    Returns:
+        The archive. The same files make the same bytes.
+    """
+    archive = html / ARCHIVE
+    files = sorted(path for path in html.rglob("*") if path.is_file() and path != archive)
+    archive.parent.mkdir(exist_ok=True)
+    with zipfile.ZipFile(archive, "w") as packed:
+        for path in files:
+            entry = zipfile.ZipInfo(f"{FOLDER}/{path.relative_to(html).as_posix()}", DATE)
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = 0o644 << 16
+            packed.writestr(entry, content(path))
+    return archive
+
+
+def content(path: Path) -> bytes:
+    """Return what the archive holds of a file: all of it, but a page without its offer."""
+    data = path.read_bytes()
+    if path.suffix != ".html" or OFFER[1:].encode() not in data:
+        return data
+    page = BeautifulSoup(data, "html.parser")
+    for offer in page.select(OFFER):
+        offer.decompose()
+    return page.encode()

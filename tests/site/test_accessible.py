@@ -1,0 +1,226 @@
+"""Each page for readers with a keyboard, a screen reader, large text or little tolerance of motion."""
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Page
+from watching import page_names
+
+from robo_genesis import npm
+
+pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+LECTURE = "lessons/l04-joint-control/lecture.html"
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+# Width [px], colour scheme, text size [%] of each state in which every page is looked at.
+STATES = {
+    "light": (1280, "light", 100),
+    "dark": (1280, "dark", 100),
+    "narrow": (320, "light", 100),
+    "large text": (1280, "light", 200),
+}
+RUN_AXE = """async rules => {
+  const found = await axe.run(document, {
+    runOnly: { type: "tag", values: rules },
+    rules: { "target-size": { enabled: true } }, // WCAG 2.2 AA, and off as axe-core comes
+  });
+  return {
+    rules: ["violations", "passes", "inapplicable", "incomplete"].flatMap(
+      kind => found[kind].map(rule => rule.id)),
+    violations: found.violations.flatMap(
+      rule => rule.nodes.map(node => `${rule.id}: ${node.target.join(" ")}`)),
+  };
+}"""
+# The theme and our script look again at scrolling boxes a moment after sizes have changed.
+SETTLED = """() => new Promise(done => requestAnimationFrame(() => setTimeout(done, 450)))"""
+
+
+def put_into(page: Page, state: str) -> None:
+    width, scheme, text = STATES[state]
+    page.set_viewport_size({"width": width, "height": 900})
+    page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+    page.evaluate(f"document.documentElement.style.fontSize = '{text}%'")
+    page.evaluate(SETTLED)
+
+
+def violations(page: Page) -> list[str]:
+    return page.evaluate(RUN_AXE, RULES)["violations"]
+
+
+@pytest.fixture(scope="module")
+def axe() -> str:
+    return str(npm.packages() / "axe-core" / "axe.min.js")
+
+
+@pytest.fixture(scope="module")
+def names(site) -> list[str]:
+    return [*page_names(site), "search.html?q=joint"]
+
+
+@pytest.fixture
+def page(browser) -> Iterator[Page]:
+    page = browser.new_page()
+    yield page
+    page.close()
+
+
+def test_axe_finds_nothing_on_any_page_in_any_state(page, address, axe, names):
+    found, wide = {}, []
+    for name in names:
+        page.goto(f"{address}/{name}", wait_until="networkidle")
+        page.add_script_tag(path=axe)
+        for state in STATES:
+            put_into(page, state)
+            if problems := violations(page):
+                found[f"{name}, {state}"] = problems
+            if page.evaluate("document.documentElement.scrollWidth > innerWidth"):
+                wide.append(f"{name}, {state}")
+    assert found == {}
+    assert wide == []
+
+
+@pytest.mark.parametrize(
+    ("spoil", "rule"),
+    [
+        ("document.querySelector('article img').removeAttribute('alt')", "image-alt"),
+        ("document.querySelector('#pst-primary-sidebar').removeAttribute('role')", "region"),
+        ("document.querySelector('article p').style.color = '#aaa'", "color-contrast"),
+        (
+            "document.querySelector('.theme-switch-button').style ="
+            " 'width: 9px; height: 9px; padding: 0; min-width: 0; overflow: hidden'",
+            "target-size",
+        ),
+    ],
+)
+def test_axe_would_find_it(page, address, axe, spoil, rule):
+    page.goto(f"{address}/index.html")
+    page.add_script_tag(path=axe)
+    put_into(page, "light")
+    page.evaluate(spoil)
+    assert rule in {line.partition(":")[0] for line in violations(page)}
+
+
+FOCUSED = """() => {
+  const element = document.activeElement;
+  if (element === document.body) return null;
+  const style = getComputedStyle(element);
+  const boxes = [...element.getClientRects()].filter(box => box.width && box.height);
+  const seen = boxes.some(box => {
+    const [left, top] = [Math.max(box.left, 0), Math.max(box.top, 0)];
+    const [right, bottom] = [Math.min(box.right, innerWidth), Math.min(box.bottom, innerHeight)];
+    if (right <= left || bottom <= top) return false;
+    const at = document.elementFromPoint((left + right) / 2, (top + bottom) / 2);
+    return at && (element.contains(at) || at.contains(element));
+  });
+  let opaque = 1;
+  for (let e = element; e; e = e.parentElement) opaque *= getComputedStyle(e).opacity;
+  return {
+    what: element.outerHTML.slice(0, 120),
+    first: !element.dataset.visited && (element.dataset.visited = "yes"),
+    outlined: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2,
+    seen: seen && opaque > 0.5,
+  };
+}"""
+
+
+def tab_through(page: Page) -> list[dict]:
+    """Press Tab until the focus leaves the page, or comes back to where it was."""
+    stops = []
+    while len(stops) < 1500:
+        page.keyboard.press("Tab")
+        stop = page.evaluate(FOCUSED)
+        if stop is None or not stop["first"]:
+            return stops
+        stops.append(stop)
+    raise AssertionError(f"Tab does not come to an end: {stops[-1]}")
+
+
+@pytest.mark.parametrize("width", [1280, 320])
+def test_the_focus_is_seen_wherever_it_goes(page, address, site, width):
+    page.set_viewport_size({"width": width, "height": 700})
+    page.emulate_media(reduced_motion="reduce")
+    for name in page_names(site):
+        page.goto(f"{address}/{name}")
+        page.evaluate(SETTLED)
+        stops = tab_through(page)
+        assert "Skip to main content" in stops[0]["what"]
+        assert len(stops) > 8
+        hidden = [stop for stop in stops if not (stop["outlined"] and stop["seen"])]
+        assert hidden == [], name
+
+
+def test_the_focus_follows_the_text(page, address, names):
+    for name in names:
+        page.goto(f"{address}/{name}")
+        assert page.evaluate("[...document.querySelectorAll('*')].every(e => e.tabIndex <= 0)")
+
+
+def test_the_skip_link_leads_past_the_menu(page, address):
+    page.goto(f"{address}/{LECTURE}")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.closest('main') !== null")
+
+
+SCROLLING = """() => [...document.querySelectorAll("article *")].filter(element => {
+  const { overflowX, visibility } = getComputedStyle(element);
+  return /auto|scroll/.test(overflowX) && element.scrollWidth > element.clientWidth
+    && element.clientWidth && visibility === "visible";
+}).map(element => ({
+  what: element.outerHTML.slice(0, 100),
+  reached: element.tabIndex === 0,
+  named: !!(element.ariaLabel || element.querySelector(":scope > figcaption, :scope > caption")),
+}))"""
+
+
+def test_every_box_that_scrolls_takes_the_focus_and_has_a_name(page, address, site):
+    page.set_viewport_size({"width": 320, "height": 700})
+    kinds = set()
+    for name in page_names(site):
+        page.goto(f"{address}/{name}")
+        page.evaluate("for (const fold of document.querySelectorAll('details')) fold.open = true")
+        page.evaluate(SETTLED)
+        boxes = page.evaluate(SCROLLING)
+        assert [box for box in boxes if not (box["reached"] and box["named"])] == [], name
+        kinds |= {box["what"].split()[0] for box in boxes}
+    assert {"<pre", "<figure", "<div"} <= kinds
+
+
+def test_a_box_scrolls_by_keyboard(page, address):
+    page.set_viewport_size({"width": 320, "height": 700})
+    page.goto(f"{address}/{LECTURE}")
+    page.evaluate(SETTLED)
+    box = page.locator("article figure[tabindex='0']").first
+    box.focus()
+    page.keyboard.press("ArrowRight")
+    page.wait_for_function("document.activeElement.scrollLeft > 0")
+
+
+def test_every_fold_opens_by_keyboard(page, address):
+    page.goto(f"{address}/{LECTURE}")
+    folds = page.locator("article details > summary:visible")
+    opened = 0
+    for fold in folds.all():
+        before = fold.evaluate("summary => summary.parentElement.open")
+        fold.focus()
+        page.keyboard.press("Enter")
+        opened += fold.evaluate("summary => summary.parentElement.open") != before
+        page.keyboard.press("Enter")
+    assert opened == folds.count() > 20
+
+
+MOVING = """() => [...document.querySelectorAll("*")].filter(element => {
+  const style = getComputedStyle(element);
+  return parseFloat(style.transitionDuration) > 0 || style.animationName !== "none"
+    || style.scrollBehavior === "smooth";
+}).length"""
+
+
+def test_nothing_moves_for_who_asked_for_less_motion(page, address, site):
+    for name in page_names(site):
+        page.emulate_media(reduced_motion="reduce")
+        page.goto(f"{address}/{name}")
+        assert page.evaluate(MOVING) == 0
+    page.emulate_media(reduced_motion="no-preference")
+    assert page.evaluate(MOVING) > 0

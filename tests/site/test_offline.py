@@ -1,0 +1,119 @@
+"""Nothing comes from third parties: each page served, and out of the archive from disk."""
+
+import zipfile
+from pathlib import Path
+
+import pytest
+from bs4 import BeautifulSoup
+from watching import SERVED_ONLY, only_from, page_names, watch
+
+from robo_genesis.offline import ARCHIVE, FOLDER
+from robo_genesis.site_checks import check_site
+
+pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+LECTURE = "lessons/l04-joint-control/lecture.html"
+
+
+@pytest.fixture(scope="module")
+def unpacked(site, tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("unpacked")
+    with zipfile.ZipFile(site / ARCHIVE) as archive:
+        archive.extractall(folder)
+    return folder / FOLDER
+
+
+@pytest.fixture(params=["served", "from disk"])
+def base(request, address, unpacked) -> str:
+    """What is opened from disk comes out of the archive, whose files are those of the site."""
+    return address if request.param == "served" else unpacked.as_uri()
+
+
+def test_every_page_opens_whole_and_asks_no_other_host(browser, base, site):
+    names = [n for n in page_names(site) if base.startswith("http") or n not in SERVED_ONLY]
+    wrong = {}
+    context = browser.new_context()
+    with only_from(context, base) as asked:
+        for name in names:
+            page = context.new_page()
+            problems = watch(page)
+            page.goto(f"{base}/{name}", wait_until="networkidle")
+            page.evaluate("for (const image of document.images) image.loading = 'eager'")
+            page.wait_for_function("[...document.images].every(image => image.complete)")
+            problems += page.evaluate(
+                "[...document.images].filter(i => !i.naturalWidth).map(i => 'empty: ' + i.src)"
+            )
+            if problems:
+                wrong[name] = problems
+            page.close()
+    context.close()
+    assert wrong == {}
+    assert asked == []
+
+
+def test_a_third_party_would_be_noticed(browser, address):
+    context = browser.new_context()
+    with only_from(context, address) as asked:
+        page = context.new_page()
+        problems = watch(page)
+        page.goto(f"{address}/index.html")
+        page.evaluate("new Image().src = 'https://example.org/pixel.png'")
+        page.wait_for_timeout(200)
+    assert asked == ["https://example.org/pixel.png"]
+    assert "failed: https://example.org/pixel.png" in problems
+    context.close()
+
+
+def test_search_finds_a_page_and_says_nothing_wrong(browser, base):
+    page = browser.new_page()
+    problems = watch(page)
+    page.goto(f"{base}/search.html?q=overshoot")
+    page.wait_for_selector("#search-results li a")
+    links = page.locator("#search-results li a").evaluate_all("links => links.map(a => a.href)")
+    assert any("/lessons/l04-joint-control/lecture.html" in link for link in links)
+    page.goto(next(link for link in links if "lecture.html" in link))
+    assert page.locator("article h1").is_visible()
+    assert problems == []
+    page.close()
+
+
+def test_the_theme_switches_and_stays_on_the_next_page(browser, base):
+    context = browser.new_context(color_scheme="light")
+    page = context.new_page()
+    problems = watch(page)
+    page.goto(f"{base}/index.html")
+    for _ in range(3):
+        if page.evaluate("document.documentElement.dataset.theme") == "dark":
+            break
+        page.locator("button.theme-switch-button:visible").click()
+    page.goto(f"{base}/{LECTURE}")
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+    assert problems == []
+    context.close()
+
+
+def test_the_archive_is_a_whole_site_without_itself(unpacked, site):
+    assert {c.name: c.problems for c in check_site(unpacked) if c.problems} == {}
+    kept = {p.relative_to(unpacked) for p in unpacked.rglob("*") if p.is_file()}
+    assert kept == {p.relative_to(site) for p in site.rglob("*") if p.is_file()} - {Path(ARCHIVE)}
+
+
+def test_links_inside_the_site_name_files_so_that_they_work_from_disk(site):
+    wrong = []
+    for name in set(page_names(site)) - SERVED_ONLY:
+        page = BeautifulSoup((site / name).read_text(), "html.parser")
+        for tag in page.select("a[href], link[href], [src]"):
+            url = str(tag.get("href") or tag.get("src")).partition("#")[0].partition("?")[0]
+            inside = url and ":" not in url and tag.get("rel") != ["canonical"]
+            if inside and (url.startswith("/") or not (site / name).parent.joinpath(url).is_file()):
+                wrong.append(f"{name}: {url}")
+    assert wrong == []
+
+
+def test_the_home_page_offers_the_archive(browser, address):
+    page = browser.new_page()
+    page.goto(f"{address}/index.html")
+    with page.expect_download() as download:
+        page.get_by_role("link", name="Read offline").click()
+    assert download.value.suggested_filename == Path(ARCHIVE).name
+    page.close()
