@@ -41,4 +41,11 @@
   for (const box of document.querySelectorAll(BOXES)) {
     for (const element of [box, ...box.children]) observer.observe(element);
   }
+
+  /* What gets the focus inside such a box is shown whole, not the edge of it that happened to show. */
+  document.addEventListener("focusin", ({ target }) => {
+    if (target.closest(`main .scroll-box, ${BOXES}`)) {
+      target.scrollIntoView({ block: "nearest", inline: "nearest" });
+    }
+  });
 })();
