@@ -61,6 +61,7 @@ def pack(found: Sweep) -> dict[str, Any]:
         "labels": [METRIC_LABELS[name] for name in SHOWN],
         "points": [
             {
+                "case": NAMES.get(point, ""),
                 "q": q[k].tolist(),
                 "force": force[k].tolist(),
                 "said": sentence(point, measured, found.control_force.shape[1]),

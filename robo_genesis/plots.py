@@ -9,18 +9,19 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from robo_genesis.metrics import SETTLING_BAND
+from robo_genesis.palette import CASES, MARKS
 from robo_genesis.robot_model import JointMap
 from robo_genesis.trace import Trace
 
-# Okabe and Ito's palette; line styles tell the cases apart without colour too.
-STYLES: dict[str, dict[str, Any]] = {
-    "baseline": {"color": "#4d4d4d", "linestyle": "-"},
-    "G1": {"color": "#0072b2", "linestyle": "-"},
-    "G2": {"color": "#d55e00", "linestyle": (0, (6, 2))},
-    "G3": {"color": "#00795c", "linestyle": (0, (6, 2, 1.5, 2))},
-}
-TARGET: dict[str, Any] = {"color": "#222222", "linestyle": ":", "linewidth": 1.4}
-LIMIT: dict[str, Any] = {"color": "#a8003d", "linestyle": (0, (1.5, 1.5)), "linewidth": 1.4}
+
+def look(name: str, **more: Any) -> dict[str, Any]:
+    """Return how Matplotlib draws a mark of the palette, on the light ground of its figures."""
+    mark = MARKS[name]
+    return {"color": mark.light, "linestyle": (0, mark.dashes) if mark.dashes else "-", **more}
+
+
+TARGET = look("target", linewidth=1.4)
+LIMIT = look("limit", linewidth=1.4)
 
 
 def use_course_style() -> None:
@@ -51,7 +52,7 @@ def use_course_style() -> None:
 
 def style(name: str) -> dict[str, Any]:
     """Return the line style of a case; an unknown name gets the baseline's."""
-    return dict(STYLES.get(name, STYLES["baseline"]))
+    return look(name if name in CASES else "baseline")
 
 
 def position(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
@@ -112,11 +113,9 @@ def response(
 def two_forces(ax: Axes, trace: Trace, joints: JointMap, joint: str) -> Axes:
     """Draw both force getters of one run: they answer different questions."""
     k = joints.entry(joint)
-    ax.plot(
-        trace.t_step, trace.control_force[:, k], color="#0072b2", label="get_dofs_control_force"
-    )
-    ax.plot(trace.t_step, trace.internal_force[:, k], color="#a8003d", linestyle=(0, (6, 2)),
-            label="get_dofs_force")  # fmt: skip
+    drawn = look("baseline", label="get_dofs_control_force")
+    ax.plot(trace.t_step, trace.control_force[:, k], **drawn)
+    ax.plot(trace.t_step, trace.internal_force[:, k], **look("other", label="get_dofs_force"))
     limit = float(trace.effort_limit[k])
     ax.axhline(limit, label="limit, read back", **LIMIT)
     ax.axhline(-limit, **LIMIT)
@@ -130,10 +129,10 @@ def assigned_and_commanded(
     """Draw a state that is assigned at every step beside one that is commanded."""
     k = joints.entry(joint)
     ax.axhline(float(commanded.target[0, k]), label="target", **TARGET)
-    ax.plot(assigned.t, assigned.q[:, k], color="#a8003d", linestyle=(0, (6, 2)),
-            label="state assigned: set_dofs_position")  # fmt: skip
-    ax.plot(commanded.t, commanded.q[:, k], color="#0072b2",
-            label="target commanded: control_dofs_position")  # fmt: skip
+    written = look("other", label="state assigned: set_dofs_position")
+    ax.plot(assigned.t, assigned.q[:, k], **written)
+    measured = look("baseline", label="target commanded: control_dofs_position")
+    ax.plot(commanded.t, commanded.q[:, k], **measured)
     unit = joints.position_units[k]
     return _finish(ax, f"Assigned or commanded, {joint}", f"q [{unit}]", "lower right")
 
@@ -141,7 +140,7 @@ def assigned_and_commanded(
 def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], title: str, unit: str) -> Axes:
     """Draw the positions of a failure over time: one curve or two, the mistake first."""
     for number, (label, (t, q)) in enumerate(curves.items()):
-        ax.plot(t, q, label=label, **style(("G2", "G1")[number]))
+        ax.plot(t, q, label=label, **look(("other", "baseline")[number]))
     return _finish(ax, title, f"position [{unit}]", "best")
 
 
@@ -162,13 +161,13 @@ def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
         trace: its first and last link positions are drawn, x against z [m].
         parents: for each link the local index of its parent, -1 for the base.
     """
-    ends = (("before the first step", 0, "G1"), ("after the last step", -1, "G2"))
-    for label, when, case in ends:
+    ends = (("before the first step", 0, "other"), ("after the last step", -1, "baseline"))
+    for label, when, name in ends:
         points = trace.link_pos[when]
-        look = style(case) | {"marker": "o", "markersize": 4}
+        drawn = look(name, marker="o", markersize=4)
         bones = [points[[parent, link]] for link, parent in enumerate(parents) if parent >= 0]
         for number, bone in enumerate(bones):
-            ax.plot(bone[:, 0], bone[:, 2], label="" if number else label, **look)
+            ax.plot(bone[:, 0], bone[:, 2], label="" if number else label, **drawn)
     ax.set_aspect("equal")
     ax.set_xlabel("x [m]")
     ax.set_ylabel("z [m]")

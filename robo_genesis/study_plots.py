@@ -6,15 +6,16 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from robo_genesis.plots import TARGET, style
+from robo_genesis.plots import TARGET, look, style
 from robo_genesis.scene_config import FloatArray
 
-IDEAL: dict[str, Any] = {"color": "#222222", "linestyle": (0, (1, 1.2)), "linewidth": 1.8}
-ENGINE_STYLES: dict[str, dict[str, Any]] = {
-    "Genesis": {"color": "#d55e00", "linestyle": "-", "marker": "o"},
-    "MuJoCo implicitfast": {"color": "#0072b2", "linestyle": (0, (6, 2)), "marker": "s"},
-    "MuJoCo Euler": {"color": "#00795c", "linestyle": (0, (6, 2, 1.5, 2)), "marker": "^"},
+IDEAL = look("target", linestyle=(0, (1, 1.2)), linewidth=1.8)
+ENGINE_STYLES = {
+    "Genesis": look("G2", linestyle="-", marker="o"),
+    "MuJoCo implicitfast": look("other", marker="s"),
+    "MuJoCo Euler": look("baseline", marker="^"),
 }
+"""The curves are G2's; shapes tell the engines apart, too."""
 
 
 def beside_ideal(
@@ -47,10 +48,9 @@ def step_sizes(
 
     A curve called `ideal joint` is drawn as such. All arrays (n+1,) over `t` [s].
     """
-    looks = ({"color": "#0072b2", "linestyle": "-"}, {"color": "#a8003d", "linestyle": (0, (6, 2))})
     for ax, (name, curves) in zip(axes, shares.items(), strict=True):
         ax.axhline(1.0, **TARGET)
-        measured = iter(looks)
+        measured = iter((look("other"), style(name)))
         for label, curve in curves.items():
             ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else next(measured)))
         _finish(ax, name, "share of the step", until)

@@ -1,0 +1,56 @@
+"""Colour and line style of each case, of targets and of limits: the one home for plots and pages.
+
+Hues follow Okabe and Ito's palette, darkened or lightened until each reads as text on its ground.
+Dashes tell the lines apart without colour; no two marks share a pattern.
+"""
+
+from dataclasses import dataclass
+
+GROUNDS = {"light": ("#ffffff", "#f3f4f5"), "dark": ("#14181e", "#222832", "#29313d")}
+"""What the marks stand on in each theme: page, panels and tables."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """Colours in the light and the dark theme, and dashes.
+
+    `dashes` are lengths drawn and left out in turn, in line widths; empty means solid.
+    """
+
+    light: str
+    dark: str
+    dashes: tuple[float, ...] = ()
+
+
+MARKS = {
+    "baseline": Mark("#4d4d4d", "#b8c0cc"),
+    "G1": Mark("#0072b2", "#6cb8ff", (14, 2)),
+    "G2": Mark("#b84d00", "#ff9f4a", (6, 2)),
+    "G3": Mark("#00795c", "#3fcf9f", (6, 2, 1.5, 2)),
+    "target": Mark("#222222", "#e6e6e6", (1, 1.65)),
+    "limit": Mark("#a8003d", "#ff8fa9", (1.5, 1.5)),
+    "other": Mark("#7a3e9d", "#c9a2f2", (3, 1.5)),
+}
+"""`other` is what is held against a case: a mistake, another getter, another engine."""
+
+CASES = ("baseline", "G1", "G2", "G3")
+
+
+def css_name(name: str) -> str:
+    """Return a mark's name in style sheets: `case-g1`, `target`."""
+    return f"case-{name.lower()}" if name in CASES else name
+
+
+def contrast(one: str, other: str) -> float:
+    """Return the contrast ratio of two colours `#rrggbb`, 1 to 21.
+
+    Source: WCAG 2.2, definitions of relative luminance and contrast ratio.
+    """
+    darker, lighter = sorted((_luminance(one), _luminance(other)))
+    return (lighter + 0.05) / (darker + 0.05)
+
+
+def _luminance(colour: str) -> float:
+    channels = [int(colour[at : at + 2], 16) / 255 for at in (1, 3, 5)]
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
+    return sum(w * c for w, c in zip((0.2126, 0.7152, 0.0722), linear, strict=True))

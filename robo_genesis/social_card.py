@@ -1,0 +1,41 @@
+"""The picture that a link to the site shows elsewhere: the course's name beside a measured response."""
+
+import io
+from pathlib import Path
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+from robo_genesis import l04, plots
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.traces import read_joints, read_trace
+
+SIZE = (12.0, 6.3)
+"""Inches at 100 dots an inch: the 1200 × 630 pixels that most services show whole."""
+COMPARED = ("G1", "G2", "G3")
+
+
+def card(folder: Path) -> bytes:
+    """Return the card as PNG.
+
+    Args:
+        folder: an accepted bundle of L04, whose traces are drawn.
+
+    Raises:
+        BundleRefused: the bundle cannot be read.
+    """
+    arrays = bundle.read_arrays(folder)
+    traces = {case: read_trace(folder, arrays, case) for case in COMPARED}
+    stream = io.BytesIO()
+    with mpl.rc_context():
+        plots.use_course_style()
+        mpl.rcParams.update({"font.size": 15, "lines.linewidth": 3})
+        figure = Figure(figsize=SIZE, dpi=100)
+        words, drawn = figure.subplots(1, 2, width_ratios=(4, 5))
+        words.set_axis_off()
+        words.text(0, 0.72, "RoboGenesis", fontsize=40, fontweight="bold")
+        words.text(0, 0.45, "Robot simulation,\nmeasured", fontsize=28)
+        words.text(0, 0.12, "Every curve comes\nfrom a run of the engine.", fontsize=18)
+        plots.position(drawn, traces, read_joints(arrays), l04.STEPPED_JOINT)
+        figure.savefig(stream, format="png", metadata={"Software": None})
+    return stream.getvalue()

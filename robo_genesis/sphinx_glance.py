@@ -1,0 +1,83 @@
+"""What a lesson measured, at a glance: ```` ```{glance} l04 ```` on the home page.
+
+A plot of this build's lab, and the camera's last frame beside it where rendering ran.
+"""
+
+import io
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+from docutils import nodes
+from matplotlib.figure import Figure
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from robo_genesis import l04, plots
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.status import RECORDED_PAGE, Status, page_status
+from robo_genesis.evidence.traces import read_joints, read_trace
+from robo_genesis.ledger import Run
+from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
+from robo_genesis.sphinx_panel import COMPARED, Picture, frames
+
+
+class Glance(SphinxDirective):
+    """Show pictures of a lesson's accepted run on CPU."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return the figures; a lesson without an accepted run of this build is an error."""
+        lesson, book = self.arguments[0], Path(self.env.srcdir)
+        status = page_status(outputs_folder(), lesson, RECORDED_PAGE, BACKEND, book)
+        if status.manifest is None:
+            raise self.error(f"glance: {lesson} has no accepted run: {status.reason}")
+        folder = outputs_folder() / lesson / RECORDED_PAGE / BACKEND
+        run = Run(f"{lesson}/{RECORDED_PAGE}", folder, status).key
+        box = nodes.container(classes=["glance"], evidence_runs=(run,))
+        box += [self.figure(lesson, picture) for picture in pictures(folder, status)]
+        return [box]
+
+    def figure(self, lesson: str, picture: Picture) -> nodes.Node:
+        """Return a figure; its file stands beside the site until Sphinx copies it."""
+        anchor = f"glance-{lesson}-{picture.name}"
+        file = Path(self.env.app.outdir).parent / "panel" / f"{anchor}{picture.suffix}"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(picture.content)
+        image = nodes.image(uri=f"/{os.path.relpath(file, self.env.srcdir)}", alt=picture.alt)
+        return nodes.figure("", image, nodes.caption("", picture.caption), ids=[anchor])
+
+
+def pictures(folder: Path, status: Status) -> Iterator[Picture]:
+    """Yield the plot, and the last camera frame if there is one."""
+    yield response(folder)
+    for frame in frames(folder, status):
+        if frame.name == "final":
+            yield frame
+
+
+def response(folder: Path) -> Picture:
+    """Return the position of the three compared cases, drawn from a bundle's arrays."""
+    arrays = bundle.read_arrays(folder)
+    traces = {case: read_trace(folder, arrays, case) for case in COMPARED}
+    stream = io.BytesIO()
+    with mpl.rc_context():
+        plots.use_course_style()
+        figure = Figure(figsize=(7, 3.6))
+        plots.position(figure.subplots(), traces, read_joints(arrays), l04.STEPPED_JOINT)
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    alt = (
+        f"Position of {l04.STEPPED_JOINT} over time with three pairs of gains, G1, G2 and G3, "
+        "its target and the settling band around it."
+    )
+    caption = "One joint, one target, three pairs of gains: get_dofs_position in lesson L04."
+    return Picture("response", ".svg", stream.getvalue(), alt, caption)
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the directive."""
+    app.add_directive("glance", Glance)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

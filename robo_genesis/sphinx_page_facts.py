@@ -1,0 +1,121 @@
+"""How long a page takes to read, below its title, and its history from git, at its end."""
+
+import subprocess
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+
+WORDS_A_MINUTE = 200
+"""Slow reading, as technical prose asks for. Code, tables, formulas and pictures are not counted."""
+COMMITS = 6
+"""How many of the latest commits of a page are listed."""
+UNCOUNTED = (nodes.literal_block, nodes.table, nodes.math, nodes.math_block, nodes.raw)
+
+
+@dataclass(frozen=True, slots=True)
+class History:
+    """Latest commits of a file as (date, subject), the newest first.
+
+    `unknown` says why nothing is known; `changed` whether the file has changes since.
+    """
+
+    commits: tuple[tuple[str, str], ...] = ()
+    unknown: str = ""
+    changed: bool = False
+
+
+def count_words(document: nodes.document) -> int:
+    """Return the words of a page's running text, headings and captions included."""
+    return sum(
+        len(text.astext().split())
+        for text in document.findall(nodes.Text)
+        if not any(isinstance(node, UNCOUNTED) for node in _above(text))
+    )
+
+
+def _above(node: nodes.Node) -> Iterator[nodes.Node]:
+    while node.parent is not None:
+        node = node.parent
+        yield node
+
+
+def reading_time(words: int) -> str:
+    """Return the words as a time, in whole minutes, with what it was computed from."""
+    minutes = max(1, round(words / WORDS_A_MINUTE))
+    return (
+        f"About {minutes} min to read: {words} words at {WORDS_A_MINUTE} a minute, "
+        "without code and tables."
+    )
+
+
+def git(folder: Path, *arguments: str) -> str | None:
+    """Return what git prints in a folder, None where it fails or is not installed."""
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(folder), *arguments],
+            capture_output=True, encoding="utf8", errors="replace", check=True,
+        )  # fmt: skip
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return done.stdout
+
+
+@lru_cache(maxsize=8)
+def _why_unknown(folder: Path) -> str:
+    """Return why a folder's history cannot be read, nothing where it can."""
+    shallow = git(folder, "rev-parse", "--is-shallow-repository")
+    if shallow is None:
+        return "This site was built outside of a git checkout."
+    if shallow.strip() == "true":
+        return "This site was built from a shallow clone, which holds no history."
+    return ""
+
+
+def history(file: Path) -> History:
+    """Return the latest commits that touched a file."""
+    unknown = _why_unknown(file.parent)
+    if unknown:
+        return History(unknown=unknown)
+    form = ("log", f"-n{COMMITS}", "--format=%cs%x09%s", "--", file.name)
+    lines = (git(file.parent, *form) or "").splitlines()
+    commits = tuple((day, said) for day, _, said in (line.partition("\t") for line in lines))
+    if not commits:
+        return History(unknown="The page is in no commit yet.")
+    return History(commits, changed=bool(git(file.parent, "status", "--porcelain", "--", file.name)))
+
+
+def history_html(found: History) -> str:
+    """Return a history as a fold."""
+    rows = "".join(
+        f'<li><time datetime="{day}">{day}</time> {escape(said)}</li>' for day, said in found.commits
+    )
+    changed = "<p>And changes that are in no commit yet.</p>" if found.changed else ""
+    said = f"<p>Not known. {escape(found.unknown)}</p>" if found.unknown else f"<ul>{rows}</ul>"
+    return (
+        '<details class="page-history"><summary>History of this page</summary>'
+        f"{said}{changed}</details>"
+    )
+
+
+def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
+    """Put the reading time below the title and the history at the end; the home page has no time."""
+    section = document.next_node(nodes.section)
+    if section is None:
+        return
+    if docname != app.config.root_doc:
+        time = reading_time(count_words(document))
+        section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))
+    fold = history_html(history(Path(app.env.doc2path(docname))))
+    section += nodes.raw("", fold, format="html")
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the two additions."""
+    app.connect("doctree-resolved", add_facts)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

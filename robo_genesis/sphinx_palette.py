@@ -1,0 +1,84 @@
+"""The palette in style sheets, and a mark of its line beside a case's name in a table.
+
+`_static/palette.css` is written by each build. It declares, for both themes, each mark's colour
+(`--case-g1`, `--target`) and its dashes for an SVG line two units wide (`--case-g1-dash`).
+"""
+
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.transforms.post_transforms import SphinxPostTransform
+
+from robo_genesis.palette import CASES, MARKS, Mark, css_name
+
+THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
+STROKE = 2
+"""Width of the SVG lines that the dashes are meant for, in their own units."""
+THIN = 0.15
+"""Line width of the mark in a table, in letter heights: a pattern repeats once or twice in it."""
+
+
+def css() -> str:
+    """Return the style sheet of the palette."""
+    rules = [
+        _rule(selector, {f"--{css_name(name)}": getattr(mark, theme) for name, mark in MARKS.items()})
+        for theme, selector in THEMES.items()
+    ]
+    dashes = {f"--{css_name(name)}-dash": _svg_dashes(mark) for name, mark in MARKS.items()}
+    rules.insert(1, _rule(":root", dashes))
+    rules += [
+        _rule(f".case-mark.{css_name(name)}::before", {"background": _stripe(name)})
+        for name in CASES
+    ]
+    return "\n".join(["/* Written from robo_genesis/palette.py. */", *rules, ""])
+
+
+def _rule(selector: str, properties: dict[str, str]) -> str:
+    lines = "".join(f"  {name}: {value};\n" for name, value in properties.items())
+    return f"{selector} {{\n{lines}}}"
+
+
+def _svg_dashes(mark: Mark) -> str:
+    return " ".join(f"{STROKE * length:g}" for length in mark.dashes) or "none"
+
+
+def _stripe(name: str) -> str:
+    """Return a background that repeats a mark's dashes from left to right."""
+    colour = f"var(--{css_name(name)})"
+    at, stops = 0.0, []
+    for number, length in enumerate(MARKS[name].dashes or (1,)):
+        paint = "transparent" if number % 2 else colour
+        stops.append(f"{paint} {at * THIN:.3g}em {(at + length) * THIN:.3g}em")
+        at += length
+    return f"repeating-linear-gradient(90deg, {', '.join(stops)})"
+
+
+class MarkCases(SphinxPostTransform):
+    """Give each cell of a table that holds a case's name, and nothing else, the case's class."""
+
+    default_priority = 400  # outputs of cells have been chosen by then
+
+    def run(self, **kwargs: Any) -> None:
+        """Mark the paragraph in the cell."""
+        for entry in self.document.findall(nodes.entry):
+            name = entry.astext()
+            paragraph = entry.next_node(nodes.paragraph)
+            if name in CASES and paragraph is not None:
+                paragraph["classes"] += ["case-mark", css_name(name)]
+
+
+def write_css(app: Sphinx) -> None:
+    """Write the style sheet where Sphinx collects the site's own."""
+    folder = Path(app.outdir) / "_static"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "palette.css").write_text(css(), "utf8")
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register style sheet and marks."""
+    app.add_post_transform(MarkCases)
+    app.add_css_file("palette.css", priority=400)  # before the sheets that use it
+    app.connect("builder-inited", write_css)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
