@@ -1,5 +1,5 @@
 # `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
-# PORT=8000, BUNDLE=path (for verify), GENESIS=version (for repin),
+# PORT=8000, BUNDLE=path (for verify), GENESIS=version (for repin), SITE_URL=address (for book),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
 
 SHELL := /bin/bash
@@ -34,6 +34,7 @@ export JOBS
 export RELEASE
 export BUNDLE
 export GENESIS
+export SITE_URL
 
 .PHONY: help
 help: ## list the targets

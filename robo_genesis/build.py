@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis import project
+from robo_genesis.address import site_root
 from robo_genesis.evidence import place
 from robo_genesis.execute import TIMEOUT, execute_pages
 from robo_genesis.offline import pack
@@ -195,7 +196,7 @@ def _require_what_was_asked(predicate: Any) -> None:
 
 def _check(html: Path, progress: Progress) -> int:
     """Check the rendered site and return the number of checks passed."""
-    checks = check_site(html)
+    checks = check_site(html, site_root())
     for check in checks:
         found = f"{len(check.problems)} problems" if check.problems else "passed"
         progress("check", f"{check.name} ({check.count})", found)

@@ -35,8 +35,8 @@ class SiteCheck:
 class Site:
     """The files of a built site, each page parsed once."""
 
-    def __init__(self, html: Path):
-        self.root = html.resolve()
+    def __init__(self, html: Path, base: str = "/"):
+        self.root, self.base = html.resolve(), base
         self.pages = {
             path: BeautifulSoup(path.read_text("utf8"), "html.parser")
             for path in sorted(self.root.rglob("*.html"))
@@ -48,13 +48,14 @@ class Site:
         return path.relative_to(self.root).as_posix()
 
 
-def check_site(html: Path) -> list[SiteCheck]:
+def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
     """Run all checks on a built site.
 
     Args:
         html: the folder with the site's `index.html`.
+        base: the path that this folder will have on its server, with a slash at both ends.
     """
-    site = Site(html)
+    site = Site(html, base)
     checks = (check_links, check_alt_texts, check_third_parties, check_leftovers)
     return [check(site) for check in checks]
 
@@ -76,8 +77,10 @@ def _broken(site: Site, page: Path, url: str) -> str | None:
     """Return why an address inside the site leads nowhere."""
     address, fragment = urldefrag(url)
     place = unquote(urlsplit(address).path)
+    if place.startswith("/") and not place.startswith(site.base):
+        return f"leads out of {site.base}, where the site will stand."
     base = site.root if place.startswith("/") else page.parent
-    target = (base / place.lstrip("/")).resolve() if place else page
+    target = (base / place.removeprefix(site.base)).resolve() if place else page
     target = target / "index.html" if target.is_dir() else target
     if not target.is_relative_to(site.root) or not target.is_file():
         return "leads to no file of the site."

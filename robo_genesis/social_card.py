@@ -1,4 +1,4 @@
-"""The picture that a link to the site shows elsewhere: the course's name beside a measured response."""
+"""The picture that a link to the site shows elsewhere: its name beside a measured response."""
 
 import io
 from pathlib import Path

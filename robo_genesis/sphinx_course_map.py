@@ -1,7 +1,7 @@
 """The map of the course, from `course_map.yml`: each lesson, what it builds on, and its state.
 
-A page shows it with ```` ```{course-map} ````. A lesson with a page has the badges of its evidence; one
-without is planned.
+A page shows it with ```` ```{course-map} ````. A lesson with a page has the badges of its evidence;
+one without is planned.
 """
 
 from dataclasses import dataclass

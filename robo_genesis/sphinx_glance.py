@@ -23,6 +23,9 @@ from robo_genesis.ledger import Run
 from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
 from robo_genesis.sphinx_panel import COMPARED, Picture, frames
 
+UNTIL = 0.6
+"""The end of the plot's window [s]: what comes later is one flat line."""
+
 
 class Glance(SphinxDirective):
     """Show pictures of a lesson's accepted run on CPU."""
@@ -66,14 +69,17 @@ def response(folder: Path) -> Picture:
     stream = io.BytesIO()
     with mpl.rc_context():
         plots.use_course_style()
-        figure = Figure(figsize=(7, 3.6))
-        plots.position(figure.subplots(), traces, read_joints(arrays), l04.STEPPED_JOINT)
+        figure = Figure(figsize=(4.8, 3.6))
+        ax = figure.subplots()
+        plots.position(ax, traces, read_joints(arrays), l04.STEPPED_JOINT)
+        ax.set_xlim(0, UNTIL)
+        ax.legend(loc="lower right", fontsize="medium")
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     alt = (
         f"Position of {l04.STEPPED_JOINT} over time with three pairs of gains, G1, G2 and G3, "
         "its target and the settling band around it."
     )
-    caption = "One joint, one target, three pairs of gains: get_dofs_position in lesson L04."
+    caption = f"{l04.STEPPED_JOINT} with three pairs of gains, from get_dofs_position."
     return Picture("response", ".svg", stream.getvalue(), alt, caption)
 
 

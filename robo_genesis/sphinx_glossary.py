@@ -7,8 +7,10 @@ as they are, and a definition does not link to itself.
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+import yaml
 from docutils import nodes
 from sphinx import addnodes
 from sphinx.application import Sphinx
@@ -17,51 +19,14 @@ from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util import logging
 
 GLOSSARY = "glossary"
-OTHER_FORMS = {
-    "actuator": ("actuators",),
-    "backend": ("backends",),
-    "badge": ("badges",),
-    "bundle": ("bundles",),
-    "chatter": ("chatters",),
-    "clipping": ("clips", "clipped"),
-    "constraint": ("constraints",),
-    "critically damped": ("critical damping",),
-    "damping ratio": ("damping ratios",),
-    "degree of freedom": ("degrees of freedom",),
-    "digest": ("digests",),
-    "DOF": ("DOFs",),
-    "Entity": ("Entities",),
-    "force range": ("force ranges",),
-    "integrator": ("integrators",),
-    "Joint": ("Joints",),
-    "kernel": ("kernels",),
-    "Link": ("Links",),
-    "margin": ("margins",),
-    "metric": ("metrics",),
-    "posture": ("postures",),
-    "prediction": ("predictions",),
-    "prismatic joint": ("prismatic",),
-    "quaternion": ("quaternions",),
-    "revolute joint": ("revolute",),
-    "saturation": ("saturated",),
-    "Scene": ("Scenes",),
-    "settling time": ("settling",),
-    "solver": ("solvers",),
-    "stamp": ("stamps", "stamped", "time stamp", "time stamps"),
-    "substep": ("substeps",),
-    "tolerance": ("tolerances",),
-    "trace": ("traces",),
-}
-"""Further forms in which a term stands in prose. One in small letters may also begin a sentence."""
-
-UNLINKED = {"case", "check", "environment", "reset", "step"}
-"""Terms that are common words, too, or have a second sense on some page."""
+FORMS = "glossary_forms.yml"
+"""Beside the glossary: in which further forms its terms are written, and which are not linked."""
 
 KEPT = (
     addnodes.pending_xref, nodes.caption, nodes.literal, nodes.literal_block, nodes.math,
     nodes.math_block, nodes.raw, nodes.reference, nodes.table, nodes.term, nodes.title,
 )  # fmt: skip
-KEPT_CLASSES = {"provenance", "lesson-status", "measured", "page-facts", "evidence-badge"}
+KEPT_CLASSES = {"course-map", "evidence-badge", "lesson-status", "measured", "provenance"}
 
 logger = logging.getLogger(__name__)
 
@@ -76,6 +41,25 @@ class Term:
     definition: str
 
 
+@dataclass(frozen=True, slots=True)
+class Forms:
+    """Further forms of terms by the term's name, and the terms that are not linked."""
+
+    forms: dict[str, list[str]]
+    unlinked: list[str]
+
+    @property
+    def named(self) -> set[str]:
+        """The terms that are named."""
+        return {*self.forms, *self.unlinked}
+
+
+def read_forms(book: Path) -> Forms:
+    """Return what a book declares of its terms, nothing where it declares nothing."""
+    file = book / FORMS
+    return Forms(**yaml.safe_load(file.read_text("utf8"))) if file.is_file() else Forms({}, [])
+
+
 def glossary_terms(env: BuildEnvironment) -> dict[str, Term]:
     """Return the terms of a book's glossary by name, none where a book has no glossary."""
     if GLOSSARY not in env.all_docs:
@@ -86,17 +70,16 @@ def glossary_terms(env: BuildEnvironment) -> dict[str, Term]:
         first = definition.next_node(nodes.paragraph) if definition is not None else None
         said = re.split(r"(?<=\.)\s", first.astext().replace("\n", " "))[0] if first else ""
         for term in entry.findall(nodes.term):
-            if term["ids"] and term.astext() not in UNLINKED:
+            if term["ids"]:
                 found[term.astext()] = Term(term.astext(), GLOSSARY, term["ids"][0], said)
     return found
 
 
-def written_forms(terms: dict[str, Term]) -> dict[str, Term]:
-    """Return each form in which a term is written in prose, with the term."""
-    forms = dict(terms)
-    for name, others in OTHER_FORMS.items():
-        if name in terms:
-            forms |= {other: terms[name] for other in others if other not in terms}
+def written_forms(terms: dict[str, Term], declared: Forms) -> dict[str, Term]:
+    """Return each form in which a term is to be linked, with the term."""
+    forms = {name: term for name, term in terms.items() if name not in declared.unlinked}
+    for name, others in declared.forms.items():
+        forms |= {other: terms[name] for other in others if other not in terms}
     return forms | {
         form[0].upper() + form[1:]: term
         for form, term in forms.items()
@@ -121,7 +104,8 @@ class LinkTerms(SphinxPostTransform):
         terms = glossary_terms(self.env)
         if not terms:
             return
-        forms = written_forms(terms)
+        forms = written_forms(terms, read_forms(Path(self.env.srcdir)))
+        join_texts(self.document)
         words, seen = pattern(forms), set()
         for text in list(self.document.findall(nodes.Text)):
             if not is_prose(text):
@@ -151,6 +135,16 @@ class LinkTerms(SphinxPostTransform):
         )  # fmt: skip
 
 
+def join_texts(document: nodes.document) -> None:
+    """Join neighbouring texts: the parser ends one at each line, and a term may begin before it."""
+    for text in list(document.findall(nodes.Text)):
+        parent = text.parent
+        at = parent.index(text)
+        if at and isinstance(parent[at - 1], nodes.Text):
+            joined = nodes.Text(parent[at - 1].astext() + text.astext())
+            parent[at - 1 : at + 1] = [joined]
+
+
 def is_prose(text: nodes.Text) -> bool:
     """Return whether a text stands in a paragraph, and in nothing that is kept as it is."""
     above = list(_above(text))
@@ -174,10 +168,9 @@ def _own_anchors(text: nodes.Text) -> set[str]:
 
 
 def check_forms(app: Sphinx, env: BuildEnvironment) -> None:
-    """Warn of declared forms whose term the glossary does not have."""
-    terms = glossary_terms(env)
-    for name in sorted(OTHER_FORMS.keys() - terms.keys()) if terms else []:
-        logger.warning(f"OTHER_FORMS names {name!r}, which is no term.", location=GLOSSARY)
+    """Warn of declared names that the glossary does not have; a warning fails the build."""
+    for name in sorted(read_forms(Path(env.srcdir)).named - glossary_terms(env).keys()):
+        logger.warning(f"{FORMS} names {name!r}, which is no term.", location=GLOSSARY)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

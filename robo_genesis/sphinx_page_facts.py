@@ -1,6 +1,7 @@
-"""How long a page takes to read, below its title, and its history from git, at its end."""
+"""A page's reading time below its title, its history from git at its end, and its description."""
 
 import subprocess
+import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,9 +13,11 @@ from docutils import nodes
 from sphinx.application import Sphinx
 
 WORDS_A_MINUTE = 200
-"""Slow reading, as technical prose asks for. Code, tables, formulas and pictures are not counted."""
+"""Slow reading, as technical prose asks for; code, tables and formulas are not counted."""
 COMMITS = 6
 """How many of the latest commits of a page are listed."""
+DESCRIPTION = 200
+"""Letters of a description at most: about what is shown of one elsewhere."""
 UNCOUNTED = (nodes.literal_block, nodes.table, nodes.math, nodes.math_block, nodes.raw)
 
 
@@ -49,7 +52,7 @@ def reading_time(words: int) -> str:
     """Return the words as a time, in whole minutes, with what it was computed from."""
     minutes = max(1, round(words / WORDS_A_MINUTE))
     return (
-        f"About {minutes} min to read: {words} words at {WORDS_A_MINUTE} a minute, "
+        f"About {minutes} min to read: {words:,} words at {WORDS_A_MINUTE} a minute, "
         "without code and tables."
     )
 
@@ -87,13 +90,16 @@ def history(file: Path) -> History:
     commits = tuple((day, said) for day, _, said in (line.partition("\t") for line in lines))
     if not commits:
         return History(unknown="The page is in no commit yet.")
-    return History(commits, changed=bool(git(file.parent, "status", "--porcelain", "--", file.name)))
+    return History(
+        commits, changed=bool(git(file.parent, "status", "--porcelain", "--", file.name))
+    )
 
 
 def history_html(found: History) -> str:
     """Return a history as a fold."""
     rows = "".join(
-        f'<li><time datetime="{day}">{day}</time> {escape(said)}</li>' for day, said in found.commits
+        f'<li><time datetime="{day}">{day}</time> {escape(said)}</li>'
+        for day, said in found.commits
     )
     changed = "<p>And changes that are in no commit yet.</p>" if found.changed else ""
     said = f"<p>Not known. {escape(found.unknown)}</p>" if found.unknown else f"<ul>{rows}</ul>"
@@ -104,7 +110,7 @@ def history_html(found: History) -> str:
 
 
 def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
-    """Put the reading time below the title and the history at the end; the home page has no time."""
+    """Put the time below the title, but of the home page, and the history at the end."""
     section = document.next_node(nodes.section)
     if section is None:
         return
@@ -115,7 +121,30 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     section += nodes.raw("", fold, format="html")
 
 
+def keep_description(app: Sphinx, document: nodes.document) -> None:
+    """Keep the beginning of a page's first paragraph for search engines and links elsewhere."""
+    section = document.next_node(nodes.section)
+    if section is None:
+        return
+    for node in section.children:
+        if isinstance(node, nodes.paragraph):
+            text = textwrap.shorten(node.astext(), DESCRIPTION, placeholder=" …")
+            app.env.metadata[app.env.docname]["og:description"] = text
+            return
+
+
+def write_description(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
+) -> None:
+    """Put the description into the page's head."""
+    text = app.env.metadata.get(page, {}).get("og:description")
+    if text:
+        context["metatags"] += f'<meta name="description" content="{escape(text)}" />'
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Register the two additions."""
+    """Register the additions."""
+    app.connect("doctree-read", keep_description)
+    app.connect("html-page-context", write_description, priority=400)  # read by others at 500
     app.connect("doctree-resolved", add_facts)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -23,7 +23,9 @@ THIN = 0.15
 def css() -> str:
     """Return the style sheet of the palette."""
     rules = [
-        _rule(selector, {f"--{css_name(name)}": getattr(mark, theme) for name, mark in MARKS.items()})
+        _rule(
+            selector, {f"--{css_name(name)}": getattr(mark, theme) for name, mark in MARKS.items()}
+        )
         for theme, selector in THEMES.items()
     ]
     dashes = {f"--{css_name(name)}-dash": _svg_dashes(mark) for name, mark in MARKS.items()}

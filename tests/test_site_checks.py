@@ -25,6 +25,20 @@ def make_site(folder: Path, body: str = GOOD, head: str = "") -> Path:
     return folder
 
 
+@pytest.mark.parametrize(
+    ("href", "reason"),
+    [
+        ("/course/sub/page.html#part", None),
+        ("/course/gone.html", "leads to no file of the site."),
+        ("/sub/page.html", "leads out of /course/, where the site will stand."),
+    ],
+)
+def test_addresses_from_the_root_are_held_against_the_site_s_place(tmp_path, href, reason):
+    make_site(tmp_path, body=f'<a href="{href}">a page</a>')
+    links = check_site(tmp_path, "/course/")[0]
+    assert links.problems == ((f"index.html: {href!r} {reason}",) if reason else ())
+
+
 def problems(folder: Path) -> dict[str, tuple[str, ...]]:
     return {check.name: check.problems for check in check_site(folder) if check.problems}
 

@@ -73,6 +73,7 @@
       const step = data.axes[0].values[inputs[0].value];
       const target = data.start + step;
       const window = (point.q.length - 1) * data.dt;
+      plots.dataset.case = point.case;
       const [low, high] = range(step);
       draw(svgs.q, {
         curve: { times: point.q.map((_, k) => k * data.dt), values: positions(point) },

@@ -1,0 +1,33 @@
+"""Where the site will stand: the environment variable `SITE_URL`, as `https://example.org/course/`."""
+
+import os
+from collections.abc import Mapping
+from urllib.parse import urlsplit
+
+SITE_URL = "SITE_URL"
+
+
+class AddressError(ValueError):
+    """`SITE_URL` is no address; the message says what is valid."""
+
+
+def site_address(environment: Mapping[str, str] = os.environ) -> str | None:
+    """Return the site's address with a slash at its end, None where none is given.
+
+    Raises:
+        AddressError: it is no address of the web, or has a query or a fragment.
+    """
+    given = environment.get(SITE_URL)
+    if not given:
+        return None
+    parts = urlsplit(given)
+    if parts.scheme not in ("http", "https") or not parts.netloc or parts.query or parts.fragment:
+        raise AddressError(
+            f"{SITE_URL} is {given!r}; valid is an address like https://example.org/course/."
+        )
+    return given.rstrip("/") + "/"
+
+
+def site_root(environment: Mapping[str, str] = os.environ) -> str:
+    """Return the path of the site's root on its server, `/` where no address is given."""
+    return urlsplit(site_address(environment) or "/").path

@@ -1,0 +1,74 @@
+"""The course rendered for an address below a server's root: canonical links, sitemap, card, 404."""
+
+import io
+import re
+
+import pytest
+from bs4 import BeautifulSoup
+from PIL import Image
+
+from robo_genesis import pages, project
+from robo_genesis.render import render
+from robo_genesis.site_checks import check_site
+
+pytestmark = pytest.mark.engine
+ADDRESS = "https://example.org/robot/course/"
+CARD = f"{ADDRESS}_static/social-card.png"
+
+
+@pytest.fixture(scope="module")
+def html(site, tmp_path_factory):
+    """The pages that the site was just built from, rendered once more with an address."""
+    folder = tmp_path_factory.mktemp("address")
+    fingerprint = pages.fingerprint(pages.find_pages(project.BOOK), project.ROOT)
+    executed = project.page_cache_folder(fingerprint)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SITE_URL", ADDRESS.rstrip("/"))
+        return render(project.BOOK, folder / "staging", executed, folder / "render.log")
+
+
+def test_every_page_names_its_own_address(html):
+    found = {}
+    for path in html.rglob("*.html"):
+        page = BeautifulSoup(path.read_text(), "html.parser")
+        for link in page.select('link[rel="canonical"]'):
+            found[path.relative_to(html).as_posix()] = link["href"]
+    assert "lessons/l04-joint-control/lecture.html" in found
+    assert found == {name: ADDRESS + name for name in found}
+
+
+def test_the_sitemap_lists_the_pages_and_no_tool(html):
+    listed = re.findall(r"<loc>(.*?)</loc>", (html / "sitemap.xml").read_text())
+    names = [path.relative_to(html).as_posix() for path in html.rglob("*.html")]
+    tools = {"404.html", "search.html", "genindex.html"}
+    expected = {name for name in names if name not in tools and not name.startswith("_static/")}
+    assert sorted(listed) == sorted(ADDRESS + name for name in expected)
+
+
+def test_a_link_to_a_lesson_shows_a_card(html):
+    page = BeautifulSoup(
+        (html / "lessons/l04-joint-control/lecture.html").read_text(), "html.parser"
+    )
+    tags = {tag["property"]: tag["content"] for tag in page.select('meta[property^="og:"]')}
+    assert tags["og:title"].startswith("L04: Robot models")
+    assert tags["og:url"] == f"{ADDRESS}lessons/l04-joint-control/lecture.html"
+    assert tags["og:image"] == CARD
+    assert "Measured positions" in tags["og:image:alt"]
+    assert "joint4" in tags["og:description"]
+
+
+def test_the_card_is_a_picture_of_the_usual_size(html):
+    picture = Image.open(io.BytesIO((html / CARD.removeprefix(ADDRESS)).read_bytes()))
+    assert (picture.format, picture.size) == ("PNG", (1200, 630))
+    assert len(set(picture.convert("RGB").getdata())) > 100
+
+
+def test_the_site_passes_its_checks_there(html):
+    assert [line for check in check_site(html, "/robot/course/") for line in check.problems] == []
+
+
+def test_links_of_the_404_page_begin_at_the_site_s_root(html):
+    page = BeautifulSoup((html / "404.html").read_text(), "html.parser")
+    inside = [tag["href"] for tag in page.select("a[href], link[href]") if tag["href"][0] != "#"]
+    assert len(inside) > 10
+    assert [href for href in inside if not href.startswith(("/robot/course/", ADDRESS))] == []

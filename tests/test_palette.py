@@ -1,0 +1,78 @@
+"""The palette is legible in both themes, and the same in plots and on pages."""
+
+import re
+
+import pytest
+
+from robo_genesis import plots, sphinx_palette
+from robo_genesis.palette import CASES, GROUNDS, MARKS, contrast, css_name
+
+TEXT = 4.5
+"""Least contrast of text, WCAG 2.2, 1.4.3; graphics ask for 3."""
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "ratio"),
+    [("#000000", "#ffffff", 21), ("#ffffff", "#ffffff", 1), ("#767676", "#ffffff", 4.54)],
+)
+def test_contrast_is_that_of_wcag(one, other, ratio):
+    assert contrast(one, other) == contrast(other, one) == pytest.approx(ratio, abs=0.005)
+
+
+@pytest.mark.parametrize("theme", GROUNDS)
+@pytest.mark.parametrize("name", MARKS)
+def test_each_mark_reads_as_text_on_each_ground(name, theme):
+    colour = getattr(MARKS[name], theme)
+    assert min(contrast(colour, ground) for ground in GROUNDS[theme]) >= TEXT
+
+
+@pytest.mark.parametrize("field", ["light", "dark"])
+def test_no_two_marks_share_a_colour(field):
+    assert len({getattr(mark, field) for mark in MARKS.values()}) == len(MARKS)
+
+
+def test_no_two_marks_share_dashes():
+    dashes = [mark.dashes for mark in MARKS.values()]
+    assert len(set(dashes)) == len(dashes)
+    assert all(len(pattern) % 2 == 0 for pattern in dashes)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_plots_draw_the_palette_s_light_colours(name):
+    drawn = plots.style(name)
+    assert drawn["color"] == MARKS[name].light
+    assert drawn["linestyle"] == ((0, MARKS[name].dashes) if MARKS[name].dashes else "-")
+
+
+def test_a_name_that_is_no_case_is_drawn_as_the_baseline():
+    assert plots.style("target") == plots.style("baseline")
+
+
+def rules() -> dict[str, list[dict[str, str]]]:
+    found: dict[str, list[dict[str, str]]] = {}
+    for selector, body in re.findall(
+        r"^([^\s}][^{\n]*) \{\n(.*?)^\}", sphinx_palette.css(), re.M | re.S
+    ):
+        properties = dict(re.findall(r"^  ([\w-]+): (.*);$", body, re.M))
+        found.setdefault(selector, []).append(properties)
+    return found
+
+
+def test_the_style_sheet_declares_each_colour_for_both_themes():
+    light, dashes = rules()[":root"]
+    (dark,) = rules()['html[data-theme="dark"]']
+    assert light == {f"--{css_name(name)}": mark.light for name, mark in MARKS.items()}
+    assert dark == {f"--{css_name(name)}": mark.dark for name, mark in MARKS.items()}
+    assert dashes["--case-g2-dash"] == "12 4"
+    assert dashes["--case-baseline-dash"] == "none"
+    assert {"--case-baseline", "--case-g1", "--case-g2", "--case-g3", "--target", "--limit"} < {
+        *light
+    }
+
+
+def test_the_mark_in_a_table_repeats_the_dashes_of_the_plot():
+    (stripe,) = rules()[".case-mark.case-g3::before"]
+    assert stripe["background"] == (
+        "repeating-linear-gradient(90deg, var(--case-g3) 0em 0.9em, transparent 0.9em 1.2em, "
+        "var(--case-g3) 1.2em 1.43em, transparent 1.43em 1.72em)"
+    )
