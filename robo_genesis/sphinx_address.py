@@ -21,7 +21,7 @@ NOT_FOUND = """\
 <h1>There is no such page</h1>
 <p>The address may be mistyped, or what stood here has moved. These lead on:</p>
 <form class="lost" role="search" action="{root}search.html" method="get">
-<label for="lost-words">Search this course</label>
+<label for="lost-words">Search all pages</label>
 <input id="lost-words" type="search" name="q" autocomplete="off"/>
 <button type="submit">Search</button>
 </form>

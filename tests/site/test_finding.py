@@ -1,0 +1,203 @@
+"""Finding a page, a name or a place again: search, 404, anchors, neighbours, facts."""
+
+import itertools
+import re
+import subprocess
+import threading
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import pytest
+from bs4 import BeautifulSoup
+
+from robo_genesis.project import BOOK
+
+pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+LECTURE = "lessons/l04-joint-control/lecture"
+LAB = "lessons/l04-joint-control/lab"
+ANCHORS = Path(__file__).with_name("anchors.txt")
+PLACES = "article section[id], article section > span[id], article figure[id], article dt[id]"
+NUMBERED = re.compile(r"id\d+$")
+
+
+def parsed(site, name: str) -> BeautifulSoup:
+    return BeautifulSoup((site / f"{name}.html").read_text(), "html.parser")
+
+
+@pytest.fixture
+def page(browser):
+    page = browser.new_page()
+    problems: list[str] = []
+    page.on("console", lambda m: problems.append(m.text) if m.type == "error" else None)
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    yield page
+    page.close()
+    assert [text for text in problems if "404 (" not in text] == []
+
+
+def results(page) -> list[str]:
+    page.wait_for_function(
+        "/Search finished|did not match/.test(document.querySelector('#search-results').innerText)"
+    )
+    return page.eval_on_selector_all("#search-results li > a", "links => links.map(a => a.href)")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "joint4",
+        "finger_joint1",
+        "get_dofs_control_force",
+        "control_dofs_position",
+        "set_dofs_kp",
+        "control_force",
+        "dofs_kp",
+        "overshoot",
+    ],
+)
+def test_search_finds_names_of_joints_and_calls(page, address, words):
+    page.goto(f"{address}/search.html?q={words}")
+    assert [url for url in results(page) if f"/{LECTURE}.html" in url]
+
+
+def test_search_finds_what_a_student_types_into_the_field(page, address):
+    page.goto(f"{address}/{LAB}.html")
+    page.keyboard.press("Control+k")
+    page.keyboard.type("get_dofs_control_force")
+    page.keyboard.press("Enter")
+    page.wait_for_url("**/search.html?q=get_dofs_control_force*")
+    found = results(page)
+    for name in (LECTURE, LAB, "glossary"):
+        assert [url for url in found if f"/{name}.html" in url], name
+
+
+def test_search_says_when_there_is_nothing(page, address):
+    page.goto(f"{address}/search.html?q=zzyzx")
+    assert results(page) == []
+
+
+class WithNotFound(SimpleHTTPRequestHandler):
+    """Answers as a host of static sites does: unknown addresses get the site's own page."""
+
+    def send_error(self, code: int, *_) -> None:
+        body = (Path(self.directory) / "404.html").read_bytes()
+        self.send_response(code)
+        self.send_header("Content-Type", "text/html")
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+    def log_message(self, *_) -> None:
+        pass
+
+
+@pytest.fixture(scope="module")
+def host(site):
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(WithNotFound, directory=str(site)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_port}"
+    server.shutdown()
+
+
+@pytest.mark.parametrize("lost", ["nowhere", "lessons/nowhere.html", "a/b/c/d"])
+def test_who_is_lost_at_any_depth_can_search_and_go_on(page, host, lost):
+    assert page.goto(f"{host}/{lost}", wait_until="networkidle").status == 404
+    assert page.locator("article h1").inner_text() == "There is no such page"
+    family = page.evaluate("getComputedStyle(document.querySelector('article h1')).fontFamily")
+    assert family.startswith("system-ui")  # the style sheets were found
+    for link in page.locator("article li a").all():
+        assert page.request.get(host + link.get_attribute("href")).ok
+    page.get_by_label("Search all pages").fill("joint4")
+    page.locator("form.lost button").click()
+    page.wait_for_url("**/search.html?q=joint4")
+    assert results(page)
+
+
+def places(site) -> set[str]:
+    """Return page#anchor of each heading, figure and term that a reader may link to."""
+    names = [LECTURE, LAB, "glossary", "index"]
+    return {
+        f"{name}#{tag['id']}"
+        for name in names
+        for tag in parsed(site, name).select(PLACES)
+        if not NUMBERED.match(tag["id"])
+    }
+
+
+def test_anchors_that_were_published_stay(site):
+    published = set(ANCHORS.read_text().split())
+    assert len(published) > 100
+    gone = sorted(published - places(site))
+    assert gone == [], "Links elsewhere lead there: keep the old name as a target `(name)=` above."
+
+
+def test_new_anchors_are_kept_from_now_on(site):
+    new = sorted(places(site) - set(ANCHORS.read_text().split()))
+    assert new == [], f"Add these lines to {ANCHORS.name}, and they stay."
+
+
+def test_each_page_leads_to_the_one_before_and_after(site):
+    order = ["index", LECTURE, LAB, "glossary", "evidence/ledger"]
+    order += ["evidence/trust", "evidence/recording"]
+    for before, after in itertools.pairwise(order):
+        assert neighbour(site, before, "next") == after
+        assert neighbour(site, after, "prev") == before
+
+
+def neighbour(site, name: str, which: str) -> str:
+    href = parsed(site, name).select_one(f"a.{'right' if which == 'next' else 'left'}-{which}")[
+        "href"
+    ]
+    return (
+        ((site / name).parent / href)
+        .resolve()
+        .relative_to(site.resolve())
+        .with_suffix("")
+        .as_posix()
+    )
+
+
+def test_pages_tell_their_reading_time_and_history(site):
+    facts = parsed(site, LECTURE).select_one(".page-facts").get_text()
+    minutes, words = re.match(r"About (\d+) min to read: ([\d,]+) words", facts).groups()
+    assert int(minutes) == round(int(words.replace(",", "")) / 200) > 20
+    history = parsed(site, LECTURE).select_one("details.page-history")
+    log = ("git", "log", "-n1", "--format=%cs %s", "--", f"{LECTURE}.md")
+    said = subprocess.run(log, cwd=BOOK, capture_output=True, text=True, check=True).stdout.strip()
+    shallow = ("git", "rev-parse", "--is-shallow-repository")
+    if subprocess.run(shallow, cwd=BOOK, capture_output=True, text=True).stdout.strip() == "true":
+        assert "shallow clone" in history.get_text()
+    else:
+        assert history.select_one("li").get_text() == said
+
+
+def test_the_home_page_maps_the_course(site):
+    cards = {c["id"]: c for c in parsed(site, "index").select("ul.course-map > li")}
+    assert list(cards) == [f"lesson-l0{number}" for number in range(1, 9)]
+    published = [name for name, card in cards.items() if "published" in card["class"]]
+    assert published == ["lesson-l04"]
+    assert cards["lesson-l04"].select_one(".evidence-badge").get_text() == "cpu-verified"
+    assert all(c.select_one(".planned") for name, c in cards.items() if name not in published)
+
+
+def test_the_home_page_shows_a_measurement_before_its_second_paragraph(site):
+    home = parsed(site, "index")
+    figures = home.select(".glance figure")
+    assert [figure["id"] for figure in figures] == ["glance-l04-response", "glance-l04-final"]
+    assert all("Measured on cpu" in figure.get_text() for figure in figures)
+    assert len(figures[0].find_all_previous("p")) <= len(home.select("p")) - 5
+
+
+def test_terms_are_linked_where_they_first_stand(site):
+    links = parsed(site, LECTURE).select("a.term-link")
+    terms = [link["href"].partition("#")[2] for link in links]
+    assert len(terms) == len(set(terms)) > 40
+    assert {"term-qpos", "term-mass-matrix", "term-saturation", "term-one-factor-at-a-time"} < {
+        *terms
+    }
+    assert all(link["title"] for link in links)
+    assert not parsed(site, LECTURE).select(
+        "h1 a.term-link, h2 a.term-link, a a, summary a.term-link"
+    )
