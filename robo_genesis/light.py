@@ -16,6 +16,7 @@ NEEDED_BY = {
     "copybutton.js": "div.highlight",
     "design-tabs.js": ".sd-tab-set",
     "explorer.js": ".explorer",
+    "replay.js": ".replay",
     "fontawesome.js": None,
     "language_data.js": "#search-results",
     "search-from-disk.js": "#search-results",

@@ -27,6 +27,7 @@ from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.ledger import Run
 from robo_genesis.metrics import format_value
 from robo_genesis.sphinx_evidence import BACKEND, lesson_backends, outputs_folder
+from robo_genesis.sphinx_replay import replay_block
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +70,7 @@ class Evidence(SphinxDirective):
         panel["evidence_runs"] = (recorded,)
         for picture in (response(folder, status), *frames(folder, status)):
             panel += self.figure(f"{lesson}-{status.backend}-{picture.name}", picture)
+        panel += replay_block(self, recorded, folder)
         tables = self.parse_text_to_nodes(metrics_text(lesson, here, folder))
         both = (f"{lesson}/{RECORDED_PAGE}/{BACKEND}", recorded)
         panel += nodes.container("", *tables, evidence_runs=both)

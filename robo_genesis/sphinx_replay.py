@@ -1,0 +1,142 @@
+"""A recorded run that plays in the page, and the files that only a reader's request loads.
+
+A page writes ```` ```{replay} l04/lecture ````; the panel of a recorded run has one of its own.
+Poses and curves are the record's; the shape of the robot is the model's, handed on by the lecture.
+"""
+
+import base64
+import gzip
+import re
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from robo_genesis import l04, npm, replay, replay_model, robot_shape
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.traces import read_joints, read_trace
+from robo_genesis.replay import Replay
+from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
+from robo_genesis.sphinx_ledger import scroll_box
+
+CASES = ("G1", "G2", "G3")
+SHAPE_PAGE = "lecture"
+FOLDER = "replay"
+"""Below the site; Jupyter Book loads every script of `_static` on every page, these on none."""
+
+VIEWER = "model-viewer.js"
+VIEWER_LICENCE = "LICENSE-Apache-2.0.txt"
+NOTICE = "NOTICE.txt"
+ELSEWHERE = re.compile(
+    rb"https://(?:www\.gstatic\.com|cdn\.jsdelivr\.net)/[^\"'`\s]*|//# sourceMappingURL=.*"
+)
+"""Addresses in the viewer: of decoders for compressed models, which these are not, and of its own
+source."""
+
+CREDITS = f"""\
+The models (*.glb, and the same in *.js): {replay_model.CREDIT}.
+The viewer ({VIEWER}): @google/model-viewer, © Google LLC, Apache-2.0, with the parts that its own
+notices name. Changed here: the addresses from which it would load decoders for compressed models
+are taken out, so that it asks no other host.
+The licence of both stands in {VIEWER_LICENCE}.
+"""
+
+
+class ReplayDirective(SphinxDirective):
+    """Play the runs of a page's bundle of this build."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return the replay; an unknown page, or one without a bundle, is an error."""
+        lesson_page = self.arguments[0]
+        folder = outputs_folder() / lesson_page / BACKEND
+        if not (folder / "manifest.json").is_file():
+            raise self.error(f"replay: {lesson_page} left no bundle on {BACKEND}.")
+        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder)]
+
+
+def replay_block(directive: SphinxDirective, key: str, folder: Path) -> nodes.Node:
+    """Return what plays an accepted bundle, with all that it says in text and in a table.
+
+    Args:
+        directive: which asks for it.
+        key: names the run, as the ledger does.
+        folder: of the bundle.
+    """
+    env, name = directive.env, f"replay-{key.replace('/', '-')}"
+    arrays = bundle.read_arrays(folder)
+    shown = Replay(
+        name=name,
+        traces={case: read_trace(folder, arrays, case) for case in CASES},
+        joints=read_joints(arrays),
+        joint=l04.STEPPED_JOINT,
+        links=arrays.coords["link"],
+    )
+    shape = outputs_folder() / key.split("/")[0] / SHAPE_PAGE / robot_shape.FILE
+    model = replay_model.glb(robot_shape.load_shape(shape), shown.links, shown.traces)
+    weight = write_model(Path(env.app.outdir) / FOLDER, name, model) + viewer_weight()
+    up = "../" * env.docname.count("/") + FOLDER
+    controls = replay.markup(shown, f"{up}/{name}.js", f"{up}/{VIEWER}", round(weight / 1000))
+
+    said = replay.moving(shown, bundle.read_metrics(folder))
+    block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
+    block += nodes.raw("", controls, format="html")
+    block += directive.parse_text_to_nodes("\n".join(f"- {text}" for text in said.values()))
+    summary = f"All samples of {', '.join(CASES)} as a table"
+    block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
+    table = directive.parse_text_to_nodes(replay.samples(shown))
+    block += scroll_box("", *table, label=summary)
+    credit = (
+        f'</details><p class="credit">3D model: <a href="{up}/{name}.glb" download>GLB</a>, '
+        f'{replay_model.CREDIT} (<a href="{up}/{NOTICE}">notice</a>, '
+        f'<a href="{up}/{VIEWER_LICENCE}">licence</a>).</p>'
+    )
+    block += nodes.raw("", credit, format="html")
+    return block
+
+
+def write_model(folder: Path, name: str, model: bytes) -> int:
+    """Write a model as GLB and as a classic script, and return the script's compressed size.
+
+    A page that was opened from disk may fetch nothing, but may add a script.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    text = base64.b64encode(model).decode()
+    script = f'(globalThis.replayModels ??= {{}})["{name}"] = "{text}";\n'.encode()
+    (folder / f"{name}.glb").write_bytes(model)
+    (folder / f"{name}.js").write_bytes(script)
+    return len(gzip.compress(script))
+
+
+@cache
+def viewer() -> bytes:
+    """Return the viewer's script without addresses of other hosts."""
+    package = npm.packages() / "@google" / "model-viewer"
+    script = (package / "dist" / "model-viewer-umd.min.js").read_bytes()
+    return b"/* See " + NOTICE.encode() + b". */\n" + ELSEWHERE.sub(b"", script)
+
+
+def viewer_weight() -> int:
+    """Return the compressed size of the viewer [byte]."""
+    return len(gzip.compress(viewer()))
+
+
+def write_viewer(app: Sphinx, exception: Exception | None) -> None:
+    """Put the viewer and the licences beside the models, where there are any."""
+    folder = Path(app.outdir) / FOLDER
+    if exception is None and folder.is_dir():
+        licence = npm.packages() / "@google" / "model-viewer" / "LICENSE"
+        (folder / VIEWER).write_bytes(viewer())
+        (folder / VIEWER_LICENCE).write_bytes(licence.read_bytes())
+        (folder / NOTICE).write_text(CREDITS, "utf8")
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the directive and what writes the viewer."""
+    app.add_directive("replay", ReplayDirective)
+    app.connect("build-finished", write_viewer)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
