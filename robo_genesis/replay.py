@@ -12,7 +12,7 @@ from robo_genesis.metrics import format_value
 from robo_genesis.robot_model import JointMap
 from robo_genesis.trace import Trace
 
-SPEEDS = {"1": "real time", "0.25": "4 times slower", "0.1": "10 times slower"}
+SPEEDS = {"1": "real time", "0.25": "1/4", "0.1": "1/10"}
 SLOW = "0.1"
 """The speed at which a replay opens: most happens in the first tenth of the window."""
 
@@ -94,16 +94,19 @@ def markup(replay: Replay, script: str, viewer: str, weight: int) -> str:
     return (
         f'<div class="replay" hidden data-model="{escape(script)}" data-viewer="{escape(viewer)}" '
         f'data-joint="{escape(replay.joint)}" data-name="{name}">'
-        f"<fieldset><legend>Run</legend>{_cases(replay)}</fieldset>"
+        f"<fieldset><legend>Run of {escape(replay.joint)}</legend>{_cases(replay)}</fieldset>"
         '<div class="stage"></div>'
         '<p class="in-space"><button type="button" class="show" aria-expanded="false">'
-        f"Show the robot in 3D</button> <span>{weight} kB, loaded only if you ask for it</span>"
+        f'Show the robot in 3D</button> <span class="weight">{weight} kB, loaded only if you ask '
+        "for it</span>"
         ' <span role="status"></span></p>'
         f'<div class="controls"><button type="button" class="play">Play</button>'
         f'<p><label for="{name}-time">Time</label><input type="range" id="{name}-time" min="0" '
         f'max="{steps}" step="1" value="0"></p>'
         f'<p><label for="{name}-speed">Speed</label><select id="{name}-speed">{speeds}</select></p>'
-        '</div><dl></dl><div class="plots"></div></div>'
+        '</div><dl></dl><div class="plots"></div>'
+        '<p class="legend">Bold: the chosen run. Dotted: the target. Dashed, at the edges of the '
+        "control force: its limits. Drag in a plot to move through time.</p></div>"
     )
 
 

@@ -16,11 +16,11 @@ from robo_genesis.robot_shape import Part
 from robo_genesis.scene_config import FloatArray
 from robo_genesis.trace import Trace
 
-KEPT = 0.07
+KEPT = 0.06
 """Share of the triangles of a part that is kept: about 10,000 of the Franka's 135,000."""
 
-SMALLEST = 60
-"""Triangles below which a part is left as it is: screws and lamps would vanish."""
+SMALLEST = 500
+"""Triangles below which a part is left as it is: rings would break open and lamps vanish."""
 
 CREASE = np.radians(40)
 """Angle between triangles above which an edge is drawn sharp [rad]."""

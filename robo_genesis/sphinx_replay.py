@@ -105,11 +105,16 @@ def write_model(folder: Path, name: str, model: bytes) -> int:
     A page that was opened from disk may fetch nothing, but may add a script.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    text = base64.b64encode(model).decode()
-    script = f'(globalThis.replayModels ??= {{}})["{name}"] = "{text}";\n'.encode()
+    script = script_of(name, model)
     (folder / f"{name}.glb").write_bytes(model)
     (folder / f"{name}.js").write_bytes(script)
     return len(gzip.compress(script))
+
+
+def script_of(name: str, model: bytes) -> bytes:
+    """Return a model as a classic script."""
+    text = base64.b64encode(model).decode()
+    return f'(globalThis.replayModels ??= {{}})["{name}"] = "{text}";\n'.encode()
 
 
 @cache

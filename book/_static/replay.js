@@ -52,10 +52,12 @@
     for (const share of [0, 0.25, 0.5, 0.75, 1]) {
       const at = x(share * end);
       add(svg, "line", { x1: at, x2: at, y1: EDGE.top, y2: HEIGHT - EDGE.bottom, class: "grid" });
-      add(svg, "text", { x: at, y: HEIGHT - 6, class: "middle" }, (share * end).toFixed(1));
+      const label = (share * end).toFixed(1) + (share === 0 ? " s" : "");
+      add(svg, "text", { x: at, y: HEIGHT - 6, class: "middle" }, label);
     }
-    for (const value of [least, most]) {
-      const label = minus(value.toPrecision(3));
+    for (const value of least < 0 && most > 0 ? [least, 0, most] : [least, most]) {
+      const label = value ? minus(value.toPrecision(3)) : "0";
+      if (!value) add(svg, "line", { x1: x(0), x2: x(end), y1: y(0), y2: y(0), class: "grid" });
       add(svg, "text", { x: EDGE.left - 6, y: y(value) + 4, class: "end" }, label);
     }
     for (const { value, kind } of marks) {
@@ -107,7 +109,8 @@
       const settings = {
         alt: about, loading: "eager", "camera-controls": "", "disable-zoom": "", "disable-tap": "",
         "interaction-prompt": "none", "touch-action": "pan-y", "shadow-intensity": "0.8",
-        "camera-orbit": "45deg 72deg auto", "animation-crossfade-duration": "0", exposure: "0.9",
+        "camera-orbit": "45deg 72deg 90%", "camera-target": "0.2m 0.52m 0m", exposure: "0.7",
+        "animation-crossfade-duration": "0",
         src: `data:model/gltf-binary;base64,${globalThis.replayModels[name]}`,
       };
       for (const [key, value] of Object.entries(settings)) element.setAttribute(key, value);
@@ -181,7 +184,6 @@
     function draw_plots() {
       const { target, limit, units } = run();
       const names = ["Position", "Velocity", "Control force"];
-      const notes = [", target dotted", "", ", limits dashed"];
       const marks = [
         [{ value: target, kind: "target" }], [],
         [-limit, limit].map((value) => ({ value, kind: "limit" })),
@@ -190,8 +192,8 @@
         const curves = Object.fromEntries(Object.entries(runs).map(([name, one]) => [
           name, { time: one.time, values: one.values[k] },
         ]));
-        const title = `${names[k]} of ${joint} [${units[k]}]${notes[k]}`;
-        svg.setAttribute("aria-label", `${title}, over time; ${chosen()} is drawn bold.`);
+        const title = `${names[k]} [${units[k]}]`;
+        svg.setAttribute("aria-label", `${title} of ${joint} over time; ${chosen()} is drawn bold.`);
         return draw(svg, { curves, chosen: chosen(), marks: marks[k], title });
       });
       show_sample();
@@ -260,6 +262,7 @@
         } finally {
           show.disabled = false;
         }
+        root.querySelector(".weight").remove();
         status.textContent = "Loaded. Turn it with the mouse, a finger or the arrow keys.";
         show_sample();
       } else {

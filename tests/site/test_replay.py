@@ -1,0 +1,341 @@
+"""The replay in a real browser: it shows the record, by keyboard, from disk, and asks for little."""
+
+import gzip
+import json
+import re
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bs4 import BeautifulSoup
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from robo_genesis import npm, sphinx_replay
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.traces import read_joints, read_trace
+from robo_genesis.l04 import STEPPED_JOINT
+
+pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+LECTURE = "lessons/l04-joint-control/lecture.html"
+CHROMIUM = "/usr/bin/chromium"
+MODEL = "replay-l04-lecture-cpu"
+SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+"""WebGL without a graphics card."""
+
+LOADED = "document.querySelector('.in-space [role=status]').textContent.startsWith('Loaded')"
+
+POSES = """() => {
+  const viewer = document.querySelector("model-viewer");
+  const scene = viewer[Object.getOwnPropertySymbols(viewer).find(s => s.description === "scene")];
+  scene.updateMatrixWorld(true);
+  let world;
+  scene.traverse(node => { if (node.name === "world") world = node; });
+  const back = world.matrixWorld.clone().invert();
+  return Object.fromEntries(world.children.map(link => [
+    link.name,
+    [...link.position.clone().setFromMatrixPosition(back.clone().multiply(link.matrixWorld))],
+  ]));
+}"""
+"""Where the links stand in the running viewer, in the frame of the record [m]."""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=SOFTWARE)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def record(site):
+    """Traces by case, joint map and link names, of the accepted bundle of the lecture."""
+    folder = site.parent / "pages" / "l04" / "lecture" / "cpu"
+    arrays = bundle.read_arrays(folder)
+    traces = {case: read_trace(folder, arrays, case) for case in sphinx_replay.CASES}
+    return traces, read_joints(arrays), arrays.coords["link"]
+
+
+@pytest.fixture(scope="module")
+def files(site) -> Path:
+    return site / sphinx_replay.FOLDER
+
+
+def open_lecture(browser, base, requests=None, **context) -> Page:
+    """Open the lecture; what it asks for goes to `requests`, any error fails the test."""
+    page = browser.new_page(**{"viewport": {"width": 1280, "height": 900}, **context})
+    page.problems = []
+    page.on("console", lambda m: page.problems.append(m.text) if m.type == "error" else None)
+    page.on("pageerror", lambda error: page.problems.append(str(error)))
+    if requests is not None:
+        page.on("request", lambda request: requests.append(request.url))
+    page.goto(f"{base}/{LECTURE}")
+    return page
+
+
+@pytest.fixture
+def page(browser, address) -> Iterator[Page]:
+    page = open_lecture(browser, address)
+    yield page
+    assert page.problems == []
+    page.close()
+
+
+@pytest.fixture(params=["served", "from disk"])
+def anywhere(request, browser, address, site) -> Iterator[Page]:
+    page = open_lecture(browser, address if request.param == "served" else site.as_uri())
+    yield page
+    assert page.problems == []
+    page.close()
+
+
+def choose(page, case, sample):
+    """Bring the replay to a sample, as a reader does: picker, then slider."""
+    page.locator(f".replay input[value={case}]").check()
+    slider = page.locator(".replay input[type=range]")
+    slider.fill(str(sample))
+    return slider
+
+
+def readout(page):
+    terms, values = (page.locator(f".replay {tag}").all_inner_texts() for tag in ("dt", "dd"))
+    return dict(zip(terms, values, strict=True))
+
+
+def number(text):
+    return float(re.match(r"−?[\d.]+", text).group().replace("−", "-"))
+
+
+def show_robot(page):
+    page.locator(".in-space .show").click()
+    page.wait_for_function(LOADED, timeout=120_000)
+
+
+def test_links_stand_where_the_record_says(anywhere, record):
+    """In each case at several samples, the first and the last among them."""
+    page = anywhere
+    traces, _, links = record
+    show_robot(page)
+    worst = 0.0
+    for case, trace in traces.items():
+        for sample in (0, 3, 9, 17, 60, trace.steps):
+            choose(page, case, sample)
+            page.wait_for_function(
+                f"document.querySelector('model-viewer').animationName === '{case}'"
+            )
+            page.wait_for_timeout(50)
+            found = page.evaluate(POSES)
+            assert sorted(found) == sorted(links)
+            places = np.array([found[link] for link in links])
+            worst = max(worst, np.abs(places - trace.link_pos[sample]).max())
+            assert np.abs(places - trace.link_pos[sample]).max() < 1e-6, (case, sample)
+    print(f"largest difference of a link's position: {worst:.1e} m")
+    assert np.abs(traces["G2"].link_pos[9] - traces["G2"].link_pos[0]).max() > 1e-2
+
+
+def test_sample_0_is_the_state_before_the_first_step(page, record):
+    traces, joints, _ = record
+    k = joints.entry(STEPPED_JOINT)
+    for case, trace in traces.items():
+        slider = choose(page, case, 0)
+        shown = readout(page)
+        assert shown["time"] == "0.00 s, before the first step"
+        assert number(shown["position"]) == pytest.approx(trace.q[0, k], abs=6e-5)
+        assert number(shown["velocity"]) == pytest.approx(trace.start_qd[k], abs=6e-5)
+        start = trace.start_control_force[k]
+        assert number(shown["control force"]) == pytest.approx(start, abs=6e-3)
+        assert "before the first step" in slider.get_attribute("aria-valuetext")
+
+
+def test_keys_move_through_time_and_all_follows(anywhere, record):
+    page = anywhere
+    traces, joints, _ = record
+    k, trace = joints.entry(STEPPED_JOINT), traces["G2"]
+    slider = choose(page, "G2", 0)
+    slider.focus()
+    for _ in range(9):
+        page.keyboard.press("ArrowRight")
+    shown = readout(page)
+    assert shown["time"] == "0.09 s"
+    assert number(shown["velocity"]) == pytest.approx(trace.qd[8, k], abs=6e-5)
+    assert number(shown["force limit"][1:]) == trace.effort_limit[k]
+    spoken = slider.get_attribute("aria-valuetext")
+    assert spoken.startswith("G2: time 0.09 s; position ")
+    assert shown["control force"] in spoken
+    page.keyboard.press("End")
+    assert readout(page)["time"] == "1.20 s"
+    before = page.locator(".replay .cursor").first.get_attribute("x1")
+    page.keyboard.press("Home")
+    assert page.locator(".replay .cursor").first.get_attribute("x1") != before
+
+
+def test_arrow_keys_pick_a_case_and_its_curve_is_bold(page):
+    choose(page, "G1", 20)
+    page.locator(".replay input[value=G1]").focus()
+    page.keyboard.press("ArrowDown")
+    assert page.locator(".replay .chosen").evaluate_all("all => all.map(e => e.dataset.case)") == (
+        ["G2"] * 3
+    )
+    names = page.locator(".replay svg").evaluate_all("all => all.map(e => e.ariaLabel)")
+    assert all("G2 is drawn bold" in name for name in names)
+
+
+def test_curves_are_told_apart_without_colour(page):
+    dashes = page.locator(".replay svg").first.evaluate(
+        "svg => [...svg.querySelectorAll('.curve')].map(e => getComputedStyle(e).strokeDasharray)"
+    )
+    assert len(set(dashes)) == 3
+
+
+def test_the_curve_is_drawn_to_scale(page, record):
+    traces, joints, _ = record
+    k = joints.entry(STEPPED_JOINT)
+    drawn = page.locator(".replay svg").nth(2).evaluate("""svg => ({
+        y: svg.querySelector("[data-case=G2]").getAttribute("points").split(" ")
+          .map(pair => Number(pair.split(",")[1])),
+        limits: [...svg.querySelectorAll("line.limit")].map(l => Number(l.getAttribute("y1")))
+    })""")
+    low, high = drawn["limits"]
+    limit = traces["G2"].effort_limit[k]
+    force = [(y - low) / (high - low) * 2 * limit - limit for y in drawn["y"]]
+    recorded = [traces["G2"].start_control_force[k], *traces["G2"].control_force[:, k]]
+    assert force == pytest.approx(recorded, abs=0.2)  # coordinates have one decimal
+
+
+def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
+    choose(page, "G2", 0)
+    page.locator(".replay select").select_option("1")
+    play = page.locator(".replay .play")
+    play.focus()
+    page.keyboard.press("Space")
+    assert play.inner_text() == "Pause"
+    page.wait_for_function("document.querySelector('.replay input[type=range]').value > 5")
+    page.keyboard.press("Space")
+    paused = page.locator(".replay input[type=range]").input_value()
+    assert play.inner_text() == "Play"
+    page.wait_for_timeout(200)
+    assert page.locator(".replay input[type=range]").input_value() == paused
+    page.keyboard.press("Space")
+    page.wait_for_function("document.querySelector('.replay input[type=range]').value === '120'")
+    assert play.inner_text() == "Play"
+
+
+def test_nothing_plays_by_itself(page):
+    before = readout(page)
+    page.wait_for_timeout(500)
+    assert readout(page) == before
+
+
+def test_reduced_motion_goes_by_steps(browser, address):
+    page = open_lecture(browser, address, reduced_motion="reduce")
+    play = page.locator(".replay .play")
+    assert play.inner_text() == "Next 0.05 s"
+    play.click()
+    assert readout(page)["time"] == "0.05 s"
+    page.wait_for_timeout(300)
+    assert readout(page)["time"] == "0.05 s"
+    assert page.problems == []
+    page.close()
+
+
+def test_viewer_and_model_are_asked_for_on_request_alone(browser, address, files):
+    asked: list[str] = []
+    page = open_lecture(browser, address, asked)
+    page.wait_for_load_state("networkidle")
+    page.locator(".replay").scroll_into_view_if_needed()
+    choose(page, "G2", 30)
+    before = [url for url in asked if f"/{sphinx_replay.FOLDER}/" in url]
+    assert before == []
+    show_robot(page)
+    loaded = sorted(url.rpartition("/")[2] for url in asked if f"/{sphinx_replay.FOLDER}/" in url)
+    assert loaded == [sphinx_replay.VIEWER, f"{MODEL}.js"]
+    assert [url for url in asked if not url.startswith((address, "data:", "blob:"))] == []
+    assert page.problems == []
+    page.close()
+    weights = {
+        file.name: f"{file.stat().st_size / 1000:.0f} kB, "
+        f"{len(gzip.compress(file.read_bytes())) / 1000:.0f} kB compressed"
+        for file in (files / f"{MODEL}.glb", files / f"{MODEL}.js", files / sphinx_replay.VIEWER)
+    }
+    print(weights)
+
+
+def test_the_robot_can_be_hidden_again(page):
+    show_robot(page)
+    button = page.locator(".in-space .show")
+    assert button.get_attribute("aria-expanded") == "true"
+    assert page.locator("model-viewer").get_attribute("alt").startswith("The robot in 3D")
+    button.click()
+    assert not page.locator("model-viewer").is_visible()
+    assert button.get_attribute("aria-expanded") == "false"
+
+
+def test_a_file_that_is_missing_is_said(browser, address):
+    page = browser.new_page()
+    page.route(f"**/{MODEL}.js", lambda route: route.abort())
+    page.goto(f"{address}/{LECTURE}")
+    page.locator(".in-space .show").click()
+    status = page.locator(".in-space [role=status]")
+    status.get_by_text("cannot be shown").wait_for()
+    assert page.locator("model-viewer").count() == 0
+    page.close()
+
+
+def test_without_scripts_figure_film_and_table_remain(browser, address):
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(f"{address}/{LECTURE}")
+    assert not page.locator(".replay").is_visible()
+    assert page.locator("#fig-l04-gains img").is_visible()
+    assert page.locator("#fig-l04-film img").is_visible()
+    assert page.get_by_text("moves farthest").first.is_visible()
+    summary = page.locator(".replay-block summary")
+    summary.click()
+    assert page.locator(".replay-block tbody tr").count() == 121
+    assert page.locator(".replay-block table").is_visible()
+    context.close()
+
+
+def test_nothing_is_cut_off_on_a_phone(browser, address):
+    page = open_lecture(browser, address, viewport={"width": 320, "height": 800})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 320
+    overflow = page.locator(".replay").evaluate("""root => {
+      const edge = root.getBoundingClientRect().right;
+      return [...root.querySelectorAll("input, button, select, svg, svg text, dl div")]
+        .filter(e => e.getBoundingClientRect().right > edge).map(e => e.outerHTML);
+    }""")
+    assert overflow == []
+    assert page.problems == []
+    page.close()
+
+
+def test_the_validator_finds_nothing_in_the_site_s_model(files, tmp_path):
+    program = tmp_path / "validate.js"
+    program.write_text(
+        "require(process.argv[2]).validateBytes("
+        "new Uint8Array(require('fs').readFileSync(process.argv[3])))"
+        ".then(report => console.log(JSON.stringify(report)));"
+    )
+    command = [npm.node(), program, npm.packages() / "gltf-validator", files / f"{MODEL}.glb"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    found = json.loads(done.stdout)
+    assert found["issues"]["messages"] == []
+    assert found["info"]["animationCount"] == 3
+
+
+def test_script_and_download_hold_one_model_with_its_licence(files):
+    text = (files / f"{MODEL}.js").read_text()
+    assert sphinx_replay.script_of(MODEL, (files / f"{MODEL}.glb").read_bytes()) == text.encode()
+    assert "Franka Robotics GmbH" in (files / sphinx_replay.NOTICE).read_text()
+    assert "Apache License" in (files / sphinx_replay.VIEWER_LICENCE).read_text()
+
+
+def test_the_script_is_deferred_and_on_no_other_page(site):
+    page = BeautifulSoup((site / LECTURE).read_text(), "html.parser")
+    (script,) = page.select("script[src*='replay.js']")
+    assert script.has_attr("defer")
+    others = [path for path in site.rglob("*.html") if "_static/replay.js" in path.read_text()]
+    assert [path.name for path in others] == ["lecture.html"]
