@@ -99,7 +99,11 @@ def unexpected_outcome(source: NotebookNode, executed: NotebookNode) -> Failure 
 def _lacks_figure(metadata: NotebookNode, executed: NotebookNode) -> bool:
     """Whether a cell that is tagged figure put out no picture."""
     kinds = {kind for out in executed.outputs for kind in out.get("data", {})}
-    return "figure" in metadata.get("tags", []) and not kinds & {"image/svg+xml", "image/png", "image/jpeg"}
+    return "figure" in metadata.get("tags", []) and not kinds & {
+        "image/svg+xml",
+        "image/png",
+        "image/jpeg",
+    }
 
 
 def _contradiction(metadata: NotebookNode, raised: Sequence[NotebookNode]) -> str | None:

@@ -64,11 +64,11 @@ def moving(replay: Replay, metrics: Mapping[str, Mapping[str, Metric]]) -> dict[
         far = np.linalg.norm(trace.link_pos - trace.link_pos[0], axis=2).max(axis=0)
         value = {name: format_value(m.value, m.unit) for name, m in metrics[case].items()}
         said[case] = (
-            f"**{case}**: `{replay.joint}` starts at {_signed(trace.q[0, k])} {unit} and is told to "
-            f"go to {_signed(trace.target[0, k])} {unit}. The link `{replay.links[far.argmax()]}` "
-            f"moves farthest, by up to {100 * far.max():.1f} cm. Rise time {value['rise_time']}, "
-            f"overshoot {value['overshoot']}, final error {value['final_error']}; at the force "
-            f"limit: {value['saturation_samples']}."
+            f"**{case}**: `{replay.joint}` starts at {_signed(trace.q[0, k])} {unit} and is told "
+            f"to go to {_signed(trace.target[0, k])} {unit}. The link "
+            f"`{replay.links[far.argmax()]}` moves farthest, by up to {100 * far.max():.1f} cm. "
+            f"Rise time {value['rise_time']}, overshoot {value['overshoot']}, final error "
+            f"{value['final_error']}; at the force limit: {value['saturation_samples']}."
         )
     return said
 

@@ -1,7 +1,7 @@
 """A recorded run as a GLB: the robot's shape moves as the link poses of the record say.
 
 One node per link, placed in the world and moved by one animation per case, whose keys are the
-samples of the record. Nothing is compressed: what unpacks compressed meshes would have to be loaded.
+samples of the record. Nothing is compressed: what unpacks such meshes would have to be loaded.
 """
 
 import json
@@ -152,7 +152,9 @@ def _material(model: gltf.GLTF2, part: Part) -> int:
         look = gltf.PbrMetallicRoughness(
             baseColorFactor=colour, metallicFactor=0.0, roughnessFactor=0.6
         )
-        model.materials.append(gltf.Material(name=name, pbrMetallicRoughness=look, alphaCutoff=None))
+        model.materials.append(
+            gltf.Material(name=name, pbrMetallicRoughness=look, alphaCutoff=None)
+        )
         known.append(name)
     return known.index(name)
 

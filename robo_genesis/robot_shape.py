@@ -72,7 +72,9 @@ def write_shape(folder: Path, parts: Sequence[Part]) -> Path:
 def load_shape(file: Path) -> list[Part]:
     """Return the parts that `write_shape` wrote."""
     with np.load(file, allow_pickle=False) as stored:
-        links, colours, vertices, faces = (stored[k] for k in ("link", "rgb", "vertices_m", "faces"))
+        links, colours, vertices, faces = (
+            stored[k] for k in ("link", "rgb", "vertices_m", "faces")
+        )
         ends = np.cumsum(stored["sizes"], axis=0)
     parts, begin = [], (0, 0)
     for link, (red, green, blue), end in zip(links.tolist(), colours.tolist(), ends, strict=True):

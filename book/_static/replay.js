@@ -85,14 +85,21 @@
     };
   }
 
+  /* Adds a script once, however many replays of the page ask for it; one that failed, anew. */
+  const asked = new Map();
   function script(source) {
-    return new Promise((resolve, reject) => {
+    const adding = () => new Promise((resolve, reject) => {
       const element = document.createElement("script");
       element.src = source;
       element.onload = resolve;
-      element.onerror = () => reject(new Error(source));
+      element.onerror = () => {
+        asked.delete(source);
+        reject(new Error(source));
+      };
       document.head.append(element);
     });
+    if (!asked.has(source)) asked.set(source, adding());
+    return asked.get(source);
   }
 
   /* The robot in 3D, in step with the replay. A classic script and a data: address work from disk. */

@@ -3,14 +3,25 @@
 import shutil
 from types import SimpleNamespace
 
+import numpy as np
+import pygltflib
 import pytest
+import trimesh
 from docutils import nodes
 from docutils.core import publish_doctree
 from docutils.utils import new_document
 from myst_parser.parsers.docutils_ import Parser
 from spoilers import edit, metrics, on, part, predicate, seal
 
-from robo_genesis import l04, ledger, project, sphinx_ledger, sphinx_panel, sphinx_provenance
+from robo_genesis import (
+    l04,
+    ledger,
+    project,
+    robot_shape,
+    sphinx_ledger,
+    sphinx_panel,
+    sphinx_provenance,
+)
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.findings import number
 from robo_genesis.evidence.status import Status, recorded_status
@@ -18,6 +29,7 @@ from robo_genesis.evidence.traces import read_trace
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.ledger import Run
 from robo_genesis.metrics import format_value
+from robo_genesis.robot_shape import Part
 from robo_genesis.tables import METRIC_LABELS
 
 
@@ -175,10 +187,10 @@ class Panel(sphinx_panel.Evidence):
 
     def __init__(self, book):
         app = SimpleNamespace(outdir=book / "_build" / "html")
+        env = SimpleNamespace(srcdir=book, app=app, docname="lessons/page")
         self.state = SimpleNamespace(
-            document=SimpleNamespace(settings=SimpleNamespace(env=SimpleNamespace(
-                srcdir=book, app=app)))
-        )  # fmt: skip
+            document=SimpleNamespace(settings=SimpleNamespace(env=env, record_dependencies=None))
+        )
 
     def parse_text_to_nodes(self, text):
         return publish_doctree(text, parser=Parser()).children
@@ -196,6 +208,7 @@ def test_what_compares_two_runs_names_both_and_all_else_the_recorded_one(
         Run("l04/lab", book / "evidence" / "l04" / accelerator, status, recorded=True),
     )
     monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
+    hand_on_a_shape(tmp_path)
     monkeypatch.setattr(sphinx_provenance, "measured_pages", lambda book: {})
     monkeypatch.setattr(sphinx_provenance, "all_runs", lambda book: {run.key: run for run in runs})
     app = SimpleNamespace(env=SimpleNamespace(srcdir=book, docname="page"))
@@ -210,16 +223,45 @@ def test_what_compares_two_runs_names_both_and_all_else_the_recorded_one(
     alone, compared = f"Measured {theirs} · ledger", f"Measured {ours} and {theirs} · ledger"
     assert ours.startswith("on cpu · ")
     assert theirs.startswith(f"on {accelerator} · ")
-    assert lines == [alone] * 4 + [compared] * 2
+    assert lines == [alone] * 5 + [compared] * 2
     items = app.env.robo_genesis_items["page"]
     both = ("l04/lab/cpu", f"l04/lab/{accelerator}/recorded")
-    assert [item.runs for item in items] == [both[1:]] * 4 + [both] * 2
+    assert [item.runs for item in items] == [both[1:]] * 5 + [both] * 2
     run, badge, *_ = sphinx_ledger._of_runs(runs)
     assert [link["refuri"] for link in run] == [
         "#run-l04-lab-cpu",
         f"#run-l04-lab-{accelerator}-recorded",
     ]
     assert [node.astext() for node in badge] == ["cpu-verified", f"{accelerator}-verified"]
+
+
+def hand_on_a_shape(outputs):
+    """Write what the lecture of this build would: a box for each link of the record."""
+    box = trimesh.creation.box((0.1, 0.1, 0.1))
+    links = bundle.read_arrays(outputs / "l04" / "lab" / "cpu").coords["link"]
+    parts = [Part(link, (9, 9, 9), box.vertices.astype(np.float32), box.faces) for link in links]
+    robot_shape.write_shape(outputs / "l04" / "lecture", parts)
+
+
+def test_a_recorded_run_replays_from_its_own_record(folder, tmp_path, monkeypatch):
+    book = tmp_path / "book"
+    place = on("amdgpu")(shutil.copytree(folder, book / "evidence" / "l04" / "cpu"))
+    status = Status("verified", "amdgpu", "", bundle.read_manifest(place))
+    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
+    hand_on_a_shape(tmp_path)
+    panel = Panel(book).panel("l04", status)
+
+    (block,) = [n for n in panel.findall(nodes.container) if "replay-block" in classes(n)]
+    assert block["evidence_runs"] == ("l04/lab/amdgpu/recorded",)
+    name = "replay-l04-lab-amdgpu-recorded"
+    assert f'data-model="../replay/{name}.js"' in block[0].astext()
+    written = book / "_build" / "html" / "replay"
+    assert (written / f"{name}.js").read_bytes().startswith(b"(globalThis.replayModels ??= {})")
+    trace = read_trace(place, bundle.read_arrays(place), "G2")
+    model = pygltflib.GLTF2.load_binary(written / f"{name}.glb")
+    assert [animation.name for animation in model.animations] == ["G1", "G2", "G3"]
+    assert trace.link_pos[:, 2].astype(np.float32).tobytes() in model.binary_blob()
+    assert len(list(block.findall(nodes.row))) == 1 + len(trace.t)
 
 
 def classes(node):

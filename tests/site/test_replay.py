@@ -1,4 +1,4 @@
-"""The replay in a real browser: it shows the record, by keyboard, from disk, and asks for little."""
+"""The replay in a real browser: it shows the record, by keyboard and from disk."""
 
 import gzip
 import json
@@ -66,7 +66,7 @@ def files(site) -> Path:
 
 def open_lecture(browser, base, requests=None, **context) -> Page:
     """Open the lecture; what it asks for goes to `requests`, any error fails the test."""
-    page = browser.new_page(**{"viewport": {"width": 1280, "height": 900}, **context})
+    page = browser.new_page(**context)
     page.problems = []
     page.on("console", lambda m: page.problems.append(m.text) if m.type == "error" else None)
     page.on("pageerror", lambda error: page.problems.append(str(error)))
@@ -193,11 +193,15 @@ def test_curves_are_told_apart_without_colour(page):
 def test_the_curve_is_drawn_to_scale(page, record):
     traces, joints, _ = record
     k = joints.entry(STEPPED_JOINT)
-    drawn = page.locator(".replay svg").nth(2).evaluate("""svg => ({
+    drawn = (
+        page.locator(".replay svg")
+        .nth(2)
+        .evaluate("""svg => ({
         y: svg.querySelector("[data-case=G2]").getAttribute("points").split(" ")
           .map(pair => Number(pair.split(",")[1])),
         limits: [...svg.querySelectorAll("line.limit")].map(l => Number(l.getAttribute("y1")))
     })""")
+    )
     low, high = drawn["limits"]
     limit = traces["G2"].effort_limit[k]
     force = [(y - low) / (high - low) * 2 * limit - limit for y in drawn["y"]]
@@ -282,6 +286,30 @@ def test_a_file_that_is_missing_is_said(browser, address):
     status.get_by_text("cannot be shown").wait_for()
     assert page.locator("model-viewer").count() == 0
     page.close()
+
+
+def test_two_replays_of_a_page_are_two(browser, address, site, files):
+    """A recorded run brings its own: other names, another model, the same viewer."""
+    other, html = "replay-l04-lab-amdgpu-recorded", (site / LECTURE).read_text()
+    block = str(BeautifulSoup(html, "html.parser").select_one(".replay-block"))
+    html = html.replace("</article>", block.replace(MODEL, other) + "</article>", 1)
+    assert html.count('class="replay"') == 2
+    script = sphinx_replay.script_of(other, (files / f"{MODEL}.glb").read_bytes())
+    context = browser.new_context()
+    context.route(f"**/{LECTURE}", lambda route: route.fulfill(body=html, content_type="text/html"))
+    context.route(f"**/{other}.js", lambda route: route.fulfill(body=script))
+    page = open_lecture(context, address)
+    first, second = page.locator(".replay").all()
+    second.locator("input[value=G3]").check()
+    second.locator("input[type=range]").fill("7")
+    assert first.locator("input:checked").input_value() == "G1"
+    assert first.locator("input[type=range]").input_value() == "0"
+    for replay in (first, second):
+        replay.locator(".in-space .show").click()
+        replay.get_by_text("Loaded.").wait_for(timeout=120_000)
+    assert page.locator("model-viewer").count() == 2
+    assert page.problems == []
+    context.close()
 
 
 def test_without_scripts_figure_film_and_table_remain(browser, address):

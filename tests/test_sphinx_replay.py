@@ -1,0 +1,31 @@
+"""What the replay ships: a viewer that names no other host, and models as scripts."""
+
+import base64
+import gzip
+import re
+
+from robo_genesis import sphinx_replay
+from robo_genesis.site_checks import SERVICES
+
+
+def test_the_viewer_is_the_package_s_without_other_hosts():
+    script = sphinx_replay.viewer().decode()
+    assert SERVICES.search(script) is None
+    assert "sourceMappingURL" not in script
+    assert "Licensed under the Apache License" in script  # the notices are all there
+    assert script.startswith("/* See NOTICE.txt. */")
+
+
+def test_addresses_are_taken_out_and_nothing_beside_them():
+    text = b'a("https://www.gstatic.com/draco/1/",b);c=`https://cdn.jsdelivr.net/npm/x.js`'
+    assert sphinx_replay.ELSEWHERE.sub(b"", text) == b'a("",b);c=``'
+
+
+def test_a_model_is_written_twice_and_weighed(tmp_path):
+    weight = sphinx_replay.write_model(tmp_path / "replay", "replay-x", b"glTF\0model")
+    script = (tmp_path / "replay" / "replay-x.js").read_bytes()
+    assert weight == len(gzip.compress(script))
+    assert (tmp_path / "replay" / "replay-x.glb").read_bytes() == b"glTF\0model"
+    packed = re.search(rb'\["replay-x"\] = "(.*)";', script)
+    assert packed is not None
+    assert base64.b64decode(packed[1]) == b"glTF\0model"
