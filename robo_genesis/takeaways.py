@@ -181,5 +181,5 @@ def _figures(page: Page, executed: NotebookNode, folder: Path) -> Iterator[Path]
             if drawn:
                 named = cell.metadata.get("mystnb", {}).get("figure", {})
                 path = folder / f"{named.get('name', f'figure-{number}')}.svg"
-                path.write_text(drawn, "utf8")
+                path.write_text(drawn.strip(), "utf8")
                 yield path
