@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
-from bs4 import BeautifulSoup, Tag
+from bs4 import BeautifulSoup
 from PIL import Image
 
 # Jupyter Book and the theme put every script on all pages; these have work only where something
@@ -25,18 +25,21 @@ NEEDED_BY = {
     "togglebutton.js": ".toggle, .admonition.dropdown",
 }
 
-# Files of the theme that no page asks for: tools of its makers, and fonts for old browsers.
+# Files of the theme that no page asks for; the rest are tools of its makers.
 UNUSED = (
     "_static/**/*.map",
-    "_static/**/*.ttf",
+    "_static/**/fa-solid-900.*",  # robo_genesis/icons.py has made a small one of it
     "_static/*webpack-macros.html",
     "_static/locales",
     "_static/scripts/fontawesome.js*",
 )
 
+OPTIONS = "DOCUMENTATION_OPTIONS"
+"""What Sphinx's scripts set; the file `documentation_options.js` defines it."""
+
 PIXELS = {"": 1.0, "px": 1.0, "pt": 4 / 3, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
 """CSS pixels in one unit of length."""
-LENGTH = re.compile(r"([\d.]+)([a-z]*)$")
+LENGTH = re.compile(r"([\d.]+)([a-z]*)")
 
 
 def lighten(page: BeautifulSoup, folder: Path) -> None:
@@ -47,7 +50,7 @@ def lighten(page: BeautifulSoup, folder: Path) -> None:
         folder: the folder that the page's addresses are relative to.
     """
     drop_idle_scripts(page)
-    move_scripts_to_the_end(page)
+    defer_scripts(page)
     place_images(page, folder)
 
 
@@ -60,16 +63,18 @@ def drop_idle_scripts(page: BeautifulSoup) -> None:
             script.decompose()
 
 
-def move_scripts_to_the_end(page: BeautifulSoup) -> None:
-    """Move the head's scripts behind the page's content, in their order.
+def defer_scripts(page: BeautifulSoup) -> None:
+    """Let every script file wait until the page is there; they then run in their order.
 
-    Some are written in place and use what a file before them defines, so `defer` is no choice. The
-    theme's first one stays: it sets light or dark before anything shows. So do scripts of data,
-    and those that do not block.
+    A script written in place cannot wait, unless it is a module: so is one that sets options which
+    a file before it defines. The others need no file, like the theme's first, which sets light or
+    dark before anything shows.
     """
-    if page.head and page.body:
-        for script in page.head.select("script:not([data-cfasync], [defer], [async], [type])"):
-            page.body.append(script.extract())
+    for script in page.select("script:not([type], [async])"):
+        if script.has_attr("src"):
+            script["defer"] = ""
+        elif OPTIONS in script.get_text():
+            script["type"] = "module"
 
 
 def place_images(page: BeautifulSoup, folder: Path) -> None:
@@ -95,15 +100,18 @@ def image_size(file: Path) -> tuple[int, int]:
     if file.suffix != ".svg":
         with Image.open(file) as image:
             return image.size
-    for _, root in ElementTree.iterparse(file, events=["start"]):
-        sides = [LENGTH.match(root.get(name, "")) for name in ("width", "height")]
-        if all(side and side[2] in PIXELS for side in sides):
-            return tuple(round(float(s[1]) * PIXELS[s[2]]) for s in sides)  # type: ignore
-        box = root.get("viewBox", "").split()
-        if len(box) == 4:
-            return round(float(box[2])), round(float(box[3]))
-        break
+    _, root = next(ElementTree.iterparse(file, events=["start"]))
+    width, height = (LENGTH.fullmatch(root.get(name, "")) for name in ("width", "height"))
+    if width and height and width[2] in PIXELS and height[2] in PIXELS:
+        return _pixels(width), _pixels(height)
+    box = root.get("viewBox", "").split()
+    if len(box) == 4:
+        return round(float(box[2])), round(float(box[3]))
     raise ValueError(f"{file.name} states no size. Give its root element a viewBox.")
+
+
+def _pixels(length: re.Match[str]) -> int:
+    return round(float(length[1]) * PIXELS[length[2]])
 
 
 def drop_unused_files(html: Path) -> None:
@@ -115,8 +123,3 @@ def drop_unused_files(html: Path) -> None:
     for pattern in UNUSED:
         for path in list(html.glob(pattern)):
             shutil.rmtree(path) if path.is_dir() else path.unlink()
-
-
-def drop_fallback_fonts(css: str) -> str:
-    """Return a style sheet without the addresses of fonts for browsers that lack woff2."""
-    return re.sub(r""",url\([^)]*\.ttf\) format\("truetype"\)""", "", css)

@@ -7,16 +7,16 @@ from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
 
 from robo_genesis.accessible import mend
-from robo_genesis.light import drop_fallback_fonts, drop_unused_files, lighten
+from robo_genesis.icons import cut_icons
+from robo_genesis.light import drop_unused_files, lighten
 
 
 def finish_site(app: Sphinx, error: Exception | None) -> None:
     """Mend and lighten all pages of a site that Sphinx has written."""
-    if error is None and app.builder.format == "html":
+    if error is None and app.builder.name == "html":
         html = Path(app.outdir)
+        cut_icons(html)
         drop_unused_files(html)
-        for sheet in html.glob("_static/styles/*.css"):
-            sheet.write_text(drop_fallback_fonts(sheet.read_text("utf8")), "utf8")
         for path in html.rglob("*.html"):
             path.write_text(finished(path.read_text("utf8"), path.parent), "utf8")
 

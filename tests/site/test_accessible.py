@@ -1,4 +1,4 @@
-"""Each page for readers with a keyboard, a screen reader, large text or little tolerance of motion."""
+"""Each page for readers with a keyboard, a screen reader, large text, or a wish for less motion."""
 
 from collections.abc import Iterator
 

@@ -35,7 +35,7 @@ def test_page_is_whole_quiet_and_fits(browser, address, name, view):
     assert problems == []
     page.wait_for_function(f"document.documentElement.dataset.theme === {scheme!r}")
     assert page.evaluate("document.documentElement.scrollWidth") <= width
-    page.evaluate("window.scrollTo(0, document.body.scrollHeight)")
+    page.evaluate("for (const image of document.images) image.loading = 'eager'")
     page.wait_for_function("[...document.images].every(image => image.complete)")
     empty = "[...document.images].filter(image => !image.naturalWidth).map(image => image.src)"
     assert page.evaluate(empty) == []

@@ -9,8 +9,11 @@ from threading import Thread
 
 import pytest
 from bs4 import BeautifulSoup
+from fontTools.ttLib import TTFont
 from playwright.sync_api import Page
 from watching import page_names
+
+from robo_genesis import icons
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -122,12 +125,15 @@ def test_a_shift_would_be_noticed(visited):
 def test_images_keep_their_shape(visited):
     visited.evaluate("for (const image of document.images) image.loading = 'eager'")
     visited.wait_for_function("[...document.images].every(image => image.complete)")
-    assert visited.evaluate("""() => [...document.images].filter(image => {
+    assert (
+        visited.evaluate("""() => [...document.images].filter(image => {
       const { width, height } = image.getBoundingClientRect();
       const said = image.getAttribute("width") / image.getAttribute("height");
       const is = image.naturalWidth / image.naturalHeight;
       return Math.abs(width / height / is - 1) > 0.02 || Math.abs(said / is - 1) > 0.02;
-    }).map(image => image.src)""") == []
+    }).map(image => image.src)""")
+        == []
+    )
 
 
 def test_every_image_has_its_size_and_those_below_come_late(site):
@@ -141,3 +147,25 @@ def test_every_image_has_its_size_and_those_below_come_late(site):
                 wrong.append(f"{name}: {image['src']}")
     assert wrong == []
     assert late
+
+
+ICONS = """() => [...document.querySelectorAll(".fas, .fa-solid")].map(icon => ({
+  what: icon.className,
+  family: getComputedStyle(icon, "::before").fontFamily,
+  shown: getComputedStyle(icon, "::before").content.replaceAll('"', ""),
+}))"""
+
+
+def test_every_icon_is_in_the_small_font(browser, address, site):
+    characters = set(TTFont(site / icons.FONTS / icons.CUT).getBestCmap())
+    page = browser.new_page()
+    seen = set()
+    for name in page_names(site):
+        page.goto(f"{address}/{name}")
+        for icon in page.evaluate(ICONS):
+            assert len(icon["shown"]) == 1, icon
+            assert ord(icon["shown"]) in characters, icon
+            seen.add(icon["shown"])
+    assert page.evaluate("document.fonts.load('900 1em \"Font Awesome 6 Free\"', '\uf0c9')") != []
+    assert len(seen) > 8
+    page.close()
