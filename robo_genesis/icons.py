@@ -1,7 +1,8 @@
-"""The icons' font, cut down to the icons that this site shows: 3 % of the weight.
+"""The icons' font, cut down to the icons that this site shows.
 
-The theme brings Font Awesome Free (its fonts: SIL Open Font License 1.1) with some 1,400 icons. The
-licence keeps the name "Font Awesome" for the complete font, so the cut one has another.
+The theme brings all of Font Awesome Free, more than half of a page's weight. Its fonts' licence, the
+SIL Open Font License 1.1, keeps the name "Font Awesome" for the complete font; the cut one has
+another.
 """
 
 import re
