@@ -51,10 +51,7 @@ def _above(node: nodes.Node) -> Iterator[nodes.Node]:
 def reading_time(words: int) -> str:
     """Return the words as a time, in whole minutes, with what it was computed from."""
     minutes = max(1, round(words / WORDS_A_MINUTE))
-    return (
-        f"About {minutes} min to read: {words:,} words at {WORDS_A_MINUTE} a minute, "
-        "without code and tables."
-    )
+    return f"About {minutes} min to read: {words:,} words of text at {WORDS_A_MINUTE} a minute."
 
 
 def git(folder: Path, *arguments: str) -> str | None:

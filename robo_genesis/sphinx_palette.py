@@ -16,8 +16,8 @@ from robo_genesis.palette import CASES, MARKS, Mark, css_name
 THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
 STROKE = 2
 """Width of the SVG lines that the dashes are meant for, in their own units."""
-THIN = 0.15
-"""Line width of the mark in a table, in letter heights: a pattern repeats once or twice in it."""
+LINE, LENGTH = 0.12, 1.9
+"""Width of the line beside a case's name, and about its length, in letter heights."""
 
 
 def css() -> str:
@@ -30,10 +30,7 @@ def css() -> str:
     ]
     dashes = {f"--{css_name(name)}-dash": _svg_dashes(mark) for name, mark in MARKS.items()}
     rules.insert(1, _rule(":root", dashes))
-    rules += [
-        _rule(f".case-mark.{css_name(name)}::before", {"background": _stripe(name)})
-        for name in CASES
-    ]
+    rules += [_rule(f".case-mark.{css_name(name)}::before", _stripe(name)) for name in CASES]
     return "\n".join(["/* Written from robo_genesis/palette.py. */", *rules, ""])
 
 
@@ -46,15 +43,23 @@ def _svg_dashes(mark: Mark) -> str:
     return " ".join(f"{STROKE * length:g}" for length in mark.dashes) or "none"
 
 
-def _stripe(name: str) -> str:
-    """Return a background that repeats a mark's dashes from left to right."""
-    colour = f"var(--{css_name(name)})"
+def _stripe(name: str) -> dict[str, str]:
+    """Return a background that repeats a mark's dashes, and a width that holds them whole.
+
+    Half of the first dash goes to the end, so that a single gap stands inside the line.
+    """
+    dashes, colour = MARKS[name].dashes, f"var(--{css_name(name)})"
+    if not dashes:
+        return {"background": colour, "width": f"{LENGTH}em"}
+    half = dashes[0] / 2
     at, stops = 0.0, []
-    for number, length in enumerate(MARKS[name].dashes or (1,)):
+    for number, length in enumerate((half, *dashes[1:], half)):
         paint = "transparent" if number % 2 else colour
-        stops.append(f"{paint} {at * THIN:.3g}em {(at + length) * THIN:.3g}em")
+        stops.append(f"{paint} {at * LINE:.2f}em {(at + length) * LINE:.2f}em")
         at += length
-    return f"repeating-linear-gradient(90deg, {', '.join(stops)})"
+    width = at * LINE * max(1, round(LENGTH / (at * LINE)))
+    background = f"repeating-linear-gradient(90deg, {', '.join(stops)})"
+    return {"background": background, "width": f"{width:.2f}em"}
 
 
 class MarkCases(SphinxPostTransform):

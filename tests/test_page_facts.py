@@ -49,9 +49,9 @@ def test_words_of_code_tables_and_formulas_do_not_count():
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (0, "About 1 min to read: 0 words at 200 a minute"),
-        (500, "About 2 min to read: 500 words"),
-        (9000, "About 45 min to read: 9,000 words"),
+        (0, "About 1 min to read: 0 words of text at 200 a minute"),
+        (500, "About 2 min to read: 500 words of text"),
+        (9000, "About 45 min to read: 9,000 words of text"),
     ],
 )
 def test_minutes_follow_from_words(words, said):

@@ -70,9 +70,14 @@ def test_the_style_sheet_declares_each_colour_for_both_themes():
     }
 
 
-def test_the_mark_in_a_table_repeats_the_dashes_of_the_plot():
-    (stripe,) = rules()[".case-mark.case-g3::before"]
-    assert stripe["background"] == (
-        "repeating-linear-gradient(90deg, var(--case-g3) 0em 0.9em, transparent 0.9em 1.2em, "
-        "var(--case-g3) 1.2em 1.43em, transparent 1.43em 1.72em)"
-    )
+def test_the_mark_in_a_table_repeats_the_dashes_of_the_plot_whole():
+    names = ("baseline", "g2", "g3")
+    found = {name: rules()[f".case-mark.case-{name}::before"][0] for name in names}
+    assert found["baseline"] == {"background": "var(--case-baseline)", "width": "1.9em"}
+    assert found["g2"] == {
+        "background": "repeating-linear-gradient(90deg, var(--case-g2) 0.00em 0.36em, "
+        "transparent 0.36em 0.60em, var(--case-g2) 0.60em 0.96em)",
+        "width": "1.92em",
+    }
+    assert found["g3"]["background"].count("transparent") == 2
+    assert found["g3"]["width"] == "1.38em"
