@@ -4,6 +4,7 @@ Without an address (see `address`) nothing claims one: no canonical link, no sit
 404 page is always there; a server shows it at any depth, so its links begin at the site's root.
 """
 
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -25,19 +26,19 @@ NOT_FOUND = """\
 <input id="lost-words" type="search" name="q" autocomplete="off"/>
 <button type="submit">Search</button>
 </form>
-<ul>
-<li><a href="{root}index.html#course-map">Course map</a>: every lesson, published and planned</li>
-<li><a href="{root}glossary.html">Glossary</a>: the words of the field</li>
-<li><a href="{root}evidence/ledger.html">Ledger</a>: every figure, table and run</li>
-</ul>
+<ul>{links}</ul>
 """
+WAYS_ON = {
+    "index": "the course map: every lesson, published and planned",
+    "glossary": "the words of the field",
+    "evidence/ledger": "every figure, table and run",
+}
+"""Pages that the 404 page leads to, where a book has them."""
 
 
 def configure(app: Sphinx, config: Config) -> None:
     """Tell Sphinx and the extensions where the site will stand."""
-    root = site_root()
-    config.notfound_urls_prefix = root
-    config.notfound_context = {"title": "Page not found", "body": NOT_FOUND.format(root=root)}
+    config.notfound_urls_prefix = site_root()
     address = site_address()
     if address is None:
         return
@@ -48,6 +49,19 @@ def configure(app: Sphinx, config: Config) -> None:
     if card_bundle().is_dir():
         config.ogp_image, config.ogp_image_alt = address + CARD, CARD_ALT
         app.connect("build-finished", draw_card)
+
+
+def write_not_found(app: Sphinx) -> list[Any]:
+    """Write the 404 page's text, once it is known which pages the book has."""
+    root, titles = site_root(), app.env.titles
+    links = "".join(
+        f'<li><a href="{root}{page}.html">{escape(titles[page].astext())}</a>: {what}</li>'
+        for page, what in WAYS_ON.items()
+        if page in titles
+    )
+    body = NOT_FOUND.format(root=root, links=links)
+    app.config.notfound_context = {"title": "Page not found", "body": body}
+    return []
 
 
 def card_bundle() -> Path:
@@ -76,4 +90,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
         app.setup_extension("sphinx_sitemap")
         app.setup_extension("sphinxext.opengraph")
     app.connect("config-inited", configure, priority=400)  # notfound checks the prefix at 500
+    app.connect("html-collect-pages", write_not_found, priority=400)  # and collects its page at 500
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

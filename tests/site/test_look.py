@@ -1,0 +1,96 @@
+"""The look in a browser: the palette arrives in both themes, and everything on it can be read."""
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Page
+
+from robo_genesis.palette import CASES, GROUNDS, MARKS, contrast, css_name
+
+pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+LECTURE = "lessons/l04-joint-control/lecture.html"
+TEXT, GRAPHICS = 4.5, 3
+READ = {
+    "running text": "article p:not([class])",
+    "link": "article p > a.reference.external",
+    "term": "article a.term-link",
+    "code in text": "article p code",
+    "reading time": "article .page-facts",
+    "provenance": "article .provenance",
+    "caption": "article figcaption .caption-text",
+    "table": "article td",
+}
+
+
+def hexadecimal(colour: str) -> str:
+    """Return `rgb(r, g, b)` as `#rrggbb`."""
+    return "#" + "".join(f"{int(part):02x}" for part in re.findall(r"\d+", colour)[:3])
+
+
+@pytest.fixture(params=["light", "dark"])
+def theme(request) -> str:
+    return request.param
+
+
+@pytest.fixture
+def page(browser, address, theme) -> Iterator[Page]:
+    page = browser.new_page(viewport={"width": 1280, "height": 900}, color_scheme=theme)
+    page.goto(f"{address}/{LECTURE}", wait_until="networkidle")
+    yield page
+    page.close()
+
+
+def style(page: Page, selector: str, name: str) -> str:
+    script = "([selector, name]) => getComputedStyle(document.querySelector(selector))[name]"
+    return page.evaluate(script, [selector, name])
+
+
+def test_the_page_s_ground_is_one_that_the_palette_was_held_against(page, theme):
+    assert hexadecimal(style(page, "body", "backgroundColor")) in GROUNDS[theme]
+    panel = hexadecimal(style(page, "ul.lesson-status", "backgroundColor"))
+    assert panel in GROUNDS[theme]
+
+
+@pytest.mark.parametrize("what", READ)
+def test_words_can_be_read_on_every_ground(page, theme, what):
+    ink = hexadecimal(style(page, READ[what], "color"))
+    assert min(contrast(ink, ground) for ground in GROUNDS[theme][:2]) >= TEXT
+
+
+def test_the_palette_s_colours_reach_the_page(page, theme):
+    script = "name => getComputedStyle(document.documentElement).getPropertyValue(name)"
+    found = {name: page.evaluate(script, f"--{css_name(name)}") for name in MARKS}
+    assert found == {name: getattr(mark, theme) for name, mark in MARKS.items()}
+
+
+def test_each_case_has_its_line_in_the_tables(page):
+    marks = page.eval_on_selector_all(
+        "article :is(th, td) .case-mark",
+        """nodes => nodes.map(node => {
+          const line = getComputedStyle(node, "::before");
+          return [node.textContent, line.background, parseFloat(line.width)];
+        })""",
+    )
+    assert {name for name, *_ in marks} == set(CASES)
+    assert len({ground for _, ground, _ in marks}) == len(CASES)
+    assert all(width > 10 for *_, width in marks)
+
+
+def test_in_the_dark_plots_lie_on_a_soft_card_and_keep_their_colours(page, theme):
+    filters = style(page, "article figure img[src$='.svg']", "filter")
+    assert filters == ("brightness(0.9)" if theme == "dark" else "none")
+    card = "#e6e6e6" if theme == "dark" else "#ffffff"
+    assert all(contrast(mark.light, card) >= GRAPHICS for mark in MARKS.values())
+
+
+def test_a_run_of_a_case_has_that_case_s_line_in_the_explorer(page, theme):
+    output = page.locator(".explorer output").inner_text()
+    name = re.search(r"the case (G\d)", output).group(1)
+    line = ".explorer svg .measured-run"
+    assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS[name], theme)
+    dashes = [float(n) for n in re.findall(r"[\d.]+", style(page, line, "strokeDasharray"))]
+    assert dashes == [2 * length for length in MARKS[name].dashes]
+    page.locator("#explorer-kp").press("ArrowLeft")  # between the cases: no case's line
+    assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS["baseline"], theme)
