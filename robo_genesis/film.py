@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis import runtime
 
-QUALITY = 82
+QUALITY = 70
 """Of the JPEG: high enough that no blocks are seen at the printed size."""
 
 VIEW = (slice(140, 420), slice(270, 550))
@@ -61,5 +61,5 @@ def strip(axes: Sequence[Axes], frames: Mapping[int, np.ndarray], dt: float) -> 
 def jpeg(figure: Figure) -> bytes:
     """Return a figure of photographs as JPEG: as SVG it would weigh ten times as much."""
     stream = io.BytesIO()
-    figure.savefig(stream, format="jpeg", dpi=110, pil_kwargs={"quality": QUALITY})
+    figure.savefig(stream, format="jpeg", dpi=90, pil_kwargs={"quality": QUALITY})
     return stream.getvalue()

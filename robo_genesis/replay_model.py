@@ -16,10 +16,11 @@ from robo_genesis.robot_shape import Part
 from robo_genesis.scene_config import FloatArray
 from robo_genesis.trace import Trace
 
-KEPT = 0.06
-"""Share of the triangles of a part that is kept: about 10,000 of the Franka's 135,000."""
+KEPT = 0.05
+"""Share of the triangles of a large part that is kept: with the small ones, about 10,000 of the
+Franka's 135,000."""
 
-SMALLEST = 500
+SMALLEST = 400
 """Triangles below which a part is left as it is: rings would break open and lamps vanish."""
 
 CREASE = np.radians(40)

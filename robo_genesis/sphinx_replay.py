@@ -67,36 +67,46 @@ def replay_block(directive: SphinxDirective, key: str, folder: Path) -> nodes.No
         key: names the run, as the ledger does.
         folder: of the bundle.
     """
-    env, name = directive.env, f"replay-{key.replace('/', '-')}"
+    env, shown = directive.env, read_replay(f"replay-{key.replace('/', '-')}", folder)
+    shape = outputs_folder() / key.split("/")[0] / SHAPE_PAGE / robot_shape.FILE
+    model = replay_model.glb(robot_shape.load_shape(shape), shown.links, shown.traces)
+    written = write_model(Path(env.app.outdir) / FOLDER, shown.name, model)
+    weight = written + len(gzip.compress(viewer()))
+    up = "../" * env.docname.count("/") + FOLDER
+    controls = replay.markup(shown, f"{up}/{shown.name}.js", f"{up}/{VIEWER}", round(weight / 1000))
+    said = replay.moving(shown, bundle.read_metrics(folder))
+    summary = f"All samples of {', '.join(CASES)} as a table"
+
+    block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
+    block += nodes.raw("", controls, format="html")
+    block += directive.parse_text_to_nodes("\n".join(f"- {text}" for text in said.values()))
+    block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
+    block += scroll_box("", *directive.parse_text_to_nodes(replay.samples(shown)), label=summary)
+    block += nodes.raw("", f"</details>{origin_html(shown.name, folder, up)}", format="html")
+    return block
+
+
+def read_replay(name: str, folder: Path) -> Replay:
+    """Return what is played of a bundle."""
     arrays = bundle.read_arrays(folder)
-    shown = Replay(
+    return Replay(
         name=name,
         traces={case: read_trace(folder, arrays, case) for case in CASES},
         joints=read_joints(arrays),
         joint=l04.STEPPED_JOINT,
         links=arrays.coords["link"],
     )
-    shape = outputs_folder() / key.split("/")[0] / SHAPE_PAGE / robot_shape.FILE
-    model = replay_model.glb(robot_shape.load_shape(shape), shown.links, shown.traces)
-    weight = write_model(Path(env.app.outdir) / FOLDER, name, model) + viewer_weight()
-    up = "../" * env.docname.count("/") + FOLDER
-    controls = replay.markup(shown, f"{up}/{name}.js", f"{up}/{VIEWER}", round(weight / 1000))
 
-    said = replay.moving(shown, bundle.read_metrics(folder))
-    block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
-    block += nodes.raw("", controls, format="html")
-    block += directive.parse_text_to_nodes("\n".join(f"- {text}" for text in said.values()))
-    summary = f"All samples of {', '.join(CASES)} as a table"
-    block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
-    table = directive.parse_text_to_nodes(replay.samples(shown))
-    block += scroll_box("", *table, label=summary)
-    credit = (
-        f'</details><p class="credit">3D model: <a href="{up}/{name}.glb" download>GLB</a>, '
+
+def origin_html(name: str, folder: Path, up: str) -> str:
+    """Say which run is played and whose model is shown; `up` leads to the replay's files."""
+    run = bundle.read_manifest(folder).predicate
+    return (
+        f'<p class="credit">Poses and samples: {run.backend.actual}, Genesis {run.engine.version}, '
+        f'run {run.run_id[:8]}. 3D model: <a href="{up}/{name}.glb" download>GLB</a>, '
         f'{replay_model.CREDIT} (<a href="{up}/{NOTICE}">notice</a>, '
         f'<a href="{up}/{VIEWER_LICENCE}">licence</a>).</p>'
     )
-    block += nodes.raw("", credit, format="html")
-    return block
 
 
 def write_model(folder: Path, name: str, model: bytes) -> int:
@@ -123,11 +133,6 @@ def viewer() -> bytes:
     package = npm.packages() / "@google" / "model-viewer"
     script = (package / "dist" / "model-viewer-umd.min.js").read_bytes()
     return b"/* See " + NOTICE.encode() + b". */\n" + ELSEWHERE.sub(b"", script)
-
-
-def viewer_weight() -> int:
-    """Return the compressed size of the viewer [byte]."""
-    return len(gzip.compress(viewer()))
 
 
 def write_viewer(app: Sphinx, exception: Exception | None) -> None:

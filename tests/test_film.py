@@ -62,4 +62,4 @@ def test_a_strip_names_the_times_in_their_order_and_is_light(frames):
     assert [ax.get_title() for ax in axes] == ["t = 0.00 s", "t = 0.20 s"]
     with Image.open(io.BytesIO(film.jpeg(figure))) as picture:
         assert picture.format == "JPEG"
-        assert picture.size == (770, 330)
+        assert picture.size == (630, 270)

@@ -173,7 +173,7 @@
       ];
     }
 
-    function show_sample(time = run().time[sample()]) {
+    function showSample(time = run().time[sample()]) {
       const lines = readout();
       const spoken = lines.slice(0, 4).map(([term, text]) => `${term} ${text}`).join("; ");
       slider.setAttribute("aria-valuetext", `${chosen()}: ${spoken}`);
@@ -188,7 +188,7 @@
       robot.pose(chosen(), time);
     }
 
-    function draw_plots() {
+    function drawPlots() {
       const { target, limit, units } = run();
       const names = ["Position", "Velocity", "Control force"];
       const marks = [
@@ -203,13 +203,13 @@
         svg.setAttribute("aria-label", `${title} of ${joint} over time; ${chosen()} is drawn bold.`);
         return draw(svg, { curves, chosen: chosen(), marks: marks[k], title });
       });
-      show_sample();
+      showSample();
     }
 
     function stop() {
       began = null;
       label();
-      show_sample(); // back onto a sample of the record
+      showSample(); // back onto a sample of the record
     }
 
     function label() {
@@ -225,14 +225,14 @@
       const now = began.time + ((clock - began.clock) / 1000) * Number(speed.value);
       slider.value = Math.min(Math.floor(now / time[1] + 1e-6), last);
       if (now >= time[last]) return stop();
-      show_sample(now);
+      showSample(now);
       requestAnimationFrame(advance);
     }
 
     play.addEventListener("click", () => {
       if (sample() === last) slider.value = 0;
       else if (calm.matches) slider.value = sample() + STRIDE;
-      if (calm.matches) return show_sample();
+      if (calm.matches) return showSample();
       if (began) return stop();
       began = { clock: null, time: run().time[sample()] };
       label();
@@ -241,7 +241,7 @@
 
     function jump() {
       if (began) stop();
-      show_sample();
+      showSample();
     }
     slider.addEventListener("input", jump);
     speed.addEventListener("change", () => {
@@ -251,7 +251,7 @@
       slider.value = Math.round(event.detail * last);
       jump();
     });
-    for (const radio of radios) radio.addEventListener("change", draw_plots);
+    for (const radio of radios) radio.addEventListener("change", drawPlots);
     calm.addEventListener("change", () => (began ? stop() : label()));
 
     show.addEventListener("click", async () => {
@@ -271,7 +271,7 @@
         }
         root.querySelector(".weight").remove();
         status.textContent = "Loaded. Turn it with the mouse, a finger or the arrow keys.";
-        show_sample();
+        showSample();
       } else {
         stage.hidden = !stage.hidden;
       }
@@ -281,8 +281,8 @@
 
     root.hidden = false;
     label();
-    new ResizeObserver(draw_plots).observe(root.querySelector(".plots"));
-    draw_plots();
+    new ResizeObserver(drawPlots).observe(root.querySelector(".plots"));
+    drawPlots();
   }
 
   document.querySelectorAll(".replay").forEach(start);

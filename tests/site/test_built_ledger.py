@@ -11,7 +11,10 @@ from robo_genesis.evidence.verify import verify_bundle
 
 pytestmark = pytest.mark.engine
 LEDGER = "evidence/ledger.html"
-SHOWN = "article img, .cell_output table, .glued table, figure table, .evidence-panel table"
+SHOWN = (
+    "article img, .cell_output table, .glued table, figure table, .evidence-panel table, "
+    ".replay-block table"
+)
 UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",

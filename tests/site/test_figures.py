@@ -37,8 +37,9 @@ found = recompute.read_studies(folder, bundle.read_manifest(folder))
 STUDIED = {"fig-l04-theory", "fig-l04-step-size", "fig-l04-convergence"}
 """Figures that are drawn when the page has all of its traces, not the baseline's alone."""
 
-NOT_IN_BUNDLE = {"fig-l04-grid-overshoot", "fig-l04-grid-saturation"}
-"""Maps of the grid, whose runs the page holds as JSON and no bundle does."""
+NOT_IN_BUNDLE = {"fig-l04-grid-overshoot", "fig-l04-grid-saturation", "fig-l04-film"}
+"""Maps of the grid, whose runs the page holds as JSON and no bundle does, and the film: its cell
+holds the filmed run to the recorded one."""
 
 
 def name_of(cell) -> str:

@@ -267,6 +267,18 @@ def test_viewer_and_model_are_asked_for_on_request_alone(browser, address, files
     print(weights)
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_with_the_robot_shown(browser, address, scheme):
+    page = open_lecture(browser, address, color_scheme=scheme)
+    show_robot(page)
+    page.locator(".replay-block summary").click()
+    page.add_script_tag(path=npm.packages() / "axe-core" / "axe.min.js")
+    found = page.evaluate("axe.run('.replay-block').then(r => [r.violations, r.passes.length])")
+    assert found[0] == []
+    assert found[1] > 10
+    page.close()
+
+
 def test_the_robot_can_be_hidden_again(page):
     show_robot(page)
     button = page.locator(".in-space .show")
