@@ -66,7 +66,7 @@ def files(site) -> Path:
 
 def open_lecture(browser, base, requests=None, **context) -> Page:
     """Open the lecture; what it asks for goes to `requests`, any error fails the test."""
-    page = browser.new_page(**context)
+    page = browser.new_page(**{"viewport": {"width": 480, "height": 700}, **context})
     page.problems = []
     page.on("console", lambda m: page.problems.append(m.text) if m.type == "error" else None)
     page.on("pageerror", lambda error: page.problems.append(str(error)))
