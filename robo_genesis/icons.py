@@ -1,7 +1,7 @@
 """The icons' font, cut down to the icons that this site shows.
 
-The theme brings all of Font Awesome Free, more than half of a page's weight. Its fonts' licence, the
-SIL Open Font License 1.1, keeps the name "Font Awesome" for the complete font; the cut one has
+The theme brings all of Font Awesome Free, most of a page's weight. Its licence for fonts, the SIL
+Open Font License 1.1, keeps the name "Font Awesome" for the complete font; the cut one has
 another.
 """
 
