@@ -32,7 +32,7 @@ LOOK = """() => {
     const { right, width: own } = node.getBoundingClientRect();
     return own > 1 && right > width + 1 && !boxed(node);
   });
-  const lines = [...document.querySelectorAll("article p, article li")]
+  const lines = [...document.querySelectorAll("article p:not(.admonition-title), article li")]
     .filter((node) => !node.closest("table, figure") && node.offsetParent)
     .map((node) => node.clientWidth / parseFloat(getComputedStyle(node).fontSize));
   return {
