@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -64,10 +65,20 @@ def files(site) -> Path:
     return site / sphinx_replay.FOLDER
 
 
-def open_lecture(browser, base, requests=None, **context) -> Page:
-    """Open the lecture; what it asks for goes to `requests`, any error fails the test."""
+def give(text, route) -> None:
+    kind = "text/html" if route.request.url.endswith(".html") else "text/javascript"
+    route.fulfill(body=text, content_type=kind)
+
+
+def open_lecture(browser, base, requests=None, served=None, **context) -> Page:
+    """Open the lecture; what it asks for goes to `requests`, errors to its `problems`.
+
+    `served` is address → text, given in the place of the site's own files.
+    """
     page = browser.new_page(**{"viewport": {"width": 480, "height": 700}, **context})
     page.problems = []
+    for pattern, text in (served or {}).items():
+        page.route(pattern, partial(give, text))
     page.on("console", lambda m: page.problems.append(m.text) if m.type == "error" else None)
     page.on("pageerror", lambda error: page.problems.append(str(error)))
     if requests is not None:
@@ -307,10 +318,7 @@ def test_two_replays_of_a_page_are_two(browser, address, site, files):
     html = html.replace("</article>", block.replace(MODEL, other) + "</article>", 1)
     assert html.count('class="replay"') == 2
     script = sphinx_replay.script_of(other, (files / f"{MODEL}.glb").read_bytes())
-    context = browser.new_context()
-    context.route(f"**/{LECTURE}", lambda route: route.fulfill(body=html, content_type="text/html"))
-    context.route(f"**/{other}.js", lambda route: route.fulfill(body=script))
-    page = open_lecture(context, address)
+    page = open_lecture(browser, address, served={f"**/{LECTURE}": html, f"**/{other}.js": script})
     first, second = page.locator(".replay").all()
     second.locator("input[value=G3]").check()
     second.locator("input[type=range]").fill("7")
@@ -321,7 +329,7 @@ def test_two_replays_of_a_page_are_two(browser, address, site, files):
         replay.get_by_text("Loaded.").wait_for(timeout=120_000)
     assert page.locator("model-viewer").count() == 2
     assert page.problems == []
-    context.close()
+    page.close()
 
 
 def test_without_scripts_figure_film_and_table_remain(browser, address):
