@@ -18,6 +18,7 @@ PAGE_CACHE = "ROBO_GENESIS_PAGE_CACHE"
 BUILD_OUTPUTS = "ROBO_GENESIS_BUILD_OUTPUTS"
 ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
 
+
 class ExecutedPage(NotebookClientBase):
     """Takes a page's outputs from the execution stage; stands in for all clients of myst-nb.
 
