@@ -1,7 +1,8 @@
 """Build the course site: `make book`.
 
 Environment: RENDER=0|1 (default 1: the labs' camera is used), JOBS (pages at once; default one
-for each core) and RELEASE=0|1 (1: from a clean tree alone, with all required evidence current).
+for each core), RELEASE=0|1 (1: from a clean tree alone, with all required evidence current) and
+SITE_URL (the address at which the site will stand).
 Backend is always the CPU; results of accelerators are recorded apart.
 Exit status: 0 published, 1 failed, 130 interrupted; unless it is 0, the old site still stands.
 """

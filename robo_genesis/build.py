@@ -12,8 +12,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from robo_genesis import project
-from robo_genesis.address import site_root
+from robo_genesis import npm, project
+from robo_genesis.address import AddressError, site_address, site_root
 from robo_genesis.evidence import place
 from robo_genesis.execute import TIMEOUT, execute_pages
 from robo_genesis.offline import pack
@@ -80,6 +80,7 @@ def run_build(build: Build) -> list[str]:
         place.recover(build.book / "evidence")
         progress = Progress(build.say)
         engine = project.require_pinned_engine(build.root)
+        _require_for_render()
         project.remove_stale_kernel_lock(build.cache)
         pages = find_pages(build.book)
         folder = project.page_cache_folder(fingerprint(pages, build.root), build.cache)
@@ -101,6 +102,15 @@ def run_build(build: Build) -> list[str]:
         html = publish(build.book, html, results)  # last: after it, nothing may fail
         progress("publish", str(html))
         return [f"Site: {html / 'index.html'}", *_summary(engine, results, manifests, checked)]
+
+
+def _require_for_render() -> None:
+    """Raise what the last stages would raise after minutes: an address, npm's packages."""
+    try:
+        site_address()
+    except AddressError as error:
+        raise BuildError(str(error)) from error
+    npm.packages()
 
 
 def _require_for_release(problems: Sequence[str]) -> None:

@@ -43,7 +43,8 @@ def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
     Raises:
         ProjectError: npm refused or could not fetch; the message holds what it said.
     """
-    digest = hashlib.sha256(b"".join((root / name).read_bytes() for name in LOCK)).hexdigest()
+    files = [(root / name).read_bytes() for name in (*LOCK, SETTINGS)]
+    digest = hashlib.sha256(b"".join(files)).hexdigest()
     installed = cache / "npm" / digest[:12]
     if not installed.is_dir():
         installed.parent.mkdir(parents=True, exist_ok=True)

@@ -78,7 +78,8 @@ def glossary_terms(env: BuildEnvironment) -> dict[str, Term]:
 def written_forms(terms: dict[str, Term], declared: Forms) -> dict[str, Term]:
     """Return each form in which a term is to be linked, with the term."""
     forms = {name: term for name, term in terms.items() if name not in declared.unlinked}
-    for name, others in declared.forms.items():
+    for name in declared.forms.keys() & terms.keys():  # check_forms names the others
+        others = declared.forms[name]
         forms |= {other: terms[name] for other in others if other not in terms}
     return forms | {
         form[0].upper() + form[1:]: term

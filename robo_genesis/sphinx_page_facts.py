@@ -1,5 +1,6 @@
 """A page's reading time below its title, its history from git at its end, and its description."""
 
+import shutil
 import subprocess
 import textwrap
 from collections.abc import Iterator
@@ -69,9 +70,11 @@ def git(folder: Path, *arguments: str) -> str | None:
 @lru_cache(maxsize=8)
 def _why_unknown(folder: Path) -> str:
     """Return why a folder's history cannot be read, nothing where it can."""
+    if shutil.which("git") is None:
+        return "Git is not installed where this site was built."
     shallow = git(folder, "rev-parse", "--is-shallow-repository")
     if shallow is None:
-        return "This site was built outside of a git checkout."
+        return "Git knows no history of this page where this site was built."
     if shallow.strip() == "true":
         return "This site was built from a shallow clone, which holds no history."
     return ""

@@ -160,6 +160,14 @@ def test_a_build_forgets_page_caches_of_long_ago(tmp_path):
     assert sum(folder.exists() for folder in old) == 3
 
 
+def test_a_wrong_address_of_the_site_stops_before_any_page(tmp_path):
+    make_book(tmp_path, page=notebook(cell("1")))
+    said, error = command(tmp_path, SITE_URL="example.org/course").communicate()
+    assert "SITE_URL is 'example.org/course'; valid is an address like https://" in error
+    assert "FAILED: nothing was published." in error
+    assert "execute" not in said
+
+
 def test_a_cache_that_cannot_be_written_is_status_1_and_named(tmp_path, no_file):
     make_book(tmp_path)
     process = command(tmp_path, "--cache", str(no_file))

@@ -42,8 +42,11 @@ def test_what_is_there_is_not_fetched_again(checkout, tmp_path, monkeypatch):
 def test_another_lock_has_a_folder_of_its_own(checkout, tmp_path, monkeypatch):
     monkeypatch.setattr(npm, "_install", lambda folder: None)
     before = npm.packages(checkout, tmp_path)
-    (checkout / "package.json").write_text("{}")
-    assert npm.packages(checkout, tmp_path) != before
+    for name in (*npm.LOCK, npm.SETTINGS):
+        (checkout / name).write_text("{}")
+        after = npm.packages(checkout, tmp_path)
+        assert after != before
+        before = after
 
 
 def test_a_lock_that_does_not_fit_is_refused_and_leaves_nothing(checkout, tmp_path):

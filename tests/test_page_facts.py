@@ -97,11 +97,11 @@ def test_a_shallow_clone_knows_no_history(checkout, tmp_path):
 
 
 def test_without_a_checkout_or_git_it_is_not_known(tmp_path, checkout, monkeypatch):
-    assert "outside of a git checkout" in facts.history(tmp_path / "page.md").unknown
+    assert "Git knows no history" in facts.history(tmp_path / "page.md").unknown
     facts._why_unknown.cache_clear()
     monkeypatch.setenv("PATH", "")
     found = facts.history(checkout / "page.md")
-    assert "outside of a git checkout" in found.unknown
+    assert "Git is not installed" in found.unknown
     assert "Not known." in facts.history_html(found)
 
 
@@ -120,7 +120,7 @@ def test_both_stand_on_a_page_and_the_home_page_has_no_time(tmp_path):
     )
     assert not home.select(".page-facts")
     for parsed in (page, home):
-        assert "outside of a git checkout" in parsed.select_one("details.page-history").get_text()
+        assert "Git knows no history" in parsed.select_one("details.page-history").get_text()
 
 
 def test_a_page_is_described_by_its_first_paragraph(tmp_path):

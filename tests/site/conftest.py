@@ -26,7 +26,7 @@ CHROMIUM = "/usr/bin/chromium"
 @pytest.fixture(scope="session")
 def build_output() -> str:
     command = [sys.executable, str(ROOT / "build_scripts" / "book.py")]
-    environment = os.environ | {"RENDER": "1", "PYTHONPATH": str(ROOT)}
+    environment = os.environ | {"RENDER": "1", "SITE_URL": "", "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
