@@ -20,7 +20,8 @@ CARD = "_static/social-card.png"
 CARD_ALT = "Measured positions of a robot's joint over time, with three pairs of gains."
 NOT_FOUND = """\
 <h1>There is no such page</h1>
-<p>The address may be mistyped, or what stood here has moved. These lead on:</p>
+<p>The address may be mistyped, or what stood here has moved. Search, or start from one of the
+pages below.</p>
 <form class="lost" role="search" action="{root}search.html" method="get">
 <label for="lost-words">Search all pages</label>
 <input id="lost-words" type="search" name="q" autocomplete="off"/>

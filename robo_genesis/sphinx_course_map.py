@@ -84,7 +84,7 @@ class CourseMap(SphinxDirective):
         head = nodes.paragraph("", "", name, self.title(lesson))
         state = nodes.paragraph("", "", *self.verdict(lesson), classes=["state"])
         kind = "published" if lesson.page else "planned"
-        parts = [head, needs_line(lesson), state]
+        parts = [head, *needs_line(lesson), state]
         return nodes.list_item("", *parts, classes=[kind], ids=[anchor(lesson.id)])
 
     def title(self, lesson: Lesson) -> nodes.Node:
@@ -107,18 +107,17 @@ class CourseMap(SphinxDirective):
         return shown[:-1]
 
 
-def needs_line(lesson: Lesson) -> nodes.paragraph:
-    """Return the line that says which lessons come before, each a link to its card."""
-    line = nodes.paragraph(classes=["needs"])
+def needs_line(lesson: Lesson) -> list[nodes.Node]:
+    """Return the line that says which lessons come before, none where that is not decided yet."""
     if lesson.needs is None:
-        line += nodes.Text("What it builds on is not decided yet.")
-        return line
+        return []
+    line = nodes.paragraph(classes=["needs"])
     line += nodes.Text("Builds on ")
     for number, need in enumerate(lesson.needs):
         line += nodes.Text((", ", " and ")[number == len(lesson.needs) - 1] if number else "")
         line += nodes.reference("", need, internal=True, refid=anchor(need))
     line += nodes.Text("." if lesson.needs else "nothing before it.")
-    return line
+    return [line]
 
 
 def anchor(lesson: str) -> str:

@@ -81,7 +81,10 @@ def response(folder: Path) -> Picture:
         f"Position of {l04.STEPPED_JOINT} over time with three pairs of gains, G1, G2 and G3, "
         "its target and the settling band around it."
     )
-    caption = f"{l04.STEPPED_JOINT} with three pairs of gains, from get_dofs_position."
+    caption = (
+        f"Position of {l04.STEPPED_JOINT}, three settings of its controller, "
+        "from get_dofs_position."
+    )
     return Picture("response", ".svg", stream.getvalue(), alt, caption)
 
 

@@ -68,21 +68,21 @@ class TakeawaysBox(SphinxDirective):
             "libgl1`. Save these two files in one folder:"
         )
         box += bullets(
-            (links(found.student), ", the lab without outputs and solutions"),
+            (links(found.student), ", the lab without outputs or solutions"),
             (links(found.wheel), ", the course's package, which brings the pinned engine"),
         )
         box += self.prose("In that folder:")
         box += nodes.literal_block(commands, commands, language="bash")
         box += self.prose(
-            "The second line fills some gigabytes, most of them with Torch. The notebook's first "
-            "cell checks the engine's version and says what to do if it is another. In its first "
+            "The second line downloads several gigabytes, mostly Torch. The notebook's first "
+            "cell checks the engine's version and says what to do if yours differs. In its first "
             "run the engine compiles its kernels, which takes minutes."
         )
         return box
 
     def downloads(self, found: Takeaways, links: "Links") -> Iterable[nodes.Node]:
         """Return the list of what this run of the lab left."""
-        yield from self.prose("What the run on this page left, to work with elsewhere:")
+        yield from self.prose("Results of the run on this page, for your own tools:")
         tables = [
             part
             for case, table, archive in found.arrays
