@@ -9,6 +9,7 @@ import numpy as np
 from robo_genesis import tables
 from robo_genesis.evidence.bundle import Metric
 from robo_genesis.metrics import format_value
+from robo_genesis.palette import css_name
 from robo_genesis.robot_model import JointMap
 from robo_genesis.trace import Trace
 
@@ -105,8 +106,9 @@ def markup(replay: Replay, script: str, viewer: str, weight: int) -> str:
         f'max="{steps}" step="1" value="0"></p>'
         f'<p><label for="{name}-speed">Speed</label><select id="{name}-speed">{speeds}</select></p>'
         '</div><dl></dl><div class="plots"></div>'
-        '<p class="legend">Bold: the chosen run. Dotted: the target. Dashed, at the edges of the '
-        "control force: its limits. Drag in a plot to move through time.</p></div>"
+        '<p class="legend">Bold: the chosen run; each run has the line beside its name. '
+        "Dotted: the target. Short dashes, at the edges of the control force: its limits. Drag in "
+        "a plot to move through time.</p></div>"
     )
 
 
@@ -118,6 +120,6 @@ def _cases(replay: Replay) -> str:
         f'<span><input type="radio" name="{name}" id="{name}-{case}" value="{case}" '
         f'data-target="{trace.target[0, k]:.6g}" data-limit="{trace.effort_limit[k]:.6g}" '
         f'data-position="{position}" data-effort="{effort}"{" checked" * (number == 0)}>'
-        f'<label for="{name}-{case}" class="case-{case.lower()}">{case}</label></span>'
+        f'<label for="{name}-{case}" class="case-mark {css_name(case)}">{case}</label></span>'
         for number, (case, trace) in enumerate(replay.traces.items())
     )

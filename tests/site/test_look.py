@@ -1,6 +1,7 @@
 """The look in a browser: the palette arrives in both themes, and everything on it can be read."""
 
 import re
+from collections import Counter
 from collections.abc import Iterator
 
 import pytest
@@ -95,3 +96,19 @@ def test_a_run_of_a_case_has_that_case_s_line_in_the_explorer(page, theme):
     assert dashes == [2 * length for length in MARKS[name].dashes]
     page.locator("#explorer-kp").press("ArrowLeft")  # between the cases: no case's line
     assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS["baseline"], theme)
+
+
+def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
+    lines = page.eval_on_selector_all(
+        ".replay[data-name=replay-l04-lecture-cpu] svg :is(.curve, .target, .limit)",
+        """lines => lines.map(line => {
+          const { stroke, strokeDasharray } = getComputedStyle(line);
+          return [line.dataset.case ?? line.getAttribute("class"), stroke, strokeDasharray];
+        })""",
+    )
+    for name, stroke, dashes in lines:
+        assert hexadecimal(stroke) == getattr(MARKS[name], theme), name
+        drawn = [float(length) for length in re.findall(r"[\d.]+", dashes)]
+        assert drawn == [2 * length for length in MARKS[name].dashes], name
+    count = Counter(name for name, *_ in lines)
+    assert count == {"G1": 3, "G2": 3, "G3": 3, "target": 1, "limit": 2}
