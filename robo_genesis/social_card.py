@@ -7,12 +7,12 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from robo_genesis import l04, plots
+from robo_genesis.compared import COMPARED
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_joints, read_trace
 
 SIZE = (12.0, 6.3)
 """Inches at 100 dots an inch: the 1200 × 630 pixels that most services show whole."""
-COMPARED = ("G1", "G2", "G3")
 
 
 def card(folder: Path) -> bytes:
@@ -24,8 +24,8 @@ def card(folder: Path) -> bytes:
     Raises:
         BundleRefused: the bundle cannot be read.
     """
-    arrays = bundle.read_arrays(folder)
-    traces = {case: read_trace(folder, arrays, case) for case in COMPARED}
+    arrays, compared = bundle.read_arrays(folder), COMPARED[l04.LESSON]
+    traces = {case: read_trace(folder, arrays, case) for case in compared.cases}
     stream = io.BytesIO()
     with mpl.rc_context():
         plots.use_course_style()
@@ -36,6 +36,6 @@ def card(folder: Path) -> bytes:
         words.text(0, 0.72, "RoboGenesis", fontsize=40, fontweight="bold")
         words.text(0, 0.45, "Robot simulation,\nmeasured", fontsize=28)
         words.text(0, 0.12, "Every curve comes\nfrom a run of the engine.", fontsize=18)
-        plots.position(drawn, traces, read_joints(arrays), l04.STEPPED_JOINT)
+        plots.position(drawn, traces, read_joints(arrays), compared.joint)
         figure.savefig(stream, format="png", metadata={"Software": None})
     return stream.getvalue()

@@ -15,13 +15,14 @@ from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis import l04, plots
+from robo_genesis import plots
+from robo_genesis.compared import COMPARED, Compared
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.status import RECORDED_PAGE, Status, page_status
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.ledger import Run
 from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
-from robo_genesis.sphinx_panel import COMPARED, Picture, frames
+from robo_genesis.sphinx_panel import Picture, frames
 
 UNTIL = 0.6
 """The end of the plot's window [s]: what comes later is one flat line."""
@@ -33,15 +34,21 @@ class Glance(SphinxDirective):
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
-        """Return the figures; a lesson without an accepted run of this build is an error."""
+        """Return the figures.
+
+        Errors are a lesson without an accepted run of this build, and one that compares no cases.
+        """
         lesson, book = self.arguments[0], Path(self.env.srcdir)
+        if lesson not in COMPARED:
+            raise self.error(f"glance: {lesson} compares no cases; see robo_genesis/compared.py.")
         status = page_status(outputs_folder(), lesson, RECORDED_PAGE, BACKEND, book)
         if status.manifest is None:
             raise self.error(f"glance: {lesson} has no accepted run: {status.reason}")
         folder = outputs_folder() / lesson / RECORDED_PAGE / BACKEND
         run = Run(f"{lesson}/{RECORDED_PAGE}", folder, status).key
         box = nodes.container(classes=["glance"], evidence_runs=(run,))
-        box += [self.figure(lesson, picture) for picture in pictures(folder, status)]
+        shown = pictures(folder, COMPARED[lesson], status)
+        box += [self.figure(lesson, picture) for picture in shown]
         if status.manifest.predicate.render.mode != "camera":
             box += nodes.paragraph("", "SKIP: rendering was off, so there is no camera frame.")
         return [box]
@@ -56,34 +63,33 @@ class Glance(SphinxDirective):
         return nodes.figure("", image, nodes.caption("", picture.caption), ids=[anchor])
 
 
-def pictures(folder: Path, status: Status) -> Iterator[Picture]:
+def pictures(folder: Path, compared: Compared, status: Status) -> Iterator[Picture]:
     """Yield the plot, and the last camera frame if there is one."""
-    yield response(folder)
+    yield response(folder, compared)
     for frame in frames(folder, status):
         if frame.name == "final":
             yield frame
 
 
-def response(folder: Path) -> Picture:
-    """Return the position of the three compared cases, drawn from a bundle's arrays."""
+def response(folder: Path, compared: Compared) -> Picture:
+    """Return the position of the compared cases, drawn from a bundle's arrays."""
     arrays = bundle.read_arrays(folder)
-    traces = {case: read_trace(folder, arrays, case) for case in COMPARED}
+    traces = {case: read_trace(folder, arrays, case) for case in compared.cases}
     stream = io.BytesIO()
     with mpl.rc_context():
         plots.use_course_style()
         figure = Figure(figsize=(4.8, 3.6))
         ax = figure.subplots()
-        plots.position(ax, traces, read_joints(arrays), l04.STEPPED_JOINT)
+        plots.position(ax, traces, read_joints(arrays), compared.joint)
         ax.set_xlim(0, UNTIL)
         ax.legend(loc="lower right", fontsize="medium")
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     alt = (
-        f"Position of {l04.STEPPED_JOINT} over time with three pairs of gains, G1, G2 and G3, "
+        f"Position of {compared.joint} over time with the gains of {compared.names}, "
         "its target and the settling band around it."
     )
     caption = (
-        f"Position of {l04.STEPPED_JOINT}, three settings of its controller, "
-        "from get_dofs_position."
+        f"Position of {compared.joint}, three settings of its controller, from get_dofs_position."
     )
     return Picture("response", ".svg", stream.getvalue(), alt, caption)
 

@@ -18,7 +18,8 @@ from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis import l04, plots, project, tables
+from robo_genesis import plots, project, tables
+from robo_genesis.compared import COMPARED, Compared
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import Comparison, compare, specification
 from robo_genesis.evidence.findings import DIFFERS
@@ -41,7 +42,6 @@ class Picture:
     caption: str
 
 
-COMPARED = ("G1", "G2", "G3")
 VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
 TABLES = (*VALUES, RELATIONS)
 
@@ -68,9 +68,12 @@ class Evidence(SphinxDirective):
         panel += self.parse_text_to_nodes(backend_text(status))
         recorded = Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True).key
         panel["evidence_runs"] = (recorded,)
-        for picture in (response(folder, status), *frames(folder, status)):
+        compared = COMPARED.get(lesson)
+        drawn = [response(folder, compared, status.backend)] if compared else []
+        for picture in (*drawn, *frames(folder, status)):
             panel += self.figure(f"{lesson}-{status.backend}-{picture.name}", picture)
-        panel += replay_block(self, recorded, folder)
+        if compared:
+            panel += replay_block(self, recorded, folder)
         tables = self.parse_text_to_nodes(metrics_text(lesson, here, folder))
         both = (f"{lesson}/{RECORDED_PAGE}/{BACKEND}", recorded)
         panel += nodes.container("", *tables, evidence_runs=both)
@@ -124,22 +127,22 @@ def switches_text(switches: Mapping[str, str]) -> str:
     return ", ".join(f"`{pair.translate(marks)}`" for pair in pairs) or "none set"
 
 
-def response(folder: Path, status: Status) -> Picture:
-    """Return the response of the three cases, drawn from the bundle's arrays."""
+def response(folder: Path, compared: Compared, backend: str) -> Picture:
+    """Return the response of the compared cases, drawn from the bundle's arrays."""
     arrays = bundle.read_arrays(folder)
-    traces = {case: read_trace(folder, arrays, case) for case in COMPARED}
+    traces = {case: read_trace(folder, arrays, case) for case in compared.cases}
     joints = read_joints(arrays)
     stream = io.BytesIO()
     with mpl.rc_context():
         plots.use_course_style()
         figure = Figure(figsize=(7, 8.5))
-        plots.response(figure.subplots(3, 1, sharex=True), traces, joints, l04.STEPPED_JOINT)
+        plots.response(figure.subplots(3, 1, sharex=True), traces, joints, compared.joint)
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     alt = (
-        f"Position, velocity and control force of {l04.STEPPED_JOINT} over time on "
-        f"{status.backend}, with the cases G1, G2 and G3 drawn over each other."
+        f"Position, velocity and control force of {compared.joint} over time on "
+        f"{backend}, with the cases {compared.names} drawn over each other."
     )
-    caption = f"{l04.STEPPED_JOINT} on {status.backend}, drawn from the arrays of the recorded run."
+    caption = f"{compared.joint} on {backend}, drawn from the arrays of the recorded run."
     return Picture("response", ".svg", stream.getvalue(), alt, caption)
 
 

@@ -15,14 +15,14 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis import l04, npm, replay, replay_model, robot_shape
+from robo_genesis import npm, replay, replay_model, robot_shape
+from robo_genesis.compared import COMPARED, Compared
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.replay import Replay
 from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
 from robo_genesis.sphinx_ledger import scroll_box
 
-CASES = ("G1", "G2", "G3")
 SHAPE_PAGE = "lecture"
 FOLDER = "replay"
 """Below the site; Jupyter Book loads every script of `_static` on every page, these on none."""
@@ -51,8 +51,16 @@ class ReplayDirective(SphinxDirective):
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
-        """Return the replay; an unknown page, or one without a bundle, is an error."""
+        """Return the replay.
+
+        Errors are a page without a bundle, and a lesson that compares no cases.
+        """
         lesson_page = self.arguments[0]
+        if lesson_page.split("/")[0] not in COMPARED:
+            raise self.error(
+                f"replay: the lesson of {lesson_page} compares no cases. With cases and joint in "
+                "robo_genesis/compared.py it has a replay."
+            )
         folder = outputs_folder() / lesson_page / BACKEND
         if not (folder / "manifest.json").is_file():
             raise self.error(f"replay: {lesson_page} left no bundle on {BACKEND}.")
@@ -66,16 +74,30 @@ def replay_block(directive: SphinxDirective, key: str, folder: Path) -> nodes.No
         directive: which asks for it.
         key: names the run, as the ledger does.
         folder: of the bundle.
+
+    Raises:
+        DirectiveError: no page of this build handed the robot's shape on, or another robot's.
+        KeyError: the lesson compares no cases.
     """
-    env, shown = directive.env, read_replay(f"replay-{key.replace('/', '-')}", folder)
-    shape = outputs_folder() / key.split("/")[0] / SHAPE_PAGE / robot_shape.FILE
-    model = replay_model.glb(robot_shape.load_shape(shape), shown.links, shown.traces)
+    env, lesson = directive.env, key.split("/")[0]
+    shown = read_replay(f"replay-{key.replace('/', '-')}", folder, COMPARED[lesson])
+    shape = outputs_folder() / lesson / SHAPE_PAGE / robot_shape.FILE
+    if not shape.is_file():
+        raise directive.error(
+            f"replay: {lesson} handed on no shape of its robot. A cell of its {SHAPE_PAGE} must "
+            f"call robot_shape.write_shape(contract.outputs / {lesson!r} / {SHAPE_PAGE!r}, "
+            "robot_shape.read_shape(robot)) after the robot is built."
+        )
+    try:
+        model = replay_model.glb(robot_shape.load_shape(shape), shown.links, shown.traces)
+    except ValueError as error:
+        raise directive.error(f"replay: {key}: {error}") from error
     written = write_model(Path(env.app.outdir) / FOLDER, shown.name, model)
     weight = written + len(gzip.compress(viewer()))
     up = "../" * env.docname.count("/") + FOLDER
     controls = replay.markup(shown, f"{up}/{shown.name}.js", f"{up}/{VIEWER}", round(weight / 1000))
     said = replay.moving(shown, bundle.read_metrics(folder))
-    summary = f"All samples of {', '.join(CASES)} as a table"
+    summary = f"All samples of {', '.join(shown.traces)} as a table"
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     block += nodes.raw("", controls, format="html")
@@ -86,14 +108,14 @@ def replay_block(directive: SphinxDirective, key: str, folder: Path) -> nodes.No
     return block
 
 
-def read_replay(name: str, folder: Path) -> Replay:
+def read_replay(name: str, folder: Path, compared: Compared) -> Replay:
     """Return what is played of a bundle."""
     arrays = bundle.read_arrays(folder)
     return Replay(
         name=name,
-        traces={case: read_trace(folder, arrays, case) for case in CASES},
+        traces={case: read_trace(folder, arrays, case) for case in compared.cases},
         joints=read_joints(arrays),
-        joint=l04.STEPPED_JOINT,
+        joint=compared.joint,
         links=arrays.coords["link"],
     )
 

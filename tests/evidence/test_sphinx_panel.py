@@ -9,6 +9,7 @@ import pytest
 import trimesh
 from docutils import nodes
 from docutils.core import publish_doctree
+from docutils.parsers.rst import DirectiveError
 from docutils.utils import new_document
 from myst_parser.parsers.docutils_ import Parser
 from spoilers import edit, metrics, on, part, predicate, seal
@@ -22,6 +23,7 @@ from robo_genesis import (
     sphinx_panel,
     sphinx_provenance,
 )
+from robo_genesis.compared import COMPARED
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.findings import number
 from robo_genesis.evidence.status import Status, recorded_status
@@ -52,15 +54,15 @@ def test_backend_facts_are_the_manifest_s(verified):
 
 
 def test_the_figure_changes_with_the_bundle_s_arrays(folder, verified, monkeypatch):
-    picture = sphinx_panel.response(folder, verified)
+    picture = sphinx_panel.response(folder, COMPARED["l04"], "cpu")
     assert picture.content.startswith(b"<?xml")
     assert "joint4 over time on cpu" in picture.alt
-    assert sphinx_panel.response(folder, verified) == picture
+    assert sphinx_panel.response(folder, COMPARED["l04"], "cpu") == picture
     shown = {"G1": "G2", "G2": "G1", "G3": "G3"}
     monkeypatch.setattr(
         sphinx_panel, "read_trace", lambda f, a, case: read_trace(f, a, shown[case])
     )
-    assert sphinx_panel.response(folder, verified) != picture
+    assert sphinx_panel.response(folder, COMPARED["l04"], "cpu") != picture
 
 
 def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder, verified):
@@ -244,12 +246,10 @@ def hand_on_a_shape(outputs):
 
 
 def test_a_recorded_run_replays_from_its_own_record(folder, tmp_path, monkeypatch):
-    book = tmp_path / "book"
-    place = on("amdgpu")(shutil.copytree(folder, book / "evidence" / "l04" / "cpu"))
-    status = Status("verified", "amdgpu", "", bundle.read_manifest(place))
-    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
     hand_on_a_shape(tmp_path)
-    panel = Panel(book).panel("l04", status)
+    panel = panel_of(folder, tmp_path, monkeypatch)
+    book = tmp_path / "book"
+    place = book / "evidence" / "l04" / "amdgpu"
 
     (block,) = [n for n in panel.findall(nodes.container) if "replay-block" in classes(n)]
     assert block["evidence_runs"] == ("l04/lab/amdgpu/recorded",)
@@ -262,6 +262,42 @@ def test_a_recorded_run_replays_from_its_own_record(folder, tmp_path, monkeypatc
     assert [animation.name for animation in model.animations] == ["G1", "G2", "G3"]
     assert trace.link_pos[:, 2].astype(np.float32).tobytes() in model.binary_blob()
     assert len(list(block.findall(nodes.row))) == 1 + len(trace.t)
+
+
+def panel_of(folder, tmp_path, monkeypatch, lesson="l04"):
+    """The panel of a recorded run; this build's outputs are below `tmp_path`."""
+    book = tmp_path / "book"
+    place = on("amdgpu")(shutil.copytree(folder, book / "evidence" / lesson / "cpu"))
+    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
+    status = Status("verified", "amdgpu", "", bundle.read_manifest(place))
+    return Panel(book).panel(lesson, status)
+
+
+def test_a_lesson_that_handed_on_no_shape_is_told_what_to_do(folder, tmp_path, monkeypatch):
+    with pytest.raises(DirectiveError) as caught:
+        panel_of(folder, tmp_path, monkeypatch)
+    assert "l04 handed on no shape of its robot" in caught.value.msg
+    assert "robot_shape.write_shape(contract.outputs / 'l04' / 'lecture'" in caught.value.msg
+
+
+def test_another_robot_s_shape_is_an_error_of_the_page(folder, tmp_path, monkeypatch):
+    corner = np.eye(3, dtype=np.float32), np.array([[0, 1, 2]])
+    robot_shape.write_shape(tmp_path / "l04" / "lecture", [Part("wheel", (9, 9, 9), *corner)])
+    with pytest.raises(DirectiveError) as caught:
+        panel_of(folder, tmp_path, monkeypatch)
+    assert "l04/lab/amdgpu/recorded: The shape has parts of wheel" in caught.value.msg
+    assert "at one pin" in caught.value.msg
+
+
+def test_a_lesson_that_compares_no_cases_has_neither_figure_nor_replay(
+    folder, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(sphinx_panel, "metrics_text", lambda *asked: "The metrics.")
+    panel = panel_of(folder, tmp_path, monkeypatch, lesson="l01")
+    assert not [n for n in panel.findall(nodes.container) if "replay-block" in classes(n)]
+    names = [figure["ids"] for figure in panel.findall(nodes.figure)]
+    assert names == [["l01-amdgpu-initial"], ["l01-amdgpu-final"]]
+    assert "The metrics." in panel.astext()
 
 
 def classes(node):

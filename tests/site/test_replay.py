@@ -14,6 +14,7 @@ from bs4 import BeautifulSoup
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from robo_genesis import npm, sphinx_replay
+from robo_genesis.compared import COMPARED
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.l04 import STEPPED_JOINT
@@ -56,7 +57,7 @@ def record(site):
     """Traces by case, joint map and link names, of the accepted bundle of the lecture."""
     folder = site.parent / "pages" / "l04" / "lecture" / "cpu"
     arrays = bundle.read_arrays(folder)
-    traces = {case: read_trace(folder, arrays, case) for case in sphinx_replay.CASES}
+    traces = {case: read_trace(folder, arrays, case) for case in COMPARED["l04"].cases}
     return traces, read_joints(arrays), arrays.coords["link"]
 
 
