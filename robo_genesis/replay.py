@@ -96,7 +96,7 @@ def markup(replay: Replay, script: str, viewer: str, weight: int) -> str:
         f'<div class="replay" hidden data-model="{escape(script)}" data-viewer="{escape(viewer)}" '
         f'data-joint="{escape(replay.joint)}" data-name="{name}">'
         f"<fieldset><legend>Run of {escape(replay.joint)}</legend>{_cases(replay)}</fieldset>"
-        '<div class="stage"></div>'
+        '<div class="stage"><p class="shown" hidden></p></div>'
         '<p class="in-space"><button type="button" class="show" aria-expanded="false">'
         f'Show the robot in 3D</button> <span class="weight">{weight} kB, loaded only if you ask '
         "for it</span>"

@@ -102,6 +102,9 @@
     return asked.get(source);
   }
 
+  /* What the viewer draws with: without it, it would say that it loaded, and show nothing. */
+  const draws3D = () => document.createElement("canvas").getContext("webgl2") !== null;
+
   /* The robot in 3D, in step with the replay. A classic script and a data: address work from disk. */
   class Robot {
     constructor(root) {
@@ -153,6 +156,7 @@
     const last = Number(slider.max);
     let cursors = [];
     let began = null; // {clock, time}: when playing started [ms], and at which time of the run [s]
+    let frame = 0; // the request for the next frame while playing
 
     const chosen = () => radios.find((radio) => radio.checked).value;
     const run = () => runs[chosen()];
@@ -188,7 +192,15 @@
       robot.pose(chosen(), time);
     }
 
+    /* Beside the robot, whose run it is: the picker may be out of sight. */
+    function nameCase() {
+      const shown = root.querySelector(".shown");
+      shown.textContent = chosen();
+      shown.className = `shown case-mark case-${chosen().toLowerCase()}`;
+    }
+
     function drawPlots() {
+      nameCase();
       const { target, limit, units } = run();
       const names = ["Position", "Velocity", "Control force"];
       const marks = [
@@ -208,6 +220,7 @@
 
     function stop() {
       began = null;
+      cancelAnimationFrame(frame);
       label();
       showSample(); // back onto a sample of the record
     }
@@ -219,14 +232,13 @@
     }
 
     function advance(clock) {
-      if (!began) return;
       const { time } = run();
       began.clock ??= clock;
       const now = began.time + ((clock - began.clock) / 1000) * Number(speed.value);
       slider.value = Math.min(Math.floor(now / time[1] + 1e-6), last);
       if (now >= time[last]) return stop();
       showSample(now);
-      requestAnimationFrame(advance);
+      frame = requestAnimationFrame(advance);
     }
 
     play.addEventListener("click", () => {
@@ -236,7 +248,7 @@
       if (began) return stop();
       began = { clock: null, time: run().time[sample()] };
       label();
-      requestAnimationFrame(advance);
+      frame = requestAnimationFrame(advance);
     });
 
     function jump() {
@@ -258,18 +270,23 @@
       const stage = root.querySelector(".stage");
       const status = root.querySelector("[role=status]");
       if (!robot.viewer) {
+        if (!draws3D()) {
+          status.textContent = "This browser draws no 3D: its WebGL 2 is missing or turned off. The plots show the same runs.";
+          return;
+        }
         show.disabled = true;
         status.textContent = "Loading …";
         try {
           await robot.load(`The robot in 3D, in the posture of the sample that is shown. ${joint} moves.`);
         } catch (error) {
-          status.textContent = "The robot cannot be shown here: this browser draws no 3D, or a file is missing.";
-          stage.replaceChildren();
+          status.textContent = "The robot cannot be shown: a file is missing or cannot be read.";
+          stage.querySelector("model-viewer")?.remove();
           return;
         } finally {
           show.disabled = false;
         }
         root.querySelector(".weight").remove();
+        root.querySelector(".shown").hidden = false;
         status.textContent = "Loaded. Turn it with the mouse, a finger or the arrow keys.";
         showSample();
       } else {

@@ -11,23 +11,26 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bs4 import BeautifulSoup
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
 from robo_genesis import npm, sphinx_replay
 from robo_genesis.compared import COMPARED
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.l04 import STEPPED_JOINT
+from robo_genesis.replay_model import rotations
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 LECTURE = "lessons/l04-joint-control/lecture.html"
 CHROMIUM = "/usr/bin/chromium"
 MODEL = "replay-l04-lecture-cpu"
+REPLAY = f".replay[data-name={MODEL}]"
+"""The replay of this build's run; a recorded run has its own on the same page."""
+
+BLOCK = f".replay-block:has({REPLAY})"
 SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 """WebGL without a graphics card."""
-
-LOADED = "document.querySelector('.in-space [role=status]').textContent.startsWith('Loaded')"
 
 POSES = """() => {
   const viewer = document.querySelector("model-viewer");
@@ -36,20 +39,33 @@ POSES = """() => {
   let world;
   scene.traverse(node => { if (node.name === "world") world = node; });
   const back = world.matrixWorld.clone().invert();
-  return Object.fromEntries(world.children.map(link => [
-    link.name,
-    [...link.position.clone().setFromMatrixPosition(back.clone().multiply(link.matrixWorld))],
-  ]));
+  return Object.fromEntries(world.children.map(link => {
+    const inRecord = back.clone().multiply(link.matrixWorld);
+    return [link.name, {
+      position: [...link.position.clone().setFromMatrixPosition(inRecord)],
+      rotation: [...link.quaternion.clone().setFromRotationMatrix(inRecord)],
+    }];
+  }));
 }"""
-"""Where the links stand in the running viewer, in the frame of the record [m]."""
+"""How the links stand in the running viewer, in the frame of the record: [m] and (x, y, z, w)."""
+
+POSED = """([name, time]) => {
+  const viewer = document.querySelector("model-viewer");
+  return viewer.animationName === name && Math.abs(viewer.currentTime - time) < 1e-5;
+}"""
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
+def playwright() -> Iterator[Playwright]:
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=SOFTWARE)
-        yield browser
-        browser.close()
+        yield playwright
+
+
+@pytest.fixture(scope="module")
+def browser(playwright) -> Iterator[Browser]:
+    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=SOFTWARE)
+    yield browser
+    browser.close()
 
 
 @pytest.fixture(scope="module")
@@ -106,14 +122,14 @@ def anywhere(request, browser, address, site) -> Iterator[Page]:
 
 def choose(page, case, sample):
     """Bring the replay to a sample, as a reader does: picker, then slider."""
-    page.locator(f".replay input[value={case}]").check()
-    slider = page.locator(".replay input[type=range]")
+    page.locator(f"{REPLAY} input[value={case}]").check()
+    slider = page.locator(f"{REPLAY} input[type=range]")
     slider.fill(str(sample))
     return slider
 
 
 def readout(page):
-    terms, values = (page.locator(f".replay {tag}").all_inner_texts() for tag in ("dt", "dd"))
+    terms, values = (page.locator(f"{REPLAY} {tag}").all_inner_texts() for tag in ("dt", "dd"))
     return dict(zip(terms, values, strict=True))
 
 
@@ -122,8 +138,8 @@ def number(text):
 
 
 def show_robot(page):
-    page.locator(".in-space .show").click()
-    page.wait_for_function(LOADED, timeout=120_000)
+    page.locator(f"{REPLAY} button.show").click()
+    page.locator(REPLAY).get_by_text("Loaded.").wait_for(timeout=120_000)
 
 
 def test_links_stand_where_the_record_says(anywhere, record):
@@ -131,21 +147,24 @@ def test_links_stand_where_the_record_says(anywhere, record):
     page = anywhere
     traces, _, links = record
     show_robot(page)
-    worst = 0.0
+    worst = np.zeros(2)
     for case, trace in traces.items():
         for sample in (0, 3, 9, 17, 60, trace.steps):
             choose(page, case, sample)
-            page.wait_for_function(
-                f"document.querySelector('model-viewer').animationName === '{case}'"
-            )
-            page.wait_for_timeout(50)
+            page.wait_for_function(POSED, arg=[case, float(trace.t[sample])])
             found = page.evaluate(POSES)
             assert sorted(found) == sorted(links)
-            places = np.array([found[link] for link in links])
-            worst = max(worst, np.abs(places - trace.link_pos[sample]).max())
-            assert np.abs(places - trace.link_pos[sample]).max() < 1e-6, (case, sample)
-    print(f"largest difference of a link's position: {worst:.1e} m")
-    assert np.abs(traces["G2"].link_pos[9] - traces["G2"].link_pos[0]).max() > 1e-2
+            places, turns = (
+                np.array([found[link][part] for link in links]) for part in ("position", "rotation")
+            )
+            recorded = rotations(trace.link_quat[sample])
+            turns *= np.sign((turns * recorded).sum(axis=1))[:, None]  # q and −q turn alike
+            far = [np.abs(places - trace.link_pos[sample]).max(), np.abs(turns - recorded).max()]
+            assert max(far) < 1e-6, (case, sample)
+            worst = np.maximum(worst, far)
+    print(f"largest differences: positions {worst[0]:.1e} m, quaternions {worst[1]:.1e}")
+    for moved in (traces["G2"].link_pos, traces["G2"].link_quat):
+        assert np.abs(moved[9] - moved[0]).max() > 1e-2
 
 
 def test_sample_0_is_the_state_before_the_first_step(page, record):
@@ -179,24 +198,24 @@ def test_keys_move_through_time_and_all_follows(anywhere, record):
     assert shown["control force"] in spoken
     page.keyboard.press("End")
     assert readout(page)["time"] == "1.20 s"
-    before = page.locator(".replay .cursor").first.get_attribute("x1")
+    before = page.locator(f"{REPLAY} .cursor").first.get_attribute("x1")
     page.keyboard.press("Home")
-    assert page.locator(".replay .cursor").first.get_attribute("x1") != before
+    assert page.locator(f"{REPLAY} .cursor").first.get_attribute("x1") != before
 
 
 def test_arrow_keys_pick_a_case_and_its_curve_is_bold(page):
     choose(page, "G1", 20)
-    page.locator(".replay input[value=G1]").focus()
+    page.locator(f"{REPLAY} input[value=G1]").focus()
     page.keyboard.press("ArrowDown")
-    assert page.locator(".replay .chosen").evaluate_all("all => all.map(e => e.dataset.case)") == (
-        ["G2"] * 3
-    )
-    names = page.locator(".replay svg").evaluate_all("all => all.map(e => e.ariaLabel)")
+    assert page.locator(f"{REPLAY} .chosen").evaluate_all(
+        "all => all.map(e => e.dataset.case)"
+    ) == (["G2"] * 3)
+    names = page.locator(f"{REPLAY} svg").evaluate_all("all => all.map(e => e.ariaLabel)")
     assert all("G2 is drawn bold" in name for name in names)
 
 
 def test_curves_are_told_apart_without_colour(page):
-    dashes = page.locator(".replay svg").first.evaluate(
+    dashes = page.locator(f"{REPLAY} svg").first.evaluate(
         "svg => [...svg.querySelectorAll('.curve')].map(e => getComputedStyle(e).strokeDasharray)"
     )
     assert len(set(dashes)) == 3
@@ -206,7 +225,7 @@ def test_the_curve_is_drawn_to_scale(page, record):
     traces, joints, _ = record
     k = joints.entry(STEPPED_JOINT)
     drawn = (
-        page.locator(".replay svg")
+        page.locator(f"{REPLAY} svg")
         .nth(2)
         .evaluate("""svg => ({
         y: svg.querySelector("[data-case=G2]").getAttribute("points").split(" ")
@@ -223,20 +242,37 @@ def test_the_curve_is_drawn_to_scale(page, record):
 
 def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
     choose(page, "G2", 0)
-    page.locator(".replay select").select_option("1")
-    play = page.locator(".replay .play")
+    page.locator(f"{REPLAY} select").select_option("1")
+    play = page.locator(f"{REPLAY} .play")
     play.focus()
     page.keyboard.press("Space")
     assert play.inner_text() == "Pause"
-    page.wait_for_function("document.querySelector('.replay input[type=range]').value > 5")
+    page.wait_for_function(f"document.querySelector('{REPLAY} input[type=range]').value > 5")
     page.keyboard.press("Space")
-    paused = page.locator(".replay input[type=range]").input_value()
+    paused = page.locator(f"{REPLAY} input[type=range]").input_value()
     assert play.inner_text() == "Play"
     page.wait_for_timeout(200)
-    assert page.locator(".replay input[type=range]").input_value() == paused
+    assert page.locator(f"{REPLAY} input[type=range]").input_value() == paused
     page.keyboard.press("Space")
-    page.wait_for_function("document.querySelector('.replay input[type=range]').value === '120'")
+    page.wait_for_function(f"document.querySelector('{REPLAY} input[type=range]').value === '120'")
     assert play.inner_text() == "Play"
+
+
+def test_play_after_a_pause_in_one_frame_is_still_one_loop(page):
+    frames, asked = (
+        10,
+        """async ([replay, frames]) => {
+      const play = document.querySelector(`${replay} .play`);
+      for (const press of ["play", "pause", "play"]) play.click();
+      const request = requestAnimationFrame.bind(window);
+      let asked = 0;
+      window.requestAnimationFrame = (todo) => { asked += 1; return request(todo); };
+      for (let frame = 0; frame < frames; frame += 1) await new Promise(request);
+      window.requestAnimationFrame = request;
+      return asked;
+    }""",
+    )
+    assert page.evaluate(asked, [REPLAY, frames]) == frames
 
 
 def test_nothing_plays_by_itself(page):
@@ -247,7 +283,7 @@ def test_nothing_plays_by_itself(page):
 
 def test_reduced_motion_goes_by_steps(browser, address):
     page = open_lecture(browser, address, reduced_motion="reduce")
-    play = page.locator(".replay .play")
+    play = page.locator(f"{REPLAY} .play")
     assert play.inner_text() == "Next 0.05 s"
     play.click()
     assert readout(page)["time"] == "0.05 s"
@@ -261,7 +297,7 @@ def test_viewer_and_model_are_asked_for_on_request_alone(browser, address, files
     asked: list[str] = []
     page = open_lecture(browser, address, asked)
     page.wait_for_load_state("networkidle")
-    page.locator(".replay").scroll_into_view_if_needed()
+    page.locator(REPLAY).scroll_into_view_if_needed()
     choose(page, "G2", 30)
     before = [url for url in asked if f"/{sphinx_replay.FOLDER}/" in url]
     assert before == []
@@ -283,9 +319,11 @@ def test_viewer_and_model_are_asked_for_on_request_alone(browser, address, files
 def test_axe_finds_nothing_with_the_robot_shown(browser, address, scheme):
     page = open_lecture(browser, address, color_scheme=scheme)
     show_robot(page)
-    page.locator(".replay-block summary").click()
+    page.locator(f"{BLOCK} summary").click()
     page.add_script_tag(path=npm.packages() / "axe-core" / "axe.min.js")
-    found = page.evaluate("axe.run('.replay-block').then(r => [r.violations, r.passes.length])")
+    found = page.evaluate(
+        "block => axe.run(block).then(r => [r.violations, r.passes.length])", BLOCK
+    )
     assert found[0] == []
     assert found[1] > 10
     page.close()
@@ -293,7 +331,7 @@ def test_axe_finds_nothing_with_the_robot_shown(browser, address, scheme):
 
 def test_the_robot_can_be_hidden_again(page):
     show_robot(page)
-    button = page.locator(".in-space .show")
+    button = page.locator(f"{REPLAY} button.show")
     assert button.get_attribute("aria-expanded") == "true"
     assert page.locator("model-viewer").get_attribute("alt").startswith("The robot in 3D")
     button.click()
@@ -301,12 +339,45 @@ def test_the_robot_can_be_hidden_again(page):
     assert button.get_attribute("aria-expanded") == "false"
 
 
+def test_the_case_is_named_beside_the_robot(page):
+    name = page.locator(f"{REPLAY} .shown")
+    assert not name.is_visible()
+    show_robot(page)
+    lines = {}
+    for case in COMPARED["l04"].cases:
+        choose(page, case, 5)
+        assert name.inner_text() == case
+        line, picked = (
+            page.locator(selector).evaluate("e => getComputedStyle(e, '::before').background")
+            for selector in (f"{REPLAY} .shown", f"{REPLAY} label.case-{case.lower()}")
+        )
+        assert line == picked
+        lines[line] = case
+    assert list(lines.values()) == list(COMPARED["l04"].cases)
+
+
+def test_a_browser_without_3d_says_so_and_loads_nothing(playwright, address):
+    blind = playwright.chromium.launch(
+        executable_path=CHROMIUM, args=["--no-sandbox", "--disable-3d-apis"]
+    )
+    asked: list[str] = []
+    page = open_lecture(blind, address, asked)
+    page.locator(f"{REPLAY} button.show").click()
+    page.locator(REPLAY).get_by_text("This browser draws no 3D").wait_for()
+    page.wait_for_load_state("networkidle")
+    assert [url for url in asked if f"/{sphinx_replay.FOLDER}/" in url] == []
+    assert page.locator("model-viewer").count() == 0
+    assert not page.locator(f"{REPLAY} .shown").is_visible()
+    assert page.problems == []
+    blind.close()
+
+
 def test_a_file_that_is_missing_is_said(browser, address):
     page = browser.new_page()
     page.route(f"**/{MODEL}.js", lambda route: route.abort())
     page.goto(f"{address}/{LECTURE}")
-    page.locator(".in-space .show").click()
-    status = page.locator(".in-space [role=status]")
+    page.locator(f"{REPLAY} button.show").click()
+    status = page.locator(f"{REPLAY} [role=status]")
     status.get_by_text("cannot be shown").wait_for()
     assert page.locator("model-viewer").count() == 0
     page.close()
@@ -314,19 +385,18 @@ def test_a_file_that_is_missing_is_said(browser, address):
 
 def test_two_replays_of_a_page_are_two(browser, address, site, files):
     """A recorded run brings its own: other names, another model, the same viewer."""
-    other, html = "replay-l04-lab-amdgpu-recorded", (site / LECTURE).read_text()
-    block = str(BeautifulSoup(html, "html.parser").select_one(".replay-block"))
+    other, html = "replay-l04-lab-other-recorded", (site / LECTURE).read_text()
+    block = str(BeautifulSoup(html, "html.parser").select_one(BLOCK))
     html = html.replace("</article>", block.replace(MODEL, other) + "</article>", 1)
-    assert html.count('class="replay"') == 2
     script = sphinx_replay.script_of(other, (files / f"{MODEL}.glb").read_bytes())
     page = open_lecture(browser, address, served={f"**/{LECTURE}": html, f"**/{other}.js": script})
-    first, second = page.locator(".replay").all()
+    first, second = page.locator(REPLAY), page.locator(f".replay[data-name={other}]")
     second.locator("input[value=G3]").check()
     second.locator("input[type=range]").fill("7")
     assert first.locator("input:checked").input_value() == "G1"
     assert first.locator("input[type=range]").input_value() == "0"
     for replay in (first, second):
-        replay.locator(".in-space .show").click()
+        replay.locator("button.show").click()
         replay.get_by_text("Loaded.").wait_for(timeout=120_000)
     assert page.locator("model-viewer").count() == 2
     assert page.problems == []
@@ -337,21 +407,21 @@ def test_without_scripts_figure_film_and_table_remain(browser, address):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(f"{address}/{LECTURE}")
-    assert not page.locator(".replay").is_visible()
+    assert not page.locator(REPLAY).is_visible()
     assert page.locator("#fig-l04-gains img").is_visible()
     assert page.locator("#fig-l04-film img").is_visible()
     assert page.get_by_text("moves farthest").first.is_visible()
-    summary = page.locator(".replay-block summary")
+    summary = page.locator(f"{BLOCK} summary")
     summary.click()
-    assert page.locator(".replay-block tbody tr").count() == 121
-    assert page.locator(".replay-block table").is_visible()
+    assert page.locator(f"{BLOCK} tbody tr").count() == 121
+    assert page.locator(f"{BLOCK} table").is_visible()
     context.close()
 
 
 def test_nothing_is_cut_off_on_a_phone(browser, address):
     page = open_lecture(browser, address, viewport={"width": 320, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") <= 320
-    overflow = page.locator(".replay").evaluate("""root => {
+    overflow = page.locator(REPLAY).evaluate("""root => {
       const edge = root.getBoundingClientRect().right;
       return [...root.querySelectorAll("input, button, select, svg, svg text, dl div")]
         .filter(e => e.getBoundingClientRect().right > edge).map(e => e.outerHTML);
