@@ -9,11 +9,12 @@ from urllib.parse import unquote, urlsplit
 
 from playwright.sync_api import Error, Page, sync_playwright
 from pypdf import PdfWriter
+from pypdf.errors import PyPdfError
 from pypdf.generic import NameObject, TextStringObject
 
 from robo_genesis.pages import docnames
-from robo_genesis.print_pages import document
-from robo_genesis.publish import PUBLISHED
+from robo_genesis.print_pages import ForeignPageError, document
+from robo_genesis.publish import NEXT, PUBLISHED, beside, settle, swap
 
 COURSE = "robo-genesis"
 LESSONS = "lessons"
@@ -43,8 +44,9 @@ def print_site(book: Path, say: Callable[[str], None] = print) -> list[Path]:
     if not (html / "index.html").is_file():
         raise PdfError(f"No site in {html}. `make book` builds it.")
     planned = documents(docnames(book / "_toc.yml"))
-    folder, following = book / PUBLISHED / "pdf", book / PUBLISHED / "pdf.next"
-    shutil.rmtree(following, ignore_errors=True)
+    folder = book / PUBLISHED / "pdf"
+    settle(folder)
+    following = beside(folder, NEXT)
     following.mkdir()
     try:
         with sync_playwright() as playwright:
@@ -54,12 +56,15 @@ def print_site(book: Path, say: Callable[[str], None] = print) -> list[Path]:
                 print_document(browser.new_page(), html, pages, following / f"{name}.pdf", title)
                 say(f"{name}.pdf  {len(pages)} pages of the site")
             browser.close()
-        shutil.rmtree(folder, ignore_errors=True)
-        following.rename(folder)
+        swap(folder)
     except Error as error:
         raise PdfError(f"Chromium failed: {error}") from error
+    except PyPdfError as error:
+        raise PdfError(f"What Chromium printed is no PDF that can be read: {error}") from error
+    except ForeignPageError as error:
+        raise PdfError(str(error)) from error
     finally:
-        shutil.rmtree(following, ignore_errors=True)
+        settle(folder)
     return sorted(folder.iterdir())
 
 
@@ -103,7 +108,9 @@ def open_document(page: Page, html: Path, names: Sequence[str], title: str = "")
 
     Raises:
         PdfError: the document asks for something that the site does not have.
+        ForeignPageError: one of the pages has no article.
     """
+    text = document(html, names, title)  # not in `answer`: the browser would wait for its error
     lacking: list[str] = []
 
     def answer(route: Any) -> None:
@@ -112,7 +119,7 @@ def open_document(page: Page, html: Path, names: Sequence[str], title: str = "")
             lacking.append(route.request.url)
             route.abort()
         elif not path:
-            route.fulfill(body=document(html, names, title), content_type="text/html")
+            route.fulfill(body=text, content_type="text/html")
         elif (html / path).is_file():
             route.fulfill(path=html / path)
         else:

@@ -17,6 +17,10 @@ REFERRING = ("for", "aria-labelledby", "aria-describedby", "aria-controls", "ari
 STAYS_ON_SCREEN = "script, template, button, .headerlink"
 
 
+class ForeignPageError(Exception):
+    """A page has no article of this book's theme; the message names it."""
+
+
 def document(html: Path, docnames: Sequence[str], title: str = "") -> str:
     """Return one HTML document with the articles of some pages, in their order.
 
@@ -24,6 +28,9 @@ def document(html: Path, docnames: Sequence[str], title: str = "") -> str:
         html: the folder of the site.
         docnames: pages of it, without suffix.
         title: of the document; by default the first page's heading.
+
+    Raises:
+        ForeignPageError: one of them is no page of this book's theme.
     """
     pages = {name: _page(html, name) for name in docnames}
     known = {name: _ids(article) for name, (_, article) in pages.items()}
@@ -51,7 +58,7 @@ def _page(html: Path, docname: str) -> tuple[BeautifulSoup, Tag]:
     page = BeautifulSoup((html / f"{docname}.html").read_text("utf8"), "html.parser")
     article = page.select_one("article.bd-article")
     if article is None:
-        raise ValueError(f"{docname}.html has no article: it is no page of this book's theme.")
+        raise ForeignPageError(f"{docname}.html has no article: no page of this book's theme.")
     return page, article
 
 

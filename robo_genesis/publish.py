@@ -7,26 +7,51 @@ from pathlib import Path
 
 from robo_genesis.page_results import PageResult
 
-PUBLISHED, NEXT, OLD = "_build", "_build.next", "_build.old"
+PUBLISHED, NEXT, OLD = "_build", ".next", ".old"
 PAGES = "pages"
 """Beside `evidence`: the bundles of pages that are no lab, which a refresh compares as well."""
 
 
 def recover(book: Path) -> None:
-    """Bring a book's published folder into order after a build that was killed.
-
-    Killed between the two renames, the old site stands aside: it comes back. Killed later, it is
-    only rubbish, as is a next site that was never swapped in.
+    """Bring a book's published folder into order after a build that was killed; see `settle`.
 
     Args:
         book: the folder that holds `_build`.
     """
-    published, aside = book / PUBLISHED, book / OLD
-    if aside.exists() and not published.exists():
-        aside.rename(published)
-    for folder in (aside, book / NEXT):
-        if folder.exists():
-            shutil.rmtree(folder)
+    settle(book / PUBLISHED)
+
+
+def settle(folder: Path) -> None:
+    """Bring a folder that is swapped in whole into order, after a kill at any point.
+
+    Killed between the two renames, the old folder stands aside: it comes back. Killed later, it is
+    only rubbish, as is a next one that was never swapped in.
+
+    Args:
+        folder: what `swap` exchanges; it need not exist.
+    """
+    aside = beside(folder, OLD)
+    if aside.exists() and not folder.exists():
+        aside.rename(folder)
+    for other in (aside, beside(folder, NEXT)):
+        if other.exists():
+            shutil.rmtree(other)
+
+
+def swap(folder: Path) -> None:
+    """Put the complete next folder, which stands beside, in the place of a folder.
+
+    Args:
+        folder: `settle` mends what a kill between the two renames leaves, and removes the old one.
+    """
+    if folder.exists():
+        os.rename(folder, beside(folder, OLD))
+    os.rename(beside(folder, NEXT), folder)
+
+
+def beside(folder: Path, suffix: str) -> Path:
+    """Return where the next or the old state of a folder stands."""
+    return folder.with_name(folder.name + suffix)
 
 
 def publish(book: Path, html: Path, results: Iterable[PageResult]) -> Path:
@@ -45,7 +70,7 @@ def publish(book: Path, html: Path, results: Iterable[PageResult]) -> Path:
         OSError: nothing is changed, the old site stands.
     """
     recover(book)
-    following = book / NEXT
+    following = beside(book / PUBLISHED, NEXT)
     try:
         following.mkdir()
         shutil.move(html, following / "html")
@@ -54,14 +79,7 @@ def publish(book: Path, html: Path, results: Iterable[PageResult]) -> Path:
                 lesson, page = str(result.page.lesson), str(result.page.page)
                 own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
                 shutil.copytree(result.bundle, following.joinpath(*own, result.bundle.name))
-        _swap(book)
+        swap(book / PUBLISHED)
     finally:
         recover(book)
     return book / PUBLISHED / "html"
-
-
-def _swap(book: Path) -> None:
-    """Exchange the published folder; `recover` mends what a kill between the renames leaves."""
-    if (book / PUBLISHED).exists():
-        os.rename(book / PUBLISHED, book / OLD)
-    os.rename(book / NEXT, book / PUBLISHED)

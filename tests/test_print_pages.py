@@ -1,8 +1,14 @@
+import os
+import subprocess
+import sys
+
 import pytest
 from bs4 import BeautifulSoup
 
+from robo_genesis import pdf
 from robo_genesis.pdf import COURSE, PdfError, documents, name_bookmarks, print_site
 from robo_genesis.print_pages import document
+from robo_genesis.project import ROOT
 
 HEAD = '<link rel="stylesheet" href="{up}_static/a.css?v=1"><script src="x.js"></script>'
 FIRST = """<h1 id="top">First &amp; best</h1><p id="here">
@@ -91,6 +97,14 @@ def test_without_a_site_the_message_says_how_to_build_one(book):
         print_site(book)
 
 
+def test_the_check_before_the_build_says_that_chromium_is_missing(tmp_path):
+    command = [sys.executable, str(ROOT / "build_scripts" / "pdf.py"), "--check"]
+    environment = os.environ | {"PATH": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "apt install chromium" in done.stderr
+
+
 def test_without_chromium_the_message_names_the_package_and_earlier_pdfs_stay(book, monkeypatch):
     monkeypatch.setenv("PATH", str(book))
     with pytest.raises(PdfError, match="apt install chromium"):
@@ -104,6 +118,40 @@ def test_what_the_site_lacks_stops_the_printing_and_earlier_pdfs_stay(book):
         '<article class="bd-article"><h1>Home</h1><img src="gone.svg" alt="x"></article>'
     )
     with pytest.raises(PdfError, match=r"the site has no gone\.svg"):
+        print_site(book)
+    assert left(book) == ["pdf/old.pdf"]
+
+
+@pytest.mark.browser
+def test_a_page_of_another_theme_is_named_and_earlier_pdfs_stay(book):
+    (book / "_build" / "html" / "index.html").write_text("<p>no article</p>")
+    with pytest.raises(PdfError, match=r"index\.html has no article"):
+        print_site(book)
+    assert left(book) == ["pdf/old.pdf"]
+
+
+@pytest.mark.browser
+def test_what_is_no_pdf_is_reported_and_earlier_pdfs_stay(book, monkeypatch):
+    def prints_nonsense(page, html, names, file, title=""):
+        file.write_text("no PDF")
+        name_bookmarks(file, ["Home"])
+
+    monkeypatch.setattr(pdf, "print_document", prints_nonsense)
+    with pytest.raises(PdfError, match="no PDF that can be read"):
+        print_site(book)
+    assert left(book) == ["pdf/old.pdf"]
+
+
+@pytest.mark.browser
+def test_killed_between_the_renames_the_earlier_pdfs_come_back(book, monkeypatch):
+    (book / "_build" / "pdf").rename(book / "_build" / "pdf.old")
+    (book / "_build" / "pdf.next").mkdir()
+
+    def stops(*args):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(pdf, "print_document", stops)
+    with pytest.raises(KeyboardInterrupt):
         print_site(book)
     assert left(book) == ["pdf/old.pdf"]
 
