@@ -12,15 +12,13 @@ from threading import Thread
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 
+from robo_genesis.pdf import chromium
 from robo_genesis.project import BOOK, ROOT
 
 
 class QuietHandler(SimpleHTTPRequestHandler):
     def log_message(self, *args) -> None:
         pass
-
-
-CHROMIUM = "/usr/bin/chromium"
 
 
 @pytest.fixture(scope="session")
@@ -48,6 +46,6 @@ def address(site) -> Iterator[str]:
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
         yield browser
         browser.close()
