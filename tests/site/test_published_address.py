@@ -8,6 +8,7 @@ from bs4 import BeautifulSoup
 from PIL import Image
 
 from robo_genesis import pages, project
+from robo_genesis.offline import pack
 from robo_genesis.render import render
 from robo_genesis.site_checks import check_site
 
@@ -24,7 +25,9 @@ def html(site, tmp_path_factory):
     executed = project.page_cache_folder(fingerprint)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SITE_URL", ADDRESS.rstrip("/"))
-        return render(project.BOOK, folder / "staging", executed, folder / "render.log")
+        html = render(project.BOOK, folder / "staging", executed, folder / "render.log")
+    pack(html)
+    return html
 
 
 def test_every_page_names_its_own_address(html):
