@@ -1,5 +1,6 @@
 """A lab as notebooks to take away: one to work in, without outputs or solutions, one as it ran."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -14,6 +15,9 @@ from robo_genesis.project import ENGINE
 
 SITE_ONLY = "site-only"
 """The tag of a cell that makes sense on the site alone."""
+
+OWN_NOTE = re.compile(r"^\[I \d\d/\d\d/\d\d [\d:.]+ \d+\] .*\n?", re.MULTILINE)
+"""A note of the engine's compiler on its own process: date, time and process number."""
 
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
@@ -116,14 +120,20 @@ def _code(
     tags = list(cell.metadata.get("tags", []))
     code = new_code_cell(cell.source, metadata={"tags": tags} if tags else {})
     if ran is not None:
-        code.outputs = [_output(output) for output in ran.outputs]
+        code.outputs = [output for raw in ran.outputs if (output := _output(raw))]
         code.execution_count = ran.execution_count
     caption = cell.metadata.get("mystnb", {}).get("figure", {}).get("caption")
     return [code, *([new_markdown_cell(f"*{plain(caption, writer)}*")] if caption else [])]
 
 
-def _output(output: NotebookNode) -> NotebookNode:
-    """Return an output; of an expected error the exception alone, its stack names private paths."""
+def _output(output: NotebookNode) -> NotebookNode | None:
+    """Return an output, or None where it holds nothing but notes of the process that ran the cell.
+
+    Of an expected error it is the exception alone: its stack names private paths.
+    """
+    if output.output_type == "stream" and output.name == "stderr":
+        text = OWN_NOTE.sub("", output.text)
+        return NotebookNode(output | {"text": text}) if text else None
     if output.output_type != "error":
         return output
     return NotebookNode(output | {"traceback": [ANSI.sub("", t) for t in output.traceback[-1:]]})

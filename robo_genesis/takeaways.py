@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 import shutil
 import tomllib
 from collections.abc import Callable, Iterator
@@ -25,6 +26,9 @@ from robo_genesis.wheel import build_wheel
 ENVIRONMENT = "course"
 UNTOLD = "*(your run measures it)*"
 """Stands in the student notebook for a value that the site measured."""
+
+CHECKOUT = "robo-genesis"
+"""Stands for the folder that the site was built in."""
 
 AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z")}
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
@@ -108,7 +112,13 @@ def _origin(page: Page, run: Path, wheel: str, commands: tuple[str, ...]) -> Ori
 
 
 def _write(path: Path, notebook: NotebookNode) -> None:
-    path.write_text(project.without_home(nbformat.writes(notebook)) + "\n", "utf8")
+    path.write_text(without_places(nbformat.writes(notebook)) + "\n", "utf8")
+
+
+def without_places(text: str, root: Path = project.ROOT) -> str:
+    """Return a text without the builder's own folders: only the checkout's name, and `~`."""
+    checkout = rf"(?<![\w.-]){re.escape(str(root))}(?![\w.-])"
+    return project.without_home(re.sub(checkout, CHECKOUT, text))
 
 
 def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:

@@ -117,6 +117,21 @@ def test_the_executed_notebook_has_outputs_and_measured_values(page, tmp_path):
     assert "Only on the site" not in nbformat.writes(found)
 
 
+def test_notes_of_the_compiler_on_its_process_are_dropped_and_warnings_stay(page, tmp_path):
+    codes = [c for c in page.notebook.cells if c.cell_type == "code"]
+    ran = [new_code_cell(c.source) for c in codes]
+    note = "[I 01/02/26 11:30:00.841 25171] [shell.py:_shell_pop_print@25] a shell\n"
+    warning = "[W 01/02/26 11:30:00.841 25171] [a.py:b@2] mind\n"
+    ran[0].outputs = [new_output("stream", name="stderr", text=note)]
+    ran[1].outputs = [new_output("stream", name="stderr", text=f"{note}UserWarning: x\n{warning}")]
+    ran[2].outputs = [new_output("stream", name="stdout", text=note)]
+    found = executed_notebook(page, new_notebook(cells=ran), ORIGIN, Writer(tmp_path, str))
+    outputs = [c.outputs for c in found.cells if c.cell_type == "code"]
+    assert outputs[0] == []
+    assert outputs[1][0].text == f"UserWarning: x\n{warning}"
+    assert outputs[2][0].text == note
+
+
 def test_the_same_page_gives_the_same_bytes(page, tmp_path):
     writer = Writer(tmp_path, str)
     first, second = (nbformat.writes(student_notebook(page, ORIGIN, writer)) for _ in "ab")

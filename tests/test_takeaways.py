@@ -2,13 +2,14 @@ import csv
 import io
 import zipfile
 from email import message_from_bytes
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from robo_genesis import project
 from robo_genesis.evidence.traces import write_traces
-from robo_genesis.takeaways import csv_text, package_facts, run_commands
+from robo_genesis.takeaways import csv_text, package_facts, run_commands, without_places
 from robo_genesis.wheel import build_wheel
 
 LINKS = ["link0", "link4", "hand"]
@@ -81,3 +82,11 @@ def test_the_commands_put_wheel_and_notebook_to_work():
     folder = make.split()[-1]
     assert install == f"{folder}/bin/pip install ./robo.whl jupyterlab"
     assert start == f"{folder}/bin/jupyter lab lab.ipynb"
+
+
+def test_a_notebook_names_no_folder_of_the_builder():
+    text = "/srv/site/robo_genesis/l04.py, /srv/site, /srv/site-2/a, x/srv/site, /home/me/b"
+    assert without_places(text, Path("/srv/site")) == (
+        "robo-genesis/robo_genesis/l04.py, robo-genesis, /srv/site-2/a, x/srv/site, ~/b"
+    )
+    assert without_places(f"{project.ROOT}/a") == "robo-genesis/a"
