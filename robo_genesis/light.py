@@ -29,6 +29,8 @@ NEEDED_BY = {
 UNUSED = (
     "_static/**/*.map",
     "_static/**/fa-solid-900.*",  # robo_genesis/icons.py has made a small one of it
+    "_static/**/fa-brands-400.*",  # and taken these two out of the style sheet
+    "_static/**/fa-regular-400.*",
     "_static/*webpack-macros.html",
     "_static/locales",
     "_static/scripts/fontawesome.js*",

@@ -6,7 +6,10 @@ Poses and curves are the record's; the shape of the robot is the model's, handed
 
 import base64
 import gzip
+import json
 import re
+import shutil
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -36,12 +39,24 @@ ELSEWHERE = re.compile(
 """Addresses in the viewer: of decoders for compressed models, which these are not, and of its own
 source."""
 
+PARTS = (
+    "@google/model-viewer",
+    "three",
+    "lit",
+    "lit-html",
+    "lit-element",
+    "@lit/reactive-element",
+    "@monogrid/gainmap-js",
+)
+"""The packages whose code the viewer's one file holds, each in the lock."""
+
 CREDITS = f"""\
 The models (*.glb, and the same in *.js): {replay_model.CREDIT}.
-The viewer ({VIEWER}): @google/model-viewer, © Google LLC, Apache-2.0, with the parts that its own
-notices name. Changed here: the addresses from which it would load decoders for compressed models
-are taken out, so that it asks no other host.
+The viewer ({VIEWER}): @google/model-viewer, © Google LLC, Apache-2.0. Changed here: the addresses
+from which it would load decoders for compressed models are taken out, so that it asks no other
+host.
 The licence of both stands in {VIEWER_LICENCE}.
+The viewer is one file made of these packages; the text of each licence stands in the file named:
 """
 
 
@@ -161,10 +176,22 @@ def write_viewer(app: Sphinx, exception: Exception | None) -> None:
     """Put the viewer and the licences beside the models, where there are any."""
     folder = Path(app.outdir) / FOLDER
     if exception is None and folder.is_dir():
-        licence = npm.packages() / "@google" / "model-viewer" / "LICENSE"
         (folder / VIEWER).write_bytes(viewer())
-        (folder / VIEWER_LICENCE).write_bytes(licence.read_bytes())
-        (folder / NOTICE).write_text(CREDITS, "utf8")
+        (folder / NOTICE).write_text(CREDITS + "".join(copy_licences(folder)), "utf8")
+
+
+def copy_licences(folder: Path) -> Iterator[str]:
+    """Copy the licence of each package in the viewer; yield a line on each for the notice."""
+    for name in PARTS:
+        package = npm.packages() / name
+        said = json.loads((package / "package.json").read_text("utf8"))
+        file = (
+            VIEWER_LICENCE
+            if name == PARTS[0]
+            else f"LICENSE-{name.strip('@').replace('/', '-')}.txt"
+        )
+        shutil.copyfile(package / "LICENSE", folder / file)
+        yield f"- {name} {said['version']}: {said['license']}, {file}\n"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

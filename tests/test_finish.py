@@ -142,6 +142,44 @@ def test_the_font_is_cut_and_has_another_name(tmp_path):
     assert (tmp_path / "cut.woff").stat().st_size < 5000
 
 
+FACES = """\
+@font-face{font-family:F;src:url(a/fa-solid-900.woff2) format("woff2"),url(a/fa-solid-900.ttf)}\
+@font-face{font-family:F;src:url(a/fa-regular-400.woff2)}.kept{color:red}\
+@font-face{font-family:B;src:url(a/fa-brands-400.woff2)}"""
+
+
+@pytest.fixture
+def themed(tmp_path, monkeypatch):
+    monkeypatch.setattr(icons, "write_font", lambda *args: None)
+    for folder in (icons.FONTS, icons.NOTICE.parent):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / icons.NOTICE).write_text("Copyright the makers")
+    (tmp_path / "a.css").write_text(FACES)
+    return tmp_path
+
+
+def test_only_the_small_font_is_named_and_its_licence_stands_beside_it(themed):
+    (themed / "index.html").write_text('<i class="fa-solid fa-x so-far">far</i>')
+    font = icons.cut_icons(themed)
+    sheet = (themed / "a.css").read_text()
+    assert sheet.count("@font-face") == 1
+    assert icons.CUT in sheet
+    assert sheet.endswith(".kept{color:red}")
+    licence = font.with_name(icons.LICENCE).read_text()
+    assert licence.startswith("Copyright the makers\n")
+    assert "SIL OPEN FONT LICENSE Version 1.1" in licence
+    assert licence.endswith("OTHER DEALINGS IN THE FONT SOFTWARE.\n")
+
+
+@pytest.mark.parametrize("kind", ["fab", "far", "fa-brands", "fa-regular"])
+def test_an_icon_of_a_font_that_is_not_shipped_is_refused(themed, kind):
+    (themed / "index.html").write_text(
+        f'<i class="so-far">far</i><i class="fa-lg {kind} fa-x"></i>'
+    )
+    with pytest.raises(LookupError, match="solid ones alone"):
+        icons.cut_icons(themed)
+
+
 def test_a_site_without_the_known_font_rule_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(icons, "write_font", lambda *args: None)
     (tmp_path / "a.css").write_text(SHEET)

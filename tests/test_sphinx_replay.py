@@ -29,3 +29,12 @@ def test_a_model_is_written_twice_and_weighed(tmp_path):
     packed = re.search(rb'\["replay-x"\] = "(.*)";', script)
     assert packed is not None
     assert base64.b64decode(packed[1]) == b"glTF\0model"
+
+
+def test_each_package_in_the_viewer_is_named_with_its_licence_beside_it(tmp_path):
+    lines = list(sphinx_replay.copy_licences(tmp_path))
+    assert len(lines) == len(sphinx_replay.PARTS) == len(list(tmp_path.iterdir()))
+    said = {line.split()[1]: line for line in lines}
+    assert " MIT, LICENSE-three.txt" in said["three"]
+    assert " BSD-3-Clause, LICENSE-lit.txt" in said["lit"]
+    assert "three.js authors" in (tmp_path / "LICENSE-three.txt").read_text()
