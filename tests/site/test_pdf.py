@@ -92,7 +92,7 @@ def test_its_bookmarks_are_the_headings_of_its_pages_and_lead_to_them(pdfs, site
 @pytest.mark.parametrize("name", PRINTED)
 def test_folded_answers_and_lines_of_provenance_are_printed(texts, site, name):
     for page in PRINTED[name]:
-        folds = article(site, page).select("details p")
+        folds = article(site, page).select("details p:not(.replay-block details p)")
         lines = article(site, page).select("p.provenance, figcaption .provenance")
         shown = [tag for tag in (*folds, *lines) if not (tag.math or tag.find_parent("summary"))]
         wanted = [words(tag.get_text()) for tag in shown]
@@ -100,6 +100,20 @@ def test_folded_answers_and_lines_of_provenance_are_printed(texts, site, name):
     lecture = article(site, "lessons/l04-joint-control/lecture")
     assert len(lecture.select("details p")) > 20
     assert len(lecture.select(".provenance")) > 20
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_a_sentence_stands_for_the_table_of_a_replay(texts, site, name):
+    tables = [
+        table
+        for page in PRINTED[name]
+        for table in article(site, page).select(".replay-block details table")
+    ]
+    assert texts[name].count(words("see this page of the site")) == len(tables) > 0
+    for table in tables:
+        rows = [words(row.get_text()) for row in table.select("tbody tr")]
+        assert len(rows) > 100
+        assert rows[-1] not in texts[name]
 
 
 @pytest.mark.parametrize("name", PRINTED)
