@@ -18,12 +18,13 @@ from robo_genesis.compared import COMPARED
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.l04 import STEPPED_JOINT
+from robo_genesis.pdf import chromium
 from robo_genesis.replay_model import rotations
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 LECTURE = "lessons/l04-joint-control/lecture.html"
-CHROMIUM = "/usr/bin/chromium"
+CHROMIUM = chromium()
 MODEL = "replay-l04-lecture-cpu"
 REPLAY = f".replay[data-name={MODEL}]"
 """The replay of this build's run; a recorded run has its own on the same page."""
