@@ -37,8 +37,11 @@ def theme(request) -> str:
 
 @pytest.fixture
 def page(browser, address, theme) -> Iterator[Page]:
-    page = browser.new_page(viewport={"width": 1280, "height": 900}, color_scheme=theme)
+    page = browser.new_page(
+        viewport={"width": 1280, "height": 900}, color_scheme=theme, reduced_motion="reduce"
+    )
     page.goto(f"{address}/{LECTURE}", wait_until="networkidle")
+    page.wait_for_function(f"document.documentElement.dataset.theme === {theme!r}")
     yield page
     page.close()
 
