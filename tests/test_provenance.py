@@ -19,7 +19,8 @@ IMPORTS = """\
 from IPython.display import HTML, SVG, Markdown
 from myst_nb import glue
 def drawn(name):
-    return SVG(f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'><title>{name}</title></svg>")
+    size = "xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'"
+    return SVG(f"<svg {size}><title>{name}</title></svg>")
 def table(name):
     return Markdown(f"| {name} |\\n| --- |\\n| 7 |")
 """
