@@ -1,5 +1,6 @@
 # `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
-# PORT=8000, BUNDLE=path (for verify), GENESIS=version (for repin), SITE_URL=address (for book),
+# PORT=8000, BUNDLE=path (for verify), GENESIS=version (for repin), SITE_URL=address and
+# EXECUTED=folder (for book), PAGE=page and TO=folder (for execute),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
 
 SHELL := /bin/bash
@@ -35,6 +36,7 @@ export RELEASE
 export BUNDLE
 export GENESIS
 export SITE_URL
+export EXECUTED
 
 .PHONY: help
 help: ## list the targets
@@ -44,6 +46,15 @@ help: ## list the targets
 .PHONY: book
 book: $(ENVIRONMENT) ## measure every lesson on CPU, verify, render and check the site
 	@"$(PY)" build_scripts/book.py
+
+# PAGE and TO reach the script as environment variables.
+.PHONY: execute
+execute: $(ENVIRONMENT) ## execute one page and hand it over as files (PAGE=l04/lab TO=folder)
+	@"$(PY)" build_scripts/execute.py
+
+.PHONY: pages
+pages: $(ENVIRONMENT) ## print the executed pages as JSON
+	@"$(PY)" build_scripts/execute.py --list
 
 # LESSON, BACKEND and TO reach the script as environment variables.
 .PHONY: evidence
@@ -59,11 +70,13 @@ test: $(ENVIRONMENT) ## run all tests (needs Debian's chromium)
 	@"$(PY)" -m pytest
 
 .PHONY: lint
-lint: $(ENVIRONMENT) ## ruff, mypy and codespell
+lint: $(ENVIRONMENT) ## ruff, mypy, codespell and the schema of workflows
 	@"$(PY)" -m ruff check .
 	@"$(PY)" -m ruff format --check .
 	@"$(PY)" -m mypy
 	@"$(PY)" -m codespell_lib
+	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
+	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-actions .github/actions/*/action.yml
 
 # OLD and NEW reach the recipe through the environment, so a path may hold any character.
 .PHONY: compare
@@ -84,11 +97,11 @@ serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
 
 .PHONY: clean
 clean: ## remove the built site and the executed pages, keep the compiled kernels
-	@rm -rf book/_build book/_build.* .cache/pages .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf book/_build book/_build.* .cache/pages .cache/derived .pytest_cache .mypy_cache .ruff_cache .hypothesis
 
 .PHONY: distclean
 distclean: clean ## remove the environment and every cache too
-	@rm -rf .venv .cache
+	@rm -rf .venv .cache .bench
 
 .PHONY: lock
 lock: $(ENVIRONMENT) ## resolve requirements.lock anew from pyproject.toml
@@ -107,10 +120,19 @@ test-repin: $(ENVIRONMENT) ## change the pin there and back in a clone (network;
 costs: $(ENVIRONMENT) ## measure what the pages' kernels cost, cold and warm (minutes; a quiet machine)
 	@"$(PY)" build_scripts/costs.py
 
+.PHONY: growth
+growth: $(ENVIRONMENT) ## measure how cost grows with lessons and bundles (half an hour; a quiet machine)
+	@"$(PY)" build_scripts/growth.py
+
+# ROWS and RUNS reach the script as environment variables.
+.PHONY: bench
+bench: $(ENVIRONMENT) ## measure whole commands against bare ones (ROWS=names RUNS=n; a quiet machine)
+	@"$(PY)" build_scripts/bench.py
+
 .PHONY: has-packages
 has-packages:
 	@"$(PY)" -c 'import sys; from importlib.util import find_spec; \
-	  needed = "genesis jupyter_book pytest ruff mypy codespell_lib".split(); \
+	  needed = "genesis jupyter_book pytest ruff mypy codespell_lib check_jsonschema".split(); \
 	  gone = [name for name in needed if find_spec(name) is None]; \
 	  sys.exit("PYTHON=%s lacks %s. Install the lock there: pip install -r requirements.lock" \
 	  % (sys.argv[1], ", ".join(gone)) if gone else 0)' "$(PY)"

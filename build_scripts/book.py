@@ -1,9 +1,11 @@
 """Build the course site: `make book`.
 
 Environment: RENDER=0|1 (default 1: the labs' camera is used), JOBS (pages at once; default one
-for each core), RELEASE=0|1 (1: from a clean tree alone, with all required evidence current) and
-SITE_URL (the address at which the site will stand).
+for each core), RELEASE=0|1 (1: from a clean tree alone, with all required evidence current),
+SITE_URL (the address at which the site will stand) and EXECUTED (a folder with all pages as
+`make execute` hands them over: then none is executed here).
 Backend is always the CPU; results of accelerators are recorded apart.
+Where nothing changed since the last build, RELEASE=1 apart, it says so and the site stands.
 Exit status: 0 published, 1 failed, 130 interrupted; unless it is 0, the old site still stands.
 """
 
@@ -11,22 +13,13 @@ import argparse
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 from robo_genesis.apply import recover_or_exit
-from robo_genesis.build import Build, BuildError, run_build
-from robo_genesis.command import run
-from robo_genesis.execute import TIMEOUT
-from robo_genesis.pages import PageError
-from robo_genesis.project import BOOK, CACHE, ProjectError
-from robo_genesis.render import RenderError
-
-
-def choice(name: str, default: str, choices: tuple[str, ...]) -> str:
-    """Return an environment variable that has few valid values; exit with 1 on another."""
-    value = os.environ.get(name) or default
-    if value not in choices:
-        sys.exit(f"{name}={value!r} is not valid. Choices: {', '.join(choices)}.")
-    return value
+from robo_genesis.command import choice, collect_rarely, require_cpu, run
+from robo_genesis.project import BOOK, CACHE, ROOT
+from robo_genesis.publish import PUBLISHED
+from robo_genesis.standing import nothing_changed
 
 
 def jobs() -> int | None:
@@ -37,42 +30,57 @@ def jobs() -> int | None:
     return int(value) if value else None
 
 
-def require_cpu() -> None:
-    """Exit with 1 where the environment asks for another backend than the CPU."""
-    value = os.environ.get("ROBO_GENESIS_BACKEND") or "cpu"
-    if value != "cpu":
-        sys.exit(
-            f"ROBO_GENESIS_BACKEND={value!r} is not valid for a build, which measures on the CPU: "
-            "its pages show what was measured there, and accelerators are recorded apart. "
-            "Unset it. Choices: cpu."
-        )
-    os.environ["ROBO_GENESIS_BACKEND"] = "cpu"
-
-
 def main() -> int:
     """Run the build and return its exit status."""
     recover_or_exit()
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--book", type=Path, default=BOOK, help="folder of the pages")
     parser.add_argument("--cache", type=Path, default=CACHE, help="folder of the caches")
-    parser.add_argument("--timeout", type=int, default=TIMEOUT, help="seconds for one cell")
+    parser.add_argument("--timeout", type=int, help="seconds for one cell")
     args = parser.parse_args()
     os.environ["ROBO_GENESIS_RENDER"] = choice("RENDER", "1", ("0", "1"))
     require_cpu()
     release = choice("RELEASE", "0", ("0", "1")) == "1"
     if release and os.environ["ROBO_GENESIS_RENDER"] == "0":
         sys.exit("RENDER='0' is not valid with RELEASE=1, which needs camera frames. Unset one.")
-    build = Build(
-        book=args.book.absolute(),
-        cache=args.cache.absolute(),
-        jobs=jobs(),
-        timeout=args.timeout,
+    executed = os.environ.get("EXECUTED")
+    if release and executed:
+        sys.exit(
+            f"EXECUTED={executed!r} is not valid with RELEASE=1, which executes all pages anew. "
+            "Unset one."
+        )
+    book, pages_at_once = args.book.absolute(), jobs()
+    if not (release or executed) and (lines := nothing_changed(ROOT, book, book / PUBLISHED)):
+        print("\n".join(lines))
+        return 0
+    return build(
+        args.cache.absolute(),
+        args.timeout,
+        book=book,
+        jobs=pages_at_once,
         release=release,
+        executed=Path(executed).absolute() if executed else None,
+    )
+
+
+def build(cache: Path, timeout: int | None, **settings: Any) -> int:
+    """Build the site; what that needs, Sphinx's and Jupyter's packages, is loaded only now."""
+    from robo_genesis.build import Build, BuildError, run_build
+    from robo_genesis.execute import TIMEOUT
+    from robo_genesis.handover import HandoverError
+    from robo_genesis.pages import PageError
+    from robo_genesis.project import ProjectError
+    from robo_genesis.render import RenderError
+
+    collect_rarely()
+    asked = Build(
+        cache=cache,
+        timeout=timeout or TIMEOUT,
         say=lambda line: print(line, flush=True),
+        **settings,
     )
-    return run(
-        lambda: run_build(build), "published", (BuildError, PageError, ProjectError, RenderError)
-    )
+    failures = (BuildError, HandoverError, PageError, ProjectError, RenderError)
+    return run(lambda: run_build(asked), "published", failures)
 
 
 if __name__ == "__main__":

@@ -5,12 +5,11 @@ beside it. The figures go to `book/performance`, and are committed with the book
 Exit status: 0 measured, 1 failed, 130 interrupted; unless it is 0, the old figures still stand.
 """
 
-import os
 import sys
 
 from robo_genesis.apply import recover_or_exit
 from robo_genesis.build import BuildError, only_build
-from robo_genesis.command import run
+from robo_genesis.command import as_published, run
 from robo_genesis.kernel_costs import CostsError, Measuring, measure
 from robo_genesis.pages import PageError, find_pages
 from robo_genesis.project import BOOK, CACHE, ProjectError
@@ -26,8 +25,7 @@ def measured() -> list[str]:
 def main() -> int:
     """Measure and return the exit status."""
     recover_or_exit()
-    os.environ["ROBO_GENESIS_RENDER"] = "1"
-    os.environ["ROBO_GENESIS_BACKEND"] = "cpu"
+    as_published()
     return run(measured, "recorded", (CostsError, BuildError, PageError, ProjectError))
 
 

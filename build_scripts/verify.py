@@ -12,7 +12,6 @@ from pathlib import Path
 
 from robo_genesis.apply import recover_or_exit
 from robo_genesis.evidence.status import Status, bundle_status, recorded_folders, recorded_status
-from robo_genesis.pages import PageError
 from robo_genesis.project import BOOK, ProjectError
 from robo_genesis.publish import PUBLISHED
 
@@ -48,7 +47,7 @@ def main() -> int:
             found = [(folder.parent.name, bundle_status(folder))]
         else:
             found = list(all_bundles())
-    except (ProjectError, PageError, OSError) as error:
+    except (ProjectError, OSError) as error:
         print(f"Nothing can be verified: {error}", file=sys.stderr)
         return 1
     if not found:

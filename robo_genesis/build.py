@@ -7,12 +7,12 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from robo_genesis import npm, project
+from robo_genesis import npm, project, standing
 from robo_genesis.address import AddressError, site_address, site_root
 from robo_genesis.evidence import place
 from robo_genesis.execute import TIMEOUT, execute_pages
@@ -23,8 +23,7 @@ from robo_genesis.publish import publish, recover
 from robo_genesis.release import lacking, unclean
 from robo_genesis.render import render
 from robo_genesis.site_checks import check_site
-
-Verify = Callable[[Path, str], Any]
+from robo_genesis.takeover import Verify, take_over
 
 
 class BuildError(Exception):
@@ -37,7 +36,8 @@ class Build:
 
     `jobs` None means one for each core; `verify` takes a bundle folder and its run id, returns the
     manifest or raises; None is the course's own verification. `release` demands a clean tree and
-    every lesson's required evidence, and executes all pages anew.
+    every lesson's required evidence, and executes all pages anew. `executed` holds all pages as
+    another machine executed them; then none is executed here. `command` is what bundles name.
     """
 
     root: Path = project.ROOT
@@ -47,6 +47,8 @@ class Build:
     timeout: int = TIMEOUT
     verify: Verify | None = None
     release: bool = False
+    executed: Path | None = None
+    command: str = "make book"
     say: Callable[[str], None] = print
 
 
@@ -73,11 +75,13 @@ def run_build(build: Build) -> list[str]:
 
     Raises:
         BuildError: a stage failed; nothing was published.
+        HandoverError: pages that were executed elsewhere are refused; nothing was published.
         ProjectError, PageError: the checkout is not fit for a build.
     """
     with only_build(build.cache):
         recover(build.book)
         place.recover(build.book / "evidence")
+        inputs = standing.inputs_digest(build.root, build.book)
         progress = Progress(build.say)
         engine = project.require_pinned_engine(build.root)
         _require_for_render()
@@ -87,7 +91,10 @@ def run_build(build: Build) -> list[str]:
         if build.release:
             _require_for_release(unclean(build.root))
             shutil.rmtree(folder, ignore_errors=True)  # what is released was run at this commit
-        results = _execute(build, pages, folder, progress)
+        if build.executed:
+            for record in take_over(build.executed, pages, folder, _verifier(build)):
+                progress("handover", record.docname, f"run {record.run_id[:8]}")
+        results = execute_stage(build, pages, folder, progress)
         manifests = _verify(build, results, progress)
         if build.release:
             problems = lacking(build.book, _labs(results), build.root)
@@ -99,9 +106,23 @@ def run_build(build: Build) -> list[str]:
         progress("pack", pack(html).name)  # last of the site's files; the checks know it
         checked = _check(html, progress)
         project.forget_old_pages(folder)
-        html = publish(build.book, html, results)  # last: after it, nothing may fail
+        finish = partial(
+            _keep, build, inputs, _summary(engine, _reused(results), manifests, checked)
+        )
+        html = publish(build.book, html, results, finish)  # last: after it, nothing may fail
         progress("publish", str(html))
         return [f"Site: {html / 'index.html'}", *_summary(engine, results, manifests, checked)]
+
+
+def _reused(results: Sequence[PageResult]) -> list[PageResult]:
+    """Return the results as the next build would have them, if nothing changes."""
+    return [replace(result, status="reused") for result in results]
+
+
+def _keep(build: Build, inputs: str | None, lines: Sequence[str], published: Path) -> None:
+    """Write beside the site what it was made from; not known where a file was edited meanwhile."""
+    after = standing.inputs_digest(build.root, build.book)
+    standing.keep(published, inputs if inputs == after else None, lines)
 
 
 def _require_for_render() -> None:
@@ -127,7 +148,7 @@ def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
     return labs | {str(r.page.lesson): r.bundle for r in results if r.page.page == "lab"}
 
 
-def _execute(
+def execute_stage(
     build: Build, pages: Sequence[Page], folder: Path, progress: Progress
 ) -> list[PageResult]:
     """Run the execution stage; every page is tried before the report."""
@@ -151,8 +172,15 @@ def _kernel_environment(build: Build) -> dict[str, str]:
     return {
         **project.engine_cache_environment(build.root, build.cache),
         **project.environment_contract(),
-        "ROBO_GENESIS_COMMAND": "make book",
+        "ROBO_GENESIS_COMMAND": build.command,
     }
+
+
+def _verifier(build: Build) -> Verify:
+    """Return what a build verifies bundles with."""
+    from robo_genesis.evidence.verify import verify_bundle
+
+    return build.verify or partial(verify_bundle, book=build.book)
 
 
 def _verify(build: Build, results: Sequence[PageResult], progress: Progress) -> Mapping[str, Any]:
@@ -162,9 +190,8 @@ def _verify(build: Build, results: Sequence[PageResult], progress: Progress) -> 
     """
     from robo_genesis.evidence.bundle import BundleRefused
     from robo_genesis.evidence.status import refused_records
-    from robo_genesis.evidence.verify import verify_bundle
 
-    verify = build.verify or partial(verify_bundle, book=build.book)
+    verify = _verifier(build)
     manifests, refused = {}, []
     for result in results:
         if result.bundle is None:

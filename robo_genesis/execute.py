@@ -14,14 +14,18 @@ from typing import Any
 from jupyter_cache.base import JupyterCacheAbstract
 from jupyter_cache.executors.base import ExecutorRunResult
 from jupyter_cache.executors.basic import JupyterExecutorTempMproc, ProcessData
-from sqlalchemy.exc import OperationalError
 
 from robo_genesis.kernels import interrupts_blocked, kill_with_descendants
-from robo_genesis.page_cache import PageCache, cached_results, notebooks_folder, outputs_folder
+from robo_genesis.page_cache import (
+    PageCache,
+    cached_results,
+    notebooks_folder,
+    outputs_folder,
+    usable,
+)
 from robo_genesis.page_results import Failure, PageResult, find_bundle
 from robo_genesis.page_worker import PageRun, work
 from robo_genesis.pages import Page, code_digest
-from robo_genesis.project import ProjectError
 
 TIMEOUT = 1500
 HEARTBEAT = 30.0
@@ -188,15 +192,8 @@ def execute_pages(
         ProjectError: the cache folder cannot be used.
     """
     execution = Execution(folder.absolute(), jobs, environment or {}, on_progress, heartbeat)
-    try:
+    with usable(folder):
         results = _execute(pages, execution, timeout)
-    except (OperationalError, RuntimeError) as error:  # jupyter-cache's database, bare or wrapped
-        if not any(isinstance(one, OperationalError) for one in (error, error.__cause__)):
-            raise
-        raise ProjectError(
-            f"The executed pages in {folder} cannot be kept: {error.__cause__ or error}\n"
-            "Give them free space or write access, or remove that folder."
-        ) from error
     return [results[page.docname] for page in pages]
 
 

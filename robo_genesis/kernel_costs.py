@@ -7,51 +7,39 @@ lasts until the next such cell.
 
 import hashlib
 import json
-import os
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from itertools import accumulate
 from pathlib import Path
 
 from nbformat import NotebookNode
-from pydantic import BaseModel, ConfigDict, ValidationError
 
-from robo_genesis import project
+from robo_genesis import kept, project
 from robo_genesis.execute import TIMEOUT, execute_pages
-from robo_genesis.page_cache import PageCache, notebooks_folder
+from robo_genesis.page_cache import PageCache, array_digests, notebooks_folder, outputs_folder
 from robo_genesis.page_results import failure_report
 from robo_genesis.pages import Page
 
-FOLDER = "performance"
 OPTION = "kernels"
 COMMAND = "make costs"
 
 
-class CostsError(Exception):
-    """A page's costs cannot be measured or read; the message says what to do."""
+class CostsError(kept.KeptError):
+    """A page's costs cannot be measured; the message says what to do."""
 
 
-class Cost(BaseModel):
+class Cost(kept.Part):
     """Seconds that the cells of one set took with nothing compiled, and with everything."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     cold: float
     warm: float
 
 
-class Costs(BaseModel):
-    """One measurement of a page: on what, and the cost of each of its sets in the page's order."""
+class Costs(kept.Record):
+    """One measurement of a page: the cells that it is of, and the cost of each set in order."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    engine: str
-    lock: str
     code: str
-    date: str
-    cores: int
     sets: tuple[Cost, ...]
 
 
@@ -104,33 +92,23 @@ def spans(page: Page, seconds: Sequence[float]) -> list[float]:
 
 def record_file(book: Path, page: Page) -> Path:
     """Return where the book keeps what a page's kernels cost."""
-    return book / FOLDER / f"{page.lesson}-{page.page}.json"
+    return book / kept.FOLDER / f"{page.lesson}-{page.page}.json"
 
 
 def read_costs(book: Path, page: Page) -> Costs | None:
     """Return the kept measurement of a page, None where there is none.
 
     Raises:
-        CostsError: the file is no such record.
+        KeptError: the file is no such record.
     """
-    path = record_file(book, page)
-    if not path.is_file():
-        return None
-    try:
-        return Costs.model_validate_json(path.read_bytes())
-    except ValidationError as error:
-        raise CostsError(
-            f"{path} is no record of costs: {error}\n`{COMMAND}` writes it."
-        ) from error
+    return kept.read(record_file(book, page), Costs, COMMAND)
 
 
 def stale(costs: Costs, page: Page, root: Path = project.ROOT) -> str | None:
     """Return why a measurement no longer speaks of a page as it is, None where it does."""
-    pin = project.engine_pin(root)
-    if costs.engine != pin:
-        return f"measured with Genesis {costs.engine}, pinned is {pin}"
-    if costs.lock != project.lock_digest(root):
-        return "the lock of all packages has changed since"
+    reason = kept.stale(costs, root)
+    if reason:
+        return reason
     if costs.code != marked_code(page):
         return "the cells that build the scenes have changed since"
     return None
@@ -153,7 +131,7 @@ def measure(pages: Iterable[Page], how: Measuring) -> list[Path]:
     if not marked:
         raise CostsError(f"No page of {how.book} has a cell with the option `{OPTION}: why`.")
     found = {page.docname: _measured(page, how) for page in marked}
-    return [_keep(record_file(how.book, page), found[page.docname]) for page in marked]
+    return [kept.keep(record_file(how.book, page), found[page.docname]) for page in marked]
 
 
 def _measured(page: Page, how: Measuring) -> Costs:
@@ -162,14 +140,22 @@ def _measured(page: Page, how: Measuring) -> Costs:
         cold, warm = (
             spans(page, _cell_seconds(page, cache, state, how)) for state in ("cold", "warm")
         )
+        before, after = (array_digests(outputs_folder(cache / s)) for s in ("cold", "warm"))
+    if before != after:
+        raise CostsError(
+            f"{page.docname}: what was measured depends on what was compiled before. Arrays that "
+            f"differ between a cold and a warm run: {', '.join(_moved(before, after))}."
+        )
     return Costs(
-        engine=project.require_pinned_engine(how.root),
-        lock=project.lock_digest(how.root),
+        **kept.surroundings(how.root),
         code=marked_code(page),
-        date=datetime.now(UTC).date().isoformat(),
-        cores=os.cpu_count() or 1,
         sets=tuple(Cost(cold=c, warm=w) for c, w in zip(cold, warm, strict=True)),
     )
+
+
+def _moved(before: Mapping[str, str], after: Mapping[str, str]) -> list[str]:
+    """Return the names that two listings do not agree on."""
+    return sorted(dict(before.items() ^ after.items()))
 
 
 def _cell_seconds(page: Page, cache: Path, state: str, how: Measuring) -> list[float]:
@@ -193,10 +179,3 @@ def _cell_seconds(page: Page, cache: Path, state: str, how: Measuring) -> list[f
         notebooks.match_cache_notebook(page.notebook).pk
     ).nb
     return list(executed.metadata["robo_genesis"]["cell_seconds"])
-
-
-def _keep(path: Path, costs: Costs) -> Path:
-    path.parent.mkdir(exist_ok=True)
-    fresh = path.with_suffix(".tmp")
-    fresh.write_text(json.dumps(costs.model_dump(), indent=1) + "\n", "utf8")
-    return fresh.replace(path)

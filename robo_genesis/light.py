@@ -1,4 +1,4 @@
-"""What makes a page light: no script blocks it, nothing loads unused, images have their place."""
+"""What makes a page light: no script blocks it, nothing loads unused, nothing moves or flashes."""
 
 import re
 import shutil
@@ -16,6 +16,7 @@ NEEDED_BY = {
     "copybutton.js": "div.highlight",
     "design-tabs.js": ".sd-tab-set",
     "explorer.js": ".explorer",
+    "plot.js": ".explorer, .replay",
     "replay.js": ".replay",
     "fontawesome.js": None,
     "language_data.js": "#search-results",
@@ -24,6 +25,9 @@ NEEDED_BY = {
     "searchtools.js": "#search-results",
     "togglebutton.js": ".toggle, .admonition.dropdown",
 }
+
+NAMED = re.compile(r"[.#]([\w-]+)")
+"""Classes and identifiers in a selector."""
 
 # Files of the theme that no page asks for; the rest are tools of its makers.
 UNUSED = (
@@ -39,6 +43,16 @@ UNUSED = (
 OPTIONS = "DOCUMENTATION_OPTIONS"
 """What Sphinx's scripts set; the file `documentation_options.js` defines it."""
 
+CHOOSE_THEME = """
+    if (document.documentElement.dataset.mode === "auto")
+      document.documentElement.dataset.theme =
+        matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+  """
+"""What the theme's own script does, but only once it has come."""
+
+TITLE = "page-title"
+"""The anchor of a title that has none of its own."""
+
 PIXELS = {"": 1.0, "px": 1.0, "pt": 4 / 3, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
 """CSS pixels in one unit of length."""
 LENGTH = re.compile(r"([\d.]+)([a-z]*)")
@@ -53,15 +67,24 @@ def lighten(page: BeautifulSoup, folder: Path) -> None:
     """
     drop_idle_scripts(page)
     defer_scripts(page)
+    choose_theme(page)
+    wait_for_the_title(page)
     place_images(page, folder)
 
 
 def drop_idle_scripts(page: BeautifulSoup) -> None:
     """Remove the scripts that have nothing to do on this page."""
-    for script in page.select("script[src]"):
+    tags = page.find_all(True)
+    written = {name for tag in tags for name in (*tag.get("class", ()), tag.get("id"))}
+
+    def matches(selector: str) -> bool:
+        """Ask the page only where all names of a selector stand in it: a vain search is long."""
+        named = (NAMED.findall(part) for part in selector.split(","))
+        return any(written.issuperset(names) for names in named) and bool(page.select_one(selector))
+
+    for script in page.find_all("script", src=True):
         name = Path(urlsplit(str(script["src"])).path).name
-        needed = NEEDED_BY.get(name, "html")
-        if needed is None or not page.select_one(needed):
+        if name in NEEDED_BY and not ((needed := NEEDED_BY[name]) and matches(needed)):
             script.decompose()
 
 
@@ -72,11 +95,38 @@ def defer_scripts(page: BeautifulSoup) -> None:
     a file before it defines. The others need no file, like the theme's first, which sets light or
     dark before anything shows.
     """
-    for script in page.select("script:not([type], [async])"):
+    for script in page.find_all("script", type=None, attrs={"async": None}):
         if script.has_attr("src"):
             script["defer"] = ""
         elif OPTIONS in script.get_text():
             script["type"] = "module"
+
+
+def choose_theme(page: BeautifulSoup) -> None:
+    """Decide between light and dark before anything shows.
+
+    The theme starts with neither, for which its style sheets have no colours, and so no borders:
+    the page would change its colours and move when the deferred scripts come. Without scripts it
+    is light.
+    """
+    for script in page.select("html > head > script:not([src])"):
+        html = script.find_parents("html")[0]
+        if "dataset.theme" in script.get_text():
+            script.append(CHOOSE_THEME)
+            html["data-theme"] = "light"
+
+
+def wait_for_the_title(page: BeautifulSoup) -> None:
+    """Let a browser that knows `rel="expect"` show nothing before the page's title is read.
+
+    The bar above it has its buttons at the end of the line: half of them would be seen to move when
+    the others come.
+    """
+    title = page.select_one("article h1")
+    if page.head and title:
+        anchor = title.attrs.setdefault("id", TITLE)
+        expect = {"rel": "expect", "href": f"#{anchor}", "blocking": "render"}
+        page.head.append(page.new_tag("link", attrs=expect))
 
 
 def place_images(page: BeautifulSoup, folder: Path) -> None:
@@ -84,7 +134,8 @@ def place_images(page: BeautifulSoup, folder: Path) -> None:
 
     The first image of a page may be in sight at once, so it does not wait.
     """
-    for number, image in enumerate(page.select("article img[src]")):
+    images = [image for image in page.find_all("img", src=True) if image.find_parent("article")]
+    for number, image in enumerate(images):
         file = folder / unquote(urlsplit(str(image["src"])).path)
         if not image.has_attr("width") and file.is_file():
             width, height = image_size(file)

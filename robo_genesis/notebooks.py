@@ -3,18 +3,24 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import nbformat
+from markdown_it import MarkdownIt
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from robo_genesis.page_results import ANSI
 from robo_genesis.pages import Page
-from robo_genesis.plain_markdown import SOLUTION, Writer, plain
-from robo_genesis.project import ENGINE
+from robo_genesis.plain_markdown import SOLUTION, ProseError, Writer, plain
+from robo_genesis.project import COURSE, ENGINE
 
 SITE_ONLY = "site-only"
 """The tag of a cell that makes sense on the site alone."""
+
+WORK_SHEET = "worksheet.md"
+BEFORE = "before the run"
+"""What a heading of the work sheet says where its part comes first."""
 
 OWN_NOTE = re.compile(r"^\[I \d\d/\d\d/\d\d [\d:.]+ \d+\] .*\n?", re.MULTILINE)
 """A note of the engine's compiler on its own process: date, time and process number."""
@@ -30,10 +36,10 @@ for package, needed in NEEDED.items():
     try:
         found = version(package)
     except PackageNotFoundError:
-        found = "none"
+        found = "not installed"
     if found != needed:
         raise RuntimeError(
-            f"This notebook needs {{package}} {{needed}}, found is {{found}}. Install it where\\n"
+            f"This notebook needs {{package}} {{needed}}; it is {{found}} here. Install it where\\n"
             "{wheel} lies, then restart the kernel:\\n"
             "    {install}\\n"
             "To try another version on purpose, change NEEDED in this cell."
@@ -46,6 +52,7 @@ class Origin:
     """Where a notebook comes from: its lab, the versions it needs, and the run on the site."""
 
     title: str
+    system: str
     engine: str
     package: str
     wheel: str
@@ -62,18 +69,22 @@ class Origin:
 def student_notebook(page: Page, origin: Origin, writer: Writer) -> NotebookNode:
     """Return the lab to work in: no outputs, no solutions, and a first check of the versions.
 
+    Where a work sheet lies beside the page, its parts are cells to fill in: what is asked before
+    the run stands after the lab's first words, the rest at the end.
+
     Args:
         page: the lab.
         origin: said in the first lines.
         writer: of its prose; no measured value may come from it.
     """
-    needed = {ENGINE: origin.engine, "robo-genesis": origin.package}
+    needed = {ENGINE: origin.engine, COURSE: origin.package}
     check = CHECK.format(needed=needed, wheel=origin.wheel, install=origin.install)
     cells = [_header(origin, "student notebook"), new_code_cell(check)]
     for cell in page.notebook.cells:
         if not {SOLUTION, SITE_ONLY} & set(cell.metadata.get("tags", [])):
             cells += _prose(cell, writer) if cell.cell_type == "markdown" else _code(cell, writer)
-    return _notebook(cells)
+    before, after = _work_sheet(page)
+    return _notebook([*cells[:3], *before, *cells[3:], *after])
 
 
 def executed_notebook(
@@ -103,14 +114,37 @@ def _header(origin: Origin, kind: str) -> NotebookNode:
         f"> RoboGenesis, *{origin.title}*: {kind}. Written for Genesis {origin.engine}; the site "
         f"shows run {origin.run} of {origin.measured}.\n"
         "> © The RoboGenesis team. Code: MIT licence. Text and figures: CC BY 4.0.\n\n"
-        f"To run it, put `{origin.wheel}` from the lab's page beside it, and in that folder:\n\n"
+        f"To run it on {origin.system}, put `{origin.wheel}` from the lab's page beside it, and in "
+        "that folder:\n\n"
         f"```console\n{commands}\n```"
     )
 
 
 def _prose(cell: NotebookNode, writer: Writer) -> list[NotebookNode]:
-    text = plain(cell.source, writer)
-    return [new_markdown_cell(text)] if text else []
+    """Return a cell for each section."""
+    return _sections(plain(cell.source, writer))
+
+
+def _sections(text: str) -> list[NotebookNode]:
+    """Return a cell for what stands before the first heading of level two, and for each of them."""
+    headings = (t for t in MarkdownIt().parse(text) if t.type == "heading_open" and not t.level)
+    starts = [heading.map[0] for heading in headings if heading.map and heading.tag == "h2"]
+    lines = text.splitlines()
+    parts = ("\n".join(lines[a:b]).strip() for a, b in pairwise([0, *starts, len(lines)]))
+    return [new_markdown_cell(part) for part in parts if part]
+
+
+def _work_sheet(page: Page) -> tuple[list[NotebookNode], list[NotebookNode]]:
+    """Return what of the page's work sheet is filled in before the run, and what after it."""
+    sheet = page.path.with_name(WORK_SHEET)
+    cells = _sections(sheet.read_text("utf8")) if sheet.is_file() else []
+    asked_first = [cell for cell in cells if BEFORE in cell.source.splitlines()[0]]
+    if cells and not asked_first:
+        raise ProseError(
+            f"{sheet} has no part to fill in {BEFORE}: end the heading of its predictions with "
+            "these words."
+        )
+    return asked_first, [cell for cell in cells if cell not in asked_first]
 
 
 def _code(

@@ -1,7 +1,9 @@
 """Which pages need no run: cached outputs and a bundle that belong to one run."""
 
+import hashlib
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +11,11 @@ from jupyter_cache.base import JupyterCacheAbstract
 from jupyter_cache.cache.db import NbCacheRecord
 from jupyter_cache.cache.main import JupyterCacheBase
 from nbformat import NotebookNode
+from sqlalchemy.exc import OperationalError
 
 from robo_genesis.page_results import Failure, PageResult, find_bundle, unexpected_outcome
 from robo_genesis.pages import Page
+from robo_genesis.project import ProjectError
 
 
 class PageCache(JupyterCacheBase):
@@ -42,6 +46,31 @@ def notebooks_folder(folder: Path) -> Path:
 def outputs_folder(folder: Path) -> Path:
     """Return where pages leave their bundles, below the cache folder of a fingerprint."""
     return folder / "outputs"
+
+
+@contextmanager
+def usable(folder: Path) -> Iterator[None]:
+    """Raise ProjectError where jupyter-cache's database in the cache folder cannot be used."""
+    try:
+        yield
+    except (OperationalError, RuntimeError) as error:  # the database's error, bare or wrapped
+        if not any(isinstance(one, OperationalError) for one in (error, error.__cause__)):
+            raise
+        raise ProjectError(
+            f"The executed pages in {folder} cannot be kept: {error.__cause__ or error}\n"
+            "Give them free space or write access, or remove that folder."
+        ) from error
+
+
+def array_digests(outputs: Path) -> dict[str, str]:
+    """Return each archive of arrays that pages recorded, by its name below `outputs`, → its sha256.
+
+    The archives hold no time and no run id: the same numbers make the same bytes.
+    """
+    return {
+        path.relative_to(outputs).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(outputs.glob("*/*/*/arrays/*.npz"))
+    }
 
 
 def cached_results(

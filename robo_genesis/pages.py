@@ -5,7 +5,9 @@ import hashlib
 import json
 import platform
 from collections.abc import Iterable, Iterator, Mapping
+from copy import deepcopy
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import yaml
@@ -14,13 +16,19 @@ from myst_nb.core.read import is_myst_markdown_notebook, myst_nb_reader_plugin
 from nbformat import NotebookNode
 from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
-from robo_genesis.project import ROOT, environment_contract, installed_packages, lock_digest
+from robo_genesis.project import (
+    ROOT,
+    ProjectError,
+    environment_contract,
+    installed_packages,
+    lock_digest,
+)
 
 PACKAGE = "robo_genesis"
 DATA_SUFFIXES = (".json", ".toml", ".yaml", ".yml", ".csv")
 
 
-class PageError(Exception):
+class PageError(ProjectError):
     """A page or the table of contents is written in a way that the build cannot use."""
 
 
@@ -106,13 +114,19 @@ def _notebook(name: str, path: Path) -> NotebookNode | None:
     try:
         text = path.read_text("utf8")
         # Read first: a front matter that does not parse makes MyST-NB take a notebook for text.
-        notebook = myst_nb_reader_plugin(str(path)) if text.startswith("---") else None
+        notebook = deepcopy(_parsed(path, text)) if text.startswith("---") else None
     except Exception as error:  # the reader has no exception of its own for half of its complaints
         raise PageError(
             f"{name}: the page cannot be read: {error}\n"
             f"Mend {path}; front matter and the options of cells (`:name: value`) are YAML."
         ) from error
     return notebook if is_myst_markdown_notebook(text) else None
+
+
+@lru_cache(maxsize=64)
+def _parsed(path: Path, text: str) -> NotebookNode:
+    """Return a page as a notebook; a build asks for each of them several times."""
+    return myst_nb_reader_plugin(str(path))
 
 
 def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None]:

@@ -30,8 +30,10 @@ MARKS = {
     "target": Mark("#222222", "#e6e6e6", (1, 1.65)),
     "limit": Mark("#a8003d", "#ff8fa9", (1.5, 1.5)),
     "other": Mark("#7a3e9d", "#c9a2f2", (3, 1.5)),
+    "further": Mark("#6f6200", "#d6c65a", (10, 2, 3, 2)),
 }
-"""`other` is what is held against a case: a mistake, another getter, another engine."""
+"""`other` is what is held against a case: a mistake, another getter, another engine. `further` is a
+run that is none of these: a point of a grid between the cases, a third one in a comparison."""
 
 CASES = ("baseline", "G1", "G2", "G3")
 

@@ -1,7 +1,8 @@
 """Figures of the course: axes in, axes out; no numerics, no show()."""
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
@@ -48,6 +49,15 @@ def use_course_style() -> None:
     from matplotlib_inline.backend_inline import set_matplotlib_formats
 
     set_matplotlib_formats("svg", metadata={"Date": None, "Creator": None})
+
+
+@contextmanager
+def course_style() -> Iterator[None]:
+    """Draw in the course's style whatever a user's Matplotlib settings say, and restore them."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        use_course_style()
+        yield
 
 
 def style(name: str) -> dict[str, Any]:

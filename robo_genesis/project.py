@@ -15,6 +15,9 @@ ROOT = Path(__file__).resolve().parents[1]
 BOOK = ROOT / "book"
 CACHE = ROOT / ".cache"
 ENGINE = "genesis-world"
+COURSE = "robo-genesis"
+BUILD_BACKEND = "cpu"
+"""What every page of the site is executed on."""
 
 # Variables that switch the engine, its compiler and the drivers below it.
 ENGINE_PREFIXES = ("GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "HSA_", "CUDA_")
@@ -73,8 +76,13 @@ def installed_version(package: str) -> str | None:
 
 
 def installed_packages() -> list[str]:
-    """Return `name==version` of everything that is installed for this interpreter, sorted."""
-    return sorted({f"{package.name}=={package.version}" for package in distributions()})
+    """Return `name==version` of everything that is installed for this interpreter, sorted.
+
+    The course itself is left out: what of it counts is read from the checkout, and what pip leaves
+    there when it looks at a checkout is no installation.
+    """
+    found = {f"{package.name}=={package.version}" for package in distributions()}
+    return sorted(name for name in found if not name.startswith(f"{COURSE}=="))
 
 
 def require_pinned_engine(root: Path = ROOT) -> str:
@@ -177,7 +185,7 @@ def environment_contract(environment: Mapping[str, str] | None = None) -> dict[s
         where the engine keeps compiled code is not among them.
     """
     given = os.environ if environment is None else environment
-    defaults = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "1"}
+    defaults = {"ROBO_GENESIS_BACKEND": BUILD_BACKEND, "ROBO_GENESIS_RENDER": "1"}
     asked = {name: given.get(name) or default for name, default in defaults.items()}
     return asked | engine_switches(given)
 

@@ -2,10 +2,12 @@
 
 import os
 import shutil
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from robo_genesis.page_results import PageResult
+if TYPE_CHECKING:  # `make verify` asks only for names, and need not load Jupyter for them
+    from robo_genesis.page_results import PageResult
 
 PUBLISHED, NEXT, OLD = "_build", ".next", ".old"
 PAGES = "pages"
@@ -54,7 +56,12 @@ def beside(folder: Path, suffix: str) -> Path:
     return folder.with_name(folder.name + suffix)
 
 
-def publish(book: Path, html: Path, results: Iterable[PageResult]) -> Path:
+def publish(
+    book: Path,
+    html: Path,
+    results: Iterable["PageResult"],
+    finish: Callable[[Path], None] = lambda folder: None,
+) -> Path:
     """Put a rendered site and its pages' bundles in the place of the old ones.
 
     Args:
@@ -62,6 +69,7 @@ def publish(book: Path, html: Path, results: Iterable[PageResult]) -> Path:
         html: the rendered and checked site; it is moved away.
         results: the executed pages; bundles of pages named `lab` become
             `evidence/<lesson>/<backend>`, others `pages/<lesson>/<page>/<backend>`.
+        finish: called with the complete folder before it is put in place.
 
     Returns:
         The folder of the published site's HTML.
@@ -79,6 +87,7 @@ def publish(book: Path, html: Path, results: Iterable[PageResult]) -> Path:
                 lesson, page = str(result.page.lesson), str(result.page.page)
                 own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
                 shutil.copytree(result.bundle, following.joinpath(*own, result.bundle.name))
+        finish(following)
         swap(book / PUBLISHED)
     finally:
         recover(book)

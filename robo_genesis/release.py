@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from robo_genesis.evidence.bundle import GitRecord
-from robo_genesis.evidence.compare import LESSONS
 from robo_genesis.evidence.status import Status, bundle_status, recorded_folders, recorded_status
+from robo_genesis.lessons import find_lesson
 
 SHOWN = 5
 
@@ -61,7 +61,7 @@ def _required(book: Path, lesson: str, folder: Path | None, root: Path) -> Itera
         yield f"{lesson} has no lab in the table of contents, so nothing of it is measured for it."
         return
     here = bundle_status(folder, lesson, "lab", book=book)
-    hardware = LESSONS[lesson].MINIMUM_HARDWARE
+    hardware = find_lesson(lesson).spec.MINIMUM_HARDWARE
     needed = here if hardware == here.backend else recorded_status(book, lesson, hardware)
     if needed.state != "verified":
         yield (

@@ -10,7 +10,12 @@ from pathlib import Path
 from robo_genesis.page_cache import notebooks_folder, outputs_folder
 from robo_genesis.project import ROOT
 
-COMMAND = "from jupyter_book.cli.main import main; main()"
+COMMAND = """\
+from robo_genesis.command import collect_rarely
+collect_rarely()
+from jupyter_book.cli.main import main
+main()
+"""
 ANSI = re.compile(r"\x1b\[[0-9;]*m")
 TELLING = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
 

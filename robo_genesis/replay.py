@@ -18,6 +18,13 @@ SLOW = "0.1"
 """The speed at which a replay opens: most happens in the first tenth of the window."""
 
 
+CREDIT = (
+    "Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from franka_description, "
+    "© Franka Robotics GmbH; decimated and converted"
+)
+"""Of the shape that is replayed."""
+
+
 @dataclass(frozen=True, slots=True)
 class Replay:
     """Runs of one bundle that are replayed for one joint; `name` is unique on the site."""

@@ -12,6 +12,7 @@ import numpy as np
 import pygltflib as gltf
 import trimesh
 
+from robo_genesis.replay import CREDIT
 from robo_genesis.robot_shape import Part
 from robo_genesis.scene_config import FloatArray
 from robo_genesis.trace import Trace
@@ -25,11 +26,6 @@ SMALLEST = 400
 
 CREASE = np.radians(40)
 """Angle between triangles above which an edge is drawn sharp [rad]."""
-
-CREDIT = (
-    "Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from franka_description, "
-    "© Franka Robotics GmbH; decimated and converted"
-)
 
 WORLD = "world"
 """The root node. It turns the record's frame (z up) into glTF's (y up); links are below it."""

@@ -8,7 +8,7 @@ from urllib.parse import unquote, urldefrag, urlsplit
 
 from bs4 import BeautifulSoup, Tag
 
-ADDRESSES = ("href", "src", "srcset", "poster", "data", "action")
+ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
 # A link of these kinds names a page for readers or crawlers; the browser does not load it.
 NOT_LOADED = {"canonical", "alternate", "author", "license", "next", "prev", "index", "search"}
 ELSEWHERE = re.compile(r"^(?:https?|wss?|ftp):|^//", re.IGNORECASE)
@@ -33,7 +33,7 @@ class SiteCheck:
 
 
 class Site:
-    """The files of a built site, each page parsed once."""
+    """The files of a built site, each page parsed and walked once."""
 
     def __init__(self, html: Path, base: str = "/"):
         self.root, self.base = html.resolve(), base
@@ -41,7 +41,14 @@ class Site:
             path: BeautifulSoup(path.read_text("utf8"), "html.parser")
             for path in sorted(self.root.rglob("*.html"))
         }
-        self.anchors = {path: set(_anchors(page)) for path, page in self.pages.items()}
+        self.anchors: dict[Path, set[str]] = {}
+        self.addresses: dict[Path, list[tuple[Tag, str]]] = {}
+        self.styled: dict[Path, list[Tag]] = {}
+        for path, page in self.pages.items():
+            tags = page.find_all(True)
+            self.anchors[path] = set(_anchors(tags))
+            self.addresses[path] = list(_addresses(tags))
+            self.styled[path] = [tag for tag in tags if tag.has_attr("style")]
 
     def name(self, path: Path) -> str:
         """Return a file's name for messages."""
@@ -62,7 +69,7 @@ def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
 
 def check_links(site: Site) -> SiteCheck:
     """Every address inside the site leads to a file, and every fragment to an element."""
-    found = [(path, url) for path, page in site.pages.items() for _, url in _addresses(page)]
+    found = [(path, url) for path, listed in site.addresses.items() for _, url in listed]
     found += _style_addresses(site)
     inside = [(path, url) for path, url in found if not urlsplit(url).scheme and url[:2] != "//"]
     problems = {
@@ -111,8 +118,8 @@ def check_third_parties(site: Site) -> SiteCheck:
     """Nothing is loaded from another address; links that a reader may follow are fine."""
     found = [
         (path, url)
-        for path, page in site.pages.items()
-        for tag, url in _addresses(page)
+        for path, listed in site.addresses.items()
+        for tag, url in listed
         if _is_loaded(tag)
     ]
     found += _style_addresses(site)
@@ -137,15 +144,15 @@ def check_leftovers(site: Site) -> SiteCheck:
     return SiteCheck("leftovers", len(site.pages), tuple(problems))
 
 
-def _anchors(page: BeautifulSoup) -> Iterator[str]:
-    for tag in page.find_all(True):
+def _anchors(tags: Iterable[Tag]) -> Iterator[str]:
+    for tag in tags:
         yield from (str(tag[name]) for name in ("id", "name") if tag.get(name))
 
 
-def _addresses(page: BeautifulSoup) -> Iterator[tuple[Tag, str]]:
-    """Yield every address that a page's elements carry."""
-    for tag in page.find_all(lambda tag: any(tag.has_attr(name) for name in ADDRESSES)):
-        for name in ADDRESSES:
+def _addresses(tags: Iterable[Tag]) -> Iterator[tuple[Tag, str]]:
+    """Yield every address that elements carry."""
+    for tag in tags:
+        for name in tag.attrs.keys() & ADDRESSES:
             value = str(tag.get(name) or "").strip()
             for url in _listed(value) if name == "srcset" else [value]:
                 if url:
@@ -167,7 +174,7 @@ def _style_addresses(site: Site) -> list[tuple[Path, str]]:
     texts = [(path, path.read_text("utf8")) for path in sorted(site.root.rglob("*.css"))]
     for path, page in site.pages.items():
         texts += [(path, tag.get_text()) for tag in page.find_all("style")]
-        texts += [(path, str(tag["style"])) for tag in page.find_all(style=True)]
+        texts += [(path, str(tag["style"])) for tag in site.styled[path]]
     return [(path, url) for path, text in texts for url in _in_style(text)]
 
 

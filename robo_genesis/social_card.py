@@ -6,29 +6,29 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from robo_genesis import l04, plots
-from robo_genesis.compared import COMPARED
+from robo_genesis import plots
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_joints, read_trace
+from robo_genesis.lessons import Compared
 
 SIZE = (12.0, 6.3)
 """Inches at 100 dots an inch: the 1200 × 630 pixels that most services show whole."""
 
 
-def card(folder: Path) -> bytes:
+def card(folder: Path, compared: Compared) -> bytes:
     """Return the card as PNG.
 
     Args:
-        folder: an accepted bundle of L04, whose traces are drawn.
+        folder: an accepted bundle, whose traces are drawn.
+        compared: which of them, and of which joint.
 
     Raises:
         BundleRefused: the bundle cannot be read.
     """
-    arrays, compared = bundle.read_arrays(folder), COMPARED[l04.LESSON]
+    arrays = bundle.read_arrays(folder)
     traces = {case: read_trace(folder, arrays, case) for case in compared.cases}
     stream = io.BytesIO()
-    with mpl.rc_context():
-        plots.use_course_style()
+    with plots.course_style():
         mpl.rcParams.update({"font.size": 15, "lines.linewidth": 3})
         figure = Figure(figsize=SIZE, dpi=100)
         words, drawn = figure.subplots(1, 2, width_ratios=(4, 5))

@@ -14,9 +14,12 @@ from sphinx.errors import ConfigError
 
 from robo_genesis import social_card
 from robo_genesis.address import AddressError, site_address, site_root
+from robo_genesis.lessons import compared_cases
 from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
 
 CARD = "_static/social-card.png"
+DRAWN = "l04"
+"""The lesson whose runs the card shows."""
 CARD_ALT = "Measured positions of a robot's joint over time, with three pairs of gains."
 NOT_FOUND = """\
 <h1>There is no such page</h1>
@@ -47,7 +50,7 @@ def configure(app: Sphinx, config: Config) -> None:
     config.sitemap_url_scheme = "{link}"
     config.sitemap_locales = [None]
     config.sitemap_excludes = ["404.html", "search.html", "genindex.html"]
-    if card_bundle().is_dir():
+    if drawn_bundle().is_dir():
         config.ogp_image, config.ogp_image_alt = address + CARD, CARD_ALT
         app.connect("build-finished", draw_card)
 
@@ -65,15 +68,18 @@ def write_not_found(app: Sphinx) -> list[Any]:
     return []
 
 
-def card_bundle() -> Path:
-    """Return the folder of the bundle that the card draws: of this build's lab of L04."""
-    return outputs_folder() / "l04" / "lab" / BACKEND
+def drawn_bundle() -> Path:
+    """Return the folder of the bundle that the card draws, of this build's lab."""
+    return outputs_folder() / DRAWN / "lab" / BACKEND
 
 
 def draw_card(app: Sphinx, failure: Exception | None) -> None:
     """Draw the card that a link to the site shows elsewhere."""
     if failure is None:
-        (Path(app.outdir) / CARD).write_bytes(social_card.card(card_bundle()))
+        compared = compared_cases(DRAWN)
+        if compared is None:
+            raise ConfigError(f"The social card draws {DRAWN}, which compares no cases.")
+        (Path(app.outdir) / CARD).write_bytes(social_card.card(drawn_bundle(), compared))
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis import kernel_costs, tables
+from robo_genesis import kept, kernel_costs, tables
 from robo_genesis.kernel_costs import COMMAND, Costs
 from robo_genesis.pages import Page, find_pages
 
@@ -27,7 +27,7 @@ class KernelCosts(SphinxDirective):
         try:
             page = marked_page(book, self.arguments[0])
             costs = kernel_costs.read_costs(book, page)
-        except (LookupError, kernel_costs.CostsError) as error:
+        except (LookupError, kept.KeptError) as error:
             raise self.error(f"kernel-costs: {error}") from error
         self.env.note_dependency(str(kernel_costs.record_file(book, page)))
         return self.parse_text_to_nodes(costs_text(page, costs))

@@ -14,6 +14,7 @@ Roles and directive, as pages write them:
 
 import importlib.metadata
 import os
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -21,13 +22,13 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
-from robo_genesis import l04, project
+from robo_genesis import project
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.status import Status, page_status, recorded_folders, recorded_status
 from robo_genesis.metrics import format_value
 
 BUILD_OUTPUTS = "ROBO_GENESIS_BUILD_OUTPUTS"
-BACKEND = l04.MINIMUM_HARDWARE
+BACKEND = project.BUILD_BACKEND
 REFERENCE = "amdgpu"
 REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"
 
@@ -89,10 +90,22 @@ def lesson_backends(book: Path, lesson: str) -> list[str]:
     return [REFERENCE, *(name for name in recorded if name != REFERENCE)]
 
 
+@lru_cache(maxsize=64)
+def page_state(outputs: Path, lesson: str, page: str, book: Path) -> Status:
+    """Return the state of a page's bundle of this build; it does not change while Sphinx runs."""
+    return page_status(outputs, lesson, page, BACKEND, book)
+
+
+@lru_cache(maxsize=64)
+def recorded_state(book: Path, lesson: str, backend: str) -> Status:
+    """Return the state of a recorded run; it does not change while Sphinx runs."""
+    return recorded_status(book, lesson, backend)
+
+
 def lesson_statuses(book: Path, lesson: str) -> list[Status]:
     """Return the states of a lesson's lab: of this build on CPU, then of the recorded runs."""
-    recorded = [recorded_status(book, lesson, name) for name in lesson_backends(book, lesson)]
-    return [page_status(outputs_folder(), lesson, "lab", BACKEND, book), *recorded]
+    recorded = [recorded_state(book, lesson, name) for name in lesson_backends(book, lesson)]
+    return [page_state(outputs_folder(), lesson, "lab", book), *recorded]
 
 
 class evidence_badge(nodes.inline):  # noqa: N801

@@ -9,19 +9,18 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 from docutils import nodes
 from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis import plots
-from robo_genesis.compared import COMPARED, Compared
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.status import RECORDED_PAGE, Status, page_status
+from robo_genesis.evidence.status import RECORDED_PAGE, Status
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.ledger import Run
-from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
+from robo_genesis.lessons import Compared, compared_cases
+from robo_genesis.sphinx_evidence import BACKEND, outputs_folder, page_state
 from robo_genesis.sphinx_panel import Picture, frames
 
 UNTIL = 0.6
@@ -39,15 +38,16 @@ class Glance(SphinxDirective):
         Errors are a lesson without an accepted run of this build, and one that compares no cases.
         """
         lesson, book = self.arguments[0], Path(self.env.srcdir)
-        if lesson not in COMPARED:
-            raise self.error(f"glance: {lesson} compares no cases; see robo_genesis/compared.py.")
-        status = page_status(outputs_folder(), lesson, RECORDED_PAGE, BACKEND, book)
+        compared = compared_cases(lesson)
+        if compared is None:
+            raise self.error(f"glance: {lesson} compares no cases; see robo_genesis/lessons.py.")
+        status = page_state(outputs_folder(), lesson, RECORDED_PAGE, book)
         if status.manifest is None:
             raise self.error(f"glance: {lesson} has no accepted run: {status.reason}")
         folder = outputs_folder() / lesson / RECORDED_PAGE / BACKEND
         run = Run(f"{lesson}/{RECORDED_PAGE}", folder, status).key
         box = nodes.container(classes=["glance"], evidence_runs=(run,))
-        shown = pictures(folder, COMPARED[lesson], status)
+        shown = pictures(folder, compared, status)
         box += [self.figure(lesson, picture) for picture in shown]
         if status.manifest.predicate.render.mode != "camera":
             box += nodes.paragraph("", "SKIP: rendering was off, so there is no camera frame.")
@@ -76,8 +76,7 @@ def response(folder: Path, compared: Compared) -> Picture:
     arrays = bundle.read_arrays(folder)
     traces = {case: read_trace(folder, arrays, case) for case in compared.cases}
     stream = io.BytesIO()
-    with mpl.rc_context():
-        plots.use_course_style()
+    with plots.course_style():
         figure = Figure(figsize=(4.8, 3.6))
         ax = figure.subplots()
         plots.position(ax, traces, read_joints(arrays), compared.joint)

@@ -4,6 +4,7 @@
 (`--case-g1`, `--target`) and its dashes for an SVG line two units wide (`--case-g1-dash`).
 """
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,8 @@ STROKE = 2
 """Width of the SVG lines that the dashes are meant for, in their own units."""
 LINE, LENGTH = 0.12, 1.9
 """Width of the line beside a case's name, and about its length, in letter heights."""
+NAME = re.compile(rf"\b({'|'.join(name for name in CASES if name != 'baseline')})\b")
+OTHER_TEXT = (nodes.literal, nodes.literal_block, nodes.math, nodes.raw, nodes.reference)
 
 
 def css() -> str:
@@ -30,6 +33,11 @@ def css() -> str:
     ]
     dashes = {f"--{css_name(name)}-dash": _svg_dashes(mark) for name, mark in MARKS.items()}
     rules.insert(1, _rule(":root", dashes))
+    rules += [_rule(f".time-plot .{css_name(name)}", _ink(name)) for name in MARKS]
+    rules += [
+        _rule(f".case-name.{css_name(name)}", {"color": f"var(--{css_name(name)})"})
+        for name in CASES
+    ]
     rules += [_rule(f".case-mark.{css_name(name)}::before", _stripe(name)) for name in CASES]
     return "\n".join(["/* Written from robo_genesis/palette.py. */", *rules, ""])
 
@@ -37,6 +45,10 @@ def css() -> str:
 def _rule(selector: str, properties: dict[str, str]) -> str:
     lines = "".join(f"  {name}: {value};\n" for name, value in properties.items())
     return f"{selector} {{\n{lines}}}"
+
+
+def _ink(name: str) -> dict[str, str]:
+    return {"--ink": f"var(--{css_name(name)})", "--dash": f"var(--{css_name(name)}-dash)"}
 
 
 def _svg_dashes(mark: Mark) -> str:
@@ -63,17 +75,45 @@ def _stripe(name: str) -> dict[str, str]:
 
 
 class MarkCases(SphinxPostTransform):
-    """Give each cell of a table that holds a case's name, and nothing else, the case's class."""
+    """Mark each case that is named.
+
+    A cell of a table that holds a case's name, and nothing else, gets the line of the plots beside
+    it; in running text the name has the case's colour. The word "baseline" is no such name there.
+    """
 
     default_priority = 400  # outputs of cells have been chosen by then
 
     def run(self, **kwargs: Any) -> None:
-        """Mark the paragraph in the cell."""
+        """Mark cells, then what is left of the text."""
         for entry in self.document.findall(nodes.entry):
             name = entry.astext()
             paragraph = entry.next_node(nodes.paragraph)
             if name in CASES and paragraph is not None:
                 paragraph["classes"] += ["case-mark", css_name(name)]
+        for text in list(self.document.findall(nodes.Text)):
+            if NAME.search(text) and _is_running(text):
+                text.parent.replace(text, _named(text))
+
+
+def _is_running(text: nodes.Text) -> bool:
+    """Whether a text stands in a paragraph or a caption, and is neither code, link nor marked."""
+    parent = text.parent
+    while not isinstance(parent, nodes.paragraph | nodes.caption):
+        if parent is None or isinstance(parent, OTHER_TEXT):
+            return False
+        parent = parent.parent
+    return "case-mark" not in parent["classes"]
+
+
+def _named(text: nodes.Text) -> list[nodes.Node]:
+    """Return a text with each case's name in an element of its own."""
+    parts: list[nodes.Node] = []
+    for number, part in enumerate(NAME.split(text)):
+        if number % 2:
+            parts.append(nodes.inline(part, part, classes=["case-name", css_name(part)]))
+        elif part:
+            parts.append(nodes.Text(part))
+    return parts
 
 
 def write_css(app: Sphinx) -> None:

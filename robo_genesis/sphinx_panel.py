@@ -12,22 +12,26 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 from docutils import nodes
 from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis import plots, project, tables
-from robo_genesis.compared import COMPARED, Compared
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import Comparison, compare, specification
 from robo_genesis.evidence.findings import DIFFERS
-from robo_genesis.evidence.status import RECORDED_PAGE, Status, recorded_status
+from robo_genesis.evidence.status import RECORDED_PAGE, Status
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.ledger import Run
+from robo_genesis.lessons import Compared, compared_cases
 from robo_genesis.metrics import format_value
-from robo_genesis.sphinx_evidence import BACKEND, lesson_backends, outputs_folder
+from robo_genesis.sphinx_evidence import (
+    BACKEND,
+    lesson_backends,
+    outputs_folder,
+    recorded_state,
+)
 from robo_genesis.sphinx_replay import replay_block
 
 
@@ -55,7 +59,7 @@ class Evidence(SphinxDirective):
         """Return one panel a backend; the reference backend has one even where it is missing."""
         lesson, book = self.arguments[0], Path(self.env.srcdir)
         backends = lesson_backends(book, lesson)
-        return [self.panel(lesson, recorded_status(book, lesson, name)) for name in backends]
+        return [self.panel(lesson, recorded_state(book, lesson, name)) for name in backends]
 
     def panel(self, lesson: str, status: Status) -> nodes.Node:
         """Return the panel of one backend."""
@@ -68,7 +72,7 @@ class Evidence(SphinxDirective):
         panel += self.parse_text_to_nodes(backend_text(status))
         recorded = Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True).key
         panel["evidence_runs"] = (recorded,)
-        compared = COMPARED.get(lesson)
+        compared = compared_cases(lesson)
         drawn = [response(folder, compared, status.backend)] if compared else []
         for picture in (*drawn, *frames(folder, status)):
             panel += self.figure(f"{lesson}-{status.backend}-{picture.name}", picture)
@@ -133,8 +137,7 @@ def response(folder: Path, compared: Compared, backend: str) -> Picture:
     traces = {case: read_trace(folder, arrays, case) for case in compared.cases}
     joints = read_joints(arrays)
     stream = io.BytesIO()
-    with mpl.rc_context():
-        plots.use_course_style()
+    with plots.course_style():
         figure = Figure(figsize=(7, 8.5))
         plots.response(figure.subplots(3, 1, sharex=True), traces, joints, compared.joint)
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})

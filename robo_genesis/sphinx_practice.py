@@ -15,9 +15,9 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis import l04
 from robo_genesis.comparison import compare, comparison_sentence
 from robo_genesis.evidence import bundle
+from robo_genesis.lessons import find_lesson
 from robo_genesis.metrics import UNITS, StepMetrics
 from robo_genesis.sphinx_evidence import BACKEND, measured, outputs_folder
 
@@ -69,7 +69,7 @@ def measured_order(lesson_page: str, metric: str, cases: list[str]) -> tuple[str
         StepMetrics(**{name: record.value for name, record in records[case].items()})  # type: ignore[arg-type]
         for case in cases
     )
-    found = compare(metric, first, second, l04.RESOLUTION)
+    found = compare(metric, first, second, find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION)
     return found.order, comparison_sentence((cases[0], cases[1]), found), origin
 
 

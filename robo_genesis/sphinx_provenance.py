@@ -18,10 +18,16 @@ from sphinx.environment import BuildEnvironment
 from sphinx.util import logging
 
 from robo_genesis import ledger, sphinx_origin, sphinx_refusals
-from robo_genesis.evidence.status import RECORDED_PAGE, page_status, recorded_status
+from robo_genesis.evidence.status import RECORDED_PAGE
 from robo_genesis.ledger import Item, Run
 from robo_genesis.pages import find_pages
-from robo_genesis.sphinx_evidence import BACKEND, lesson_backends, outputs_folder
+from robo_genesis.sphinx_evidence import (
+    BACKEND,
+    lesson_backends,
+    outputs_folder,
+    page_state,
+    recorded_state,
+)
 from robo_genesis.sphinx_origin import INPUTS, above, origin
 
 TITLE = 80
@@ -43,13 +49,13 @@ def all_runs(book: Path) -> dict[str, Run]:
     declared = [page.split("/") for page in measured_pages(book).values()]
     runs = [
         Run(f"{lesson}/{page}", here / lesson / page / BACKEND,
-            page_status(here, lesson, page, BACKEND, book))
+            page_state(here, lesson, page, book))
         for lesson, page in declared
     ]  # fmt: skip
     for lesson in dict.fromkeys(lesson for lesson, _ in declared):
         for backend in lesson_backends(book, lesson):
             folder = book / "evidence" / lesson / backend
-            status = recorded_status(book, lesson, backend)
+            status = recorded_state(book, lesson, backend)
             runs.append(Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True))
     return {run.key: run for run in runs}
 
@@ -114,7 +120,8 @@ def describe(
     caption = holder.next_node(nodes.caption)
     title = caption.astext() if caption is not None else str(node.get("alt", anchor))
     path = book / node["uri"]
-    kind = "illustration" if keys is None else ledger.picture_kind(path)
+    unmeasured = "performance" if "performance" in holder else "illustration"
+    kind = unmeasured if keys is None else ledger.picture_kind(path)
     digest = ledger.sha256(path.read_bytes())
     return Item(kind, _short(title), docname, anchor, keys or (), digest, node["uri"])
 

@@ -1,7 +1,7 @@
 """Refuses what a page writes by itself and only a run may say or show."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from pathlib import Path
 
 from bs4 import BeautifulSoup
@@ -43,16 +43,19 @@ def problems(doctree: nodes.document, book: Path) -> Iterator[tuple[nodes.Elemen
         book: the folder of the pages.
     """
     for node in doctree.findall(nodes.Element):
-        text = node.astext() if isinstance(node, nodes.raw) else ""
-        html = BeautifulSoup(text, "html.parser")
-        for problem in (*_imitated(node, html), *_raw(node, html), *_past_its_check(node, book)):
+        found = [*_imitated(node, set(node.get("classes", ()))), *_past_its_check(node, book)]
+        if isinstance(node, nodes.raw):
+            html = BeautifulSoup(node.astext(), "html.parser")
+            written = {name for tag in html.find_all(class_=True) for name in tag["class"]}
+            found += [*_imitated(None, written), *_raw(node, html)]
+        for problem in dict.fromkeys(found):
             yield node, problem
 
 
-def _imitated(node: nodes.Element, html: BeautifulSoup) -> Iterator[str]:
-    written = {name for tag in html.find_all(class_=True) for name in tag["class"]}
+def _imitated(node: nodes.Element | None, written: Set[str]) -> Iterator[str]:
+    """Yield what is wrong with the classes of a node, or of raw HTML, where `node` is None."""
     for name, (made, instead) in OURS.items():
-        if name in written or (name in node.get("classes", ()) and not isinstance(node, made)):
+        if name in written and not (node is not None and isinstance(node, made)):
             yield f"a page may not set the class {name}: it follows from a run. {instead}"
 
 

@@ -18,10 +18,11 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis import npm, replay, replay_model, robot_shape
-from robo_genesis.compared import COMPARED, Compared
+from robo_genesis import npm, replay, robot_shape
+from robo_genesis.derived import derived
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_joints, read_trace
+from robo_genesis.lessons import Compared, compared_cases
 from robo_genesis.replay import Replay
 from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
 from robo_genesis.sphinx_ledger import scroll_box
@@ -51,7 +52,7 @@ PARTS = (
 """The packages whose code the viewer's one file holds, each in the lock."""
 
 CREDITS = f"""\
-The models (*.glb, and the same in *.js): {replay_model.CREDIT}.
+The models (*.glb, and the same in *.js): {replay.CREDIT}.
 The viewer ({VIEWER}): @google/model-viewer, © Google LLC, Apache-2.0. Changed here: the addresses
 from which it would load decoders for compressed models are taken out, so that it asks no other
 host.
@@ -71,10 +72,10 @@ class ReplayDirective(SphinxDirective):
         Errors are a page without a bundle, and a lesson that compares no cases.
         """
         lesson_page = self.arguments[0]
-        if lesson_page.split("/")[0] not in COMPARED:
+        if compared_cases(lesson_page.split("/")[0]) is None:
             raise self.error(
                 f"replay: the lesson of {lesson_page} compares no cases. With cases and joint in "
-                "robo_genesis/compared.py it has a replay."
+                "robo_genesis/lessons.py it has a replay."
             )
         folder = outputs_folder() / lesson_page / BACKEND
         if not (folder / "manifest.json").is_file():
@@ -92,10 +93,12 @@ def replay_block(directive: SphinxDirective, key: str, folder: Path) -> nodes.No
 
     Raises:
         DirectiveError: no page of this build handed the robot's shape on, or another robot's.
-        KeyError: the lesson compares no cases.
     """
     env, lesson = directive.env, key.split("/")[0]
-    shown = read_replay(f"replay-{key.replace('/', '-')}", folder, COMPARED[lesson])
+    compared = compared_cases(lesson)
+    if compared is None:
+        raise directive.error(f"replay: {lesson} compares no cases.")
+    shown = read_replay(f"replay-{key.replace('/', '-')}", folder, compared)
     shape = outputs_folder() / lesson / SHAPE_PAGE / robot_shape.FILE
     if not shape.is_file():
         raise directive.error(
@@ -104,7 +107,8 @@ def replay_block(directive: SphinxDirective, key: str, folder: Path) -> nodes.No
             "robot_shape.read_shape(robot)) after the robot is built."
         )
     try:
-        model = replay_model.glb(robot_shape.load_shape(shape), shown.links, shown.traces)
+        inputs = model_inputs(shape, folder, shown)
+        model = derived("replay", inputs, lambda: make_model(shape, shown))
     except ValueError as error:
         raise directive.error(f"replay: {key}: {error}") from error
     written = write_model(Path(env.app.outdir) / FOLDER, shown.name, model)
@@ -121,6 +125,21 @@ def replay_block(directive: SphinxDirective, key: str, folder: Path) -> nodes.No
     block += scroll_box("", *directive.parse_text_to_nodes(replay.samples(shown)), label=summary)
     block += nodes.raw("", f"</details>{origin_html(shown.name, folder, up)}", format="html")
     return block
+
+
+def make_model(shape: Path, shown: Replay) -> bytes:
+    """Return the GLB of a replay; what makes meshes light takes long to load, so only here."""
+    from robo_genesis import replay_model
+
+    return replay_model.glb(robot_shape.load_shape(shape), shown.links, shown.traces)
+
+
+def model_inputs(shape: Path, folder: Path, shown: Replay) -> Iterator[bytes]:
+    """Yield everything that decides the GLB of a replay."""
+    yield repr((list(shown.traces), list(shown.links))).encode()
+    sources = Path(__file__).parent.rglob("*.py")
+    for path in (shape, folder / "arrays.json", *sorted(folder.glob("arrays/*")), *sorted(sources)):
+        yield path.read_bytes()
 
 
 def read_replay(name: str, folder: Path, compared: Compared) -> Replay:
@@ -141,7 +160,7 @@ def origin_html(name: str, folder: Path, up: str) -> str:
     return (
         f'<p class="credit">Poses and samples: {run.backend.actual}, Genesis {run.engine.version}, '
         f'run {run.run_id[:8]}. 3D model: <a href="{up}/{name}.glb" download>GLB</a>, '
-        f'{replay_model.CREDIT} (<a href="{up}/{NOTICE}">notice</a>, '
+        f'{replay.CREDIT} (<a href="{up}/{NOTICE}">notice</a>, '
         f'<a href="{up}/{VIEWER_LICENCE}">licence</a>).</p>'
     )
 

@@ -22,7 +22,7 @@ from robo_genesis.pages import Page, find_pages
 from robo_genesis.plain_markdown import ProseError
 from robo_genesis.sphinx_evidence import BACKEND, measured, outputs_folder
 from robo_genesis.sphinx_ext import PAGE_CACHE
-from robo_genesis.takeaways import Takeaways, package_facts, write_takeaways
+from robo_genesis.takeaways import Takeaways, system, write_takeaways
 
 FOLDER = "takeaways"
 
@@ -60,13 +60,9 @@ class TakeawaysBox(SphinxDirective):
 
     def box(self, found: Takeaways, links: "Links") -> nodes.Node:
         """Return what to download and the commands that run the lab."""
-        python = package_facts()["requires-python"].replace(",", ", ")
         commands = "\n".join(found.commands)
         box = nodes.admonition("", nodes.title("", "Run it yourself"), classes=["run-it-yourself"])
-        box += self.prose(
-            f"On Linux with Python {python}. Debian also needs `apt install python3-venv libegl1 "
-            "libgl1`. Save these two files in one folder:"
-        )
+        box += self.prose(f"On {system()}: save these two files in one folder.")
         box += bullets(
             (links(found.student), ", the lab without outputs or solutions"),
             (links(found.wheel), ", the course's package, which brings the pinned engine"),

@@ -13,7 +13,7 @@ IDEAL = look("target", linestyle=(0, (1, 1.2)), linewidth=1.8)
 ENGINE_STYLES = {
     "Genesis": look("G2", linestyle="-", marker="o"),
     "MuJoCo implicitfast": look("other", marker="s"),
-    "MuJoCo Euler": look("baseline", marker="^"),
+    "MuJoCo Euler": look("further", marker="^"),
 }
 """The curves are G2's; shapes tell the engines apart, too."""
 

@@ -21,7 +21,7 @@ from robo_genesis.notebooks import Origin, executed_notebook, student_notebook
 from robo_genesis.pages import Page
 from robo_genesis.plain_markdown import Writer
 from robo_genesis.trace import Trace
-from robo_genesis.wheel import build_wheel
+from robo_genesis.wheel import stored_wheel
 
 ENVIRONMENT = "course"
 UNTOLD = "*(your run measures it)*"
@@ -33,6 +33,9 @@ CHECKOUT = "robo-genesis"
 AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z")}
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
 """What each step's trace was before the first step, where that was read."""
+
+DEBIAN = ("python3-venv", "libegl1", "libgl1")
+"""Packages of Debian that a fresh system lacks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +66,7 @@ def write_takeaways(
     name = f"{page.lesson}-{page.page}"
     own = folder / name
     own.mkdir(parents=True, exist_ok=True)
-    wheel = build_wheel(folder)
+    wheel = stored_wheel(folder)
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(wheel.name, student.name)
     origin = _origin(page, run, wheel.name, commands)
@@ -90,6 +93,12 @@ def run_commands(wheel: str, notebook: str) -> tuple[str, ...]:
     )
 
 
+def system() -> str:
+    """Return what the commands run on."""
+    python = package_facts()["requires-python"].replace(",", ", ")
+    return f"Linux with Python {python} (Debian: `apt install {' '.join(DEBIAN)}` first)"
+
+
 def package_facts(root: Path = project.ROOT) -> dict[str, str]:
     """Return name, version and valid Python versions of the package."""
     facts = tomllib.loads((root / "pyproject.toml").read_text("utf8"))["project"]
@@ -102,6 +111,7 @@ def _origin(page: Page, run: Path, wheel: str, commands: tuple[str, ...]) -> Ori
     title = next((line[2:] for line in lines if line.startswith("# ")), page.docname)
     return Origin(
         title=title,
+        system=system(),
         engine=project.engine_pin(),
         package=package_facts()["version"],
         wheel=wheel,

@@ -5,9 +5,11 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from itertools import chain
 from pathlib import Path
 
-from robo_genesis.project import ROOT, ProjectError
+from robo_genesis.derived import derived
+from robo_genesis.project import CACHE, ROOT, ProjectError
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
 PACKAGE = "robo_genesis"
@@ -15,6 +17,34 @@ EPOCH = "315532800"
 """1980-01-01, the oldest time that a zip can hold."""
 
 BUILD = "import sys; from setuptools import build_meta; print(build_meta.build_wheel(sys.argv[1]))"
+
+
+def stored_wheel(folder: Path, root: Path = ROOT, cache: Path = CACHE) -> Path:
+    """Put the wheel into a folder and return its path; built only where its sources changed.
+
+    Args:
+        folder: gets the wheel.
+        root: the checkout.
+        cache: the cache folder.
+
+    Raises:
+        ProjectError: setuptools refused; the message holds what it said.
+    """
+    sources = [root / name for name in SOURCES]
+    sources += sorted(path for path in (root / PACKAGE).rglob("*") if path.suffix != ".pyc")
+
+    def build() -> bytes:
+        with tempfile.TemporaryDirectory() as name:
+            wheel = build_wheel(Path(name), root)
+            return wheel.name.encode() + b"\n" + wheel.read_bytes()
+
+    names = (path.relative_to(root).as_posix().encode() for path in sources)
+    contents = (path.read_bytes() for path in sources if path.is_file())
+    stored = derived("wheel", chain(names, contents), build, cache)
+    name, _, content = stored.partition(b"\n")
+    wheel = folder / name.decode()
+    wheel.write_bytes(content)
+    return wheel
 
 
 def build_wheel(folder: Path, root: Path = ROOT) -> Path:

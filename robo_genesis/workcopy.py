@@ -14,9 +14,15 @@ from robo_genesis.project import ProjectError
 SHARED = ("engine", "pages")
 """Caches that the copy shares with the checkout: named by what decides their content."""
 
-OWN = ("GENESIS", "PYTHON", "PYTHONPATH", "BUNDLE", "RELEASE", "MAKEFLAGS", "MFLAGS", "MAKELEVEL")
+OWN = (
+    "GENESIS", "PYTHON", "PYTHONPATH", "BUNDLE", "RELEASE", "EXECUTED", "MAKEFLAGS", "MFLAGS",
+    "MAKELEVEL",
+)  # fmt: skip
 """Variables of the outer make that mean nothing to a make in the copy, or the wrong thing: a new
 pin makes recorded bundles stale, which a release would refuse."""
+
+WISHES = ("JOBS", "RENDER", "SITE_URL", "ROWS", "RUNS", "PAGE", "TO", "REPORT", "OLD", "NEW")
+"""Variables by which a user tells make what to do; a measurement tells each command its own."""
 
 ANEW = (".venv", ".cache")
 """Links of these names are no folders for git to ignore, and lead to what others use."""
@@ -29,13 +35,14 @@ class CommandError(Exception):
     """A command in the copy failed; the message holds the end of its log and the log's path."""
 
 
-def copy_tree(root: Path, work: Path, cache: Path) -> None:
+def copy_tree(root: Path, work: Path, cache: Path, shared: Sequence[str] = SHARED) -> None:
     """Copy a checkout as it stands, uncommitted changes and new files included.
 
     Args:
         root: the checkout; what git ignores is not copied.
         work: the copy, a repository of its own; what stands there is removed.
         cache: the cache folder of the checkout.
+        shared: folders of it that the copy uses, by links.
 
     Raises:
         ProjectError: the checkout is no git repository, git cannot copy it, or it holds another.
@@ -53,7 +60,7 @@ def copy_tree(root: Path, work: Path, cache: Path) -> None:
             (work / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(root / name, work / name, follow_symlinks=False)
     (work / ".cache").mkdir()
-    for name in SHARED:
+    for name in shared:
         (cache / name).mkdir(parents=True, exist_ok=True)
         (work / ".cache" / name).symlink_to(cache / name)
 
@@ -94,7 +101,11 @@ def _git(folder: Path, *arguments: str) -> list[str]:
 
 
 def run_logged(
-    command: Sequence[str], work: Path, log: Path, waiting: Callable[[], None] = lambda: None
+    command: Sequence[str],
+    work: Path,
+    log: Path,
+    waiting: Callable[[], None] = lambda: None,
+    without: Sequence[str] = (),
 ) -> None:
     """Run a command in the copy, its output in a log; nothing of it survives this process.
 
@@ -103,12 +114,15 @@ def run_logged(
         work: the copy.
         log: file of its output, written over.
         waiting: called once a minute while it runs.
+        without: further variables that it does not get.
 
     Raises:
         CommandError: its exit status is not 0.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
-    environment = {name: value for name, value in os.environ.items() if name not in OWN}
+    environment = {
+        name: value for name, value in os.environ.items() if name not in (*OWN, *without)
+    }
     with log.open("wb") as output:
         process = subprocess.Popen(
             command,

@@ -20,6 +20,7 @@ from tiny_book import (
 
 from robo_genesis.build import Build, BuildError, only_build, run_build
 from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.execution import execute_one
 from robo_genesis.pages import PageError, find_pages, fingerprint
 from robo_genesis.project import ROOT, ProjectError, page_cache_folder
 
@@ -283,6 +284,37 @@ def test_a_release_executes_what_an_ordinary_build_would_reuse(tmp_path, monkeyp
     build(tmp_path)
     assert "Pages: 0 executed, 1 reused." in build(tmp_path)
     assert "Pages: 1 executed, 0 reused." in build(tmp_path, release=True)
+
+
+def test_pages_from_elsewhere_are_built_without_a_run(tmp_path):
+    lab = notebook(cell(WRITE_BUNDLE), front=LAB_FRONT)
+    there, here = (make_book(tmp_path / name, lab=lab).parent for name in ("there", "here"))
+    execute_one("lab", tmp_path / "executed", Build(book=there / "book", cache=there / "cache"))
+    said: list[str] = []
+    last = build(here, said, executed=tmp_path / "executed")
+    assert "Pages: 0 executed, 1 reused." in last
+    assert (here / "book/_build/evidence/l04/cpu/manifest.json").is_file()
+    assert any("handover lab  run " in line for line in said)
+
+
+def test_pages_from_elsewhere_that_are_not_all_there_leave_the_old_site(tmp_path):
+    marker = published_marker(make_book(tmp_path, page=notebook(cell("1"))))
+    build(tmp_path)
+    marker.write_text("the old site")
+    (tmp_path / "executed").mkdir()
+    process = command(tmp_path, EXECUTED=str(tmp_path / "executed"))
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert "page is not among them. Execute the page again" in err
+    assert "FAILED: nothing was published." in err
+    assert marker.read_text() == "the old site"
+
+
+def test_a_release_takes_no_pages_from_elsewhere(tmp_path):
+    process = command(tmp_path, RELEASE="1", EXECUTED="executed")
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert "EXECUTED='executed' is not valid with RELEASE=1" in err
 
 
 def test_another_installed_engine_stops_the_build_before_any_page(tmp_path, monkeypatch):

@@ -116,6 +116,19 @@ def test_an_edit_between_two_pins_stops_every_script(between_pins, name):
     assert (between_pins / "requirements.lock").read_text() == "mine"
 
 
+def test_clean_keeps_what_the_engine_compiled_and_distclean_does_not(checkout):
+    compiled = checkout / ".cache" / "engine" / "1-a" / "kernels" / "kernel.qdc"
+    executed = checkout / ".cache" / "pages" / "b" / "notebooks" / "global.db"
+    for path in (compiled, executed):
+        path.parent.mkdir(parents=True)
+        path.touch()
+    assert make(checkout, "clean").returncode == 0
+    assert compiled.exists()
+    assert not executed.exists()
+    assert make(checkout, "distclean").returncode == 0
+    assert not compiled.exists()
+
+
 def test_an_edit_between_two_pins_stops_every_target(between_pins):
     (between_pins / "requirements.lock").write_text("mine")
     done = make(between_pins, "clean")

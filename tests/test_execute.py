@@ -15,7 +15,7 @@ from robo_genesis.execute import execute_pages
 from robo_genesis.page_cache import PageCache, notebooks_folder
 from robo_genesis.page_results import failure_report
 from robo_genesis.pages import find_pages
-from robo_genesis.project import ROOT
+from robo_genesis.project import ROOT, engine_cache_environment, engine_cache_folder
 
 CHECK = """\
 import sys
@@ -236,6 +236,25 @@ while not pathlib.Path({place!r}, {theirs!r}).exists(): time.sleep(0.05)"""
     make_book(tmp_path, one=notebook(one), two=notebook(two))
     results = execute(tmp_path, jobs=2, timeout=20)
     assert [result.status for result in results.values()] == ["executed", "executed"]
+
+
+SAVES_AT_EXIT = """\
+import atexit, os, pathlib, time
+def save():
+    time.sleep(6)
+    pathlib.Path(os.environ["QD_OFFLINE_CACHE_FILE_PATH"], "{name}").write_text("compiled")
+atexit.register(save)"""
+
+
+def test_what_pages_compiled_is_saved_even_where_they_fail(tmp_path):
+    """As the engine does, in its exit handler; six seconds are more than Jupyter's usual wait."""
+    good, bad = (cell(SAVES_AT_EXIT.format(name=name)) for name in ("good", "bad"))
+    make_book(tmp_path, good=notebook(good), bad=notebook(bad, cell("1 / 0")))
+    caches = engine_cache_environment(cache=tmp_path / "cache")
+    results = execute(tmp_path, jobs=2, environment=caches)
+    assert [result.status for result in results.values()] == ["executed", "failed"]
+    folder = engine_cache_folder(cache=tmp_path / "cache") / "kernels"
+    assert sorted(path.name for path in folder.iterdir()) == ["bad", "good"]
 
 
 def test_kernels_are_clean(tmp_path, monkeypatch):

@@ -35,6 +35,29 @@ def test_script_files_wait_and_what_needs_them_waits_behind_them(tmp_path):
     ]
 
 
+def test_light_or_dark_is_decided_by_the_script_in_the_head(tmp_path):
+    theme = '<script>document.documentElement.dataset.theme = "auto";</script>'
+    html = f'<html data-theme="auto"><head>{theme}</head><body><script>1</script></body></html>'
+    found = BeautifulSoup(finished(html, tmp_path), "html.parser")
+    assert found.html["data-theme"] == "light"  # for a reader without scripts
+    first, second = (script.get_text() for script in found.select("script"))
+    assert first.startswith('document.documentElement.dataset.theme = "auto";')
+    assert "matchMedia" in first
+    assert second == "1"
+
+
+@pytest.mark.parametrize(("given", "anchor"), [("", "page-title"), ('id="index"', "index")])
+def test_a_page_is_first_shown_with_its_title(tmp_path, given, anchor):
+    found = page(tmp_path, f"<article><h1 {given}>Title</h1></article>")
+    (expected,) = found.select("head > link[rel=expect][blocking=render]")
+    assert expected["href"] == f"#{anchor}"
+    assert found.h1["id"] == anchor
+
+
+def test_a_page_without_title_waits_for_none(tmp_path):
+    assert page(tmp_path, "<article><p>Text</p></article>").select("link") == []
+
+
 def test_a_script_stays_where_it_has_work(tmp_path):
     found = page(tmp_path, '<div class="explorer"></div>', HEAD)
     assert found.select_one("script[src='explorer.js'][defer]")

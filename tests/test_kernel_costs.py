@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from robo_genesis import kernel_costs, project, sphinx_costs
+from robo_genesis.kept import KeptError
 from robo_genesis.kernel_costs import Cost, Costs, CostsError, Measuring
 from robo_genesis.pages import find_pages
 from tests.tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
@@ -71,6 +72,26 @@ def test_a_measurement_is_cold_first_and_then_warm(book):
     assert list(file.parent.iterdir()) == [file]
 
 
+CHANCE = """
+import numpy
+(folder / "arrays").mkdir()
+numpy.savez(folder / "arrays" / "G1.npz", q={value})"""
+
+
+@pytest.mark.parametrize("value", ["os.getpid()", "1"])
+def test_what_is_measured_must_not_depend_on_what_was_compiled(tmp_path, value):
+    text = notebook(
+        cell(WRITE_BUNDLE + CHANCE.format(value=value), ':kernels: "one"\n'), front=LAB_FRONT
+    )
+    book = make_book(tmp_path, page=text)
+    how = Measuring(book=book, say=lambda line: None)
+    if value == "1":
+        assert kernel_costs.measure(find_pages(book), how)
+    else:
+        with pytest.raises(CostsError, match=r"a cold and a warm run: l04/lab/cpu/arrays/G1\.npz"):
+            kernel_costs.measure(find_pages(book), how)
+
+
 def test_a_failing_page_leaves_the_old_figures(book):
     page = only_page(book)
     kept = kernel_costs.record_file(book, page)
@@ -123,7 +144,7 @@ def test_a_file_that_is_no_record_is_refused_by_name(book):
     kept = kernel_costs.record_file(book, page)
     kept.parent.mkdir()
     kept.write_text('{"engine": 3}')
-    with pytest.raises(CostsError, match="is no record of costs"):
+    with pytest.raises(KeptError, match="is no record of costs"):
         kernel_costs.read_costs(book, page)
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from robo_genesis import l04, project
 from robo_genesis.comparison import LABELS
-from robo_genesis.evidence.record import COMPUTING_MODULES
 from robo_genesis.joint_control import ControlCase, differences, validate
+from robo_genesis.lessons import STEP_MODULES
 from robo_genesis.metrics import UNITS
 from robo_genesis.scene_config import EFFORT_LIMIT, JOINT_NAMES, Q_START, per_joint
 
@@ -133,7 +133,7 @@ def test_what_results_are_held_against_is_none(name, monkeypatch):
 
 
 def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():
-    trees = [ast.parse((PACKAGE / f"{name}.py").read_text("utf8")) for name in COMPUTING_MODULES]
+    trees = [ast.parse((PACKAGE / f"{name}.py").read_text("utf8")) for name in STEP_MODULES]
     read = {
         node.attr
         for tree in trees
@@ -142,7 +142,7 @@ def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():
     }
     assert read
     assert read <= {*OTHER, "CASES"}
-    assert "l04" not in COMPUTING_MODULES
+    assert "l04" not in STEP_MODULES
 
 
 def test_the_lab_runs_with_parameters_and_words_its_result_with_the_rest():

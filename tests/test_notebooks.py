@@ -24,6 +24,7 @@ CELLS = (
 )
 ORIGIN = Origin(
     title="A lab",
+    system="Linux with Python 3",
     engine="1.2.3",
     package="0.1.0",
     wheel="robo.whl",
@@ -58,8 +59,40 @@ def test_the_student_s_notebook_is_clean_and_valid(student):
 
 def test_its_first_lines_say_where_it_comes_from_and_how_to_install(student):
     first = student.cells[0].source
-    for words in ("A lab", "1.2.3", "12345678", "2026-01-02", "CC BY 4.0", *ORIGIN.commands):
+    for words in (
+        "A lab",
+        "1.2.3",
+        "12345678",
+        "2026-01-02",
+        "CC BY 4.0",
+        ORIGIN.system,
+        *ORIGIN.commands,
+    ):
         assert words in first
+
+
+SHEET = """\
+# Work sheet
+
+## 1. Predictions, before the run
+
+Earlier or later?
+
+## 2. Measured
+
+```python
+## no heading
+```
+"""
+
+
+def test_a_work_sheet_is_filled_in_before_and_after_the_run(page, tmp_path):
+    page.path.with_name("worksheet.md").write_text(SHEET)
+    found = student_notebook(page, ORIGIN, Writer(tmp_path, lambda _: "(yours)"))
+    sources = [cell.source for cell in found.cells]
+    asked = sources.index("## 1. Predictions, before the run\n\nEarlier or later?")
+    assert asked < sources.index("x = 1") < sources.index("# Work sheet")
+    assert sources[-1] == "## 2. Measured\n\n```python\n## no heading\n```"
 
 
 def run_check(student, monkeypatch, installed: dict[str, str]) -> str:
@@ -86,10 +119,10 @@ def test_its_first_cell_accepts_the_pinned_engine(student, monkeypatch):
     [
         (
             {"genesis-world": "1.0.0", "robo-genesis": "0.1.0"},
-            "genesis-world 1.2.3, found is 1.0.0",
+            "genesis-world 1.2.3; it is 1.0.0 here",
         ),
-        ({"robo-genesis": "0.1.0"}, "genesis-world 1.2.3, found is none"),
-        ({"genesis-world": "1.2.3"}, "robo-genesis 0.1.0, found is none"),
+        ({"robo-genesis": "0.1.0"}, "genesis-world 1.2.3; it is not installed here"),
+        ({"genesis-world": "1.2.3"}, "robo-genesis 0.1.0; it is not installed here"),
     ],
 )
 def test_its_first_cell_says_what_to_do_about_another(student, monkeypatch, installed, said):

@@ -3,6 +3,8 @@
 import re
 
 import pytest
+from docutils import nodes
+from docutils.utils import new_document
 
 from robo_genesis import plots, sphinx_palette
 from robo_genesis.palette import CASES, GROUNDS, MARKS, contrast, css_name
@@ -81,3 +83,51 @@ def test_the_mark_in_a_table_repeats_the_dashes_of_the_plot_whole():
     }
     assert found["g3"]["background"].count("transparent") == 2
     assert found["g3"]["width"] == "1.38em"
+
+
+def page_of(*children: nodes.Node) -> nodes.document:
+    document = new_document("page")
+    document += children
+    transform = sphinx_palette.MarkCases(document)
+    transform.run()
+    return document
+
+
+def marked(document: nodes.document) -> list[tuple[str, list[str]]]:
+    return [(node.astext(), node["classes"]) for node in document.findall(nodes.inline)]
+
+
+def test_names_in_running_text_are_marked_and_the_text_stays():
+    text = "The baseline, then KP is doubled (G1 → G2): G2's overshoot, not G22's or BG1."
+    document = page_of(nodes.paragraph("", text))
+    assert document.astext() == text
+    assert marked(document) == [(n, ["case-name", f"case-{n.lower()}"]) for n in ("G1", "G2", "G2")]
+
+
+def test_names_in_emphasis_and_captions_are_marked():
+    strong = nodes.paragraph("", "", nodes.strong("", "G3"))
+    figure = nodes.figure("", nodes.caption("", "joint4 in G1"))
+    assert [name for name, _ in marked(page_of(strong, figure))] == ["G3", "G1"]
+
+
+@pytest.mark.parametrize(
+    "node", [nodes.literal("", "G1"), nodes.reference("", "G1"), nodes.math("", "G1")]
+)
+def test_code_links_and_formulas_are_left_alone(node):
+    assert marked(page_of(nodes.paragraph("", "", node))) == []
+
+
+def test_titles_are_left_alone():
+    section = nodes.section("", nodes.title("", "G1, G2, G3: one factor at a time"))
+    assert marked(page_of(section)) == []
+
+
+def test_a_cell_that_is_a_name_gets_the_line_instead():
+    paragraphs = [nodes.paragraph("", text) for text in ("G1", "baseline", "after G2")]
+    document = page_of(*(nodes.entry("", paragraph) for paragraph in paragraphs))
+    assert [p["classes"] for p in paragraphs] == [
+        ["case-mark", "case-g1"],
+        ["case-mark", "case-baseline"],
+        [],
+    ]
+    assert [name for name, _ in marked(document)] == ["G2"]

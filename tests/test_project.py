@@ -1,5 +1,6 @@
 import os
 import pwd
+from importlib.metadata import distributions
 from pathlib import Path
 
 import pytest
@@ -40,6 +41,16 @@ def test_a_pyproject_without_dependencies_is_refused(tmp_path, text):
     (tmp_path / "pyproject.toml").write_text(text)
     with pytest.raises(project.ProjectError, match=r"pyproject\.toml cannot be read"):
         project.engine_pin(tmp_path)
+
+
+def test_what_pip_leaves_in_a_checkout_is_no_installed_package(tmp_path, monkeypatch):
+    before = project.installed_packages()
+    left = tmp_path / "robo_genesis.egg-info"
+    left.mkdir()
+    (left / "PKG-INFO").write_text("Name: robo-genesis\nVersion: 0.1.0\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert "robo-genesis" in {package.name for package in distributions()}
+    assert project.installed_packages() == before
 
 
 def test_all_installed_packages_are_named_with_their_versions():

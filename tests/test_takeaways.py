@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robo_genesis import project
+from robo_genesis import project, wheel
 from robo_genesis.evidence.traces import write_traces
 from robo_genesis.takeaways import csv_text, package_facts, run_commands, without_places
 from robo_genesis.wheel import build_wheel
@@ -60,6 +60,29 @@ def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
     assert f"genesis-world=={project.engine_pin()}" in needed
     files = {p.relative_to(project.ROOT).as_posix() for p in package_files()}
     assert {name for name in names if not name.startswith("robo_genesis-")} == files
+
+
+def test_a_wheel_is_built_anew_only_where_its_sources_changed(tmp_path, monkeypatch):
+    root, cache, built = tmp_path / "root", tmp_path / "cache", []
+    for name in (*wheel.SOURCES, "robo_genesis/__init__.py"):
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(name)
+
+    def build(folder, root):
+        built.append(folder)
+        (folder / "robo.whl").write_bytes(b"PK\nwheel")
+        return folder / "robo.whl"
+
+    monkeypatch.setattr(wheel, "build_wheel", build)
+    for number, change in enumerate(("", "robo_genesis/__init__.py", "README.md", ""), 1):
+        if change:
+            (root / change).write_text("changed")
+        found = wheel.stored_wheel(tmp_path, root, cache)
+        assert (found.name, found.read_bytes()) == ("robo.whl", b"PK\nwheel")
+        assert len(built) == min(number, 3)
+    (root / "robo_genesis" / "new.py").touch()
+    wheel.stored_wheel(tmp_path, root, cache)
+    assert len(built) == 4
 
 
 def package_files():

@@ -2,23 +2,14 @@
    the table in the same block; this script reads them there and holds no number of its own. */
 "use strict";
 
-(() => {
-  const SVG = "http://www.w3.org/2000/svg";
-  const EDGE = { left: 52, right: 10, top: 24, bottom: 22 };
+/* plot.js is there by then, in whichever order the page names the scripts. */
+document.addEventListener("DOMContentLoaded", () => {
+  const { add, write } = globalThis.timePlot;
   const HEIGHT = 150;
   const STRIDE = 5; // samples that one press advances where motion is not wanted
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
-  const minus = (text) => text.replace("-", "−");
   const number = (text) => Number(text.trim().replace("−", "-"));
-
-  function add(parent, name, attributes, text = "") {
-    const element = document.createElementNS(SVG, name);
-    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-    element.textContent = text;
-    parent.append(element);
-    return element;
-  }
 
   /* Case → {t, values: [q, q̇, force], target, limit, units}; the table has three columns a case. */
   function read(root, radios) {
@@ -34,54 +25,35 @@
     }));
   }
 
+  const markOf = (name) => `case-${name.toLowerCase()}`;
+
   /* One plot of all cases; returns what moves its cursor. */
-  function draw(svg, { curves, chosen, marks, title }) {
-    const width = svg.parentElement.clientWidth;
-    const levels = [...Object.values(curves).flatMap((c) => c.values), ...marks.map((m) => m.value)];
-    const [least, most] = [Math.min(...levels), Math.max(...levels)];
-    const [low, high] = [least - 0.08 * (most - least), most + 0.08 * (most - least)];
-    const { time } = curves[chosen];
-    const end = time.at(-1);
-    const x = (t) => EDGE.left + (t / end) * (width - EDGE.left - EDGE.right);
-    const y = (value) =>
-      HEIGHT - EDGE.bottom - ((value - low) / (high - low)) * (HEIGHT - EDGE.top - EDGE.bottom);
-    svg.replaceChildren();
-    svg.setAttribute("viewBox", `0 0 ${width} ${HEIGHT}`);
-    svg.setAttribute("height", HEIGHT);
-    add(svg, "text", { x: 0, y: 14, class: "title" }, title);
-    for (const share of [0, 0.25, 0.5, 0.75, 1]) {
-      const at = x(share * end);
-      add(svg, "line", { x1: at, x2: at, y1: EDGE.top, y2: HEIGHT - EDGE.bottom, class: "grid" });
-      const label = (share * end).toFixed(1) + (share === 0 ? " s" : "");
-      add(svg, "text", { x: at, y: HEIGHT - 6, class: "middle" }, label);
-    }
-    for (const value of least < 0 && most > 0 ? [least, 0, most] : [least, most]) {
-      const label = value ? minus(value.toPrecision(3)) : "0";
-      if (!value) add(svg, "line", { x1: x(0), x2: x(end), y1: y(0), y2: y(0), class: "grid" });
-      add(svg, "text", { x: EDGE.left - 6, y: y(value) + 4, class: "end" }, label);
-    }
-    for (const { value, kind } of marks) {
-      add(svg, "line", { x1: x(0), x2: x(end), y1: y(value), y2: y(value), class: kind });
-    }
-    for (const [name, curve] of Object.entries(curves)) {
-      const points = curve.values.map((v, k) => `${x(time[k]).toFixed(1)},${y(v).toFixed(1)}`);
-      const state = name === chosen ? " chosen" : "";
-      const style = `curve case-${name.toLowerCase()}${state}`;
-      add(svg, "polyline", { points: points.join(" "), class: style, "data-case": name });
-    }
-    const line = add(svg, "line", { y1: EDGE.top, y2: HEIGHT - EDGE.bottom, class: "cursor" });
-    const dot = add(svg, "circle", { r: 4.5, class: `dot case-${chosen.toLowerCase()}` });
+  function draw(svg, { curves, chosen, levels, title }) {
+    const all = [...Object.values(curves).flatMap((c) => c.values), ...levels.map((l) => l.value)];
+    const [least, most] = [Math.min(...all), Math.max(...all)];
+    const margin = 0.08 * (most - least);
+    const { times, values } = curves[chosen];
+    const { x, y, floor, top, share } = globalThis.timePlot.draw(svg, {
+      title, levels, height: HEIGHT, low: least - margin, high: most + margin, end: times.at(-1),
+      curves: Object.entries(curves).map(([name, curve]) => ({
+        ...curve, mark: markOf(name), chosen: name === chosen,
+      })),
+      ticks: (least < 0 && most > 0 ? [least, 0, most] : [least, most]).map((value) => ({
+        value, label: value ? value.toPrecision(3).replace("-", "−") : "0",
+      })),
+    });
+    const line = add(svg, "line", { y1: top, y2: floor, class: "cursor" });
+    const dot = add(svg, "circle", { r: 4.5, class: `dot ${markOf(chosen)}` });
     svg.onpointerdown = svg.onpointermove = (event) => {
       if (event.buttons !== 1) return;
-      const at = event.clientX - svg.getBoundingClientRect().left;
-      const share = (at - EDGE.left) / (width - EDGE.left - EDGE.right);
-      svg.dispatchEvent(new CustomEvent("pick", { detail: share, bubbles: true }));
+      const detail = share(event.clientX - svg.getBoundingClientRect().left);
+      svg.dispatchEvent(new CustomEvent("pick", { detail, bubbles: true }));
     };
-    return (t, sample) => {
-      line.setAttribute("x1", x(t));
-      line.setAttribute("x2", x(t));
-      dot.setAttribute("cx", x(time[sample]));
-      dot.setAttribute("cy", y(curves[chosen].values[sample]));
+    return (time, sample) => {
+      line.setAttribute("x1", x(time));
+      line.setAttribute("x2", x(time));
+      dot.setAttribute("cx", x(times[sample]));
+      dot.setAttribute("cy", y(values[sample]));
     };
   }
 
@@ -166,14 +138,14 @@
     function readout() {
       const { time, values, target, limit, units } = run();
       const k = sample();
-      const write = (value, unit, digits = 4) => `${minus(value.toFixed(digits))} ${unit}`;
+      const said = (value, unit, digits = 4) => `${write(value, digits)} ${unit}`;
       return [
-        ["time", write(time[k], "s", 2) + (k ? "" : ", before the first step")],
-        ["position", write(values[0][k], units[0])],
-        ["velocity", write(values[1][k], units[1])],
-        ["control force", write(values[2][k], units[2], 2)],
-        ["target", write(target, units[0])],
-        ["force limit", `±${limit.toFixed(0)} ${units[2]}`],
+        ["time", said(time[k], "s", 2) + (k ? "" : ", before the first step")],
+        ["position", said(values[0][k], units[0])],
+        ["velocity", said(values[1][k], units[1])],
+        ["control force", said(values[2][k], units[2], 2)],
+        ["target", said(target, units[0])],
+        ["force limit", `±${said(limit, units[2], 0)}`],
       ];
     }
 
@@ -196,24 +168,24 @@
     function nameCase() {
       const shown = root.querySelector(".shown");
       shown.textContent = chosen();
-      shown.className = `shown case-mark case-${chosen().toLowerCase()}`;
+      shown.className = `shown case-mark ${markOf(chosen())}`;
     }
 
     function drawPlots() {
       nameCase();
       const { target, limit, units } = run();
       const names = ["Position", "Velocity", "Control force"];
-      const marks = [
-        [{ value: target, kind: "target" }], [],
-        [-limit, limit].map((value) => ({ value, kind: "limit" })),
+      const levels = [
+        [{ value: target, mark: "target" }], [],
+        [-limit, limit].map((value) => ({ value, mark: "limit" })),
       ];
       cursors = svgs.map((svg, k) => {
         const curves = Object.fromEntries(Object.entries(runs).map(([name, one]) => [
-          name, { time: one.time, values: one.values[k] },
+          name, { times: one.time, values: one.values[k] },
         ]));
         const title = `${names[k]} [${units[k]}]`;
         svg.setAttribute("aria-label", `${title} of ${joint} over time; ${chosen()} is drawn bold.`);
-        return draw(svg, { curves, chosen: chosen(), marks: marks[k], title });
+        return draw(svg, { curves, chosen: chosen(), levels: levels[k], title });
       });
       showSample();
     }
@@ -303,4 +275,4 @@
   }
 
   document.querySelectorAll(".replay").forEach(start);
-})();
+});

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robo_genesis import l04
 from robo_genesis.evidence import bundle, sections
 from robo_genesis.evidence.bundle import BundleRefused, Predicate
 from robo_genesis.evidence.findings import (  # fmt: skip
@@ -22,9 +21,8 @@ from robo_genesis.evidence.findings import (  # fmt: skip
 )
 from robo_genesis.evidence.relations import relations
 from robo_genesis.evidence.traces import read_trace
-from robo_genesis.metrics import SOURCES
+from robo_genesis.lessons import find_lesson
 
-LESSONS = {l04.LESSON: l04}
 LARGEST = 2**53
 
 
@@ -60,12 +58,12 @@ def specification(lesson: str) -> Specification:
     Raises:
         BundleRefused: there is no such lesson.
     """
-    if lesson not in LESSONS:
-        raise BundleRefused("lesson", f"{lesson!r} is no lesson. Choices: {', '.join(LESSONS)}.")
-    module = LESSONS[lesson]
-    return Specification(
-        lesson, tuple(module.CASES), tuple(SOURCES), module.TOLERANCES, module.RELATIONS
-    )
+    try:
+        found = find_lesson(lesson)
+    except LookupError as error:
+        raise BundleRefused("lesson", str(error)) from error
+    spec = found.spec
+    return Specification(lesson, tuple(spec.CASES), found.metrics, spec.TOLERANCES, spec.RELATIONS)
 
 
 def compare(old: Path, new: Path, spec: Specification) -> Comparison:

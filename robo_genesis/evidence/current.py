@@ -3,14 +3,17 @@
 import json
 import re
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import lru_cache, partial
+from glob import glob
 from pathlib import Path
 from typing import Any
 
-from robo_genesis import l04, l04_studies, pages, project, runtime
+from robo_genesis import project, runtime
+from robo_genesis.derived import derived
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.record import computing_modules
 from robo_genesis.evidence.strict_json import BundleRefused, shown
+from robo_genesis.lessons import find_page
+from robo_genesis.publish import PUBLISHED
 from robo_genesis.scene_config import SEED
 
 
@@ -26,6 +29,10 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
     Raises:
         BundleRefused: `lesson`, the book has no such page.
     """
+    try:
+        measuring = find_page(lesson, page)
+    except LookupError as error:
+        raise BundleRefused("lesson", f"manifest.json: {error}") from error
     return {
         "schema_version": bundle.SCHEMA_VERSION,
         "lesson": lesson,
@@ -36,20 +43,15 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
             "precision": runtime.PRECISION,
         },
         "seed": SEED,
-        "parameters": json.loads(json.dumps(parameters(page))),
+        "parameters": json.loads(json.dumps(measuring.parameters())),
         "source": {
             "page": page_digest(lesson, page, book),
             "modules": {
                 name: bundle.sha256(root / "robo_genesis" / f"{name}.py")
-                for name in computing_modules(page)
+                for name in measuring.modules
             },
         },
     }
-
-
-def parameters(page: str) -> dict[str, Any]:
-    """Return the configured inputs of a page: the lesson's, and its studies' where it runs them."""
-    return l04.parameters() | (l04_studies.parameters() if page == l04_studies.PAGE else {})
 
 
 def locked_version(package: str, root: Path) -> str:
@@ -74,7 +76,7 @@ def page_digest(lesson: str, page: str, book: Path) -> str:
     Raises:
         BundleRefused: `lesson`, the book has no such page.
     """
-    files = sorted(book.glob("lessons/**/*.md"))
+    files = _page_files(book)
     stamps = tuple((str(path), path.stat().st_mtime_ns, path.stat().st_size) for path in files)
     digests = _page_digests(book, stamps)
     if (lesson, page) not in digests:
@@ -86,14 +88,33 @@ def page_digest(lesson: str, page: str, book: Path) -> str:
     return digests[lesson, page]
 
 
+def _page_files(book: Path) -> list[Path]:
+    """Return the table of contents and every file that may be a page, in linked folders, too."""
+    names = glob("**/*.md", root_dir=book, recursive=True)  # unlike rglob, it follows links
+    pages = sorted(name for name in names if Path(name).parts[0] != PUBLISHED)
+    return [*book.glob("_toc.yml"), *(book / name for name in pages)]
+
+
 @lru_cache(maxsize=8)
 def _page_digests(book: Path, stamps: tuple[Any, ...]) -> dict[tuple[str, str], str]:
     """Read the pages once for all bundles; `stamps` change with them."""
-    return {
-        (str(found.lesson), str(found.page)): pages.code_digest(found)
-        for found in pages.find_pages(book)
-        if found.declares_bundle
-    }
+    files = _page_files(book)
+    names = (path.relative_to(book).as_posix().encode() for path in files)
+    contents = (path.read_bytes() for path in [*files, Path(__file__).parents[1] / "pages.py"])
+    listed = derived("page-code", [*names, *contents], partial(_read_digests, book))
+    return {(lesson, page): digest for lesson, page, digest in json.loads(listed)}
+
+
+def _read_digests(book: Path) -> bytes:
+    """Return lesson, page and digest of each page that declares a bundle, as JSON.
+
+    The reader of pages brings MyST-NB and Jupyter's packages along, which take longer to load than
+    all of a verification, so it is loaded here alone.
+    """
+    from robo_genesis import pages
+
+    found = [page for page in pages.find_pages(book) if page.declares_bundle]
+    return json.dumps([(p.lesson, p.page, pages.code_digest(p)) for p in found]).encode()
 
 
 def check_current(manifest: bundle.Manifest, root: Path, book: Path) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from robo_genesis.evidence.bundle import Arrays, Manifest, Metric
+from robo_genesis.lessons import Relation
 from robo_genesis.metrics import NOT_OBSERVED
 from robo_genesis.trace import Trace
 
@@ -11,8 +12,6 @@ EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
     "equal", "shown", "within tolerance", "inconclusive", "differs", "not comparable",
 )  # fmt: skip
 """States from best to worst; what is only shown decides nothing."""
-
-Relation = tuple[tuple[str, str], str, str, float]
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,27 +19,13 @@ import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from robo_genesis import l04_studies, project, runtime
+from robo_genesis import project, runtime
 from robo_genesis.checks import Check
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import write_traces
+from robo_genesis.lessons import find_page
 from robo_genesis.robot_model import JointMap
 from robo_genesis.trace import Trace
-
-COMPUTING_MODULES = (
-    "checks", "joint_control", "metrics", "robot_model", "runtime", "scene_config", "trace",
-)  # fmt: skip
-"""Modules whose source decides what is measured; a change in one makes evidence stale. A lesson's
-module is none of them: what it decides is in its `parameters()`, which the key covers."""
-
-STUDY_MODULES = ("dynamics", "second_engine", "studies", "study_checks", "theory")
-"""The same for the page that runs a lesson's studies, and for no other."""
-
-
-def computing_modules(page: str) -> tuple[str, ...]:
-    """Return the modules that decide what a page measures."""
-    return COMPUTING_MODULES + (STUDY_MODULES if page == l04_studies.PAGE else ())
-
 
 PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -177,17 +163,17 @@ class Recorder:
             "checks": [asdict(check) for check in measured.checks],
             "warnings": self.engine.log.warnings,
             "git": git_record(),
-            "source": source_record(self.page),
+            "source": source_record(self.lesson, self.page),
         }
         return predicate | {"evidence_key": bundle.evidence_key(predicate)}
 
 
-def source_record(page: str) -> dict[str, Any]:
+def source_record(lesson: str, page: str) -> dict[str, Any]:
     """Digest the code that computes: the page's code cells (where known) and the modules."""
     return {
         "page": os.environ.get("ROBO_GENESIS_PAGE_SHA256"),
         "modules": {
-            name: bundle.sha256(PACKAGE / f"{name}.py") for name in computing_modules(page)
+            name: bundle.sha256(PACKAGE / f"{name}.py") for name in find_page(lesson, page).modules
         },
     }
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from robo_genesis import project
 from robo_genesis.evidence.bundle import BackendRecord, Manifest, Predicate, evidence_key
 from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect
+from robo_genesis.lessons import LESSONS
 from robo_genesis.runtime import Renderer
 
 MANIFEST = "manifest.json"
@@ -30,7 +31,9 @@ LEVELS = ("DEBUG", "INFO", "WARNING", "ERROR", "CRITICAL")
 SOFTWARE_LINE = "Software rendering context detected"
 
 
-def check_identity(manifest: Manifest, run_id: str | None, lesson: str, page: str | None) -> None:
+def check_identity(
+    manifest: Manifest, run_id: str | None, lesson: str | None, page: str | None
+) -> None:
     """Require lesson, page and run where they are known, times in order, and a key of its own.
 
     Raises:
@@ -40,7 +43,10 @@ def check_identity(manifest: Manifest, run_id: str | None, lesson: str, page: st
     if run_id is not None:
         expect("run-id", MANIFEST, "run_id", predicate.run_id, run_id, "Execute the page again.")
     mend = "File it under its own lesson."
-    expect("lesson", MANIFEST, "lesson", predicate.lesson, lesson, mend)
+    if lesson is not None:
+        expect("lesson", MANIFEST, "lesson", predicate.lesson, lesson, mend)
+    elif predicate.lesson not in LESSONS:
+        expect("lesson", MANIFEST, "lesson", predicate.lesson, " or ".join(LESSONS), mend)
     if page is not None:
         expect("lesson", MANIFEST, "page", predicate.page, page, mend)
     try:

@@ -3,8 +3,11 @@
 from pathlib import Path
 
 from robo_genesis import l04, project
-from robo_genesis.evidence import bundle, current, files, recompute, rules
+from robo_genesis.evidence import bundle, current, files, recompute, rules, step_runs
 from robo_genesis.evidence.bundle import BundleRefused, Manifest
+
+JUDGES = {l04.LESSON: step_runs.judge}
+"""By lesson, what computes a bundle's metrics and checks again."""
 
 __all__ = ["BundleRefused", "verify_bundle"]
 
@@ -39,7 +42,7 @@ def verify_bundle(
     """
     present = files.scan(folder)
     manifest = bundle.read_manifest(folder)
-    rules.check_identity(manifest, run_id, lesson or l04.LESSON, page)
+    rules.check_identity(manifest, run_id, lesson, page)
     files.check_files(folder, present, manifest)
     rules.check_backend(folder, manifest)
     rules.check_environment(manifest)
@@ -47,8 +50,7 @@ def verify_bundle(
     rules.check_log(folder, manifest)
     rules.check_engine_files(manifest)
     current.check_current(manifest, root, book)
-    run = recompute.read_run(folder, manifest)
-    studied = recompute.read_studies(folder, manifest)
-    recompute.check_metrics(folder, run, studied)
-    recompute.check_outcomes(manifest, run, studied)
+    judged = JUDGES[manifest.predicate.lesson](folder, manifest)
+    recompute.check_metrics(folder, judged.metrics)
+    recompute.check_outcomes(manifest, judged.outcomes)
     return manifest

@@ -15,15 +15,14 @@ from robo_genesis import runtime
 from robo_genesis.evidence import bundle, record
 from robo_genesis.evidence.bundle import read_manifest, read_metrics
 from robo_genesis.evidence.record import (
-    COMPUTING_MODULES,
     PACKAGE,
-    STUDY_MODULES,
     Recorder,
     files_match_wheel,
     git_record,
     host_record,
     source_record,
 )
+from robo_genesis.lessons import STEP_MODULES, STUDY_MODULES
 
 
 @pytest.fixture
@@ -204,10 +203,10 @@ def test_what_an_earlier_failure_left_does_not_enter(recorder, measured):
 
 @pytest.mark.parametrize(
     ("page", "names"),
-    [("lab", COMPUTING_MODULES), ("lecture", (*COMPUTING_MODULES, *STUDY_MODULES))],
+    [("lab", STEP_MODULES), ("lecture", (*STEP_MODULES, *STUDY_MODULES))],
 )
 def test_the_source_record_digests_each_computing_module_of_its_page(page, names):
-    assert source_record(page)["modules"] == {
+    assert source_record("l04", page)["modules"] == {
         name: hashlib.sha256((PACKAGE / f"{name}.py").read_bytes()).hexdigest() for name in names
     }
 

@@ -23,13 +23,13 @@ from robo_genesis import (
     sphinx_panel,
     sphinx_provenance,
 )
-from robo_genesis.compared import COMPARED
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.findings import number
 from robo_genesis.evidence.status import Status, recorded_status
 from robo_genesis.evidence.traces import read_trace
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.ledger import Run
+from robo_genesis.lessons import LESSONS
 from robo_genesis.metrics import format_value
 from robo_genesis.robot_shape import Part
 from robo_genesis.tables import METRIC_LABELS
@@ -54,15 +54,15 @@ def test_backend_facts_are_the_manifest_s(verified):
 
 
 def test_the_figure_changes_with_the_bundle_s_arrays(folder, verified, monkeypatch):
-    picture = sphinx_panel.response(folder, COMPARED["l04"], "cpu")
+    picture = sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu")
     assert picture.content.startswith(b"<?xml")
     assert "joint4 over time on cpu" in picture.alt
-    assert sphinx_panel.response(folder, COMPARED["l04"], "cpu") == picture
+    assert sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu") == picture
     shown = {"G1": "G2", "G2": "G1", "G3": "G3"}
     monkeypatch.setattr(
         sphinx_panel, "read_trace", lambda f, a, case: read_trace(f, a, shown[case])
     )
-    assert sphinx_panel.response(folder, COMPARED["l04"], "cpu") != picture
+    assert sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu") != picture
 
 
 def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder, verified):

@@ -4,6 +4,7 @@ import importlib.util
 import shutil
 
 import pytest
+from loading import ENGINE, JUPYTER, run_watched
 from spoilers import on, part, seal
 
 from robo_genesis import l04
@@ -86,6 +87,19 @@ def test_a_folder_that_is_not_there_is_status_1(command, tmp_path, monkeypatch, 
     monkeypatch.setenv("BUNDLE", str(tmp_path / "cpu"))
     assert command.main() == 1
     assert "missing      There is no such folder." in capsys.readouterr().out
+
+
+def test_neither_verification_nor_comparison_loads_the_engine_or_jupyter(folder):
+    for _ in range(2):  # the first reads the pages, which takes Jupyter's packages
+        said, loaded = run_watched("verify.py", BUNDLE=str(folder))
+    assert "verified" in said
+    assert "numpy" in loaded
+    assert not loaded & {*ENGINE, *JUPYTER}
+    said, loaded = run_watched(
+        "compare.py", "--report", str(folder.parent), str(folder), str(folder)
+    )
+    assert "\nEqual. Rows: " in said
+    assert not loaded & {*ENGINE, *JUPYTER}
 
 
 def test_a_broken_book_is_named(command, recorded, monkeypatch, capsys):

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 from playwright.sync_api import Page
-from watching import page_names
+from watching import drawn, page_names
 
 from robo_genesis import npm
 
@@ -38,8 +38,14 @@ RUN_AXE = """async rules => {
       rule => rule.nodes.map(node => `${rule.id}: ${node.target.join(" ")}`)),
   };
 }"""
-# The theme and our script look again at scrolling boxes a moment after sizes have changed.
-SETTLED = """() => new Promise(done => requestAnimationFrame(() => setTimeout(done, 450)))"""
+THEME_WAITS = 300
+"""How long after a change the theme looks again which boxes scroll [ms of the page's clock]."""
+
+
+def settle(page: Page) -> None:
+    """Let our script and then the theme mark the boxes that scroll, as they do after a change."""
+    drawn(page)
+    page.clock.run_for(THEME_WAITS)
 
 
 def put_into(page: Page, state: str) -> None:
@@ -47,7 +53,7 @@ def put_into(page: Page, state: str) -> None:
     page.set_viewport_size({"width": width, "height": 900})
     page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
     page.evaluate(f"document.documentElement.style.fontSize = '{text}%'")
-    page.evaluate(SETTLED)
+    settle(page)
 
 
 def violations(page: Page) -> list[str]:
@@ -67,6 +73,7 @@ def names(site) -> list[str]:
 @pytest.fixture
 def page(browser) -> Iterator[Page]:
     page = browser.new_page()
+    page.clock.install()  # it runs as ever, and can be put forward
     yield page
     page.close()
 
@@ -82,7 +89,7 @@ def test_axe_finds_nothing_on_any_page_in_any_state(page, address, axe, names):
             wide.append(f"{name}, {state}, {folds}")
 
     for name in names:
-        page.goto(f"{address}/{name}", wait_until="networkidle")
+        page.goto(f"{address}/{name}")
         page.add_script_tag(path=axe)
         for state in STATES:
             look(name, state, "folds closed")
@@ -159,7 +166,7 @@ def test_the_focus_is_seen_wherever_it_goes(page, address, site, width):
     page.emulate_media(reduced_motion="reduce")
     for name in page_names(site):
         page.goto(f"{address}/{name}")
-        page.evaluate(SETTLED)
+        settle(page)
         stops = tab_through(page)
         assert "Skip to main content" in stops[0]["what"]
         assert len(stops) > 4
@@ -198,7 +205,7 @@ def test_every_box_that_scrolls_takes_the_focus_and_has_a_name(page, address, si
     for name in page_names(site):
         page.goto(f"{address}/{name}")
         page.evaluate("for (const fold of document.querySelectorAll('details')) fold.open = true")
-        page.evaluate(SETTLED)
+        settle(page)
         boxes = page.evaluate(SCROLLING)
         assert [box for box in boxes if not (box["reached"] and box["named"])] == [], name
         kinds |= {box["what"].split()[0] for box in boxes}
@@ -208,7 +215,7 @@ def test_every_box_that_scrolls_takes_the_focus_and_has_a_name(page, address, si
 def test_a_box_scrolls_by_keyboard(page, address):
     page.set_viewport_size({"width": 320, "height": 700})
     page.goto(f"{address}/{LECTURE}")
-    page.evaluate(SETTLED)
+    settle(page)
     box = page.locator("article figure[tabindex='0']").first
     box.focus()
     page.keyboard.press("ArrowRight")

@@ -141,7 +141,7 @@ def test_text_and_curves_stand_out_from_the_ground(browser, address, scheme):
       };
       return {
         output: of("output", "color"), text: of("svg text", "fill"),
-        curve: of(".measured-run", "stroke"), limit: of(".limit", "stroke"),
+        curve: of(".curve", "stroke"), limit: of(".limit", "stroke"),
       };
     }""")
     assert min(contrasts["output"], contrasts["text"]) >= 4.5, contrasts

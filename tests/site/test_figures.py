@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt, numpy as np
 from pathlib import Path
 from PIL import Image
 from robo_genesis import engines_compared, l04, l04_studies, plots, studies, study_plots
-from robo_genesis.evidence import bundle, recompute
+from robo_genesis.evidence import bundle, step_runs
 from robo_genesis.evidence.traces import read_trace
 from robo_genesis.robot_model import JointMap
 from robo_genesis.scene_config import JOINT_NAMES
@@ -31,7 +31,7 @@ camera = True
 frames = {{n: np.array(Image.open(folder / "frames" / f"{{n}}.png")) for n in ("initial", "final")}}
 joints = JointMap(JOINT_NAMES, l04.EXPECTED_TYPES, *[np.arange(9)] * 4)
 entry = joints.entry(l04.STEPPED_JOINT)
-found = recompute.read_studies(folder, bundle.read_manifest(folder))
+found = step_runs.read_studies(folder, bundle.read_manifest(folder))
 """
 
 STUDIED = {"fig-l04-theory", "fig-l04-step-size", "fig-l04-convergence"}

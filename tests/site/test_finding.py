@@ -121,7 +121,7 @@ def places(site) -> set[str]:
 
     Recorded runs come and go with the machines that made them, so what is in their panels is none.
     """
-    names = [LECTURE, LAB, "glossary", "index"]
+    names = [LECTURE, LAB, "glossary", "index", "performance/costs"]
     return {
         f"{name}#{tag['id']}"
         for name in names

@@ -82,6 +82,20 @@ def test_each_case_has_its_line_in_the_tables(page):
     assert all(width > 10 for *_, width in marks)
 
 
+def test_a_case_s_name_in_running_text_has_its_colour(page, theme):
+    names = page.eval_on_selector_all(
+        "article p .case-name",
+        """names => names.map(name => {
+          const { color, fontWeight } = getComputedStyle(name);
+          return [name.textContent, color, fontWeight];
+        })""",
+    )
+    assert {name for name, *_ in names} == {*CASES} - {"baseline"}
+    for name, colour, weight in names:
+        assert hexadecimal(colour) == getattr(MARKS[name], theme), name
+        assert weight == "600"
+
+
 def test_in_the_dark_plots_lie_on_a_soft_card_and_keep_their_colours(page, theme):
     plot = page.locator("article figure img[src$='.svg']").nth(1)
     plot.scroll_into_view_if_needed()
@@ -93,22 +107,24 @@ def test_in_the_dark_plots_lie_on_a_soft_card_and_keep_their_colours(page, theme
 def test_a_run_of_a_case_has_that_case_s_line_in_the_explorer(page, theme):
     output = page.locator(".explorer output").inner_text()
     name = re.search(r"the case (G\d)", output).group(1)
-    line = ".explorer svg .measured-run"
+    line = ".explorer svg .curve"
     assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS[name], theme)
     dashes = [float(n) for n in re.findall(r"[\d.]+", style(page, line, "strokeDasharray"))]
     assert dashes == [2 * length for length in MARKS[name].dashes]
     page.locator("#explorer-kp").press("ArrowLeft")  # between the cases: no case's line
-    assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS["baseline"], theme)
+    assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS["further"], theme)
 
 
 def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
     lines = page.eval_on_selector_all(
-        ".replay[data-name=replay-l04-lecture-cpu] svg :is(.curve, .target, .limit)",
+        ".replay[data-name=replay-l04-lecture-cpu] svg :is(.curve, .level)",
         """lines => lines.map(line => {
           const { stroke, strokeDasharray } = getComputedStyle(line);
-          return [line.dataset.case ?? line.getAttribute("class"), stroke, strokeDasharray];
+          return [line.classList.item(1), stroke, strokeDasharray];
         })""",
     )
+    names = {css_name(name): name for name in MARKS}
+    lines = [(names[line], *drawn) for line, *drawn in lines]
     for name, stroke, dashes in lines:
         assert hexadecimal(stroke) == getattr(MARKS[name], theme), name
         drawn = [float(length) for length in re.findall(r"[\d.]+", dashes)]

@@ -57,8 +57,8 @@ def test_a_third_party_would_be_noticed(browser, address):
         page = context.new_page()
         problems = watch(page)
         page.goto(f"{address}/index.html")
-        page.evaluate("new Image().src = 'https://example.org/pixel.png'")
-        page.wait_for_timeout(200)
+        with page.expect_event("requestfailed"):
+            page.evaluate("new Image().src = 'https://example.org/pixel.png'")
     assert asked == ["https://example.org/pixel.png"]
     assert "failed: https://example.org/pixel.png" in problems
     context.close()

@@ -14,10 +14,10 @@ from bs4 import BeautifulSoup
 from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
 from robo_genesis import npm, sphinx_replay
-from robo_genesis.compared import COMPARED
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.l04 import STEPPED_JOINT
+from robo_genesis.lessons import LESSONS
 from robo_genesis.pdf import chromium
 from robo_genesis.replay_model import rotations
 
@@ -74,7 +74,7 @@ def record(site):
     """Traces by case, joint map and link names, of the accepted bundle of the lecture."""
     folder = site.parent / "pages" / "l04" / "lecture" / "cpu"
     arrays = bundle.read_arrays(folder)
-    traces = {case: read_trace(folder, arrays, case) for case in COMPARED["l04"].cases}
+    traces = {case: read_trace(folder, arrays, case) for case in LESSONS["l04"].compared.cases}
     return traces, read_joints(arrays), arrays.coords["link"]
 
 
@@ -209,8 +209,8 @@ def test_arrow_keys_pick_a_case_and_its_curve_is_bold(page):
     page.locator(f"{REPLAY} input[value=G1]").focus()
     page.keyboard.press("ArrowDown")
     assert page.locator(f"{REPLAY} .chosen").evaluate_all(
-        "all => all.map(e => e.dataset.case)"
-    ) == (["G2"] * 3)
+        "all => all.map(e => e.classList.item(1))"
+    ) == (["case-g2"] * 3)
     names = page.locator(f"{REPLAY} svg").evaluate_all("all => all.map(e => e.ariaLabel)")
     assert all("G2 is drawn bold" in name for name in names)
 
@@ -229,7 +229,7 @@ def test_the_curve_is_drawn_to_scale(page, record):
         page.locator(f"{REPLAY} svg")
         .nth(2)
         .evaluate("""svg => ({
-        y: svg.querySelector("[data-case=G2]").getAttribute("points").split(" ")
+        y: svg.querySelector(".case-g2").getAttribute("points").split(" ")
           .map(pair => Number(pair.split(",")[1])),
         limits: [...svg.querySelectorAll("line.limit")].map(l => Number(l.getAttribute("y1")))
     })""")
@@ -243,7 +243,8 @@ def test_the_curve_is_drawn_to_scale(page, record):
 
 def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
     choose(page, "G2", 0)
-    page.locator(f"{REPLAY} select").select_option("1")
+    speed = page.locator(f"{REPLAY} select")
+    speed.select_option("0.1")  # slow enough to be paused before the end
     play = page.locator(f"{REPLAY} .play")
     play.focus()
     page.keyboard.press("Space")
@@ -252,9 +253,10 @@ def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
     page.keyboard.press("Space")
     paused = page.locator(f"{REPLAY} input[type=range]").input_value()
     assert play.inner_text() == "Play"
-    page.wait_for_timeout(200)
+    page.wait_for_timeout(200)  # there is nothing to wait for: it must not play on
     assert page.locator(f"{REPLAY} input[type=range]").input_value() == paused
-    page.keyboard.press("Space")
+    speed.select_option("1")
+    play.press("Space")
     page.wait_for_function(f"document.querySelector('{REPLAY} input[type=range]').value === '120'")
     assert play.inner_text() == "Play"
 
@@ -278,7 +280,7 @@ def test_play_after_a_pause_in_one_frame_is_still_one_loop(page):
 
 def test_nothing_plays_by_itself(page):
     before = readout(page)
-    page.wait_for_timeout(500)
+    page.wait_for_timeout(500)  # nothing to wait for: nothing may move
     assert readout(page) == before
 
 
@@ -288,7 +290,7 @@ def test_reduced_motion_goes_by_steps(browser, address):
     assert play.inner_text() == "Next 0.05 s"
     play.click()
     assert readout(page)["time"] == "0.05 s"
-    page.wait_for_timeout(300)
+    page.wait_for_timeout(300)  # nothing to wait for: it must stand still
     assert readout(page)["time"] == "0.05 s"
     assert page.problems == []
     page.close()
@@ -345,7 +347,7 @@ def test_the_case_is_named_beside_the_robot(page):
     assert not name.is_visible()
     show_robot(page)
     lines = {}
-    for case in COMPARED["l04"].cases:
+    for case in LESSONS["l04"].compared.cases:
         choose(page, case, 5)
         assert name.inner_text() == case
         line, picked = (
@@ -354,7 +356,7 @@ def test_the_case_is_named_beside_the_robot(page):
         )
         assert line == picked
         lines[line] = case
-    assert list(lines.values()) == list(COMPARED["l04"].cases)
+    assert list(lines.values()) == list(LESSONS["l04"].compared.cases)
 
 
 def test_a_browser_without_3d_says_so_and_loads_nothing(playwright, address):

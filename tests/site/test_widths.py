@@ -1,6 +1,7 @@
 """From phone to 4K only boxes of their own scroll sideways, and lines stay readable."""
 
 import pytest
+from watching import drawn
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -47,10 +48,11 @@ LOOK = """() => {
 @pytest.mark.parametrize("name", PAGES)
 def test_no_page_scrolls_sideways_at_any_width(browser, address, name):
     page = browser.new_page()
-    page.goto(f"{address}/{name}.html", wait_until="networkidle")
+    page.goto(f"{address}/{name}.html")
     page.evaluate(OPEN_FOLDS)
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 900})
+        drawn(page)
         found = page.evaluate(LOOK)
         assert found["document"] <= found["width"] <= width, (width, found)
         assert found["out"] == [], width
@@ -60,7 +62,7 @@ def test_no_page_scrolls_sideways_at_any_width(browser, address, name):
 
 def test_what_sticks_out_or_runs_long_would_be_found(browser, address):
     page = browser.new_page(viewport={"width": 1920, "height": 900})
-    page.goto(f"{address}/index.html", wait_until="networkidle")
+    page.goto(f"{address}/index.html")
     page.evaluate("""() => {
       const box = document.createElement("div");
       box.id = "box";
@@ -78,7 +80,7 @@ def test_what_sticks_out_or_runs_long_would_be_found(browser, address):
 @pytest.mark.parametrize("width", [320, 390])
 def test_wide_tables_code_and_plots_scroll_in_a_box_on_a_phone(browser, address, width):
     page = browser.new_page(viewport={"width": width, "height": 900})
-    page.goto(f"{address}/lessons/l04-joint-control/lecture.html", wait_until="networkidle")
+    page.goto(f"{address}/lessons/l04-joint-control/lecture.html")
     count = """(inside) => [...document.querySelectorAll(`article ${inside}`)].filter((node) => {
       for (let up = node; up; up = up.parentElement) {
         if (up.scrollWidth > up.clientWidth + 1 && getComputedStyle(up).overflowX === "auto") {

@@ -26,6 +26,14 @@ def watch(page: Page) -> list[str]:
     return found
 
 
+def drawn(page: Page) -> None:
+    """Wait until a frame has been laid out, and what watches sizes has been told of it."""
+    page.evaluate("""() => new Promise(done => {
+      const observer = new ResizeObserver(() => { observer.disconnect(); done(); });
+      observer.observe(document.body);
+    })""")
+
+
 @contextmanager
 def only_from(context: BrowserContext, base: str) -> Iterator[list[str]]:
     """Block every address that does not begin with `base`, and collect those asked for."""

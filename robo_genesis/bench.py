@@ -1,0 +1,173 @@
+"""What commands cost, held against bare ones: samples in turn, medians, a table and a record."""
+
+import os
+import platform
+import statistics
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from robo_genesis import project
+
+Say = Callable[[str], None]
+
+
+class BenchError(Exception):
+    """A command failed or did not do what is measured; the message says which and why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """One run of a command: elapsed and processor seconds; `cpu` None where a run is a part."""
+
+    wall: float
+    cpu: float | None = None
+
+
+Pair = tuple[Sample, Sample]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One line of the table: what is measured, against what, and the ratio it must not exceed.
+
+    `pairs` takes a number of runs, makes ready what they need, which is not measured, and yields
+    one sample of the work and one of its opponent for each. `runs` is their usual number.
+    """
+
+    name: str
+    work: str
+    against: str
+    limit: float
+    pairs: Callable[[int], Iterable[Pair]]
+    runs: int = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """The samples of both sides of a row, taken in turn."""
+
+    name: str
+    work: str
+    against: str
+    limit: float
+    samples: tuple[Sample, ...]
+    opposite: tuple[Sample, ...]
+
+    @property
+    def medians(self) -> tuple[float, float]:
+        """Elapsed seconds of work and opponent."""
+        work, against = (
+            statistics.median(sample.wall for sample in side)
+            for side in (self.samples, self.opposite)
+        )
+        return work, against
+
+    @property
+    def ratio(self) -> float:
+        """Median of the work over median of its opponent."""
+        work, against = self.medians
+        return work / against
+
+    @property
+    def cpu_ratio(self) -> float | None:
+        """The same of processor seconds, which neighbours on the machine disturb less."""
+        sides = ([s.cpu for s in side if s.cpu] for side in (self.samples, self.opposite))
+        work, against = (statistics.median(side) if side else None for side in sides)
+        return work / against if work and against else None
+
+    @property
+    def met(self) -> bool:
+        """Whether the ratio keeps to the limit."""
+        return self.ratio <= self.limit
+
+
+def in_turn(work: Callable[[], Sample], against: Callable[[], Sample], runs: int) -> Iterator[Pair]:
+    """Yield a sample of each side, in turn, so that a slow minute of the machine hits both."""
+    for _ in range(runs):
+        yield work(), against()
+
+
+def take(row: Row, runs: int | None, say: Say) -> Result:
+    """Measure a row.
+
+    Args:
+        row: what to measure.
+        runs: of each side, None for the row's usual number.
+        say: told of each pair.
+
+    Raises:
+        BenchError: a command failed.
+    """
+    runs, pairs = runs or row.runs, list[Pair]()
+    for pair in row.pairs(runs):
+        pairs.append(pair)
+        one, other = (sample.wall for sample in pair)
+        say(f"{row.name}  {len(pairs)} of {runs}: {one:.3g} s against {other:.3g} s")
+    samples, opposite = zip(*pairs, strict=True)
+    return Result(row.name, row.work, row.against, row.limit, samples, opposite)
+
+
+def table(results: Sequence[Result]) -> str:
+    """Return the results as a table of text; least and most stand behind each median."""
+    seconds = "s (least-most)"
+    head = ("work", seconds, "against", seconds, "ratio", "of CPU", "limit", "", "runs")
+    lines = [head, *map(_line, results)]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    aligned = [
+        "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
+        for line in lines
+    ]
+    aligned.insert(1, "-" * max(map(len, aligned)))
+    return "\n".join(aligned)
+
+
+def _line(result: Result) -> tuple[str, ...]:
+    work, against = (_spread(side) for side in (result.samples, result.opposite))
+    cpu = f"{result.cpu_ratio:.2f}" if result.cpu_ratio else "-"
+    met = "met" if result.met else "NOT MET"
+    figures = (f"{result.ratio:.2f}", cpu, f"{result.limit:g}", met, str(len(result.samples)))
+    return (result.work, work, result.against, against, *figures)
+
+
+def _spread(side: Sequence[Sample]) -> str:
+    walls = [sample.wall for sample in side]
+    return f"{statistics.median(walls):.3g} ({min(walls):.3g}-{max(walls):.3g})"
+
+
+def machine(root: Path = project.ROOT) -> dict[str, Any]:
+    """Return what the figures depend on: machine, versions, date and how busy it is now."""
+    return {
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "engine": project.engine_pin(root),
+        "lock": project.lock_digest(root),
+        "python": platform.python_version(),
+        "cores": os.cpu_count(),
+        "machine": platform.machine(),
+        "load_average": [round(load, 2) for load in os.getloadavg()],
+    }
+
+
+def record(results: Sequence[Result], facts: dict[str, Any]) -> dict[str, Any]:
+    """Return results and facts as JSON values, the figures that follow from samples included."""
+    return {**facts, "rows": [_recorded(result) for result in results]}
+
+
+def _recorded(result: Result) -> dict[str, Any]:
+    names = ("medians", "ratio", "cpu_ratio", "met")
+    return asdict(result) | {name: getattr(result, name) for name in names}
+
+
+def chosen(names: str, known: Sequence[str]) -> list[str]:
+    """Return the names that a list asks for, separated by spaces or commas; all if it is empty.
+
+    Raises:
+        BenchError: one of them is not known; the message lists those that are.
+    """
+    asked = names.replace(",", " ").split()
+    for name in asked:
+        if name not in known:
+            raise BenchError(f"ROWS names {name!r}. Choices: {', '.join(known)}.")
+    return asked or list(known)

@@ -1,0 +1,125 @@
+"""The lessons of the course: what each one declares, and which of its pages measure."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from robo_genesis import l04, l04_studies
+from robo_genesis.metrics import SOURCES
+
+Relation = tuple[tuple[str, str], str, str, float]
+"""A claimed ordering: (first case, second case), metric, order, margin."""
+
+
+class Specification(Protocol):
+    """What the module of a lesson declares; it is data, and says more of its own experiment."""
+
+    @property
+    def MINIMUM_HARDWARE(self) -> str:  # noqa: N802 - a module's constant
+        """The backend whose evidence a release requires."""
+
+    @property
+    def CASES(self) -> Mapping[str, Any]:  # noqa: N802
+        """The runs of its lab by name."""
+
+    @property
+    def RESOLUTION(self) -> Mapping[str, float]:  # noqa: N802
+        """By unit, the difference below which two measured values are called equal."""
+
+    @property
+    def TOLERANCES(self) -> Mapping[str, tuple[float, float]]:  # noqa: N802
+        """By unit or metric, (atol, rtol) between engine versions or backends."""
+
+    @property
+    def RELATIONS(self) -> tuple[Relation, ...]:  # noqa: N802
+        """The orderings that it claims."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuringPage:
+    """A page that runs the engine and leaves a bundle.
+
+    `parameters` returns every configured input as JSON values; `modules` are those whose source
+    decides what is measured: a change in one makes evidence stale. A lesson's own module is none of
+    them: what it decides is in the parameters.
+    """
+
+    parameters: Callable[[], dict[str, Any]]
+    modules: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """Cases that are drawn over each other, and the joint that they move."""
+
+    cases: tuple[str, ...]
+    joint: str
+
+    @property
+    def names(self) -> str:
+        """The cases as words: `G1, G2 and G3`."""
+        *others, last = self.cases
+        return f"{', '.join(others)} and {last}"
+
+
+@dataclass(frozen=True, slots=True)
+class Lesson:
+    """One lesson: its module, the names of its cases' metrics, its pages that measure.
+
+    Without `compared`, its recorded runs are shown by their facts and tables alone.
+    """
+
+    spec: Specification
+    metrics: tuple[str, ...]
+    pages: Mapping[str, MeasuringPage]
+    compared: Compared | None = None
+
+
+STEP_MODULES = (
+    "checks", "joint_control", "metrics", "robot_model", "runtime", "scene_config", "trace",
+)  # fmt: skip
+STUDY_MODULES = ("dynamics", "second_engine", "studies", "study_checks", "theory")
+
+LESSONS = {
+    l04.LESSON: Lesson(
+        spec=l04,
+        metrics=tuple(SOURCES),
+        pages={
+            "lab": MeasuringPage(l04.parameters, STEP_MODULES),
+            l04_studies.PAGE: MeasuringPage(
+                lambda: l04.parameters() | l04_studies.parameters(), STEP_MODULES + STUDY_MODULES
+            ),
+        },
+        compared=Compared(tuple(l04_studies.COMPARED), l04.STEPPED_JOINT),
+    )
+}
+"""By name, in the order in which a reader meets them."""
+
+
+def find_lesson(name: str) -> Lesson:
+    """Return a lesson by its name.
+
+    Raises:
+        LookupError: there is none; the message lists those there are.
+    """
+    if name not in LESSONS:
+        raise LookupError(f"{name!r} is no lesson. Choices: {', '.join(LESSONS)}.")
+    return LESSONS[name]
+
+
+def compared_cases(lesson: str) -> Compared | None:
+    """Return what a lesson's pictures hold against each other, None where that is nothing."""
+    return LESSONS[lesson].compared if lesson in LESSONS else None
+
+
+def find_page(lesson: str, page: str) -> MeasuringPage:
+    """Return a page that measures.
+
+    Raises:
+        LookupError: the lesson has none of that name; the message lists those there are.
+    """
+    pages = find_lesson(lesson).pages
+    if page not in pages:
+        known = ", ".join(f"{lesson}/{name}" for name in pages)
+        raise LookupError(f"{lesson}/{page} is no page that measures. Choices: {known}.")
+    return pages[page]

@@ -1,0 +1,216 @@
+"""The workflow for GitHub: its schema, and that each step asks for something that is there."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from robo_genesis.pages import find_pages
+from robo_genesis.project import BOOK, ROOT, engine_cache_folder
+
+WORKFLOW = ROOT / ".github" / "workflows" / "book.yml"
+SETUP = ROOT / ".github" / "actions" / "setup" / "action.yml"
+MAKE = re.compile(r"\bmake ([a-z.][\w./-]*)")
+INTERPOLATED = re.compile(r"\$\{\{")
+
+
+@pytest.fixture(scope="module")
+def workflow() -> dict[str, Any]:
+    # YAML 1.1 reads `on` as true; the base loader leaves every scalar as text.
+    return yaml.load(WORKFLOW.read_text(), Loader=yaml.BaseLoader)
+
+
+@pytest.fixture(scope="module")
+def jobs(workflow) -> dict[str, Any]:
+    return workflow["jobs"]
+
+
+def steps(workflow: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return all steps of the workflow and of its own action."""
+    own = yaml.load(SETUP.read_text(), Loader=yaml.BaseLoader)["runs"]["steps"]
+    return [step for job in workflow["jobs"].values() for step in job["steps"]] + own
+
+
+def step(job: dict[str, Any], uses: str) -> dict[str, Any]:
+    (found,) = [step for step in job["steps"] if step.get("uses", "").startswith(uses)]
+    return found
+
+
+def lint(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run the line of `make lint` that checks workflows, on another file."""
+    command = [sys.executable, "-m", "check_jsonschema", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+SPOILT = {
+    "a job without a runner": ("    runs-on: ubuntu-24.04\n", ""),
+    "a trigger that is none": ("  pull_request:\n", "  pull_requests:\n"),
+    "a step of no kind": ("      - run: make lint\n", "      - runs: make lint\n"),
+    "a permission that is none": ("  contents: read\n", "  contents: reads\n"),
+}
+
+
+@pytest.mark.parametrize(("right", "wrong"), SPOILT.values(), ids=SPOILT)
+def test_a_spoiled_workflow_is_refused(tmp_path, right, wrong):
+    text = WORKFLOW.read_text()
+    assert right in text
+    spoiled = tmp_path / "book.yml"
+    spoiled.write_text(text.replace(right, wrong, 1))
+    done = lint("--builtin-schema", "vendor.github-workflows", str(spoiled))
+    assert done.returncode == 1
+    assert str(spoiled) in done.stdout
+
+
+def test_make_lint_holds_workflow_and_action_to_their_schemas():
+    done = subprocess.run(
+        ["make", "-n", "lint", f"PYTHON={sys.executable}"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    lines = [
+        line.split("--builtin-schema ")[1] for line in done.stdout.splitlines() if "-schema" in line
+    ]
+    for line, kind, path in zip(lines, ("workflows", "actions"), (WORKFLOW, SETUP), strict=True):
+        schema, pattern = line.split()
+        assert schema == f"vendor.github-{kind}"
+        assert path in ROOT.glob(pattern)
+        assert lint("--builtin-schema", schema, str(path)).returncode == 0
+
+
+def test_every_target_that_a_step_makes_is_one(workflow):
+    targets = set(re.findall(r"^([\w./-]+):", (ROOT / "Makefile").read_text(), re.M))
+    made = {name for one in steps(workflow) for name in MAKE.findall(one.get("run", ""))}
+    assert made >= {"lint", "test", "execute", "book", "pages", "repin"}
+    assert made <= targets
+
+
+@pytest.fixture(scope="module")
+def plan(jobs) -> str:
+    """The script that says what there is to execute."""
+    (found,) = [one["run"] for one in jobs["lint"]["steps"] if one.get("id") == "plan"]
+    return found
+
+
+def run_plan(plan: str, folder: Path, python: str) -> tuple[int, dict[str, str]]:
+    """Run the script as the workflow's shell does; return its status and what it put out."""
+    (folder / "output").touch()
+    # A make of this test's own would say where it is; the workflow's is the outermost.
+    given = {name: value for name, value in os.environ.items() if name != "MAKELEVEL"}
+    done = subprocess.run(
+        [
+            "bash",
+            "--noprofile",
+            "--norc",
+            "-eo",
+            "pipefail",
+            "-c",
+            plan.replace(".venv/bin/python", python),
+        ],
+        cwd=ROOT,
+        env=given | {"GITHUB_OUTPUT": str(folder / "output"), "MAKEFLAGS": f"PYTHON={python}"},
+        check=False,
+    )
+    lines = (folder / "output").read_text().splitlines()
+    return done.returncode, dict(line.split("=", 1) for line in lines)
+
+
+def test_the_matrix_is_the_pages_of_the_book(plan, jobs, tmp_path):
+    status, output = run_plan(plan, tmp_path, sys.executable)
+    assert status == 0
+    assert json.loads(output["pages"]) == [page.docname for page in find_pages(BOOK)]
+    assert output["kernels"] == engine_cache_folder().name
+    assert jobs["lint"]["outputs"] == {n: f"${{{{ steps.plan.outputs.{n} }}}}" for n in output}
+    assert jobs["execute"]["strategy"]["matrix"] == {
+        "page": "${{ fromJSON(needs.lint.outputs.pages) }}"
+    }
+    assert jobs["execute"]["strategy"]["fail-fast"] == "false"
+
+
+def test_a_plan_that_fails_stops_the_workflow(plan, tmp_path):
+    status, output = run_plan(plan, tmp_path, "false")
+    assert status != 0
+    assert output == {}
+
+
+def test_the_book_is_built_from_what_the_pages_jobs_hand_over(jobs):
+    (execute,) = [one for one in jobs["execute"]["steps"] if "make execute" in one.get("run", "")]
+    (book,) = [one for one in jobs["book"]["steps"] if "make book" in one.get("run", "")]
+    (sent, *_) = [
+        one["with"] for one in jobs["execute"]["steps"] if "upload-" in one.get("uses", "")
+    ]
+    taken = step(jobs["book"], "actions/download-artifact")["with"]
+    assert execute["env"] == {"PAGE": "${{ matrix.page }}", "TO": sent["path"]}
+    assert sent["name"] == "executed-${{ strategy.job-index }}"
+    assert taken["pattern"] == "executed-*"
+    assert book["env"]["EXECUTED"] == taken["path"]
+    assert "execute" in jobs["book"]["needs"]
+
+
+def test_compiled_kernels_are_saved_when_a_page_fails_and_restored_by_the_same_name(jobs):
+    for name in ("test", "execute"):
+        save = step(jobs[name], "actions/cache/save")
+        assert save["if"] == "always()"
+        assert save["with"]["path"] == ".cache/engine"
+        restored = step(jobs[name], "./.github/actions/setup")["with"]["kernels"]
+        assert save["with"]["key"].startswith(f"{restored}-${{{{ github.run_id }}}}")
+
+
+def test_a_scheduled_run_restores_nothing(workflow):
+    cached = [
+        one for one in steps(workflow) if re.match("actions/cache(/restore)?@", one.get("uses", ""))
+    ]
+    assert len(cached) == 2
+    assert all("github.event_name != 'schedule'" in one["if"] for one in cached)
+
+
+def test_a_job_that_can_fail_leaves_its_reports(jobs):
+    for name in ("test", "execute", "book", "refresh"):
+        kept = [one for one in jobs[name]["steps"] if one.get("if") == "failure()"]
+        assert [one["with"]["include-hidden-files"] for one in kept] == ["true"], name
+
+
+def test_jobs_can_write_only_what_they_must(workflow, jobs):
+    assert workflow["permissions"] == {"contents": "read"}
+    more = {name: job["permissions"] for name, job in jobs.items() if "permissions" in job}
+    assert more == {
+        "deploy": {"pages": "write", "id-token": "write"},
+        "propose": {"contents": "write", "pull-requests": "write"},
+    }
+    assert jobs["deploy"]["if"].startswith("github.ref == 'refs/heads/main'")
+    for name in more:  # what can write runs no code of the course, of its packages or its pages
+        assert not any(MAKE.search(one.get("run", "")) for one in jobs[name]["steps"])
+
+
+def test_no_checkout_leaves_its_token_where_the_course_s_code_runs(jobs):
+    kept = [
+        name
+        for name, job in jobs.items()
+        for one in job["steps"]
+        if one.get("uses", "").startswith("actions/checkout")
+        and one.get("with", {}).get("persist-credentials") != "false"
+    ]
+    assert kept == ["propose"]
+
+
+def test_versions_are_pinned_and_input_never_becomes_shell(workflow):
+    for one in steps(workflow):
+        used = one.get("uses", "")
+        assert used.startswith("./") or not used or re.search(r"[@:]v?\d[\w.]*$", used), used
+        assert not INTERPOLATED.search(one.get("run", "")), one["run"]
+    for job in workflow["jobs"].values():
+        assert not job.get("container", "").endswith("latest")
+        assert int(job["timeout-minutes"]) > 0
+
+
+def test_local_actions_are_there(workflow):
+    used = {one["uses"] for one in steps(workflow) if one.get("uses", "").startswith("./")}
+    assert used == {"./.github/actions/setup"}
+    assert all((ROOT / Path(name) / "action.yml").is_file() for name in used)
