@@ -156,17 +156,29 @@ def test_nothing_is_wider_than_the_paper_and_no_picture_higher(browser, site, na
 def test_every_sheet_is_a4_and_has_text_within_its_margins(pdfs, name):
     for number, sheet in enumerate(pdfs[name].pages, 1):
         assert [round(float(v) * POINT) for v in sheet.mediabox[2:]] == [210, 297]
-        placed: list[float] = []
+        placed: list[tuple[float, str]] = []
 
         def place(text, matrix, text_matrix, font, size, placed=placed) -> None:
             if text.strip():
                 x = text_matrix[4] * matrix[0] + text_matrix[5] * matrix[2] + matrix[4]
-                placed.append(x * POINT)
+                placed.append((x * POINT, text))
 
         sheet.extract_text(visitor_text=place)
         assert placed, f"sheet {number} is empty"
-        assert min(placed) >= 15.5, f"sheet {number}"
-        assert max(placed) <= 210 - 16, f"sheet {number}"
+        assert [one for one in placed if not 15.5 <= one[0] <= 210 - 16] == [], f"sheet {number}"
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_no_text_is_printed_while_it_fades_in(pdfs, name):
+    for number, sheet in enumerate(pdfs[name].pages, 1):
+        drawn = sheet["/Resources"].get("/ExtGState", {}).values()
+        faint = [state for state in (one.get_object() for one in drawn) if state.get("/ca", 1) < 1]
+        groups = [
+            one.get_object()
+            for one in sheet["/Resources"].get("/XObject", {}).values()
+            if "/Group" in one.get_object()
+        ]
+        assert not (faint and groups), f"sheet {number}: {faint}"
 
 
 def test_the_course_holds_every_page_in_order(pdfs, site):
