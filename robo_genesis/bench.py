@@ -35,6 +35,7 @@ class Row:
 
     `pairs` takes a number of runs, makes ready what they need, which is not measured, and yields
     one sample of the work and one of its opponent for each. `runs` is their usual number.
+    `where` says what the time goes to, for a table in which the limit is not kept.
     """
 
     name: str
@@ -43,6 +44,7 @@ class Row:
     limit: float
     pairs: Callable[[int], Iterable[Pair]]
     runs: int = 5
+    where: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +57,7 @@ class Result:
     limit: float
     samples: tuple[Sample, ...]
     opposite: tuple[Sample, ...]
+    where: str = ""
 
     @property
     def medians(self) -> tuple[float, float]:
@@ -107,11 +110,14 @@ def take(row: Row, runs: int | None, say: Say) -> Result:
         one, other = (sample.wall for sample in pair)
         say(f"{row.name}  {len(pairs)} of {runs}: {one:.3g} s against {other:.3g} s")
     samples, opposite = zip(*pairs, strict=True)
-    return Result(row.name, row.work, row.against, row.limit, samples, opposite)
+    return Result(row.name, row.work, row.against, row.limit, samples, opposite, row.where)
 
 
 def table(results: Sequence[Result]) -> str:
-    """Return the results as a table of text; least and most stand behind each median."""
+    """Return the results as a table of text; least and most stand behind each median.
+
+    Below it stands for each limit that is not kept where the time goes, where that is known.
+    """
     seconds = "s (least-most)"
     head = ("work", seconds, "against", seconds, "ratio", "of CPU", "limit", "", "runs")
     lines = [head, *map(_line, results)]
@@ -121,7 +127,8 @@ def table(results: Sequence[Result]) -> str:
         for line in lines
     ]
     aligned.insert(1, "-" * max(map(len, aligned)))
-    return "\n".join(aligned)
+    reasons = [f"{one.work}: {one.where}" for one in results if one.where and not one.met]
+    return "\n".join([*aligned, *reasons])
 
 
 def _line(result: Result) -> tuple[str, ...]:

@@ -16,6 +16,11 @@ SPHINX = "from sphinx.cmd.build import main; import sys; sys.exit(main(sys.argv[
 BARE_START = "import numpy, pydantic"
 LAB = "lessons/l04-joint-control/lab"
 MEMORY = "memory"
+
+PROSE = "bare Sphinx has no verification, replays, takeaways, finished pages or checks of them."
+BUNDLE = "the start of a Jupyter kernel, plots, metrics, and writing the bundle."
+BALANCE = "the longest page alone takes longer than half of all pages."
+READS = "the engine starts a kernel for each read of a control force."
 MEMORY_LIMIT = 8 * 2**30
 
 
@@ -29,17 +34,17 @@ def rows(clone: Clone) -> list[Row]:
         Row("unchanged", "make book, nothing changed", "bare Sphinx, nothing changed", 1.5,
             partial(unchanged, clone)),
         Row("prose", "make book after a change of prose", "bare Sphinx, all pages", 1.3,
-            partial(prose, clone)),
+            partial(prose, clone), where=PROSE),
         Row("lab", "L04 lab executed warm", "bare script, same engine calls", 1.25,
-            partial(lab, clone), runs=3),
+            partial(lab, clone), runs=3, where=BUNDLE),
         Row("jobs", "all lessons executed warm, JOBS=2", "JOBS=1", 0.65,
-            partial(jobs, clone), runs=3),
+            partial(jobs, clone), runs=3, where=BALANCE),
         Row("verify", "make verify of a bundle", start, 3.0,
             partial(against_start, clone, verifying)),
         Row("compare", "make compare of two bundles", start, 3.0,
             partial(against_start, clone, comparing)),
         Row("recording", "step loop that records all 9 DOFs", "step loop, no reads", 1.5,
-            partial(recording, clone), runs=25),
+            partial(recording, clone), runs=25, where=READS),
     ]  # fmt: skip
 
 

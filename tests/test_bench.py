@@ -13,9 +13,9 @@ from robo_genesis.pages import find_pages
 from robo_genesis.project import BOOK, ROOT
 
 
-def result(work, against, limit=2.0, name="row") -> Result:
+def result(work, against, limit=2.0, name="row", where="") -> Result:
     sides = ([Sample(*pair) for pair in side] for side in (work, against))
-    return Result(name, "the work", "its opponent", limit, *map(tuple, sides))
+    return Result(name, "the work", "its opponent", limit, *map(tuple, sides), where)
 
 
 def test_ratios_are_of_medians_of_elapsed_and_of_processor_seconds():
@@ -46,6 +46,13 @@ def test_the_table_shows_medians_spread_ratio_limit_and_outcome():
     assert "4 (3-5)" in lines[2]
     assert lines[2].split()[-5:] == ["2.00", "1.00", "2", "met", "3"]
     assert lines[3].split()[-6:] == ["9.00", "-", "2", "NOT", "MET", "1"]
+
+
+def test_where_the_time_goes_is_said_of_a_limit_that_is_not_kept_alone():
+    slow, quick = ([(3,)], [(1,)]), ([(1,)], [(1,)])
+    said = bench.table([result(*slow, where="to plots."), result(*quick, where="elsewhere.")])
+    assert said.splitlines()[-1] == "the work: to plots."
+    assert "elsewhere" not in said
 
 
 def test_both_sides_are_run_in_turn_and_each_pair_is_told():

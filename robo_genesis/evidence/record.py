@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import uuid
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -28,6 +29,7 @@ from robo_genesis.robot_model import JointMap
 from robo_genesis.trace import Trace
 
 PACKAGE = Path(__file__).resolve().parents[1]
+ENGINE, COMPILER = project.ENGINE, "quadrants"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,9 @@ class Recorder:
         self.lesson, self.page, self.contract, self.engine = lesson, page, contract, engine
         self.started = _now()
         self.run_id = os.environ.get("ROBO_GENESIS_RUN_ID") or uuid.uuid4().hex
+        reader = ThreadPoolExecutor(1)  # the engine's files are many; the page goes on meanwhile
+        self._match = reader.submit(files_match_wheel, ENGINE, COMPILER)
+        reader.shutdown(wait=False)
 
     @property
     def folder(self) -> Path:
@@ -141,7 +146,7 @@ class Recorder:
                 "version": self.engine.version,
                 "quadrants_version": self.engine.quadrants_version,
                 "precision": self.engine.precision,
-                "files_match_wheel": files_match_wheel("genesis-world", "quadrants"),
+                "files_match_wheel": self._match.result(),
             },
             "backend": asdict(backend)
             | {
