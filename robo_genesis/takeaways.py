@@ -16,11 +16,11 @@ from nbformat import NotebookNode
 from robo_genesis import project
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Variable
-from robo_genesis.evidence.traces import FIELDS, read_trace
+from robo_genesis.evidence.traces import fields_of, read_any_trace
 from robo_genesis.notebooks import Origin, executed_notebook, student_notebook
 from robo_genesis.pages import Page
 from robo_genesis.plain_markdown import Writer
-from robo_genesis.trace import Trace
+from robo_genesis.trace import Stamped
 from robo_genesis.wheel import stored_wheel
 
 ENVIRONMENT = "course"
@@ -137,11 +137,11 @@ def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
     for case in described.cases:
         archive, table = folder / f"{case}.npz", folder / f"{case}.csv"
         shutil.copy(run / described.cases[case].file, archive)
-        table.write_text(csv_text(read_trace(run, described, case), described, case), "utf8")
+        table.write_text(csv_text(read_any_trace(run, described, case), described, case), "utf8")
         yield case, table, archive
 
 
-def csv_text(trace: Trace, described: Arrays, case: str) -> str:
+def csv_text(trace: Stamped, described: Arrays, case: str) -> str:
     """Return a run as a table: one row a state, one column a number, its unit in the head.
 
     The first row is the state before any step, so what is read after a step is empty there unless
@@ -150,7 +150,7 @@ def csv_text(trace: Trace, described: Arrays, case: str) -> str:
     """
     states = len(trace.t)
     columns: dict[str, list[str]] = {}
-    for field, (name, dims, *_) in FIELDS.items():
+    for field, (name, dims, *_) in fields_of(trace).items():
         if field in AT_REST.values():
             continue
         values = _by_state(trace, field, dims, states)
@@ -165,7 +165,7 @@ def csv_text(trace: Trace, described: Arrays, case: str) -> str:
     return stream.getvalue()
 
 
-def _by_state(trace: Trace, field: str, dims: list[str], states: int) -> list[list[np.generic]]:
+def _by_state(trace: Stamped, field: str, dims: list[str], states: int) -> list[list[np.generic]]:
     """Return the columns of a field, each with one entry a state, None where nothing was read."""
     values = np.asarray(getattr(trace, field))
     rows = values.reshape(len(values), -1) if dims[0] in ("state", "step") else values[None]

@@ -1,4 +1,4 @@
-"""The arrays of one measured run: shapes and stamps checked, read-only ever after."""
+"""The arrays of one measured run, of joints or of free bodies: checked, read-only ever after."""
 
 from dataclasses import dataclass, fields
 
@@ -12,38 +12,13 @@ class TraceError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Trace:
-    """One run of n steps on d DOFs and l links.
+class Stamped:
+    """The states of one run at t[k] = k · dt; t[0] is the state before the first step.
 
-    State at t[0] is the state before the first step. What `scene.step()` produces is stamped with
-    the time that it ends at, so steps carry t[1] … t[n].
-
-    | field | shape | meaning |
-    |---|---|---|
-    | `t` | (n+1,) | time of each state [s] |
-    | `q` | (n+1, d) | position [rad or m] |
-    | `qd` | (n, d) | velocity after each step [rad/s or m/s] |
-    | `target` | (n, d) | position command of each step [rad or m] |
-    | `control_force` | (n, d) | `get_dofs_control_force` after each step [N·m or N] |
-    | `internal_force` | (n, d) | `get_dofs_force` after each step [N·m or N] |
-    | `start_control_force` | (d,) | control force after the command, before the first step |
-    | `start_qd` | (d,) | velocity before the first step [rad/s or m/s] |
-    | `effort_limit` | (d,) | bound read back with `get_dofs_force_range` [N·m or N] |
-    | `link_pos` | (n+1, l, 3) | link positions in the world [m] |
-    | `link_quat` | (n+1, l, 4) | link orientations in the world, (w, x, y, z) |
+    What `scene.step()` produces is stamped with the time that it ends at. `t` has shape (n+1,) [s].
     """
 
     t: FloatArray
-    q: FloatArray
-    qd: FloatArray
-    target: FloatArray
-    control_force: FloatArray
-    internal_force: FloatArray
-    start_control_force: FloatArray
-    start_qd: FloatArray
-    effort_limit: FloatArray
-    link_pos: FloatArray
-    link_quat: FloatArray
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -53,23 +28,17 @@ class Trace:
                 raise TraceError(f"{field.name} is not finite at index {where}.")
             array.setflags(write=False)
             object.__setattr__(self, field.name, array)
-        self._check_shapes()
+        states = self.t.shape[0] if self.t.ndim == 1 else 0
+        self._check_shapes(states)
         self._check_stamps()
 
-    def _check_shapes(self) -> None:
-        states, dofs = self.q.shape if self.q.ndim == 2 else (0, 0)
-        links = self.link_pos.shape[1] if self.link_pos.ndim == 3 else 0
+    def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
+        """Return the shape of each array of a run with so many states."""
+        return {"t": (states,)}
+
+    def _check_shapes(self, states: int) -> None:
         steps = states - 1
-        expected = {
-            "t": (states,),
-            "q": (states, dofs),
-            "start_control_force": (dofs,),
-            "start_qd": (dofs,),
-            "effort_limit": (dofs,),
-            "link_pos": (states, links, 3),
-            "link_quat": (states, links, 4),
-        } | dict.fromkeys(("qd", "target", "control_force", "internal_force"), (steps, dofs))
-        for name, shape in expected.items():
+        for name, shape in self._expected(states).items():
             found = getattr(self, name).shape
             if found != shape or steps < 1:
                 raise TraceError(
@@ -99,5 +68,81 @@ class Trace:
 
     @property
     def t_step(self) -> FloatArray:
-        """Stamps of `qd` and the two forces, t[1] … t[n], shape (n,) [s]."""
+        """Stamps of what a step produces, t[1] … t[n], shape (n,) [s]."""
         return self.t[1:]
+
+
+@dataclass(frozen=True, slots=True)
+class Trace(Stamped):
+    """One run of n steps on d DOFs and l links.
+
+    State at t[0] is the state before the first step. What `scene.step()` produces is stamped with
+    the time that it ends at, so steps carry t[1] … t[n].
+
+    | field | shape | meaning |
+    |---|---|---|
+    | `t` | (n+1,) | time of each state [s] |
+    | `q` | (n+1, d) | position [rad or m] |
+    | `qd` | (n, d) | velocity after each step [rad/s or m/s] |
+    | `target` | (n, d) | position command of each step [rad or m] |
+    | `control_force` | (n, d) | `get_dofs_control_force` after each step [N·m or N] |
+    | `internal_force` | (n, d) | `get_dofs_force` after each step [N·m or N] |
+    | `start_control_force` | (d,) | control force after the command, before the first step |
+    | `start_qd` | (d,) | velocity before the first step [rad/s or m/s] |
+    | `effort_limit` | (d,) | bound read back with `get_dofs_force_range` [N·m or N] |
+    | `link_pos` | (n+1, l, 3) | link positions in the world [m] |
+    | `link_quat` | (n+1, l, 4) | link orientations in the world, (w, x, y, z) |
+    """
+
+    q: FloatArray
+    qd: FloatArray
+    target: FloatArray
+    control_force: FloatArray
+    internal_force: FloatArray
+    start_control_force: FloatArray
+    start_qd: FloatArray
+    effort_limit: FloatArray
+    link_pos: FloatArray
+    link_quat: FloatArray
+
+    def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
+        dofs = self.q.shape[1] if self.q.ndim == 2 else 0
+        links = self.link_pos.shape[1] if self.link_pos.ndim == 3 else 0
+        return {
+            "t": (states,),
+            "q": (states, dofs),
+            "start_control_force": (dofs,),
+            "start_qd": (dofs,),
+            "effort_limit": (dofs,),
+            "link_pos": (states, links, 3),
+            "link_quat": (states, links, 4),
+        } | dict.fromkeys(("qd", "target", "control_force", "internal_force"), (states - 1, dofs))
+
+
+@dataclass(frozen=True, slots=True)
+class BodyTrace(Stamped):
+    """One run of n steps of free bodies with l links in all: nothing commands them.
+
+    | field | shape | meaning |
+    |---|---|---|
+    | `t` | (n+1,) | time of each state [s] |
+    | `link_pos` | (n+1, l, 3) | link positions in the world [m] |
+    | `link_quat` | (n+1, l, 4) | link orientations in the world, (w, x, y, z) |
+    | `link_vel` | (n+1, l, 3) | velocities of the link frames' origins [m/s] |
+    | `link_ang` | (n+1, l, 3) | angular velocities in the world's axes [rad/s] |
+    """
+
+    link_pos: FloatArray
+    link_quat: FloatArray
+    link_vel: FloatArray
+    link_ang: FloatArray
+
+    def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
+        links = self.link_pos.shape[1] if self.link_pos.ndim == 3 else 0
+        return {
+            "t": (states,),
+            "link_pos": (states, links, 3),
+            "link_quat": (states, links, 4),
+            "link_vel": (states, links, 3),
+            "link_ang": (states, links, 3),
+        }

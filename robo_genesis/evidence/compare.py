@@ -20,7 +20,7 @@ from robo_genesis.evidence.findings import (  # fmt: skip
     worst,
 )
 from robo_genesis.evidence.relations import relations
-from robo_genesis.evidence.traces import read_trace
+from robo_genesis.evidence.traces import read_any_trace
 from robo_genesis.lessons import find_lesson
 
 LARGEST = 2**53
@@ -121,7 +121,7 @@ def read_side(folder: Path) -> Side:
     for case in arrays.cases:
         _hold_digest(folder, f"arrays/{case}.npz", listed)
         try:
-            traces[case] = read_trace(folder, arrays, case)
+            traces[case] = read_any_trace(folder, arrays, case)
         except TypeError as error:
             raise BundleRefused("bad-array", f"arrays/{case}.npz holds no numbers.") from error
     return Side(str(folder), manifest, metrics, arrays, traces)

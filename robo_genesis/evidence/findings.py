@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from robo_genesis.evidence.bundle import Arrays, Manifest, Metric
 from robo_genesis.lessons import Relation
 from robo_genesis.metrics import NOT_OBSERVED
-from robo_genesis.trace import Trace
+from robo_genesis.trace import Stamped
 
 EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
     "equal", "shown", "within tolerance", "inconclusive", "differs", "not comparable",
@@ -37,7 +37,7 @@ class Side:
     manifest: Manifest
     metrics: Mapping[str, Mapping[str, Metric]]
     arrays: Arrays
-    traces: Mapping[str, Trace]
+    traces: Mapping[str, Stamped]
 
     @property
     def numbers(self) -> dict[str, Metric]:

@@ -26,7 +26,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import write_traces
 from robo_genesis.lessons import find_page
 from robo_genesis.robot_model import JointMap
-from robo_genesis.trace import Trace
+from robo_genesis.trace import Stamped
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"
@@ -36,14 +36,14 @@ ENGINE, COMPILER = project.ENGINE, "quadrants"
 class Measured:
     """What a page hands over.
 
-    `metrics` is group → name → {value, unit, class, from}; `frames` name → RGB, empty without a
+    `joints` is None for runs of free bodies. `metrics` is group → name → {value, unit, class, from}; `frames` name → RGB, empty without a
     camera; `parameters` must be JSON values; `notes` says by case what its arrays are where they
     are no ordinary run.
     """
 
-    joints: JointMap
+    joints: JointMap | None
     links: Sequence[str]
-    traces: Mapping[str, Trace]
+    traces: Mapping[str, Stamped]
     metrics: Mapping[str, Mapping[str, Mapping[str, Any]]]
     checks: Sequence[Check]
     frames: Mapping[str, np.ndarray]

@@ -15,7 +15,7 @@ from robo_genesis.evidence.findings import (
     Specification,
     number,
 )
-from robo_genesis.evidence.traces import FIELDS
+from robo_genesis.evidence.traces import fields_of
 
 
 def coverage(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
@@ -37,7 +37,8 @@ def coverage(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
         state = EQUAL if labels[0] == labels[1] else DIFFERS
         here, there = (", ".join(of) if state == DIFFERS else str(len(of)) for of in labels)
         yield Finding(state, f"labels of {axis}", here, there)
-    yield from _joints(old, new)
+    if old.arrays.joints or new.arrays.joints:
+        yield from _joints(old, new)
 
 
 def _joints(old: Side, new: Side) -> Iterator[Finding]:
@@ -117,8 +118,8 @@ def arrays(old: Side, new: Side) -> Iterator[Finding]:
     """The largest difference in every array; another shape is a difference, a distance is shown."""
     for case in [name for name in old.traces if name in new.traces]:
         variables = old.arrays.cases[case].variables
-        for field, (name, *_) in FIELDS.items():
-            a, b = (getattr(side.traces[case], field) for side in (old, new))
+        for field, (name, *_) in fields_of(old.traces[case]).items():
+            a, b = (getattr(side.traces[case], field, np.empty(0)) for side in (old, new))
             what, unit = f"{case} {name}", variables[name].unit
             if a.shape != b.shape:
                 yield Finding(DIFFERS, what, f"shape {a.shape}", f"shape {b.shape}")

@@ -1,7 +1,11 @@
-"""Traces and joints as files and back: npz with units in the names, described in `arrays.json`."""
+"""Traces and joints as files and back: npz with units in the names, described in `arrays.json`.
+
+A bundle holds runs of one kind: of joints, or, where it has no joints, of free bodies.
+"""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -15,10 +19,12 @@ from robo_genesis.evidence.bundle import (
 )
 from robo_genesis.evidence.strict_json import AGAIN, expect
 from robo_genesis.robot_model import EFFORT_UNIT, POSITION_UNIT, JointMap
-from robo_genesis.trace import Trace, TraceError
+from robo_genesis.trace import BodyTrace, Stamped, Trace, TraceError
+
+Field = tuple[str, list[str], str | None, str]
 
 # Trace field → name in the file, dimensions, unit (None: that of each DOF), long name.
-FIELDS = {
+FIELDS: dict[str, Field] = {
     "t": ("t_s", ["state"], "s", "time of each state, the first before any step"),
     "q": ("q_rad_or_m", ["state", "dof"], None, "position"),
     "qd": ("qd_rad_s_or_m_s", ["step", "dof"], None, "velocity after each step"),
@@ -34,6 +40,21 @@ FIELDS = {
     "link_pos": ("link_pos_m", ["state", "link", "axis"], "m", "link position in the world"),
     "link_quat": ("link_quat_wxyz", ["state", "link", "wxyz"], "1", "link orientation"),
 }  # fmt: skip
+
+BODY_FIELDS: dict[str, Field] = {
+    "t": FIELDS["t"],
+    "link_pos": FIELDS["link_pos"],
+    "link_quat": FIELDS["link_quat"],
+    "link_vel": ("link_vel_m_s", ["state", "link", "axis"], "m/s", "velocity of the link's origin"),
+    "link_ang": ("link_ang_rad_s", ["state", "link", "axis"], "rad/s", "angular velocity"),
+}  # fmt: skip
+
+KINDS: dict[type[Stamped], dict[str, Field]] = {Trace: FIELDS, BodyTrace: BODY_FIELDS}
+
+
+def fields_of(trace: Stamped) -> dict[str, Field]:
+    """Return name in the file, dimensions, unit and long name of each array of a run."""
+    return KINDS[type(trace)]
 
 
 DTYPES = {"t": "float64", "target": "float64"}
@@ -52,36 +73,41 @@ def dof_units(name: str, types: Sequence[str]) -> list[str]:
 
 def write_traces(
     folder: Path,
-    traces: Mapping[str, Trace],
-    joints: JointMap,
+    traces: Mapping[str, Stamped],
+    joints: JointMap | None,
     links: list[str],
     notes: Mapping[str, str] | None = None,
 ) -> Arrays:
     """Write `arrays/<case>.npz` for every trace and return their description, with the joints.
 
+    Runs of free bodies have none, and their arrays no axis of DOFs.
+
     `notes` says by case in what its arrays differ from the long names; most cases need none.
     """
     (folder / "arrays").mkdir()
+    types = joints.types if joints else ()
     cases = {}
     for case, trace in traces.items():
-        values = {name: getattr(trace, field) for field, (name, *_) in FIELDS.items()}
+        described = fields_of(trace)
+        values = {name: getattr(trace, field) for field, (name, *_) in described.items()}
         np.savez_compressed(folder / "arrays" / f"{case}.npz", **values)
         variables = {
             name: Variable(
                 dims=dims,
                 shape=list(values[name].shape),
                 dtype=str(values[name].dtype),
-                unit=dof_units(name, joints.types) if unit is None else unit,
+                unit=dof_units(name, types) if unit is None else unit,
                 long_name=long_name,
             )
-            for name, dims, unit, long_name in FIELDS.values()
+            for name, dims, unit, long_name in described.values()
         }
         cases[case] = CaseArrays(
             file=f"arrays/{case}.npz", note=(notes or {}).get(case, ""), variables=variables
         )
+    dofs = {"dof": list(joints.names)} if joints else {}
     return Arrays(
-        coords={"dof": list(joints.names), "link": links},
-        joints=joint_records(joints),
+        coords=dofs | {"link": links},
+        joints=joint_records(joints) if joints else [],
         cases=cases,
     )
 
@@ -129,33 +155,52 @@ def read_joints(arrays: Arrays) -> JointMap:
 
 
 def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
-    """Return one case's trace after holding its arrays against their description.
+    """Return one case's run of joints after holding its arrays against their description.
 
     Raises:
         BundleRefused: `labels`, `too-big` or `bad-array`; `bad-trace` where its arrays do not form
             one run.
     """
-    described = arrays.cases[case]
+    return _read(folder, arrays, case, Trace)
+
+
+def read_body_trace(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
+    """Return one case's run of free bodies; as `read_trace`."""
+    expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
+    return _read(folder, arrays, case, BodyTrace)
+
+
+def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Trace | BodyTrace:
+    """Return one case's run, of joints if the bundle has any, else of free bodies."""
+    read = read_trace if arrays.joints else read_body_trace
+    return read(folder, arrays, case)
+
+
+Kind = TypeVar("Kind", bound=Stamped)
+
+
+def _read(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
+    described, known = arrays.cases[case], KINDS[kind]
     expect("path", "arrays.json", f"file of case {case}", described.file, f"arrays/{case}.npz")
-    _check_labels(arrays, case)
-    values = read_archive(folder / described.file, described.file, {n for n, *_ in FIELDS.values()})
+    _check_labels(arrays, case, known)
+    values = read_archive(folder / described.file, described.file, {n for n, *_ in known.values()})
     for name, variable in described.variables.items():
         found = (list(values[name].shape), str(values[name].dtype))
         what = f"shape and type of {name}"
         expect("bad-array", described.file, what, found, (variable.shape, variable.dtype))
     try:
-        return Trace(**{field: values[name] for field, (name, *_) in FIELDS.items()})
+        return kind(**{field: values[name] for field, (name, *_) in known.items()})
     except TraceError as error:
         raise BundleRefused("bad-trace", f"{described.file}: {error} {AGAIN}") from error
 
 
-def _check_labels(arrays: Arrays, case: str) -> None:
+def _check_labels(arrays: Arrays, case: str, known: Mapping[str, Field]) -> None:
     """Require that names, dimensions, units and types are those that `write_traces` gives."""
     variables, types = arrays.cases[case].variables, read_joints(arrays).types
-    names = sorted(name for name, *_ in FIELDS.values())
+    names = sorted(name for name, *_ in known.values())
     expect("labels", "arrays.json", f"list of arrays of {case}", sorted(variables), names)
     lengths = {"axis": 3, "wxyz": 4} | {dim: len(them) for dim, them in arrays.coords.items()}
-    for field, (name, dims, unit, long_name) in FIELDS.items():
+    for field, (name, dims, unit, long_name) in known.items():
         found, file = variables[name], f"arrays.json {case}.{name}"
         units = dof_units(name, types) if unit is None else unit
         expect("labels", file, "unit", found.unit, units)
