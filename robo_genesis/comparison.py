@@ -3,9 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from robo_genesis import drop_metrics
 from robo_genesis.metrics import UNITS, StepMetrics, format_value
 
-LABELS = {
+LABELS = drop_metrics.LABELS | {
     "rise_time": "rise time",
     "peak_speed": "peak speed",
     "overshoot": "overshoot",
@@ -25,6 +26,7 @@ class Comparison:
     """One metric of two cases. `order` is the second against the first, None if undecidable."""
 
     metric: str
+    unit: str
     first: float | None
     second: float | None
     order: str | None  # "lower" | "equal" | "higher" | None
@@ -34,22 +36,29 @@ def compare(
     metric: str, first: StepMetrics, second: StepMetrics, resolution: Mapping
 ) -> Comparison:
     """Order one metric of two cases; a difference below the resolution of its unit is equal."""
-    a, b = getattr(first, metric), getattr(second, metric)
+    values = getattr(first, metric), getattr(second, metric)
+    return compare_values(metric, UNITS[metric], *values, resolution)
+
+
+def compare_values(
+    metric: str, unit: str, a: float | None, b: float | None, resolution: Mapping
+) -> Comparison:
+    """Order a metric's values `a` and `b` of two cases, whatever the metric is."""
     if a is None and b is None:
         order = None
     elif a is None or b is None:
         # A time that the window did not reach is later than any time within it.
         order = "higher" if b is None else "lower"
-    elif abs(b - a) <= resolution[UNITS[metric]]:
+    elif abs(b - a) <= resolution[unit]:
         order = "equal"
     else:
         order = "higher" if b > a else "lower"
-    return Comparison(metric, a, b, order)
+    return Comparison(metric, unit, a, b, order)
 
 
 def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
     """Say how one metric of two cases compares."""
-    label, unit = LABELS[comparison.metric], UNITS[comparison.metric]
+    label, unit = LABELS[comparison.metric], comparison.unit
     first, second = (format_value(v, unit) for v in (comparison.first, comparison.second))
     values = f"{names[0]} {first}, {names[1]} {second}"
     if comparison.order is None:

@@ -4,8 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from robo_genesis import l04, l04_studies
-from robo_genesis.metrics import SOURCES
+from robo_genesis import drop_metrics, l02, l04, l04_studies, metrics
 
 Relation = tuple[tuple[str, str], str, str, float]
 """A claimed ordering: (first case, second case), metric, order, margin."""
@@ -75,15 +74,25 @@ class Lesson:
     compared: Compared | None = None
 
 
-STEP_MODULES = (
-    "checks", "joint_control", "metrics", "robot_model", "runtime", "scene_config", "trace",
-)  # fmt: skip
+COMMON_MODULES = ("checks", "posture", "robot_model", "runtime", "scene_config", "trace")
+DROP_MODULES = (*COMMON_MODULES, "drop_checks", "drop_metrics", "falling", "free_bodies")
+STEP_MODULES = (*COMMON_MODULES, "joint_control", "metrics", "step_checks")
 STUDY_MODULES = ("dynamics", "second_engine", "studies", "study_checks", "theory")
 
 LESSONS = {
+    l02.LESSON: Lesson(
+        spec=l02,
+        metrics=tuple(drop_metrics.SOURCES),
+        pages={
+            "lab": MeasuringPage(l02.parameters, DROP_MODULES),
+            l02.STUDY_PAGE: MeasuringPage(
+                l02.study_parameters, (*DROP_MODULES, "life_cycle", "substep_study")
+            ),
+        },
+    ),
     l04.LESSON: Lesson(
         spec=l04,
-        metrics=tuple(SOURCES),
+        metrics=tuple(metrics.SOURCES),
         pages={
             "lab": MeasuringPage(l04.parameters, STEP_MODULES),
             l04_studies.PAGE: MeasuringPage(
@@ -91,7 +100,7 @@ LESSONS = {
             ),
         },
         compared=Compared(tuple(l04_studies.COMPARED), l04.STEPPED_JOINT),
-    )
+    ),
 }
 """By name, in the order in which a reader meets them."""
 

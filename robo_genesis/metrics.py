@@ -183,6 +183,6 @@ def format_value(value: float | None, unit: str) -> str:
         return NOT_OBSERVED
     if unit == "1":
         return f"{value} sample" if value == 1 else f"{value} samples"
-    digits = {"s": 2, "rad": 4, "m": 4, "rad/s": 3, "N·m": 2, "N": 2}[unit]
+    digits = {"s": 2, "rad": 4, "m": 4, "rad/s": 3, "m/s": 3, "N·m": 2, "N": 2, "kg": 3}[unit]
     text = f"{value:.{digits}f}"
     return f"{text.removeprefix('-') if float(text) == 0 else text} {unit}"

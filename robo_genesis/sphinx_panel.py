@@ -182,9 +182,15 @@ def metrics_text(lesson: str, here: Path, folder: Path) -> str:
         f"**Against this build's run on {BACKEND}: {found.state}.**{more} What is allowed "
         "and claimed is declared in the lesson's specification; counts must be equal.\n\n"
         f"{tables.markdown(value_rows(found, both, (here, folder)))}\n"
-        "The orderings that the lesson claims, in both runs:\n\n"
-        f"{tables.markdown(ordering_rows(found, both))}"
+        f"{orderings_text(ordering_rows(found, both))}"
     )
+
+
+def orderings_text(rows: list[dict[str, str]]) -> str:
+    """Return what the lesson claims of its cases' order, and what both runs show of it."""
+    if not rows:
+        return "The lesson claims no ordering between cases."
+    return f"The orderings that the lesson claims, in both runs:\n\n{tables.markdown(rows)}"
 
 
 def value_rows(

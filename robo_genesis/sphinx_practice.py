@@ -15,12 +15,13 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.comparison import compare, comparison_sentence
+from robo_genesis import drop_metrics, metrics
+from robo_genesis.comparison import compare_values, comparison_sentence
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
-from robo_genesis.metrics import UNITS, StepMetrics
 from robo_genesis.sphinx_evidence import BACKEND, measured, outputs_folder
 
+UNITS = drop_metrics.UNITS | metrics.UNITS
 EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same, within the resolution above", "higher": "more"}
 UNDECIDED = "this window cannot tell"
@@ -65,11 +66,9 @@ def measured_order(lesson_page: str, metric: str, cases: list[str]) -> tuple[str
     """
     _, origin = (measured(lesson_page, f"{case}.{metric}")[1] for case in cases)
     records = bundle.read_metrics(outputs_folder() / lesson_page / BACKEND)
-    first, second = (
-        StepMetrics(**{name: record.value for name, record in records[case].items()})  # type: ignore[arg-type]
-        for case in cases
-    )
-    found = compare(metric, first, second, find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION)
+    first, second = (records[case][metric] for case in cases)
+    resolution = find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION
+    found = compare_values(metric, first.unit, first.value, second.value, resolution)
     return found.order, comparison_sentence((cases[0], cases[1]), found), origin
 
 

@@ -3,10 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from robo_genesis import drop_metrics
 from robo_genesis.checks import Check
+from robo_genesis.drop_metrics import DropMetrics
 from robo_genesis.metrics import StepMetrics, format_value
 
-METRIC_LABELS = {
+METRIC_LABELS = drop_metrics.LABELS | {
     "initial_error": "initial error",
     "rise_time": "rise time",
     "overshoot": "overshoot",
@@ -51,6 +53,18 @@ def metric_table(metrics: Mapping[str, StepMetrics]) -> str:
         [
             {"metric": METRIC_LABELS[name]} | {case: values[case][name] for case in cases}
             for name in names
+        ]
+    )
+
+
+def drop_table(metrics: Mapping[str, DropMetrics]) -> str:
+    """Return metrics of drops as rows and cases as columns, six digits of each value."""
+    units = drop_metrics.UNITS
+    return markdown(
+        [
+            {"metric": METRIC_LABELS[name]}
+            | {case: f"{getattr(of, name):.6g} {units[name]}" for case, of in metrics.items()}
+            for name in units
         ]
     )
 

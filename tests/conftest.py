@@ -18,7 +18,6 @@ from matplotlib.figure import Figure
 
 from robo_genesis import (
     build,
-    checks,
     l04,
     l04_studies,
     plots,
@@ -26,6 +25,7 @@ from robo_genesis import (
     robot_model,
     runtime,
     second_engine,
+    step_checks,
     studies,
 )
 from robo_genesis.metrics import measure
@@ -175,9 +175,9 @@ def frames() -> dict[str, np.ndarray]:
 
 
 @pytest.fixture(scope="session")
-def experiment(joints, traces, frames) -> checks.StepExperiment:
+def experiment(joints, traces, frames) -> step_checks.StepExperiment:
     """A synthetic L04 run that passes every check."""
-    return checks.StepExperiment(
+    return step_checks.StepExperiment(
         joints=joints,
         model=l04.EXPECTED_MODEL,
         cases=l04.CASES,

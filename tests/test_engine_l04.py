@@ -3,7 +3,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from robo_genesis import checks, l04, project, runtime
+from robo_genesis import checks, l04, project, runtime, step_checks
 from robo_genesis.evidence.bundle import read_arrays
 from robo_genesis.evidence.current import page_digest
 from robo_genesis.evidence.record import Measured, Recorder
@@ -38,7 +38,7 @@ def measured_run(lab, run):
     traces |= {name: run(l04.CASES[name]) for name in ("G1", "G2", "G3")}
     robot = lab.franka
     counts = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    return checks.StepExperiment(
+    return step_checks.StepExperiment(
         joints=lab.joints,
         model=dict(zip(l04.EXPECTED_MODEL, counts, strict=True)),
         cases=l04.CASES,
@@ -61,7 +61,7 @@ def bundle_folder(lab, measured_run):
                 links=[link.name for link in lab.franka.links],
                 traces=measured_run.traces,
                 metrics=metric_records(measured_run.metrics, measured_run.model),
-                checks=checks.run_checks(measured_run),
+                checks=step_checks.run_checks(measured_run),
                 frames=measured_run.frames,
                 parameters=l04.parameters(),
                 renderer=runtime.read_renderer(lab.scene),
@@ -159,7 +159,7 @@ def test_force_ranges_read_back_as_set(measured_run):
 
 
 def test_every_check_of_the_lesson_passes(measured_run):
-    assert checks.require("l04", checks.run_checks(measured_run)) == "L04 CHECK: PASSED"
+    assert checks.require("l04", step_checks.run_checks(measured_run)) == "L04 CHECK: PASSED"
 
 
 @pytest.mark.parametrize("pair", list(l04.ONE_FACTOR))

@@ -1,6 +1,6 @@
 """Everything that the arrays and frames of a bundle decide, held against what it says of itself."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -54,6 +54,31 @@ def read_frames(folder: Path, manifest: Manifest) -> dict[str, np.ndarray]:
         expect("frames", f"frames/{name}", "run_id of the stamp", stamp, run_id)
         frames[Path(name).stem] = pixels
     return frames
+
+
+def read_counts(folder: Path, group: str, names: Iterable[str]) -> dict[str, int]:
+    """Return counts that the engine gave and no array holds, as they were recorded.
+
+    Args:
+        folder: the bundle.
+        group: of its metrics.json, `model` for what the engine says of the model.
+        names: those that it must have, and no others.
+
+    Raises:
+        BundleRefused: `metrics`, where a count is missing or is no count.
+    """
+    recorded = bundle.read_metrics(folder).get(group, {})
+    expected = sorted(names)
+    expect("metrics", "metrics.json", f"list of counts in {group}", sorted(recorded), expected)
+    counts = {}
+    for name, metric in recorded.items():
+        if not isinstance(metric.value, int):
+            raise BundleRefused(
+                "metrics",
+                f"metrics.json: {group}.{name} is {metric.value}, expected an integer. {AGAIN}",
+            )
+        counts[name] = metric.value
+    return counts
 
 
 def check_metrics(folder: Path, expected: MetricRecords) -> None:

@@ -36,9 +36,9 @@ ENGINE, COMPILER = project.ENGINE, "quadrants"
 class Measured:
     """What a page hands over.
 
-    `joints` is None for runs of free bodies. `metrics` is group → name → {value, unit, class, from}; `frames` name → RGB, empty without a
-    camera; `parameters` must be JSON values; `notes` says by case what its arrays are where they
-    are no ordinary run.
+    `joints` is None for runs of free bodies. `metrics` is group → name → {value, unit, class,
+    from}; `frames` name → RGB, empty without a camera; `parameters` must be JSON values; `notes`
+    says by case what its arrays are where they are no ordinary run.
     """
 
     joints: JointMap | None

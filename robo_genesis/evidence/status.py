@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis import project
-from robo_genesis.checks import CHECKS
 from robo_genesis.evidence import bundle, current
 from robo_genesis.evidence.bundle import BundleRefused, Manifest
 from robo_genesis.evidence.compare import specification
@@ -73,7 +72,7 @@ class Status:
         more = f" {self.summary}" if self.summary else ""
         return (
             f"{kernel}, Genesis {predicate.engine.version}, "
-            f"{passed} of {len(CHECKS)} checks passed, {camera}, "
+            f"{passed} of {len(predicate.checks)} checks passed, {camera}, "
             f"measured {predicate.started[:10]}.{more}"
         )
 

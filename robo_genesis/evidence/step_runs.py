@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 
-from robo_genesis import checks, l04, l04_studies, study_checks
+from robo_genesis import l04, l04_studies, step_checks, study_checks
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Manifest
-from robo_genesis.evidence.recompute import Judged, read_frames
+from robo_genesis.evidence.recompute import Judged, read_counts, read_frames
 from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.metrics import measure, metric_records
@@ -26,7 +26,7 @@ def judge(folder: Path, manifest: Manifest) -> Judged:
     """
     run = read_run(folder, manifest)
     found = metric_records(run.metrics, run.model)
-    outcomes = checks.run_checks(run)
+    outcomes = step_checks.run_checks(run)
     studied = read_studies(folder, manifest)
     if studied:
         try:
@@ -37,7 +37,7 @@ def judge(folder: Path, manifest: Manifest) -> Judged:
     return Judged(found, outcomes)
 
 
-def read_run(folder: Path, manifest: Manifest) -> checks.StepExperiment:
+def read_run(folder: Path, manifest: Manifest) -> step_checks.StepExperiment:
     """Return the experiment as its page had it, with metrics computed again from the arrays.
 
     Raises:
@@ -51,9 +51,9 @@ def read_run(folder: Path, manifest: Manifest) -> checks.StepExperiment:
         metrics = measure(traces, l04.CASES, ENTRY)
     except ValueError as error:
         raise BundleRefused("bad-trace", f"arrays: {error} {AGAIN}") from error
-    return checks.StepExperiment(
+    return step_checks.StepExperiment(
         joints=read_joints(arrays),
-        model=read_counts(folder),
+        model=read_counts(folder, "model", l04.EXPECTED_MODEL),
         cases=l04.CASES,
         traces={case: traces[case] for case in l04.CASES},
         metrics=metrics,
@@ -134,23 +134,3 @@ def read_studies(folder: Path, manifest: Manifest) -> Studies | None:
         raise BundleRefused(
             "metrics", f"metrics.json: readings lacks {error}, expected a number. {AGAIN}"
         ) from error
-
-
-def read_counts(folder: Path) -> dict[str, int]:
-    """Return the engine's counts of links, joints, DOFs and qpos, as they were recorded.
-
-    Raises:
-        BundleRefused: `metrics`, where a count is missing or is no count.
-    """
-    recorded = bundle.read_metrics(folder).get("model", {})
-    names = sorted(l04.EXPECTED_MODEL)
-    expect("metrics", "metrics.json", "list of counts in model", sorted(recorded), names)
-    counts = {}
-    for name, metric in recorded.items():
-        if not isinstance(metric.value, int):
-            raise BundleRefused(
-                "metrics",
-                f"metrics.json: model.{name} is {metric.value}, expected an integer. {AGAIN}",
-            )
-        counts[name] = metric.value
-    return counts

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from robo_genesis import l04, project, runtime
-from robo_genesis.checks import run_checks
 from robo_genesis.evidence import current, record
 from robo_genesis.evidence.current import page_digest
 from robo_genesis.evidence.record import Measured, Recorder
 from robo_genesis.metrics import metric_records
+from robo_genesis.step_checks import run_checks
 
 QUADRANTS = current.locked_version("quadrants", project.ROOT)
 RUN_ID = "0123456789abcdef" * 2

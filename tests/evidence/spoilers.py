@@ -18,7 +18,7 @@ import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from robo_genesis import checks, l04
+from robo_genesis import l04, step_checks
 from robo_genesis.evidence import bundle, files, step_runs, traces
 from robo_genesis.evidence.archive import UNPACKED_LIMIT
 from robo_genesis.metrics import measure, metric_records
@@ -209,7 +209,7 @@ def measured_again(folder):
 def checked_again(folder):
     """Make the recorded checks those of the arrays and joints, failures included."""
     run = step_runs.read_run(folder, bundle.read_manifest(folder))
-    predicate(checks=[asdict(outcome) for outcome in checks.run_checks(run)])(folder)
+    predicate(checks=[asdict(outcome) for outcome in step_checks.run_checks(run)])(folder)
 
 
 def joint(index, **values):

@@ -17,7 +17,6 @@ from spoilers import (
 )
 
 from robo_genesis import l04, project
-from robo_genesis.checks import StepExperiment, run_checks
 from robo_genesis.evidence.status import (
     bundle_status,
     page_status,
@@ -26,6 +25,7 @@ from robo_genesis.evidence.status import (
     refused_records,
 )
 from robo_genesis.metrics import measure, metric_records
+from robo_genesis.step_checks import StepExperiment, run_checks
 
 
 @pytest.fixture

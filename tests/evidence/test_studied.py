@@ -7,7 +7,7 @@ import pytest
 from conftest import RUN_ID, without_engine
 from spoilers import edit, seal
 
-from robo_genesis import checks, l04, l04_studies, project, runtime, studies, study_checks
+from robo_genesis import l04, l04_studies, project, runtime, step_checks, studies, study_checks
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare, specification
 from robo_genesis.evidence.current import page_digest
@@ -22,7 +22,7 @@ LINKS = ("link0", "link4", "hand")
 def sound(backend, tmp_path_factory, engine, frames, study_runs) -> Path:
     traces = dict(study_runs.traces)
     metrics = measure(traces, l04.CASES, study_runs.entry)
-    run = checks.StepExperiment(
+    run = step_checks.StepExperiment(
         study_runs.joints, l04.EXPECTED_MODEL, l04.CASES,
         {name: traces[name] for name in l04.CASES}, metrics, "camera", frames,
     )  # fmt: skip
@@ -31,7 +31,7 @@ def sound(backend, tmp_path_factory, engine, frames, study_runs) -> Path:
         links=LINKS,
         traces=traces,
         metrics=metric_records(metrics, l04.EXPECTED_MODEL) | studies.records(study_runs),
-        checks=[*checks.run_checks(run), *study_checks.run_checks(study_runs)],
+        checks=[*step_checks.run_checks(run), *study_checks.run_checks(study_runs)],
         frames=frames,
         parameters=l04.parameters() | l04_studies.parameters(),
         renderer=runtime.Renderer("Mesa", "llvmpipe"),

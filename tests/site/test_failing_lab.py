@@ -11,7 +11,7 @@ from robo_genesis.project import BOOK, CACHE, ROOT
 
 pytestmark = pytest.mark.engine
 LAB = "lessons/l04-joint-control/lab"
-SPOIL = """experiment = checks.StepExperiment(
+SPOIL = """experiment = step_checks.StepExperiment(
     joints, model | {"links": 12}, l04.CASES, traces, metrics, posture, frames
 )
 """
@@ -22,7 +22,7 @@ def test_a_failing_check_is_named_and_nothing_is_published(tmp_path):
     shutil.copytree(BOOK, book, ignore=shutil.ignore_patterns("_build*"))
     (book / "_toc.yml").write_text(f"format: jb-book\nroot: {LAB}\n")
     lab = book / f"{LAB}.md"
-    begin, end = "experiment = checks.StepExperiment(", "outcomes = checks.run_checks"
+    begin, end = "experiment = step_checks.StepExperiment(", "outcomes = step_checks.run_checks"
     text = lab.read_text()
     lab.write_text(text[: text.index(begin)] + SPOIL + text[text.index(end) :])
     (book / "_build" / "html").mkdir(parents=True)

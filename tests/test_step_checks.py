@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from robo_genesis import l04
-from robo_genesis.checks import CHECKS, Check, CheckFailed, require, run_checks
+from robo_genesis.checks import Check, CheckFailed, require
+from robo_genesis.step_checks import CHECKS, run_checks
 
 NAMES = [check.__name__ for check in CHECKS]
 

@@ -1,0 +1,134 @@
+"""Named checks of a dropped box: all pass, or the exact invariant that failed is named."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from robo_genesis import l02
+from robo_genesis import posture as postures
+from robo_genesis.checks import Check, evaluate
+from robo_genesis.drop_metrics import DropMetrics, fallen
+from robo_genesis.free_bodies import START_TOLERANCE, Drop
+from robo_genesis.trace import BodyTrace
+
+MASS_SHARE = 1e-5
+"""What the engine's mass may differ from density times volume by, as a share: float32."""
+
+
+@dataclass(frozen=True, slots=True)
+class DropExperiment:
+    """All that the checks of a drop look at.
+
+    `model` counts entities of the scene, and links, geoms, joints, dofs and qpos of the box, as the
+    engine reports them; `mass` is the engine's [kg]; `posture` says what shows the run's ends.
+    """
+
+    model: Mapping[str, int]
+    mass: float
+    cases: Mapping[str, Drop]
+    traces: Mapping[str, BodyTrace]
+    metrics: Mapping[str, DropMetrics]
+    posture: str
+    frames: Mapping[str, np.ndarray]
+
+
+def structure(run: DropExperiment) -> list[str]:
+    """The scene has two entities; the box is one link, one geom, one joint, 6 DOFs and 7 qpos."""
+    if dict(run.model) == l02.EXPECTED_MODEL:
+        return []
+    return [f"the model has {dict(run.model)}, expected {l02.EXPECTED_MODEL}"]
+
+
+def mass(run: DropExperiment) -> list[str]:
+    """The engine's mass is density times volume."""
+    expected = l02.BASELINE.mass
+    if abs(run.mass - expected) <= MASS_SHARE * expected:
+        return []
+    return [f"the engine's mass is {run.mass:g} kg, density times volume {expected:g} kg"]
+
+
+def start(run: DropExperiment) -> list[str]:
+    """Each run begins with the box at rest at the height that was asked for."""
+    problems = []
+    for name, case in run.cases.items():
+        trace = run.traces[name]
+        height = float(trace.link_pos[0, 0, 2])
+        if abs(height - case.height) > START_TOLERANCE:
+            problems.append(f"{name} starts at {height:g} m, asked for {case.height:g} m")
+        if trace.link_vel[0].any() or trace.link_ang[0].any():
+            problems.append(f"{name} starts with velocity {trace.link_vel[0, 0].tolist()} m/s")
+    return problems
+
+
+def stamps(run: DropExperiment) -> list[str]:
+    """One outer step is dt: states at k · dt from zero, as many as were asked for."""
+    problems = []
+    for name, case in run.cases.items():
+        t, asked = run.traces[name].t, np.arange(case.steps + 1) * case.dt
+        if len(t) != len(asked) or not np.allclose(t, asked, rtol=0, atol=1e-9):
+            problems.append(f"{name} has {len(t) - 1} steps to {t[-1]:g} s, asked for "
+                            f"{case.steps} steps of {case.dt:g} s")  # fmt: skip
+    return problems
+
+
+def falls(run: DropExperiment) -> list[str]:
+    """The box is lower after every step than before it, and faster."""
+    problems = []
+    for name, trace in run.traces.items():
+        lower, faster = np.diff(fallen(trace)) > 0, np.diff(-trace.link_vel[:, 0, 2]) > 0
+        for what, held in (("lower", lower), ("faster", faster)):
+            if not held.all():
+                problems.append(f"{name} is not {what} after step {int(np.argmin(held)) + 1}")
+    return problems
+
+
+def clear_of_ground(run: DropExperiment) -> list[str]:
+    """The box's underside stays above the ground: what is measured is fall, not contact."""
+    problems = []
+    for name, case in run.cases.items():
+        lowest = float(run.traces[name].link_pos[:, 0, 2].min()) - case.size / 2
+        if lowest <= 0:
+            problems.append(f"{name}: the underside comes down to {lowest:g} m")
+    return problems
+
+
+def stepped_formula(run: DropExperiment) -> list[str]:
+    """At every sample the box has fallen g h² n (n + 1) / 2, to within float32."""
+    return [
+        f"{name} is up to {of.formula_error:g} m off, allowed are {l02.FORMULA_TOLERANCE:g} m"
+        for name, of in run.metrics.items()
+        if not of.formula_error <= l02.FORMULA_TOLERANCE
+    ]
+
+
+def straight_down(run: DropExperiment) -> list[str]:
+    """Nothing pushes the box aside, and nothing turns it."""
+    return [
+        f"{name} moves {of.sideways:g} m aside and turns at up to {of.turning:g} rad/s"
+        for name, of in run.metrics.items()
+        if not (of.sideways <= l02.AT_REST and of.turning <= l02.AT_REST)
+    ]
+
+
+def posture(run: DropExperiment) -> list[str]:
+    """The evidence of both ends says what it is, and shows the box in two places."""
+    return postures.problems(run.posture, run.frames, run.traces["baseline"].link_pos)
+
+
+CHECKS: tuple[Callable[[DropExperiment], list[str]], ...] = (
+    structure,
+    mass,
+    start,
+    stamps,
+    falls,
+    clear_of_ground,
+    stepped_formula,
+    straight_down,
+    posture,
+)
+
+
+def run_checks(run: DropExperiment) -> tuple[Check, ...]:
+    """Run every check; one that fails says what it found, one that passes what it held."""
+    return evaluate(CHECKS, run)
