@@ -28,6 +28,8 @@ from robo_genesis import (
     step_checks,
     studies,
 )
+from robo_genesis.falling import summed_drop
+from robo_genesis.free_bodies import Drop
 from robo_genesis.metrics import measure
 from robo_genesis.robot_model import JointMap
 from robo_genesis.scene_config import (
@@ -40,7 +42,7 @@ from robo_genesis.scene_config import (
     SUBSTEPS,
     per_joint,
 )
-from robo_genesis.trace import Trace
+from robo_genesis.trace import BodyTrace, Trace
 
 # Tests send it to the commands they start; a shell that starts pytest with & has it ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -163,6 +165,24 @@ def make_run(second_order) -> Callable[..., Trace]:
 def traces(make_run) -> dict[str, Trace]:
     """Synthetic runs of the four cases of L04."""
     return {name: make_run(name, *SHAPES[name]) for name in l04.CASES}
+
+
+@pytest.fixture(scope="session")
+def make_drop() -> Callable[[Drop], BodyTrace]:
+    """Build a dropped box that follows the stepped formula in float32."""
+
+    def build(case: Drop) -> BodyTrace:
+        t = np.arange(case.steps + 1) * case.dt
+        position = np.zeros((len(t), 1, 3), np.float32)
+        n = case.substeps * np.arange(len(t))
+        position[:, 0, 2] = case.height - summed_drop(case.h, n, case.gravity)
+        velocity = np.zeros_like(position)
+        velocity[:, 0, 2] = -case.gravity * t
+        upright = np.zeros((len(t), 1, 4), np.float32)
+        upright[..., 0] = 1
+        return BodyTrace(t, position, upright, velocity, np.zeros_like(position))
+
+    return build
 
 
 @pytest.fixture(scope="session")

@@ -61,7 +61,7 @@ def compared(metric, values):
     return compare(metric, *pair(metric, values), RESOLUTION)
 
 
-@pytest.mark.parametrize("metric", LABELS)
+@pytest.mark.parametrize("metric", sorted(LABELS.keys() & UNITS))
 @pytest.mark.parametrize("order", ORDERS)
 def test_two_values_are_ordered(metric, order):
     unit = RESOLUTION[UNITS[metric]]
@@ -69,7 +69,7 @@ def test_two_values_are_ordered(metric, order):
     assert compared(metric, values[order]).order == order
 
 
-@pytest.mark.parametrize("metric", LABELS)
+@pytest.mark.parametrize("metric", sorted(LABELS.keys() & UNITS))
 @pytest.mark.parametrize(
     ("share", "order"), [(0.9, "equal"), (-0.9, "equal"), (1.1, "higher"), (-1.1, "lower")]
 )

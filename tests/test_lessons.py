@@ -33,7 +33,7 @@ def test_what_a_lesson_names_is_there(name):
 
 
 def test_unknown_names_are_answered_with_those_there_are():
-    with pytest.raises(LookupError, match=r"'l99' is no lesson\. Choices: l04"):
+    with pytest.raises(LookupError, match=r"'l99' is no lesson\. Choices: l02, l04"):
         find_lesson("l99")
     with pytest.raises(LookupError, match=r"l04/exam is no page that measures\. Choices: l04/lab"):
         find_page("l04", "exam")

@@ -76,6 +76,21 @@ class Recorder:
         """Where the bundle will stand."""
         return self.contract.outputs / self.lesson / self.page / self.engine.backend.actual
 
+    def facts(self) -> list[dict[str, str]]:
+        """Return what the run is made of as rows of a table: engine, backend, rendering, folder."""
+        engine, backend = self.engine, self.engine.backend
+        found = {
+            "Genesis": engine.version,
+            "requested backend": backend.requested,
+            "actual backend": f"{backend.actual} ({backend.device_name})",
+            "rendering": "camera" if self.contract.render else "SKIP (ROBO_GENESIS_RENDER=0)",
+            "precision": f"float{engine.precision}",
+            "seed": str(engine.seed),
+            "run": self.run_id[:8],
+            "outputs": f"{self.lesson}/{self.page}/{backend.actual}",
+        }
+        return [{"what": name, "value": value} for name, value in found.items()]
+
     def write(self, measured: Measured) -> Path:
         """Write the bundle beside its place, then move it there in one step.
 

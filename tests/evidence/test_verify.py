@@ -16,7 +16,7 @@ from robo_genesis.evidence.verify import verify_bundle
 
 READERS = (
     "strict_json", "bundle", "files", "rules", "current", "archive", "traces", "recompute",
-    "step_runs", "verify",
+    "drop_runs", "step_runs", "verify",
 )  # fmt: skip
 
 
