@@ -240,8 +240,8 @@ def study_runs(joints) -> studies.Studies:
 
 
 @pytest.fixture(scope="module")
-def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
-    """Real engine, in this process, and the lab's scene, built once.
+def real_engine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
+    """Real engine, started in this process.
 
     It holds the lock of builds: one that starts meanwhile would take the engine's lock files for
     stale. Module scope gives the lock back before the tests of the site build theirs.
@@ -253,23 +253,26 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
         engine = runtime.start(contract)
         import genesis as gs
 
-        scene = gs.Scene(
-            sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS), show_viewer=False
-        )
-        scene.add_entity(gs.morphs.Plane())
-        franka = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
-        camera = scene.add_camera(**CAMERA)
-        scene.build()
-        yield SimpleNamespace(
-            gs=gs,
-            contract=contract,
-            engine=engine,
-            scene=scene,
-            franka=franka,
-            camera=camera,
-            joints=robot_model.resolve_joints(franka, JOINT_NAMES),
-        )
+        yield SimpleNamespace(gs=gs, contract=contract, engine=engine)
         gs.destroy()  # saves the compiled kernels while the log can still be written
+
+
+@pytest.fixture(scope="module")
+def lab(real_engine: SimpleNamespace) -> SimpleNamespace:
+    """The scene of L04's lab, built once."""
+    gs = real_engine.gs
+    scene = gs.Scene(sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS), show_viewer=False)
+    scene.add_entity(gs.morphs.Plane())
+    franka = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
+    camera = scene.add_camera(**CAMERA)
+    scene.build()
+    return SimpleNamespace(
+        **vars(real_engine),
+        scene=scene,
+        franka=franka,
+        camera=camera,
+        joints=robot_model.resolve_joints(franka, JOINT_NAMES),
+    )
 
 
 @pytest.fixture

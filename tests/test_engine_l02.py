@@ -12,9 +12,8 @@ pytestmark = pytest.mark.engine
 
 
 @pytest.fixture(scope="module")
-def lab(engine):
-    import genesis as gs
-
+def dropped(real_engine):
+    gs = real_engine.gs
     case = l02.BASELINE
     scene = gs.Scene(
         sim_options=gs.options.SimOptions(dt=case.dt, substeps=case.substeps), show_viewer=False
@@ -32,35 +31,35 @@ def lab(engine):
     return SimpleNamespace(gs=gs, scene=scene, box=box, traces=traces, frames=frames)
 
 
-def experiment(lab) -> drop_checks.DropExperiment:
-    box, entities = lab.box, len(lab.scene.entities)
+def experiment(dropped) -> drop_checks.DropExperiment:
+    box, entities = dropped.box, len(dropped.scene.entities)
     model = {"entities": entities, "links": box.n_links, "geoms": box.n_geoms}
     model |= {"joints": box.n_joints, "dofs": box.n_dofs, "qpos": box.n_qs}
-    metrics = measure(lab.traces, l02.CASES)
+    metrics = measure(dropped.traces, l02.CASES)
     return drop_checks.DropExperiment(
-        model, float(box.get_mass()), l02.CASES, lab.traces, metrics, "camera", lab.frames
+        model, float(box.get_mass()), l02.CASES, dropped.traces, metrics, "camera", dropped.frames
     )
 
 
-def test_the_lab_passes_its_checks(lab):
-    assert checks.require("l02", drop_checks.run_checks(experiment(lab))) == "L02 CHECK: PASSED"
+def test_the_lab_passes_its_checks(dropped):
+    assert checks.require("l02", drop_checks.run_checks(experiment(dropped))) == "L02 CHECK: PASSED"
 
 
-def test_a_second_drop_is_the_same_to_the_last_bit(lab):
-    again = free_bodies.run_drop(lab.scene, lab.box, l02.BASELINE)
+def test_a_second_drop_is_the_same_to_the_last_bit(dropped):
+    again = free_bodies.run_drop(dropped.scene, dropped.box, l02.BASELINE)
     for name in ("link_pos", "link_quat", "link_vel", "link_ang"):
-        assert np.array_equal(getattr(again, name), getattr(lab.traces["baseline"], name)), name
+        assert np.array_equal(getattr(again, name), getattr(dropped.traces["baseline"], name)), name
 
 
-def test_a_box_that_was_pushed_is_refused_as_a_start(lab, monkeypatch):
-    monkeypatch.setattr(lab.scene, "reset", lambda: None)
-    lab.scene.step()
-    with pytest.raises(free_bodies.DropError, match="asks for 0.5 m, at rest"):
-        free_bodies.run_drop(lab.scene, lab.box, l02.BASELINE)
+def test_a_box_that_was_pushed_is_refused_as_a_start(dropped, monkeypatch):
+    monkeypatch.setattr(dropped.scene, "reset", lambda: None)
+    dropped.scene.step()
+    with pytest.raises(free_bodies.DropError, match=r"asks for 0\.5 m, at rest"):
+        free_bodies.run_drop(dropped.scene, dropped.box, l02.BASELINE)
 
 
-def test_each_call_belongs_to_one_side_of_build(lab):
-    gs = lab.gs
+def test_each_call_belongs_to_one_side_of_build(dropped):
+    gs = dropped.gs
     scene = gs.Scene(show_viewer=False)
     box = scene.add_entity(gs.morphs.Box(size=(0.1,) * 3, pos=(0.0, 0.0, 0.5)))
     camera = scene.add_camera(GUI=False)
