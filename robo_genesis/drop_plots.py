@@ -39,8 +39,7 @@ def speed(ax: Axes, trace: BodyTrace, case: Drop) -> Axes:
 def three_drops(ax: Axes, trace: BodyTrace, case: Drop, formula: FloatArray) -> Axes:
     """Draw how much farther than g t² / 2 the box is, measured and by the stepped formula.
 
-    The fall itself is two hundred millimetres and the difference five: drawn as heights, the three
-    would be one line.
+    The difference is a small part of the fall: drawn as heights, the three would be one line.
 
     Args:
         ax: where to draw.

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis import interpretation, l04, l04_studies, metrics, scene_config
+from robo_genesis import interpretation, l02, l04, l04_studies, metrics, scene_config
 from robo_genesis.project import BOOK
 
 CONFIGURED = {
@@ -17,6 +17,8 @@ CONFIGURED = {
     "rise fraction": metrics.RISE_FRACTION,
     "settling band [rad]": metrics.SETTLING_BAND,
     "saturation threshold": metrics.SATURATION_THRESHOLD,
+    "length of the drop [s]": l02.BASELINE.dt * l02.BASELINE.steps,
+    "acceleration of gravity [m/s²]": l02.BASELINE.gravity,
     "speed nearly at rest [rad/s]": interpretation.AT_REST,
 }
 PAGES = [*sorted(BOOK.glob("*.md")), *sorted(BOOK.glob("[el]*/**/*.md"))]
