@@ -1,10 +1,11 @@
 """The lessons of the course: what each one declares, and which of its pages measure."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from robo_genesis import drop_metrics, l02, l04, l04_studies, metrics
+from robo_genesis.channels import listed
 
 Relation = tuple[tuple[str, str], str, str, float]
 """A claimed ordering: (first case, second case), metric, order, margin."""
@@ -48,17 +49,47 @@ class MeasuringPage:
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
-    """Cases that are drawn over each other, and the joint that they move."""
+class Drawn:
+    """Cases that are drawn over each other and played.
+
+    `until` ends the window of the small plot [s], where what comes later is one flat line.
+    """
 
     cases: tuple[str, ...]
-    joint: str
+    until: float | None = field(default=None, kw_only=True)
 
     @property
     def names(self) -> str:
         """The cases as words: `G1, G2 and G3`."""
-        *others, last = self.cases
-        return f"{', '.join(others)} and {last}"
+        return listed(self.cases)
+
+
+@dataclass(frozen=True, slots=True)
+class Compared(Drawn):
+    """Cases of a robot that move one joint."""
+
+    joint: str
+
+
+@dataclass(frozen=True, slots=True)
+class Moving(Drawn):
+    """Cases of free bodies: the link that curves follow, by its name in the record, and along what.
+
+    `thing` is what a reader sees move: "box". `axes` are of the world; each gives two curves,
+    position and velocity, and the first position stands for the lesson in small pictures.
+    """
+
+    link: str
+    thing: str
+    axes: tuple[str, ...] = ("z",)
+
+
+@dataclass(frozen=True, slots=True)
+class Filmed:
+    """What camera frames show, in the words of their captions, and in which run."""
+
+    thing: str = "the Franka"
+    case: str = "the baseline"
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +102,8 @@ class Lesson:
     spec: Specification
     metrics: tuple[str, ...]
     pages: Mapping[str, MeasuringPage]
-    compared: Compared | None = None
+    compared: Compared | Moving | None = None
+    filmed: Filmed = Filmed()
 
 
 COMMON_MODULES = ("checks", "posture", "robot_model", "runtime", "scene_config", "trace")
@@ -89,6 +121,8 @@ LESSONS = {
                 l02.study_parameters, (*DROP_MODULES, "life_cycle", "substep_study")
             ),
         },
+        compared=Moving(tuple(l02.CASES), link="box_baselink", thing="box"),
+        filmed=Filmed("the box"),
     ),
     l04.LESSON: Lesson(
         spec=l04,
@@ -99,7 +133,7 @@ LESSONS = {
                 lambda: l04.parameters() | l04_studies.parameters(), STEP_MODULES + STUDY_MODULES
             ),
         },
-        compared=Compared(tuple(l04_studies.COMPARED), l04.STEPPED_JOINT),
+        compared=Compared(tuple(l04_studies.COMPARED), l04.STEPPED_JOINT, until=0.6),
     ),
 }
 """By name, in the order in which a reader meets them."""
@@ -116,9 +150,14 @@ def find_lesson(name: str) -> Lesson:
     return LESSONS[name]
 
 
-def compared_cases(lesson: str) -> Compared | None:
+def compared_cases(lesson: str) -> Compared | Moving | None:
     """Return what a lesson's pictures hold against each other, None where that is nothing."""
     return LESSONS[lesson].compared if lesson in LESSONS else None
+
+
+def filmed(lesson: str) -> Filmed:
+    """Return what the camera frames of a lesson show."""
+    return LESSONS[lesson].filmed if lesson in LESSONS else Filmed()
 
 
 def find_page(lesson: str, page: str) -> MeasuringPage:

@@ -4,6 +4,7 @@ Hues follow Okabe and Ito's palette, darkened or lightened until each reads as t
 Dashes tell the lines apart without colour; no two marks share a pattern.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 GROUNDS = {"light": ("#ffffff", "#f3f4f5"), "dark": ("#14181e", "#222832", "#29313d")}
@@ -36,6 +37,22 @@ MARKS = {
 run that is none of these: a point of a grid between the cases, a third one in a comparison."""
 
 CASES = ("baseline", "G1", "G2", "G3")
+
+
+def marks_of(cases: Sequence[str]) -> dict[str, str]:
+    """Return the mark of each case: its own, or one that no other case here has.
+
+    Raises:
+        ValueError: there are more cases than marks that tell cases apart.
+    """
+    if len(cases) > len(CASES):
+        raise ValueError(
+            f"{', '.join(cases)} are {len(cases)} cases; the palette tells {len(CASES)} apart. "
+            "Draw fewer of them over each other, or add marks to CASES in robo_genesis/palette.py."
+        )
+    coloured = (*CASES[1:], CASES[0])  # the baseline's grey last
+    free = iter([name for name in coloured if name not in cases])
+    return {case: case if case in CASES else next(free) for case in cases}
 
 
 def css_name(name: str) -> str:

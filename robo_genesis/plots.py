@@ -9,9 +9,11 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 
-from robo_genesis.metrics import SETTLING_BAND
-from robo_genesis.palette import CASES, MARKS
+from robo_genesis import joint_runs
+from robo_genesis.channels import Channel, Level, Runs
+from robo_genesis.palette import CASES, MARKS, marks_of
 from robo_genesis.robot_model import JointMap
+from robo_genesis.scene_config import FloatArray
 from robo_genesis.trace import Trace
 
 
@@ -65,24 +67,50 @@ def style(name: str) -> dict[str, Any]:
     return look(name if name in CASES else "baseline")
 
 
+def channel(
+    ax: Axes, t: FloatArray, drawn: Channel, subject: str, levels: Sequence[Level] = ()
+) -> Axes:
+    """Draw one channel of each case, and what it is held against.
+
+    Args:
+        ax: where to draw.
+        t: times of the states (n+1,) [s].
+        drawn: the channel.
+        subject: whose it is.
+        levels: of this channel; equal ones of several cases are drawn once.
+    """
+    for level in levels:
+        values = dict.fromkeys(value for case in level.values.values() for value in case)
+        for number, value in enumerate(values):
+            if level.band:
+                label = "" if number else f"band ±{level.band:g} {drawn.unit}"
+                edges = value - level.band, value + level.band
+                ax.axhspan(*edges, color="#e9e4d4", zorder=0, label=label)
+            name = "" if number else level.name
+            ax.axhline(value, **look(level.mark, label=name, linewidth=1.4))
+    for case, mark in marks_of(list(drawn.values)).items():
+        ax.plot(t, drawn.values[case], label=case, **look(mark))
+    return _finish(ax, f"{drawn.name.capitalize()} of {subject}", f"{drawn.head} [{drawn.unit}]")
+
+
+def first_channel(ax: Axes, runs: Runs) -> Axes:
+    """Draw the channel that stands for the runs where there is room for one."""
+    first = runs.channels[0]
+    return channel(ax, runs.t, first, runs.subject, runs.levels_of(first))
+
+
 def position(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
     """Draw q of one joint for each trace, the common target and its settling band."""
-    k = joints.entry(joint)
-    unit = joints.position_units[k]
-    target = float(next(iter(traces.values())).target[0, k])
-    ax.axhspan(target - SETTLING_BAND, target + SETTLING_BAND, color="#e9e4d4", zorder=0,
-               label=f"band ±{SETTLING_BAND:g} {unit}")  # fmt: skip
-    ax.axhline(target, label="target", **TARGET)
-    for name, trace in traces.items():
-        ax.plot(trace.t, trace.q[:, k], label=name, **style(name))
-    return _finish(ax, f"Position of {joint}", f"q [{unit}]")
+    drawn, *_ = joint_runs.channels(traces, joints, joint)
+    target, *_ = joint_runs.levels(traces, joints, joint)
+    return channel(ax, next(iter(traces.values())).t, drawn, joint, [target])
 
 
 def velocity(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
     """Draw q̇ of one joint for each trace."""
     k = joints.entry(joint)
-    for name, trace in traces.items():
-        ax.plot(trace.t_step, trace.qd[:, k], label=name, **style(name))
+    for name, mark in marks_of(list(traces)).items():
+        ax.plot(traces[name].t_step, traces[name].qd[:, k], label=name, **look(mark))
     return _finish(ax, f"Velocity of {joint}", f"q̇ [{joints.position_units[k]}/s]")
 
 
@@ -90,8 +118,8 @@ def control_force(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint
     """Draw the control force of one joint for each trace, between the limits read back."""
     k = joints.entry(joint)
     limit = float(next(iter(traces.values())).effort_limit[k])
-    for name, trace in traces.items():
-        ax.plot(trace.t_step, trace.control_force[:, k], label=name, **style(name))
+    for name, mark in marks_of(list(traces)).items():
+        ax.plot(traces[name].t_step, traces[name].control_force[:, k], label=name, **look(mark))
     ax.axhline(limit, label="limit, read back", **LIMIT)
     ax.axhline(-limit, **LIMIT)
     return _finish(ax, f"Control force of {joint}", f"control force [{joints.effort_units[k]}]")

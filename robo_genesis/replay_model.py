@@ -1,7 +1,8 @@
-"""A recorded run as a GLB: the robot's shape moves as the link poses of the record say.
+"""Recorded runs as a GLB: the shape of what moves, moved as the link poses of the record say.
 
 One node per link, placed in the world and moved by one animation per case, whose keys are the
-samples of the record. Nothing is compressed: what unpacks such meshes would have to be loaded.
+samples of the record; one more for what stands still. Nothing is compressed: what unpacks such
+meshes would have to be loaded.
 """
 
 import json
@@ -12,10 +13,9 @@ import numpy as np
 import pygltflib as gltf
 import trimesh
 
-from robo_genesis.replay import CREDIT
-from robo_genesis.robot_shape import Part
+from robo_genesis.channels import Run
+from robo_genesis.robot_shape import WORLD, Part, check_links
 from robo_genesis.scene_config import FloatArray
-from robo_genesis.trace import Trace
 
 KEPT = 0.05
 """Share of the triangles of a large part that is kept: with the small ones, about 10,000 of the
@@ -27,10 +27,11 @@ SMALLEST = 400
 CREASE = np.radians(40)
 """Angle between triangles above which an edge is drawn sharp [rad]."""
 
-WORLD = "world"
-"""The root node. It turns the record's frame (z up) into glTF's (y up); links are below it."""
+STILL = "still"
+"""The node of what belongs to no link."""
 
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
+"""Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it."""
 
 
 class Binary:
@@ -69,37 +70,40 @@ class Binary:
         return self.known[kind, packed]
 
 
-def glb(shape: Sequence[Part], links: Sequence[str], traces: Mapping[str, Trace]) -> bytes:
+def glb(
+    shape: Sequence[Part],
+    links: Sequence[str],
+    traces: Mapping[str, Run],
+    credit: str | None = None,
+) -> bytes:
     """Return the model with one animation a case.
 
     Args:
-        shape: the robot's parts.
+        shape: the parts of what moves; those of `WORLD` stand still.
         links: names of the links, in the order of the record.
         traces: the record by case.
+        credit: whose the shape is, None where it needs no notice.
 
     Raises:
-        ValueError: a part belongs to a link that is not in the record.
+        ValueError: a part belongs to a link that is not in the record, or two links have one name.
     """
-    unknown = sorted({part.link for part in shape} - set(links))
-    if unknown:
-        raise ValueError(
-            f"The shape has parts of {', '.join(unknown)}; the record knows {', '.join(links)}. "
-            "Both must come from one model: run the lecture and the recorded lab at one pin."
-        )
-    model = gltf.GLTF2(asset=gltf.Asset(version="2.0", generator="RoboGenesis", copyright=CREDIT))
+    check_links(shape, links)
+    model = gltf.GLTF2(asset=gltf.Asset(version="2.0", generator="RoboGenesis", copyright=credit))
     binary = Binary(model)
     model.nodes = [gltf.Node(name=WORLD, rotation=Z_UP_TO_Y_UP, children=[])]
     first = next(iter(traces.values()))
     for k, link in enumerate(links):
-        own = [part for part in shape if part.link == link]
         node = gltf.Node(
             name=link,
             translation=first.link_pos[0, k].astype(float).tolist(),
             rotation=rotations(first.link_quat[:1, k])[0].astype(float).tolist(),
-            mesh=_mesh(binary, link, own) if own else None,
+            mesh=_mesh(binary, link, shape),
         )
-        model.nodes[0].children.append(len(model.nodes))
         model.nodes.append(node)
+    still = _mesh(binary, WORLD, shape)
+    if still is not None:
+        model.nodes.append(gltf.Node(name=STILL, mesh=still))
+    model.nodes[0].children = list(range(1, len(model.nodes)))
     model.animations = [_animation(binary, name, trace) for name, trace in traces.items()]
     model.scene, model.scenes = 0, [gltf.Scene(nodes=[0])]
     model.buffers = [gltf.Buffer(byteLength=len(binary.data))]
@@ -107,10 +111,10 @@ def glb(shape: Sequence[Part], links: Sequence[str], traces: Mapping[str, Trace]
     return b"".join(model.save_to_bytes())
 
 
-def _mesh(binary: Binary, link: str, parts: Sequence[Part]) -> int:
-    """Add a link's mesh and return its number."""
+def _mesh(binary: Binary, link: str, shape: Sequence[Part]) -> int | None:
+    """Add a link's mesh and return its number, None where the link has no parts."""
     model, primitives = binary.model, []
-    for part in parts:
+    for part in (part for part in shape if part.link == link):
         mesh = light(part)
         attributes = gltf.Attributes(
             POSITION=binary.add(_float32(mesh.vertices), "VEC3", gltf.ARRAY_BUFFER, bounds=True),
@@ -122,6 +126,8 @@ def _mesh(binary: Binary, link: str, parts: Sequence[Part]) -> int:
         primitives.append(
             gltf.Primitive(attributes=attributes, indices=indices, material=_material(model, part))
         )
+    if not primitives:
+        return None
     model.meshes.append(gltf.Mesh(name=link, primitives=primitives))
     return len(model.meshes) - 1
 
@@ -161,7 +167,7 @@ def linear(srgb: FloatArray) -> FloatArray:
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
-def _animation(binary: Binary, name: str, trace: Trace) -> gltf.Animation:
+def _animation(binary: Binary, name: str, trace: Run) -> gltf.Animation:
     """Return the animation of a case: every link's position and orientation at every sample."""
     animation = gltf.Animation(name=name, channels=[], samplers=[])
     times = binary.add(_float32(trace.t), "SCALAR", bounds=True)

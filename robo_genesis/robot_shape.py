@@ -1,4 +1,4 @@
-"""What the robot looks like: the engine's own visual meshes, in the frames of their links."""
+"""What moves looks like: the engine's own visual meshes, in the frames of their links."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,6 +10,11 @@ import numpy as np
 from robo_genesis.scene_config import FloatArray
 
 FILE = "shape.npz"
+
+WORLD = "world"
+"""The link of parts that stand still; their frame is the record's, z up."""
+
+FLOOR_RGB = (205, 205, 205)
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,18 +30,66 @@ class Part:
     faces: np.ndarray
 
 
-def read_shape(robot: Any) -> list[Part]:
-    """Return the visual geometry of a built robot, one part for each colour of each link."""
+def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
+    """Return the visual geometry of a built entity, one part for each colour of each link.
+
+    Args:
+        entity: a robot, or a single body such as a box.
+        names: of its links in the record, where they are not the engine's: two boxes have one name.
+
+    Raises:
+        ValueError: there are not as many names as links.
+    """
+    names = [link.name for link in entity.links] if names is None else names
+    if len(names) != len(entity.links):
+        raise ValueError(
+            f"{len(names)} names given for {len(entity.links)} links: "
+            f"{', '.join(link.name for link in entity.links)}. Give one a link, in this order."
+        )
     parts = []
-    for link in robot.links:
+    for name, link in zip(names, entity.links, strict=True):
         by_colour: dict[tuple[int, int, int], list[tuple[FloatArray, np.ndarray]]] = {}
         for geom in link.vgeoms:
             mesh = geom.get_trimesh()
             red, green, blue = (int(value) for value in mesh.visual.main_color[:3])
             placed = rotate(geom.init_quat, mesh.vertices) + geom.init_pos
             by_colour.setdefault((red, green, blue), []).append((placed, np.array(mesh.faces)))
-        parts += [Part(link.name, rgb, *joined(meshes)) for rgb, meshes in by_colour.items()]
+        parts += [Part(name, rgb, *joined(meshes)) for rgb, meshes in by_colour.items()]
     return parts
+
+
+def floor(width: float) -> Part:
+    """Return a square of the plane z = 0 around the origin, seen from above.
+
+    The engine's plane has no end; a viewer frames what there is.
+
+    Args:
+        width: of the square [m].
+    """
+    half = width / 2
+    corners = [[-half, -half, 0], [half, -half, 0], [half, half, 0], [-half, half, 0]]
+    faces = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    return Part(WORLD, FLOOR_RGB, np.array(corners, np.float32), faces)
+
+
+def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
+    """Require that each part moves as one link of the record, or stands still.
+
+    Raises:
+        ValueError: a part belongs to a link that is not in the record, or two links have one name.
+    """
+    twice = sorted({link for link in links if links.count(link) > 1 or link == WORLD})
+    if twice:
+        raise ValueError(
+            f"The record has links of one name, or of that of the world: {', '.join(twice)}. Give "
+            "each a name of its own when the bundle is written, and the same to read_shape."
+        )
+    unknown = sorted({part.link for part in shape} - {*links, WORLD})
+    if unknown:
+        raise ValueError(
+            f"The shape has parts of {', '.join(unknown)}; the record knows {', '.join(links)}. "
+            "Both must come from one model: run the lecture and the recorded lab at one pin."
+        )
 
 
 def rotate(quat: FloatArray, points: FloatArray) -> FloatArray:

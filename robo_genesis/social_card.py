@@ -7,26 +7,24 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from robo_genesis import plots
-from robo_genesis.evidence import bundle
-from robo_genesis.evidence.traces import read_joints, read_trace
-from robo_genesis.lessons import Compared
+from robo_genesis.lessons import Compared, Moving
+from robo_genesis.played import read_runs
 
 SIZE = (12.0, 6.3)
 """Inches at 100 dots an inch: the 1200 × 630 pixels that most services show whole."""
 
 
-def card(folder: Path, compared: Compared) -> bytes:
+def card(folder: Path, compared: Compared | Moving) -> bytes:
     """Return the card as PNG.
 
     Args:
         folder: an accepted bundle, whose traces are drawn.
-        compared: which of them, and of which joint.
+        compared: which of them, and what is followed; its first channel is drawn.
 
     Raises:
         BundleRefused: the bundle cannot be read.
     """
-    arrays = bundle.read_arrays(folder)
-    traces = {case: read_trace(folder, arrays, case) for case in compared.cases}
+    runs = read_runs(folder, compared)
     stream = io.BytesIO()
     with plots.course_style():
         mpl.rcParams.update({"font.size": 15, "lines.linewidth": 3})
@@ -36,6 +34,6 @@ def card(folder: Path, compared: Compared) -> bytes:
         words.text(0, 0.72, "RoboGenesis", fontsize=40, fontweight="bold")
         words.text(0, 0.45, "Robot simulation,\nmeasured", fontsize=28)
         words.text(0, 0.12, "Every curve comes\nfrom a run of the engine.", fontsize=18)
-        plots.position(drawn, traces, read_joints(arrays), compared.joint)
+        plots.first_channel(drawn, runs)
         figure.savefig(stream, format="png", metadata={"Software": None})
     return stream.getvalue()

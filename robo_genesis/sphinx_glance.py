@@ -15,16 +15,12 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis import plots
-from robo_genesis.evidence import bundle
 from robo_genesis.evidence.status import RECORDED_PAGE, Status
-from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.ledger import Run
-from robo_genesis.lessons import Compared, compared_cases
+from robo_genesis.lessons import Compared, Moving, compared_cases, filmed
+from robo_genesis.played import read_runs
 from robo_genesis.sphinx_evidence import BACKEND, outputs_folder, page_state
 from robo_genesis.sphinx_panel import Picture, frames
-
-UNTIL = 0.6
-"""The end of the plot's window [s]: what comes later is one flat line."""
 
 
 class Glance(SphinxDirective):
@@ -47,7 +43,7 @@ class Glance(SphinxDirective):
         folder = outputs_folder() / lesson / RECORDED_PAGE / BACKEND
         run = Run(f"{lesson}/{RECORDED_PAGE}", folder, status).key
         box = nodes.container(classes=["glance"], evidence_runs=(run,))
-        shown = pictures(folder, compared, status)
+        shown = pictures(folder, compared, lesson, status)
         box += [self.figure(lesson, picture) for picture in shown]
         if status.manifest.predicate.render.mode != "camera":
             box += nodes.paragraph("", "SKIP: rendering was off, so there is no camera frame.")
@@ -63,34 +59,30 @@ class Glance(SphinxDirective):
         return nodes.figure("", image, nodes.caption("", picture.caption), ids=[anchor])
 
 
-def pictures(folder: Path, compared: Compared, status: Status) -> Iterator[Picture]:
+def pictures(
+    folder: Path, compared: Compared | Moving, lesson: str, status: Status
+) -> Iterator[Picture]:
     """Yield the plot, and the last camera frame if there is one."""
     yield response(folder, compared)
-    for frame in frames(folder, status):
+    for frame in frames(folder, filmed(lesson), status):
         if frame.name == "final":
             yield frame
 
 
-def response(folder: Path, compared: Compared) -> Picture:
-    """Return the position of the compared cases, drawn from a bundle's arrays."""
-    arrays = bundle.read_arrays(folder)
-    traces = {case: read_trace(folder, arrays, case) for case in compared.cases}
+def response(folder: Path, compared: Compared | Moving) -> Picture:
+    """Return the first channel of the compared cases, drawn from a bundle's arrays."""
+    runs = read_runs(folder, compared)
     stream = io.BytesIO()
     with plots.course_style():
         figure = Figure(figsize=(4.8, 3.6))
         ax = figure.subplots()
-        plots.position(ax, traces, read_joints(arrays), compared.joint)
-        ax.set_xlim(0, UNTIL)
-        ax.legend(loc="lower right", fontsize="medium")
+        plots.first_channel(ax, runs)
+        ax.set_xlim(0, compared.until)
+        ends = [(values[0], values[-1]) for values in runs.channels[0].values.values()]
+        fall = sum(last < first for first, last in ends) > len(ends) / 2
+        ax.legend(loc="upper right" if fall else "lower right", fontsize="medium")
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    alt = (
-        f"Position of {compared.joint} over time with the gains of {compared.names}, "
-        "its target and the settling band around it."
-    )
-    caption = (
-        f"Position of {compared.joint}, three settings of its controller, from get_dofs_position."
-    )
-    return Picture("response", ".svg", stream.getvalue(), alt, caption)
+    return Picture("response", ".svg", stream.getvalue(), runs.alt, runs.caption)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

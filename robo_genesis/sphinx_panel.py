@@ -18,14 +18,15 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis import plots, project, tables
+from robo_genesis.channels import listed
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import Comparison, compare, specification
 from robo_genesis.evidence.findings import DIFFERS
 from robo_genesis.evidence.status import RECORDED_PAGE, Status
-from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.ledger import Run
-from robo_genesis.lessons import Compared, compared_cases
+from robo_genesis.lessons import Compared, Filmed, Moving, compared_cases, filmed
 from robo_genesis.metrics import format_value
+from robo_genesis.played import read_runs
 from robo_genesis.sphinx_evidence import (
     BACKEND,
     lesson_backends,
@@ -74,7 +75,7 @@ class Evidence(SphinxDirective):
         panel["evidence_runs"] = (recorded,)
         compared = compared_cases(lesson)
         drawn = [response(folder, compared, status.backend)] if compared else []
-        for picture in (*drawn, *frames(folder, status)):
+        for picture in (*drawn, *frames(folder, filmed(lesson), status)):
             panel += self.figure(f"{lesson}-{status.backend}-{picture.name}", picture)
         if compared:
             panel += replay_block(self, recorded, folder)
@@ -131,31 +132,32 @@ def switches_text(switches: Mapping[str, str]) -> str:
     return ", ".join(f"`{pair.translate(marks)}`" for pair in pairs) or "none set"
 
 
-def response(folder: Path, compared: Compared, backend: str) -> Picture:
-    """Return the response of the compared cases, drawn from the bundle's arrays."""
-    arrays = bundle.read_arrays(folder)
-    traces = {case: read_trace(folder, arrays, case) for case in compared.cases}
-    joints = read_joints(arrays)
-    stream = io.BytesIO()
+def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture:
+    """Return every channel of the compared cases, drawn from the bundle's arrays."""
+    runs = read_runs(folder, compared)
+    stream, count = io.BytesIO(), len(runs.channels)
     with plots.course_style():
-        figure = Figure(figsize=(7, 8.5))
-        plots.response(figure.subplots(3, 1, sharex=True), traces, joints, compared.joint)
+        figure = Figure(figsize=(7, 1 + 2.5 * count))
+        axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+        for ax, drawn in zip(axes, runs.channels, strict=True):
+            plots.channel(ax, runs.t, drawn, runs.subject, runs.levels_of(drawn))
+            ax.label_outer()
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    alt = (
-        f"Position, velocity and control force of {compared.joint} over time on "
-        f"{backend}, with the cases {compared.names} drawn over each other."
-    )
-    caption = f"{compared.joint} on {backend}, drawn from the arrays of the recorded run."
+    what = f"{listed([channel.name for channel in runs.channels]).capitalize()} of {runs.subject}"
+    several = f", with the cases {compared.names} drawn over each other"
+    alt = f"{what} over time on {backend}{several if len(runs.traces) > 1 else ''}."
+    caption = f"{what} on {backend}, drawn from the arrays of the recorded run."
     return Picture("response", ".svg", stream.getvalue(), alt, caption)
 
 
-def frames(folder: Path, status: Status) -> Iterator[Picture]:
+def frames(folder: Path, shown: Filmed, status: Status) -> Iterator[Picture]:
     """Yield the camera frames as they came, nothing where rendering was off."""
     for name in ("initial", "final"):
         path = folder / "frames" / f"{name}.png"
         if path.is_file():
-            alt = f"Camera frame of the Franka, {name} state of the baseline on {status.backend}."
-            caption = f"Camera frame on {status.backend}, {name} state of the baseline."
+            what, state = f"Camera frame of {shown.thing}", f"{name} state of {shown.case}"
+            alt = f"{what}, {state} on {status.backend}."
+            caption = f"Camera frame on {status.backend}, {state}."
             yield Picture(name, ".png", path.read_bytes(), alt, caption)
 
 

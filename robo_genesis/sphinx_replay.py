@@ -1,16 +1,12 @@
 """A recorded run that plays in the page, and the files that only a reader's request loads.
 
 A page writes ```` ```{replay} l04/lecture ````; the panel of a recorded run has one of its own.
-Poses and curves are the record's; the shape of the robot is the model's, handed on by the lecture.
+Poses and curves are the record's; the shape of what moves is the model's, handed on by the lecture.
 """
 
 import base64
 import gzip
-import json
-import re
-import shutil
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,47 +14,17 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis import npm, replay, robot_shape
+from robo_genesis import replay, robot_shape
+from robo_genesis.channels import Runs
 from robo_genesis.derived import derived
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.traces import read_joints, read_trace
-from robo_genesis.lessons import Compared, compared_cases
-from robo_genesis.replay import Replay
+from robo_genesis.lessons import compared_cases
+from robo_genesis.played import read_runs
 from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
 from robo_genesis.sphinx_ledger import scroll_box
+from robo_genesis.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE, viewer, write_viewer
 
 SHAPE_PAGE = "lecture"
-FOLDER = "replay"
-"""Below the site; Jupyter Book loads every script of `_static` on every page, these on none."""
-
-VIEWER = "model-viewer.js"
-VIEWER_LICENCE = "LICENSE-Apache-2.0.txt"
-NOTICE = "NOTICE.txt"
-ELSEWHERE = re.compile(
-    rb"https://(?:www\.gstatic\.com|cdn\.jsdelivr\.net)/[^\"'`\s]*|//# sourceMappingURL=.*"
-)
-"""Addresses in the viewer: of decoders for compressed models, which these are not, and of its own
-source."""
-
-PARTS = (
-    "@google/model-viewer",
-    "three",
-    "lit",
-    "lit-html",
-    "lit-element",
-    "@lit/reactive-element",
-    "@monogrid/gainmap-js",
-)
-"""The packages whose code the viewer's one file holds, each in the lock."""
-
-CREDITS = f"""\
-The models (*.glb, and the same in *.js): {replay.CREDIT}.
-The viewer ({VIEWER}): @google/model-viewer, © Google LLC, Apache-2.0. Changed here: the addresses
-from which it would load decoders for compressed models are taken out, so that it asks no other
-host.
-The licence of both stands in {VIEWER_LICENCE}.
-The viewer is one file made of these packages; the text of each licence stands in the file named:
-"""
 
 
 class ReplayDirective(SphinxDirective):
@@ -74,8 +40,8 @@ class ReplayDirective(SphinxDirective):
         lesson_page = self.arguments[0]
         if compared_cases(lesson_page.split("/")[0]) is None:
             raise self.error(
-                f"replay: the lesson of {lesson_page} compares no cases. With cases and joint in "
-                "robo_genesis/lessons.py it has a replay."
+                f"replay: the lesson of {lesson_page} compares no cases. With cases, and what "
+                "they move, in robo_genesis/lessons.py it has a replay."
             )
         folder = outputs_folder() / lesson_page / BACKEND
         if not (folder / "manifest.json").is_file():
@@ -92,76 +58,85 @@ def replay_block(directive: SphinxDirective, key: str, folder: Path) -> nodes.No
         folder: of the bundle.
 
     Raises:
-        DirectiveError: no page of this build handed the robot's shape on, or another robot's.
+        DirectiveError: the lesson plays nothing or its runs cannot be played together; no page of
+            this build handed their shape on, or another shape.
     """
     env, lesson = directive.env, key.split("/")[0]
     compared = compared_cases(lesson)
     if compared is None:
         raise directive.error(f"replay: {lesson} compares no cases.")
-    shown = read_replay(f"replay-{key.replace('/', '-')}", folder, compared)
-    shape = outputs_folder() / lesson / SHAPE_PAGE / robot_shape.FILE
-    if not shape.is_file():
-        raise directive.error(
-            f"replay: {lesson} handed on no shape of its robot. A cell of its {SHAPE_PAGE} must "
-            f"call robot_shape.write_shape(contract.outputs / {lesson!r} / {SHAPE_PAGE!r}, "
-            "robot_shape.read_shape(robot)) after the robot is built."
-        )
+    name = f"replay-{key.replace('/', '-')}"
     try:
-        inputs = model_inputs(shape, folder, shown)
-        model = derived("replay", inputs, lambda: make_model(shape, shown))
+        runs = read_runs(folder, compared)
+        shape = handed_on(lesson, runs.view.thing)
+        inputs = model_inputs(shape, folder, runs)
+        model = derived("replay", inputs, lambda: make_model(shape, runs))
+        written = write_model(Path(env.app.outdir) / FOLDER, name, model)
+        weight = written + len(gzip.compress(viewer()))
+        up = "../" * env.docname.count("/") + FOLDER
+        files = f"{up}/{name}.js", f"{up}/{VIEWER}"
+        controls = replay.markup(name, runs, *files, round(weight / 1000))
     except ValueError as error:
         raise directive.error(f"replay: {key}: {error}") from error
-    written = write_model(Path(env.app.outdir) / FOLDER, shown.name, model)
-    weight = written + len(gzip.compress(viewer()))
-    up = "../" * env.docname.count("/") + FOLDER
-    controls = replay.markup(shown, f"{up}/{shown.name}.js", f"{up}/{VIEWER}", round(weight / 1000))
-    said = replay.moving(shown, bundle.read_metrics(folder))
-    summary = f"All samples of {', '.join(shown.traces)} as a table"
+    summary = f"All samples of {', '.join(runs.traces)} as a table"
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     block += nodes.raw("", controls, format="html")
-    block += directive.parse_text_to_nodes("\n".join(f"- {text}" for text in said.values()))
+    block += directive.parse_text_to_nodes("\n".join(f"- {text}" for text in runs.moves.values()))
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
-    block += scroll_box("", *directive.parse_text_to_nodes(replay.samples(shown)), label=summary)
-    block += nodes.raw("", f"</details>{origin_html(shown.name, folder, up)}", format="html")
+    block += scroll_box("", *directive.parse_text_to_nodes(replay.samples(runs)), label=summary)
+    origin = origin_html(name, folder, up, runs.view.credit)
+    block += nodes.raw("", f"</details>{origin}", format="html")
     return block
 
 
-def make_model(shape: Path, shown: Replay) -> bytes:
+def handed_on(lesson: str, thing: str) -> Path:
+    """Return the file of the shape that a page of this build handed on.
+
+    Raises:
+        ValueError: there is none.
+    """
+    shape = outputs_folder() / lesson / SHAPE_PAGE / robot_shape.FILE
+    if not shape.is_file():
+        raise ValueError(
+            f"{lesson} handed on no shape of its {thing}. A cell of its {SHAPE_PAGE} must "
+            f"call robot_shape.write_shape(contract.outputs / {lesson!r} / {SHAPE_PAGE!r}, "
+            f"robot_shape.read_shape({thing})) after the {thing} is built."
+        )
+    return shape
+
+
+def make_model(shape: Path, runs: Runs) -> bytes:
     """Return the GLB of a replay; what makes meshes light takes long to load, so only here."""
     from robo_genesis import replay_model
 
-    return replay_model.glb(robot_shape.load_shape(shape), shown.links, shown.traces)
+    parts = robot_shape.load_shape(shape)
+    return replay_model.glb(parts, runs.links, runs.traces, runs.view.credit)
 
 
-def model_inputs(shape: Path, folder: Path, shown: Replay) -> Iterator[bytes]:
+def model_inputs(shape: Path, folder: Path, runs: Runs) -> Iterator[bytes]:
     """Yield everything that decides the GLB of a replay."""
-    yield repr((list(shown.traces), list(shown.links))).encode()
+    yield repr((list(runs.traces), list(runs.links), runs.view.credit)).encode()
     sources = Path(__file__).parent.rglob("*.py")
     for path in (shape, folder / "arrays.json", *sorted(folder.glob("arrays/*")), *sorted(sources)):
         yield path.read_bytes()
 
 
-def read_replay(name: str, folder: Path, compared: Compared) -> Replay:
-    """Return what is played of a bundle."""
-    arrays = bundle.read_arrays(folder)
-    return Replay(
-        name=name,
-        traces={case: read_trace(folder, arrays, case) for case in compared.cases},
-        joints=read_joints(arrays),
-        joint=compared.joint,
-        links=arrays.coords["link"],
-    )
+def origin_html(name: str, folder: Path, up: str, credit: str | None) -> str:
+    """Say which run is played and whose shape is shown.
 
-
-def origin_html(name: str, folder: Path, up: str) -> str:
-    """Say which run is played and whose model is shown; `up` leads to the replay's files."""
+    Args:
+        name: of the replay.
+        folder: of the bundle.
+        up: leads to the replay's files.
+        credit: of the shape, None where it is the scene's own.
+    """
     run = bundle.read_manifest(folder).predicate
+    words = f'<a href="{up}/{NOTICE}">notice</a>, <a href="{up}/{VIEWER_LICENCE}">licence</a>'
+    whose = f"{credit} ({words})." if credit else f"shapes of the scene itself. Viewer: {words}."
     return (
         f'<p class="credit">Poses and samples: {run.backend.actual}, Genesis {run.engine.version}, '
-        f'run {run.run_id[:8]}. 3D model: <a href="{up}/{name}.glb" download>GLB</a>, '
-        f'{replay.CREDIT} (<a href="{up}/{NOTICE}">notice</a>, '
-        f'<a href="{up}/{VIEWER_LICENCE}">licence</a>).</p>'
+        f'run {run.run_id[:8]}. 3D model: <a href="{up}/{name}.glb" download>GLB</a>, {whose}</p>'
     )
 
 
@@ -181,36 +156,6 @@ def script_of(name: str, model: bytes) -> bytes:
     """Return a model as a classic script."""
     text = base64.b64encode(model).decode()
     return f'(globalThis.replayModels ??= {{}})["{name}"] = "{text}";\n'.encode()
-
-
-@cache
-def viewer() -> bytes:
-    """Return the viewer's script without addresses of other hosts."""
-    package = npm.packages() / "@google" / "model-viewer"
-    script = (package / "dist" / "model-viewer-umd.min.js").read_bytes()
-    return b"/* See " + NOTICE.encode() + b". */\n" + ELSEWHERE.sub(b"", script)
-
-
-def write_viewer(app: Sphinx, exception: Exception | None) -> None:
-    """Put the viewer and the licences beside the models, where there are any."""
-    folder = Path(app.outdir) / FOLDER
-    if exception is None and folder.is_dir():
-        (folder / VIEWER).write_bytes(viewer())
-        (folder / NOTICE).write_text(CREDITS + "".join(copy_licences(folder)), "utf8")
-
-
-def copy_licences(folder: Path) -> Iterator[str]:
-    """Copy the licence of each package in the viewer; yield a line on each for the notice."""
-    for name in PARTS:
-        package = npm.packages() / name
-        said = json.loads((package / "package.json").read_text("utf8"))
-        file = (
-            VIEWER_LICENCE
-            if name == PARTS[0]
-            else f"LICENSE-{name.strip('@').replace('/', '-')}.txt"
-        )
-        shutil.copyfile(package / "LICENSE", folder / file)
-        yield f"- {name} {said['version']}: {said['license']}, {file}\n"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -41,3 +41,4 @@ def test_unknown_names_are_answered_with_those_there_are():
 
 def test_cases_are_written_as_words():
     assert lessons.Compared(("A", "B", "C"), "joint").names == "A, B and C"
+    assert lessons.Moving(("A",), link="box", thing="box").names == "A"

@@ -7,7 +7,7 @@ from docutils import nodes
 from docutils.utils import new_document
 
 from robo_genesis import plots, sphinx_palette
-from robo_genesis.palette import CASES, GROUNDS, MARKS, contrast, css_name
+from robo_genesis.palette import CASES, GROUNDS, MARKS, contrast, css_name, marks_of
 
 TEXT = 4.5
 """Least contrast of text, WCAG 2.2, 1.4.3; graphics ask for 3."""
@@ -44,6 +44,18 @@ def test_plots_draw_the_palette_s_light_colours(name):
     drawn = plots.style(name)
     assert drawn["color"] == MARKS[name].light
     assert drawn["linestyle"] == ((0, MARKS[name].dashes) if MARKS[name].dashes else "-")
+
+
+def test_each_case_drawn_with_others_has_a_mark_of_its_own():
+    assert marks_of(("G2", "baseline")) == {"G2": "G2", "baseline": "baseline"}
+    assert marks_of(("slow", "G1", "fast")) == {"slow": "G2", "G1": "G1", "fast": "G3"}
+    four = marks_of(("a", "b", "c", "d"))
+    assert sorted(four.values()) == sorted(CASES)
+
+
+def test_more_cases_than_marks_are_refused():
+    with pytest.raises(ValueError, match=r"a, b, c, d, e are 5 cases; the palette tells 4 apart"):
+        marks_of("abcde")
 
 
 def test_a_name_that_is_no_case_is_drawn_as_the_baseline():

@@ -9,11 +9,7 @@ import pygltflib
 import pytest
 import trimesh
 
-from robo_genesis import npm, replay, replay_model, robot_shape
-from robo_genesis.evidence.bundle import Metric
-from robo_genesis.l04 import STEPPED_JOINT
-from robo_genesis.metrics import measure, metric_records
-from robo_genesis.replay import Replay
+from robo_genesis import joint_runs, npm, replay_model, robot_shape
 from robo_genesis.robot_shape import Part
 
 LINKS = ("link0", "link4", "hand")  # of the synthetic traces
@@ -50,7 +46,7 @@ def turning(traces):
 
 @pytest.fixture(scope="module")
 def glb(shape, turning) -> bytes:
-    return replay_model.glb(shape, LINKS, turning)
+    return replay_model.glb(shape, LINKS, turning, joint_runs.CREDIT)
 
 
 @pytest.fixture(scope="module")
@@ -189,41 +185,41 @@ def test_meshes_are_placed_in_their_link_and_joined_by_colour():
     assert first.vertices[3:] == pytest.approx(np.array([[0, 1, 5], [-1, 0, 5], [0, 0, 6]]))
 
 
-@pytest.fixture
-def shown(turning, joints) -> Replay:
-    return Replay("replay-x", turning, joints, STEPPED_JOINT, LINKS)
-
-
-def test_the_table_holds_every_sample_and_starts_before_the_first_step(shown, turning, joints):
-    lines = replay.samples(shown).splitlines()
-    cells = [[c.strip() for c in line.strip("|").split("|")] for line in (lines[0], *lines[2:])]
-    k, trace = joints.entry(STEPPED_JOINT), turning["G1"]
-    assert cells[0][:4] == ["t [s]", "G1 q [rad]", "G1 q̇ [rad/s]", "G1 force [N·m]"]
-    assert len(cells) == 122
-    numbers = np.array([[float(c.replace("−", "-")) for c in row] for row in cells[1:]])
-    assert numbers[0, :4] == pytest.approx(
-        [0, trace.q[0, k], trace.start_qd[k], trace.start_control_force[k]], abs=6e-5
+def test_links_of_a_body_go_by_names_of_their_own():
+    mesh = trimesh.creation.box((1, 1, 1))
+    geom = SimpleNamespace(
+        get_trimesh=lambda: mesh, init_pos=np.zeros(3), init_quat=np.array([1.0, 0, 0, 0])
     )
-    assert numbers[:, 1] == pytest.approx(trace.q[:, k], abs=6e-5)
-    assert numbers[1:, 9] == pytest.approx(turning["G3"].control_force[:, k], abs=6e-5)
+    box = SimpleNamespace(links=[SimpleNamespace(name="box_baselink", vgeoms=[geom])])
+    (part,) = robot_shape.read_shape(box)
+    assert (part.link, len(part.faces)) == ("box_baselink", 12)
+    assert robot_shape.read_shape(box, ["left"])[0].link == "left"
+    with pytest.raises(ValueError, match="2 names given for 1 links: box_baselink"):
+        robot_shape.read_shape(box, ["left", "right"])
 
 
-def test_what_moves_is_said_from_the_record(shown, turning, joints):
-    found = measure(turning, ("G1", "G2", "G3"), joints.entry(STEPPED_JOINT))
-    records = {
-        case: {name: Metric.model_validate(record) for name, record in group.items()}
-        for case, group in metric_records(found, {}).items()
-    }
-    said = replay.moving(shown, records)
-    assert said["G2"].startswith("**G2**: `joint4` starts at −2.0000 rad")
-    assert "told to go to −1.7500 rad" in said["G2"]
-    far = 100 * (turning["G2"].link_pos[:, 2, 0]).max()
-    assert f"The link `hand` moves farthest, by up to {far:.1f} cm." in said["G2"]
+def test_what_belongs_to_no_link_stands_still(shape, turning, tmp_path):
+    content = replay_model.glb([*shape, robot_shape.floor(2.0)], LINKS, turning)
+    assert report(content, tmp_path)["issues"]["messages"] == []
+    still = pygltflib.GLTF2.load_from_bytes(content)
+    number = next(k for k, node in enumerate(still.nodes) if node.name == replay_model.STILL)
+    assert number in still.nodes[0].children
+    moved = {c.target.node for a in still.animations for c in a.channels}
+    assert moved == {1, 2, 3}
+    assert number not in moved
+    primitive = still.meshes[still.nodes[number].mesh].primitives[0]
+    corners = values(still, primitive.attributes.POSITION)
+    assert np.ptp(corners, axis=0).tolist() == [2, 2, 0]
+    up = values(still, primitive.attributes.NORMAL)
+    assert up == pytest.approx(np.tile([0, 0, 1], (len(corners), 1)))
 
 
-def test_the_controls_name_their_parts(shown):
-    html = replay.markup(shown, "replay/a.js", "replay/viewer.js", 560)
-    for part in ('for="replay-x-time"', 'id="replay-x-time"', 'max="120"', 'data-limit="87"'):
-        assert part in html
-    assert html.startswith('<div class="replay" hidden ')
-    assert html.count('type="radio"') == 3
+def test_a_model_of_the_scene_s_own_shapes_claims_no_one_s(shape, turning):
+    content = replay_model.glb(shape, LINKS, turning)
+    assert pygltflib.GLTF2.load_from_bytes(content).asset.copyright is None
+
+
+@pytest.mark.parametrize("links", [("box", "box"), ("box", "world")])
+def test_two_links_of_one_name_are_refused(links, turning):
+    with pytest.raises(ValueError, match=rf"of the world: {links[1]}\. Give each a name"):
+        replay_model.glb([], links, {"G1": turning["G1"]})

@@ -4,12 +4,14 @@ import base64
 import gzip
 import re
 
-from robo_genesis import sphinx_replay
+import pygltflib as gltf
+
+from robo_genesis import sphinx_replay, viewer
 from robo_genesis.site_checks import SERVICES
 
 
 def test_the_viewer_is_the_package_s_without_other_hosts():
-    script = sphinx_replay.viewer().decode()
+    script = viewer.viewer().decode()
     assert SERVICES.search(script) is None
     assert "sourceMappingURL" not in script
     assert "Licensed under the Apache License" in script  # the notices are all there
@@ -18,7 +20,7 @@ def test_the_viewer_is_the_package_s_without_other_hosts():
 
 def test_addresses_are_taken_out_and_nothing_beside_them():
     text = b'a("https://www.gstatic.com/draco/1/",b);c=`https://cdn.jsdelivr.net/npm/x.js`'
-    assert sphinx_replay.ELSEWHERE.sub(b"", text) == b'a("",b);c=``'
+    assert viewer.ELSEWHERE.sub(b"", text) == b'a("",b);c=``'
 
 
 def test_a_model_is_written_twice_and_weighed(tmp_path):
@@ -32,9 +34,18 @@ def test_a_model_is_written_twice_and_weighed(tmp_path):
 
 
 def test_each_package_in_the_viewer_is_named_with_its_licence_beside_it(tmp_path):
-    lines = list(sphinx_replay.copy_licences(tmp_path))
-    assert len(lines) == len(sphinx_replay.PARTS) == len(list(tmp_path.iterdir()))
+    lines = list(viewer.copy_licences(tmp_path))
+    assert len(lines) == len(viewer.PARTS) == len(list(tmp_path.iterdir()))
     said = {line.split()[1]: line for line in lines}
     assert " MIT, LICENSE-three.txt" in said["three"]
     assert " BSD-3-Clause, LICENSE-lit.txt" in said["lit"]
     assert "three.js authors" in (tmp_path / "LICENSE-three.txt").read_text()
+
+
+def test_the_notice_says_whose_each_model_is(tmp_path):
+    for name, credit in (("replay-arm", "© Somebody, Apache-2.0"), ("replay-box", None)):
+        asset = gltf.Asset(version="2.0", copyright=credit)
+        (tmp_path / f"{name}.glb").write_bytes(b"".join(gltf.GLTF2(asset=asset).save_to_bytes()))
+    assert list(viewer.model_credits(tmp_path)) == [
+        "The model replay-arm.glb, and the same in replay-arm.js: © Somebody, Apache-2.0.\n"
+    ]

@@ -31,10 +31,12 @@ globalThis.timePlot = (() => {
     svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
     svg.setAttribute("height", height);
     add(svg, "text", { x: 0, y: 14, class: "title" }, title);
+    const exact = (n) => Math.abs(Number((end / 4).toFixed(n)) - end / 4) < 1e-9;
+    const digits = [1, 2, 3].find(exact) ?? 4;
     for (const share of [0, 0.25, 0.5, 0.75, 1]) {
       const at = x(share * end);
       add(svg, "line", { x1: at, x2: at, y1: EDGE.top, y2: floor, class: "grid" });
-      const label = write(share * end, 1) + (share === 0 ? " s" : "");
+      const label = write(share * end, digits) + (share === 0 ? " s" : "");
       add(svg, "text", { x: at, y: height - 6, class: "middle" }, label);
     }
     for (const { value, label } of ticks) {

@@ -1,5 +1,6 @@
-/* Replays recorded runs: curves, readout and, on request, the robot in 3D. The samples are those of
-   the table in the same block; this script reads them there and holds no number of its own. */
+/* Replays recorded runs: curves, readout and, on request, what moves in 3D. The samples are those of
+   the table in the same block, and attributes of the markup say what they are: this script knows
+   channels, and neither joints nor bodies. */
 "use strict";
 
 /* plot.js is there by then, in whichever order the page names the scripts. */
@@ -7,43 +8,52 @@ document.addEventListener("DOMContentLoaded", () => {
   const { add, write } = globalThis.timePlot;
   const HEIGHT = 150;
   const STRIDE = 5; // samples that one press advances where motion is not wanted
+  const ROOM = 0.1; // share of an axis below which two labels would meet
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
   const number = (text) => Number(text.trim().replace("−", "-"));
 
-  /* Case → {t, values: [q, q̇, force], target, limit, units}; the table has three columns a case. */
-  function read(root, radios) {
+  /* Case → {time, values: [one array a channel], mark, levels}. The table's columns: time, then the
+     channels of each case in turn. */
+  function read(root, radios, channels) {
     const rows = [...root.parentElement.querySelectorAll("tbody tr")].map((row) =>
       [...row.cells].map((cell) => number(cell.textContent)),
     );
     const time = rows.map((row) => row[0]);
     return Object.fromEntries(radios.map((radio, k) => {
-      const { target, limit, position, effort } = radio.dataset;
-      const values = [1, 2, 3].map((column) => rows.map((row) => row[3 * k + column]));
-      const units = [position, `${position}/s`, effort];
-      return [radio.value, { time, values, target: Number(target), limit: Number(limit), units }];
+      const first = 1 + k * channels.length;
+      const values = channels.map((_, c) => rows.map((row) => row[first + c]));
+      const { mark, levels } = radio.dataset;
+      return [radio.value, { time, values, mark, levels: JSON.parse(levels) }];
     }));
   }
 
-  const markOf = (name) => `case-${name.toLowerCase()}`;
+  const capital = (words) => words[0].toUpperCase() + words.slice(1);
+
+  /* Values to name at the axis: both ends, and zero between them where it leaves them room. */
+  function tickValues(least, most) {
+    const ends = [...new Set([least, most])];
+    if (least >= 0 || most <= 0) return ends;
+    return [...ends.filter((end) => Math.abs(end) > ROOM * (most - least)), 0];
+  }
 
   /* One plot of all cases; returns what moves its cursor. */
   function draw(svg, { curves, chosen, levels, title }) {
-    const all = [...Object.values(curves).flatMap((c) => c.values), ...levels.map((l) => l.value)];
+    const held = levels.flatMap(({ mark, values }) => values.map((value) => ({ value, mark })));
+    const all = [...Object.values(curves).flatMap((c) => c.values), ...held.map((l) => l.value)];
     const [least, most] = [Math.min(...all), Math.max(...all)];
-    const margin = 0.08 * (most - least);
-    const { times, values } = curves[chosen];
+    const margin = 0.08 * (most - least || 1); // what stands still is a line, too
+    const { times, values, mark } = curves[chosen];
     const { x, y, floor, top, share } = globalThis.timePlot.draw(svg, {
-      title, levels, height: HEIGHT, low: least - margin, high: most + margin, end: times.at(-1),
-      curves: Object.entries(curves).map(([name, curve]) => ({
-        ...curve, mark: markOf(name), chosen: name === chosen,
-      })),
-      ticks: (least < 0 && most > 0 ? [least, 0, most] : [least, most]).map((value) => ({
+      title, levels: held, height: HEIGHT, low: least - margin, high: most + margin,
+      end: times.at(-1),
+      curves: Object.entries(curves).map(([name, curve]) => ({ ...curve, chosen: name === chosen })),
+      ticks: tickValues(least, most).map((value) => ({
         value, label: value ? value.toPrecision(3).replace("-", "−") : "0",
       })),
     });
     const line = add(svg, "line", { y1: top, y2: floor, class: "cursor" });
-    const dot = add(svg, "circle", { r: 4.5, class: `dot ${markOf(chosen)}` });
+    const dot = add(svg, "circle", { r: 4.5, class: `dot ${mark}` });
     svg.onpointerdown = svg.onpointermove = (event) => {
       if (event.buttons !== 1) return;
       const detail = share(event.clientX - svg.getBoundingClientRect().left);
@@ -77,24 +87,26 @@ document.addEventListener("DOMContentLoaded", () => {
   /* What the viewer draws with: without it, it would say that it loaded, and show nothing. */
   const draws3D = () => document.createElement("canvas").getContext("webgl2") !== null;
 
-  /* The robot in 3D, in step with the replay. A classic script and a data: address work from disk. */
-  class Robot {
+  /* What moves, in 3D, in step with the replay. A classic script and a data: address work from disk. */
+  class Scene {
     constructor(root) {
       this.root = root;
       this.viewer = null;
     }
 
-    async load(about) {
-      const { viewer, model, name } = this.root.dataset;
+    async load() {
+      const { viewer, model, name, alt, orbit, target } = this.root.dataset;
       await Promise.all([script(viewer), script(model)]);
       const element = document.createElement("model-viewer");
       const settings = {
-        alt: about, loading: "eager", "camera-controls": "", "disable-zoom": "", "disable-tap": "",
+        alt, loading: "eager", "camera-controls": "", "disable-zoom": "", "disable-tap": "",
         "interaction-prompt": "none", "touch-action": "pan-y", "shadow-intensity": "0.8",
-        "camera-orbit": "45deg 72deg 90%", "camera-target": "0.2m 0.52m 0m", exposure: "0.7",
+        exposure: "0.7",
         "animation-crossfade-duration": "0",
         src: `data:model/gltf-binary;base64,${globalThis.replayModels[name]}`,
       };
+      if (orbit) settings["camera-orbit"] = orbit;
+      if (target) settings["camera-target"] = target;
       for (const [key, value] of Object.entries(settings)) element.setAttribute(key, value);
       const loaded = new Promise((resolve, reject) => {
         element.addEventListener("load", resolve, { once: true });
@@ -118,13 +130,15 @@ document.addEventListener("DOMContentLoaded", () => {
   }
 
   function start(root) {
+    const { subject, thing } = root.dataset;
+    const channels = JSON.parse(root.dataset.channels);
+    const timeDigits = Number(root.dataset.timeDigits);
     const radios = [...root.querySelectorAll("input[type=radio]")];
-    const runs = read(root, radios);
+    const runs = read(root, radios, channels);
     const [slider, speed] = ["input[type=range]", "select"].map((name) => root.querySelector(name));
     const [play, show] = [".play", ".show"].map((name) => root.querySelector(name));
-    const { joint } = root.dataset;
-    const robot = new Robot(root);
-    const svgs = [0, 1, 2].map(() => add(root.querySelector(".plots"), "svg", { role: "img" }));
+    const scene = new Scene(root);
+    const [terms, texts, svgs] = ["dt", "dd", ".plots svg"].map((name) => root.querySelectorAll(name));
     const last = Number(slider.max);
     let cursors = [];
     let began = null; // {clock, time}: when playing started [ms], and at which time of the run [s]
@@ -134,58 +148,48 @@ document.addEventListener("DOMContentLoaded", () => {
     const run = () => runs[chosen()];
     const sample = () => Number(slider.value);
 
-    /* [term, description]; the first four are said by a screen reader at the slider. */
+    /* The texts of the readout, in the order of its terms: time, channels, levels. */
     function readout() {
-      const { time, values, target, limit, units } = run();
+      const { time, values, levels } = run();
       const k = sample();
-      const said = (value, unit, digits = 4) => `${write(value, digits)} ${unit}`;
+      const said = (value, unit, digits) => `${write(value, digits)} ${unit}`;
       return [
-        ["time", said(time[k], "s", 2) + (k ? "" : ", before the first step")],
-        ["position", said(values[0][k], units[0])],
-        ["velocity", said(values[1][k], units[1])],
-        ["control force", said(values[2][k], units[2], 2)],
-        ["target", said(target, units[0])],
-        ["force limit", `±${said(limit, units[2], 0)}`],
+        said(time[k], "s", timeDigits) + (k ? "" : ", before the first step"),
+        ...channels.map(({ unit, digits }, c) => said(values[c][k], unit, digits)),
+        ...levels.map((level) => level.said),
       ];
     }
 
+    /* A screen reader says time and channels at the slider. */
     function showSample(time = run().time[sample()]) {
       const lines = readout();
-      const spoken = lines.slice(0, 4).map(([term, text]) => `${term} ${text}`).join("; ");
+      const spoken = lines.slice(0, 1 + channels.length)
+        .map((text, k) => `${terms[k].textContent} ${text}`).join("; ");
       slider.setAttribute("aria-valuetext", `${chosen()}: ${spoken}`);
-      root.querySelector("dl").replaceChildren(...lines.map(([term, text]) => {
-        const row = document.createElement("div");
-        const [dt, dd] = ["dt", "dd"].map((name) => document.createElement(name));
-        [dt.textContent, dd.textContent] = [term, text];
-        row.append(dt, dd);
-        return row;
-      }));
+      lines.forEach((text, k) => { texts[k].textContent = text; });
       for (const cursor of cursors) cursor(time, sample());
-      robot.pose(chosen(), time);
+      scene.pose(chosen(), time);
     }
 
-    /* Beside the robot, whose run it is: the picker may be out of sight. */
+    /* Beside what moves, whose run it is: the picker may be out of sight. */
     function nameCase() {
       const shown = root.querySelector(".shown");
       shown.textContent = chosen();
-      shown.className = `shown case-mark ${markOf(chosen())}`;
+      shown.className = `shown case-mark ${run().mark}`;
     }
 
     function drawPlots() {
       nameCase();
-      const { target, limit, units } = run();
-      const names = ["Position", "Velocity", "Control force"];
-      const levels = [
-        [{ value: target, mark: "target" }], [],
-        [-limit, limit].map((value) => ({ value, mark: "limit" })),
-      ];
-      cursors = svgs.map((svg, k) => {
-        const curves = Object.fromEntries(Object.entries(runs).map(([name, one]) => [
-          name, { times: one.time, values: one.values[k] },
+      const { levels } = run();
+      cursors = channels.map(({ name, unit }, k) => {
+        const curves = Object.fromEntries(Object.entries(runs).map(([one, { time, values, mark }]) => [
+          one, { times: time, values: values[k], mark },
         ]));
-        const title = `${names[k]} [${units[k]}]`;
-        svg.setAttribute("aria-label", `${title} of ${joint} over time; ${chosen()} is drawn bold.`);
-        return draw(svg, { curves, chosen: chosen(), levels: levels[k], title });
+        const title = `${capital(name)} [${unit}]`;
+        const about = `${title} of ${subject} over time; ${chosen()} is drawn bold.`;
+        svgs[k].setAttribute("aria-label", about);
+        const held = levels.filter(({ channel }) => channel === name);
+        return draw(svgs[k], { curves, chosen: chosen(), levels: held, title });
       });
       showSample();
     }
@@ -198,7 +202,7 @@ document.addEventListener("DOMContentLoaded", () => {
     }
 
     function label() {
-      const step = `Next ${(STRIDE * run().time[1]).toFixed(2)} s`;
+      const step = `Next ${(STRIDE * run().time[1]).toFixed(timeDigits)} s`;
       play.textContent = calm.matches ? step : began ? "Pause" : "Play";
       speed.closest("p").hidden = calm.matches;
     }
@@ -241,7 +245,7 @@ document.addEventListener("DOMContentLoaded", () => {
     show.addEventListener("click", async () => {
       const stage = root.querySelector(".stage");
       const status = root.querySelector("[role=status]");
-      if (!robot.viewer) {
+      if (!scene.viewer) {
         if (!draws3D()) {
           status.textContent = "This browser draws no 3D: its WebGL 2 is missing or turned off. The plots show the same runs.";
           return;
@@ -249,9 +253,9 @@ document.addEventListener("DOMContentLoaded", () => {
         show.disabled = true;
         status.textContent = "Loading …";
         try {
-          await robot.load(`The robot in 3D, in the posture of the sample that is shown. ${joint} moves.`);
+          await scene.load();
         } catch (error) {
-          status.textContent = "The robot cannot be shown: a file is missing or cannot be read.";
+          status.textContent = `The ${thing} cannot be shown: a file is missing or cannot be read.`;
           stage.querySelector("model-viewer")?.remove();
           return;
         } finally {
@@ -265,7 +269,7 @@ document.addEventListener("DOMContentLoaded", () => {
         stage.hidden = !stage.hidden;
       }
       show.setAttribute("aria-expanded", String(!stage.hidden));
-      show.textContent = stage.hidden ? "Show the robot in 3D" : "Hide the robot";
+      show.textContent = stage.hidden ? `Show the ${thing} in 3D` : `Hide the ${thing}`;
     });
 
     root.hidden = false;

@@ -139,7 +139,7 @@ def read_joints(arrays: Arrays) -> JointMap:
         BundleRefused: `labels`, where names, types or units contradict each other.
     """
     joints, file = arrays.joints, "arrays.json joints"
-    expect("labels", file, "list of names", [j.name for j in joints], arrays.coords.get("dof"))
+    expect("labels", file, "list of names", [j.name for j in joints], arrays.coords.get("dof", []))
     for joint in joints:
         if joint.type_ not in POSITION_UNIT:
             expect("labels", file, f"type of {joint.name}", joint.type_, sorted(POSITION_UNIT))

@@ -17,6 +17,7 @@ from spoilers import edit, metrics, on, part, predicate, seal
 from robo_genesis import (
     l04,
     ledger,
+    played,
     project,
     robot_shape,
     sphinx_ledger,
@@ -29,10 +30,12 @@ from robo_genesis.evidence.status import Status, recorded_status
 from robo_genesis.evidence.traces import read_trace
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.ledger import Run
-from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons import LESSONS, Filmed
 from robo_genesis.metrics import format_value
 from robo_genesis.robot_shape import Part
 from robo_genesis.tables import METRIC_LABELS
+
+FILMED = Filmed("the box", "the first run")
 
 
 @pytest.fixture
@@ -59,20 +62,20 @@ def test_the_figure_changes_with_the_bundle_s_arrays(folder, verified, monkeypat
     assert "joint4 over time on cpu" in picture.alt
     assert sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu") == picture
     shown = {"G1": "G2", "G2": "G1", "G3": "G3"}
-    monkeypatch.setattr(
-        sphinx_panel, "read_trace", lambda f, a, case: read_trace(f, a, shown[case])
-    )
+    monkeypatch.setattr(played, "read_trace", lambda f, a, case: read_trace(f, a, shown[case]))
     assert sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu") != picture
 
 
 def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder, verified):
     listed = {s.name: s.digest.sha256 for s in verified.manifest.subject}
-    for picture in sphinx_panel.frames(folder, verified):
+    for picture in sphinx_panel.frames(folder, FILMED, verified):
         assert ledger.sha256(picture.content) == listed[f"frames/{picture.name}.png"]
-    assert len(list(sphinx_panel.frames(folder, verified))) == 2
+        state = f"{picture.name} state of the first run"
+        assert picture.alt == f"Camera frame of the box, {state} on cpu."
+    assert len(list(sphinx_panel.frames(folder, FILMED, verified))) == 2
     for frame in (folder / "frames").glob("*.png"):
         frame.unlink()
-    assert list(sphinx_panel.frames(folder, verified)) == []
+    assert list(sphinx_panel.frames(folder, FILMED, verified)) == []
 
 
 def test_switches_are_shown_as_they_were_set(folder):
