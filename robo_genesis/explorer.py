@@ -9,10 +9,9 @@ import numpy as np
 from robo_genesis import l04_grid
 from robo_genesis.l04 import STEPPED_JOINT
 from robo_genesis.l04_grid import GridPoint
-from robo_genesis.metrics import StepMetrics, format_value
+from robo_genesis.metrics import LABELS, StepMetrics, format_value
 from robo_genesis.scene_config import FloatArray
 from robo_genesis.sweep import Sweep
-from robo_genesis.tables import METRIC_LABELS
 
 RESOLUTION = {"q": 1e-4, "force": 1e-2}
 """What one unit of the packed integers stands for [rad, N·m]. Metrics are computed before."""
@@ -24,7 +23,7 @@ AXES: tuple[tuple[str, str, Sequence[float], str], ...] = (
 )
 """Name, label, values and unit of each axis, in the order of the grid's points."""
 
-SHOWN = tuple(name for name in METRIC_LABELS if name != "initial_error")
+SHOWN = tuple(name for name in LABELS if name != "initial_error")
 """The metrics beside a run; the initial error is the step."""
 
 NAMES = {point: name for name, point in l04_grid.CASE_POINTS.items()}
@@ -58,7 +57,7 @@ def pack(found: Sweep) -> dict[str, Any]:
         "limit": float(found.effort_limit[0]),
         "resolution": RESOLUTION,
         "axes": [{"name": n, "values": list(v), "unit": u} for n, _, v, u in AXES],
-        "labels": [METRIC_LABELS[name] for name in SHOWN],
+        "labels": [LABELS[name] for name in SHOWN],
         "points": [
             {
                 "case": NAMES.get(point, ""),
@@ -102,11 +101,7 @@ def rows(found: Sweep) -> list[dict[str, str]]:
                 "case": NAMES.get(point, ""),
                 "overshoot, share": f"{100 * overshoot_share(point, measured):.1f} %",
             }
-            | {
-                METRIC_LABELS[name]: written[name]
-                for name in SHOWN
-                if name != "saturation_duration"
-            }
+            | {LABELS[name]: written[name] for name in SHOWN if name != "saturation_duration"}
         )
     return table
 

@@ -38,7 +38,7 @@ FORMULA_TOLERANCE = 1e-6
 AT_REST = 1e-6
 """Sideways motion [m] and turning [rad/s] below this are none."""
 
-VIEW = CAMERA | {"pos": (1.3, -1.3, 0.75), "lookat": (0.0, 0.0, 0.28), "fov": 38}
+VIEW = CAMERA | {"pos": (0.8, -0.8, 0.5), "lookat": (0.0, 0.0, 0.3), "fov": 40}
 """The lesson's camera: nearer than the robot's, with ground and box in the picture."""
 
 RESOLUTION = {"m": 1e-6, "m/s": 1e-5, "rad/s": 1e-6, "s": DT / 2, "kg": 1e-6, "1": 0.5}

@@ -49,6 +49,19 @@ SOURCES = {
 }
 """The arrays that each metric is computed from, by their names in a bundle."""
 
+LABELS = {
+    "initial_error": "initial error",
+    "rise_time": "rise time",
+    "overshoot": "overshoot",
+    "settling_time": "settling time",
+    "final_error": "final error",
+    "final_velocity": "final velocity",
+    "peak_speed": "peak speed",
+    "peak_control": "peak control",
+    "saturation_samples": "saturation",
+    "saturation_duration": "saturation, seconds",
+}
+
 NOT_OBSERVED = "not observed"
 
 

@@ -4,8 +4,7 @@ from itertools import groupby
 
 import numpy as np
 
-from robo_genesis.metrics import SATURATION_THRESHOLD, StepMetrics, format_value
-from robo_genesis.tables import METRIC_LABELS as LABELS
+from robo_genesis.metrics import LABELS, SATURATION_THRESHOLD, StepMetrics, format_value
 from robo_genesis.trace import Trace
 
 CANNOT = ("initial_error",)

@@ -290,5 +290,8 @@ def require_frame(rgb: Any) -> None:
     picture = np.asarray(rgb)
     if picture.dtype != np.uint8 and not np.isfinite(picture).all():
         raise FrameError("The camera returned values that are not finite.")
-    if picture.min() == picture.max():
-        raise FrameError(f"The camera returned an empty picture: every value is {picture.min()}.")
+    if (picture == picture[0, 0]).all():
+        raise FrameError(
+            f"The camera returned an empty picture: every pixel is {picture[0, 0].tolist()}. "
+            "It shows nothing but the background: look at its place and at what it looks at."
+        )

@@ -3,23 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from robo_genesis import drop_metrics
+from robo_genesis import drop_metrics, metrics
 from robo_genesis.checks import Check
 from robo_genesis.drop_metrics import DropMetrics
 from robo_genesis.metrics import StepMetrics, format_value
 
-METRIC_LABELS = drop_metrics.LABELS | {
-    "initial_error": "initial error",
-    "rise_time": "rise time",
-    "overshoot": "overshoot",
-    "settling_time": "settling time",
-    "final_error": "final error",
-    "final_velocity": "final velocity",
-    "peak_speed": "peak speed",
-    "peak_control": "peak control",
-    "saturation_samples": "saturation",
-    "saturation_duration": "saturation, seconds",
-}
+METRIC_LABELS = drop_metrics.LABELS | metrics.LABELS
 
 
 def markdown(rows: Sequence[Mapping[str, Any]]) -> str:

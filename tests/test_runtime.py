@@ -234,8 +234,16 @@ def test_no_frame_is_refused():
 
 @pytest.mark.parametrize("value", [0, 255])
 def test_a_constant_picture_is_refused(value):
-    with pytest.raises(FrameError, match=f"empty picture: every value is {value}"):
+    with pytest.raises(
+        FrameError, match=rf"empty picture: every pixel is \[{value}, {value}, {value}\]"
+    ):
         require_frame(np.full(FRAME_SHAPE, value, np.uint8))
+
+
+def test_a_picture_of_the_background_alone_is_empty_whatever_its_colour():
+    sky = np.broadcast_to(np.array([10, 20, 31], np.uint8), FRAME_SHAPE)
+    with pytest.raises(FrameError, match=r"every pixel is \[10, 20, 31\]"):
+        require_frame(sky)
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])

@@ -8,8 +8,7 @@ from bs4 import BeautifulSoup
 from playwright.sync_api import Page
 
 from robo_genesis.evidence import bundle
-from robo_genesis.metrics import UNITS, format_value
-from robo_genesis.tables import METRIC_LABELS
+from robo_genesis.metrics import LABELS, UNITS, format_value
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -95,7 +94,7 @@ def test_the_widget_opens_at_g2_with_what_the_bundle_holds(page, site):
     records = bundle.read_metrics(site.parent / "evidence" / "l04" / "cpu")["G2"]
     assert metrics == {
         label: format_value(records[name].value, UNITS[name])
-        for name, label in METRIC_LABELS.items()
+        for name, label in LABELS.items()
         if name != "initial_error"
     }
 
