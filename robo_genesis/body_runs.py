@@ -62,6 +62,7 @@ def runs(traces: Mapping[str, BodyTrace], links: Sequence[str], moving: Moving) 
         view=View(
             thing=moving.thing,
             alt=f"{subject.capitalize()} in 3D, where it is at the sample that is shown.",
+            orbit="30deg 72deg auto",
         ),
         alt=f"{first} of {subject} over time{f': {cases}' if len(traces) > 1 else ''}.",
         caption=f"{first} of {subject}, from get_links_pos.",

@@ -49,7 +49,7 @@ class View:
     """How runs are shown in 3D.
 
     `thing` is what a button shows: "robot". `alt` describes it. `orbit` and `target` are those of
-    the viewer's camera, in its own notation and frame (y up); without them it frames all there is.
+    the viewer's camera, in its own notation and frame (y up); empty, it chooses.
     `credit` names whose the shape is, None where it is the scene's own.
     """
 

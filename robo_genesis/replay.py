@@ -12,6 +12,9 @@ SPEEDS = {"1": "real time", "0.25": "1/4", "0.1": "1/10"}
 SLOW = "0.1"
 """The speed at which a replay opens: most happens in a small part of the window."""
 
+PLOT = '<div class="plot"></div>'
+"""Where the script draws a channel; a page may hold no picture that is not in the ledger."""
+
 
 def samples(runs: Runs) -> str:
     """Return every sample of every case as a Markdown table, the start of the runs first.
@@ -57,7 +60,7 @@ def markup(name: str, runs: Runs, script: str, viewer: str, weight: int) -> str:
         f'max="{len(runs.t) - 1}" step="1" value="0"></p>'
         f'<p><label for="{name}-speed">Speed</label><select id="{name}-speed">{speeds}</select></p>'
         f"</div><dl>{''.join(map(_term, terms))}</dl>"
-        f'<div class="plots">{"<svg role=img></svg>" * len(runs.channels)}</div>'
+        f'<div class="plots">{PLOT * len(runs.channels)}</div>'
         f'<p class="legend">{escape(_legend(runs))}</p></div>'
     )
 

@@ -118,7 +118,7 @@ def test_the_controls_speak_of_the_box(make):
     assert root.legend.get_text() == "Run of the box"
     assert root.select_one(".show").get_text() == "Show the box in 3D"
     assert root["data-alt"] == "The box in 3D, where it is at the sample that is shown."
-    assert (root["data-orbit"], root["data-target"]) == ("", "")
+    assert (root["data-orbit"], root["data-target"]) == ("30deg 72deg auto", "")
     assert [term.get_text() for term in root.select("dt")] == [
         "time", "height", "vertical velocity",
     ]  # fmt: skip
@@ -126,7 +126,7 @@ def test_the_controls_speak_of_the_box(make):
         ("case-g1", "[]"),
         ("case-g2", "[]"),
     ]
-    assert len(root.select(".plots svg")) == 2
+    assert len(root.select(".plots > .plot")) == 2
     assert "robot" not in text
     assert "joint" not in text
 

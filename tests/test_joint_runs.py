@@ -103,7 +103,7 @@ def test_the_controls_name_their_parts(controls):
     assert len(controls.select("input[type=radio]")) == len(CASES)
     assert controls.legend.get_text() == "Run of joint4"
     assert controls.select_one(".show").get_text() == "Show the robot in 3D"
-    assert len(controls.select(".plots svg[role=img]")) == 3
+    assert len(controls.select(".plots > .plot")) == 3
 
 
 def test_the_script_is_told_of_channels_and_levels(controls, traces, joints):

@@ -138,7 +138,8 @@ document.addEventListener("DOMContentLoaded", () => {
     const [slider, speed] = ["input[type=range]", "select"].map((name) => root.querySelector(name));
     const [play, show] = [".play", ".show"].map((name) => root.querySelector(name));
     const scene = new Scene(root);
-    const [terms, texts, svgs] = ["dt", "dd", ".plots svg"].map((name) => root.querySelectorAll(name));
+    const [terms, texts, places] = ["dt", "dd", ".plot"].map((name) => root.querySelectorAll(name));
+    const svgs = [...places].map((place) => add(place, "svg", { role: "img" }));
     const last = Number(slider.max);
     let cursors = [];
     let began = null; // {clock, time}: when playing started [ms], and at which time of the run [s]
