@@ -20,7 +20,7 @@ def height(ax: Axes, trace: BodyTrace, case: Drop) -> Axes:
     ax.set_xlabel("time [s]")
     ax.set_ylabel("height z [m]")
     ax.set_title("Height of the box", loc="left")
-    ax.legend(fontsize="small", loc="lower left")
+    ax.legend(fontsize="small", loc="center left")
     return ax
 
 
@@ -67,7 +67,10 @@ def gaps(ax: Axes, found: Study) -> Axes:
               color=look("baseline")["color"])  # fmt: skip
     ax.set_xlabel("solver step h [ms]")
     ax.set_ylabel("farther down at the end [mm]")
-    ax.set_title("Half the step leaves half the difference", loc="left")
+    ax.set_title("Difference at the end, by solver step", loc="left")
+    ax.set_xticks(1000 * found.h, [f"{1000 * h:g}" for h in found.h])
+    ax.set_yticks([0.5, 1, 2, 5, 10], ["0.5", "1", "2", "5", "10"])
+    ax.minorticks_off()
     ax.legend(fontsize="small", loc="upper left")
     return ax
 

@@ -10,6 +10,9 @@ from robo_genesis.interpretation import Block
 from robo_genesis.l02 import AT_REST, FORMULA_TOLERANCE
 from robo_genesis.substep_study import SHARE, Study
 
+TERM = "g h t / 2".replace(" ", "\N{NO-BREAK SPACE}")
+"""How far ahead of continuous free fall a stepped body is."""
+
 
 def interpretation(found: DropMetrics, case: Drop) -> tuple[Block, ...]:
     """Return what one run shows: the fall, the formula that it follows, and what did not happen."""
@@ -24,7 +27,7 @@ def fall_sentence(found: DropMetrics, case: Drop) -> str:
     """Say how far the box fell, and between which heights."""
     return (
         f"In {found.duration:.2f} s of simulated time, {case.steps} outer steps, the box fell "
-        f"{found.drop:.5f} m: from {case.height:.3f} m to {case.height - found.drop:.5f} m."
+        f"{found.drop:.6f} m: from {case.height:g} m to {case.height - found.drop:.6f} m."
     )
 
 
@@ -49,12 +52,12 @@ def formula_sentences(found: DropMetrics, case: Drop) -> tuple[str, ...]:
     gap = float(ahead_of_continuous(case.h, found.duration, case.gravity))
     off = f"{1e6 * found.formula_error:.2g} µm"
     ahead = f"The box fell {1000 * found.continuous_gap:.3f} mm farther"
-    first = f"The stepped formula gives {stepped:.5f} m for n = {n}"
+    first = f"The stepped formula gives {stepped:.6f} m for n = {n}"
     if found.formula_error <= FORMULA_TOLERANCE:
         first += f": at no sample is the box farther than {off} from it, which is float32."
     else:
         first += f", and the box is up to {off} off: it was not stepped as assumed. {INSPECT}"
-    second = f"Continuous free fall gives {continuous:.5f} m. {ahead}, and g h t / 2 is "
+    second = f"Continuous free fall gives {continuous:.6f} m. {ahead}, and {TERM} is "
     second += f"{1000 * gap:.3f} mm"
     if abs(found.continuous_gap - gap) <= FORMULA_TOLERANCE:
         second += ": the difference is the solver's step, and no error of measurement."
@@ -99,10 +102,15 @@ def three_rows(found: DropMetrics, case: Drop) -> Sequence[Mapping[str, str]]:
         {
             "drop": name,
             "distance [m]": f"{drop:.6f}",
-            "against the measurement [mm]": f"{1000 * (drop - found.drop):+.4f}".replace("-", "−"),
+            "against the measurement [mm]": _signed(1000 * (drop - found.drop)),
         }
         for name, drop in drops.items()
     ]
+
+
+def _signed(value: float) -> str:
+    """Write a difference with its sign, four digits after the point; none where it is zero."""
+    return f"{value:+.4f}".replace("-", "−") if value else "0"
 
 
 def convergence(found: Study) -> tuple[str, ...]:
@@ -117,8 +125,8 @@ def convergence(found: Study) -> tuple[str, ...]:
     if apart <= SHARE:
         return (
             told,
-            f"Every one of the {len(found.names)} runs agrees with g h t / 2 to within "
+            f"Every one of the {len(found.names)} runs agrees with {TERM} to within "
             f"{100 * apart:.1g} %: the method is of first order, half the step leaves half the "
             "difference.",
         )
-    return told, f"One of them is {100 * apart:.0f} % off g h t / 2. {INSPECT}"
+    return told, f"One of them is {100 * apart:.0f} % off {TERM}. {INSPECT}"

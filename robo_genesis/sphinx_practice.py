@@ -23,7 +23,7 @@ from robo_genesis.sphinx_evidence import BACKEND, measured, outputs_folder
 
 UNITS = drop_metrics.UNITS | metrics.UNITS
 EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
-LOWER = {"lower": "less", "equal": "the same, within the resolution above", "higher": "more"}
+LOWER = {"lower": "less", "equal": "the same, within the lesson's resolution", "higher": "more"}
 UNDECIDED = "this window cannot tell"
 """What the second case does against the first, as a reader would say it."""
 

@@ -3,7 +3,7 @@
 
 globalThis.timePlot = (() => {
   const SVG = "http://www.w3.org/2000/svg";
-  const EDGE = { left: 52, right: 10, top: 24, bottom: 22 };
+  const EDGE = { left: 52, right: 18, top: 24, bottom: 22 };
 
   function add(parent, name, attributes, text = "") {
     const element = document.createElementNS(SVG, name);
