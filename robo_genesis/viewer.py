@@ -38,7 +38,7 @@ CREDITS = f"""\
 The viewer ({VIEWER}): @google/model-viewer, © Google LLC, Apache-2.0. Changed here: the addresses
 from which it would load decoders for compressed models are taken out, so that it asks no other
 host.
-The text of Apache-2.0, of whatever is named here, stands in {VIEWER_LICENCE}.
+Where Apache-2.0 is named here, its text stands in {VIEWER_LICENCE}.
 The viewer is one file made of these packages; the text of each licence stands in the file named:
 """
 
