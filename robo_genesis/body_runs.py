@@ -88,10 +88,12 @@ def moves(traces: Mapping[str, BodyTrace], links: Sequence[str], moving: Moving)
     for case, trace in traces.items():
         far = np.linalg.norm(trace.link_pos - trace.link_pos[0], axis=2).max(axis=0)
         along = "; it ".join(along_axis(trace, link, AXES[name]) for name in moving.axes)
-        words[case] = (
-            f"**{case}**: the {moving.thing} {along}. The link `{links[far.argmax()]}` moves "
-            f"farthest, by up to {100 * far.max():.1f} cm."
-        )
+        words[case] = f"**{case}**: the {moving.thing} {along}."
+        if len(links) > 1:
+            words[case] += (
+                f" The link `{links[far.argmax()]}` moves farthest, by up to "
+                f"{100 * far.max():.1f} cm."
+            )
     return words
 
 

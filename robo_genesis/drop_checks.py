@@ -15,6 +15,9 @@ from robo_genesis.trace import BodyTrace
 MASS_SHARE = 1e-5
 """What the engine's mass may differ from density times volume by, as a share: float32."""
 
+SPEED_SHARE = 1e-5
+"""What a speed may differ from g t by, as a share of the last: float32."""
+
 
 @dataclass(frozen=True, slots=True)
 class DropExperiment:
@@ -62,7 +65,7 @@ def start(run: DropExperiment) -> list[str]:
 
 
 def stamps(run: DropExperiment) -> list[str]:
-    """One outer step is dt: states at k · dt from zero, as many as were asked for."""
+    """The record has a state for t = 0 and for each outer step asked for, stamped k · dt."""
     problems = []
     for name, case in run.cases.items():
         t, asked = run.traces[name].t, np.arange(case.steps + 1) * case.dt
@@ -102,18 +105,48 @@ def stepped_formula(run: DropExperiment) -> list[str]:
     ]
 
 
+def speed(run: DropExperiment) -> list[str]:
+    """At every sample the velocity is g t, downwards: one outer step is dt long."""
+    problems = []
+    for name, case in run.cases.items():
+        trace = run.traces[name]
+        apart = float(np.abs(-trace.link_vel[:, 0, 2] - case.gravity * trace.t).max())
+        if not apart <= SPEED_SHARE * case.gravity * trace.t[-1]:
+            problems.append(f"{name} is up to {apart:g} m/s off g t")
+    return problems
+
+
 def straight_down(run: DropExperiment) -> list[str]:
-    """Nothing pushes the box aside, and nothing turns it."""
-    return [
-        f"{name} moves {of.sideways:g} m aside and turns at up to {of.turning:g} rad/s"
-        for name, of in run.metrics.items()
-        if not (of.sideways <= l02.AT_REST and of.turning <= l02.AT_REST)
-    ]
+    """Nothing pushes the box aside, and nothing turns it: its orientation stays the same."""
+    problems = []
+    for name, of in run.metrics.items():
+        turned = run.traces[name].link_quat[:, 0]
+        whole = np.abs(np.linalg.norm(turned, axis=1) - 1).max() <= l02.AT_REST
+        same = np.abs(turned - turned[0]).max() <= l02.AT_REST
+        if not (of.sideways <= l02.AT_REST and of.turning <= l02.AT_REST):
+            problems.append(f"{name} moves {of.sideways:g} m aside and turns at up to "
+                            f"{of.turning:g} rad/s")  # fmt: skip
+        if not (whole and same):
+            problems.append(f"{name} does not keep its orientation {turned[0].tolist()}")
+    return problems
 
 
 def posture(run: DropExperiment) -> list[str]:
     """The evidence of both ends says what it is, and shows the box in two places."""
     return postures.problems(run.posture, run.frames, run.traces["baseline"].link_pos)
+
+
+def same_fall(ends: Mapping[str, float]) -> Check:
+    """Return the check that boxes of other colour or density fall alike.
+
+    Args:
+        ends: height of each at the end [m].
+    """
+    first = next(iter(ends.values()))
+    apart = [f"{name} ended {end - first:g} m from the first" for name, end in ends.items()
+             if end != first]  # fmt: skip
+    held = "Boxes of other colour or density fall alike, to the last bit."
+    return Check("same_fall", not apart, "; ".join(apart) or held)
 
 
 CHECKS: tuple[Callable[[DropExperiment], list[str]], ...] = (
@@ -124,6 +157,7 @@ CHECKS: tuple[Callable[[DropExperiment], list[str]], ...] = (
     falls,
     clear_of_ground,
     stepped_formula,
+    speed,
     straight_down,
     posture,
 )

@@ -14,6 +14,7 @@ from robo_genesis.trace import BodyTrace
 UNITS = {
     "duration": "s",
     "drop": "m",
+    "lowest": "m",
     "final_speed": "m/s",
     "formula_error": "m",
     "continuous_gap": "m",
@@ -24,6 +25,7 @@ UNITS = {
 SOURCES = {
     "duration": ("t_s",),
     "drop": ("link_pos_m",),
+    "lowest": ("link_pos_m",),
     "final_speed": ("link_vel_m_s",),
     "formula_error": ("link_pos_m", "t_s"),
     "continuous_gap": ("link_pos_m", "t_s"),
@@ -35,6 +37,7 @@ SOURCES = {
 LABELS = {
     "duration": "duration",
     "drop": "distance fallen",
+    "lowest": "distance fallen at the lowest sample",
     "final_speed": "speed at the end",
     "formula_error": "largest distance from the stepped formula",
     "continuous_gap": "farther than continuous free fall",
@@ -49,6 +52,7 @@ class DropMetrics:
 
     duration: float
     drop: float
+    lowest: float
     final_speed: float
     formula_error: float
     continuous_gap: float
@@ -79,6 +83,7 @@ def drop_metrics(trace: BodyTrace, case: Drop) -> DropMetrics:
     return DropMetrics(
         duration=float(trace.t[-1]),
         drop=float(below[-1]),
+        lowest=float(below.max()),
         final_speed=float(-trace.link_vel[-1, 0, 2]),
         formula_error=float(np.abs(below - predicted(trace, case)).max()),
         continuous_gap=float(below[-1] - continuous_drop(trace.t[-1:], case.gravity)[0]),

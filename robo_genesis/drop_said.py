@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from robo_genesis.comparison import INSPECT
+from robo_genesis.drop_checks import SPEED_SHARE
 from robo_genesis.drop_metrics import DropMetrics
 from robo_genesis.falling import ahead_of_continuous, continuous_drop, summed_drop
 from robo_genesis.free_bodies import Drop
@@ -10,6 +10,7 @@ from robo_genesis.interpretation import Block
 from robo_genesis.l02 import AT_REST, FORMULA_TOLERANCE
 from robo_genesis.substep_study import SHARE, Study
 
+LOOK = "Look first at the time stamps, the first state, gravity, and whether something was touched."
 TERM = "g h t / 2".replace(" ", "\N{NO-BREAK SPACE}")
 """How far ahead of continuous free fall a stepped body is."""
 
@@ -24,24 +25,24 @@ def interpretation(found: DropMetrics, case: Drop) -> tuple[Block, ...]:
 
 
 def fall_sentence(found: DropMetrics, case: Drop) -> str:
-    """Say how far the box fell, and between which heights."""
+    """Say how far the box fell or rose, and between which heights."""
+    way = "fell" if found.drop >= 0 else "rose"
     return (
-        f"In {found.duration:.2f} s of simulated time, {case.steps} outer steps, the box fell "
-        f"{found.drop:.6f} m: from {case.height:g} m to {case.height - found.drop:.6f} m."
+        f"In {found.duration:.2f} s of simulated time, {case.steps} outer steps, the box {way} "
+        f"{abs(found.drop):.6f} m: from {case.height:g} m to {case.height - found.drop:.6f} m."
     )
 
 
 def speed_sentence(found: DropMetrics, case: Drop) -> str:
     """Hold the speed at the end against g t, which both formulas have."""
     expected = case.gravity * found.duration
-    if abs(found.final_speed - expected) <= 1e-5 * expected:
-        verdict = "the same, as it must be: constant acceleration is added up without any error"
-    else:
-        verdict = f"which differs by {found.final_speed - expected:.2g} m/s. {INSPECT}"
-    return (
-        f"At the end it moved down at {found.final_speed:.4f} m/s; g t is {expected:.4f} m/s, "
-        f"{verdict}."
-    )
+    told = f"At the end it moved down at {found.final_speed:.4f} m/s; g t is {expected:.4f} m/s"
+    if abs(found.final_speed - expected) <= SPEED_SHARE * expected:
+        return (
+            f"{told}, the same to within float32: under constant acceleration the stepped velocity "
+            "has no error of its own."
+        )
+    return f"{told}. They differ by {signed(found.final_speed - expected)} m/s. {LOOK}"
 
 
 def formula_sentences(found: DropMetrics, case: Drop) -> tuple[str, ...]:
@@ -51,18 +52,18 @@ def formula_sentences(found: DropMetrics, case: Drop) -> tuple[str, ...]:
     continuous = float(continuous_drop(found.duration, case.gravity))
     gap = float(ahead_of_continuous(case.h, found.duration, case.gravity))
     off = f"{1e6 * found.formula_error:.2g} µm"
-    ahead = f"The box fell {1000 * found.continuous_gap:.3f} mm farther"
+    ahead = f"The box is {ahead_or_behind(found.continuous_gap)} that"
     first = f"The stepped formula gives {stepped:.6f} m for n = {n}"
     if found.formula_error <= FORMULA_TOLERANCE:
         first += f": at no sample is the box farther than {off} from it, which is float32."
     else:
-        first += f", and the box is up to {off} off: it was not stepped as assumed. {INSPECT}"
+        first += f", and the box is up to {off} off: it was not stepped as assumed. {LOOK}"
     second = f"Continuous free fall gives {continuous:.6f} m. {ahead}, and {TERM} is "
     second += f"{1000 * gap:.3f} mm"
     if abs(found.continuous_gap - gap) <= FORMULA_TOLERANCE:
         second += ": the difference is the solver's step, and no error of measurement."
     else:
-        second += f": the solver's step does not explain the difference. {INSPECT}"
+        second += f": the solver's step does not explain the difference. {LOOK}"
     return first, second
 
 
@@ -80,12 +81,12 @@ def straight_sentence(found: DropMetrics) -> str:
 
 
 def ground_sentence(found: DropMetrics, case: Drop) -> str:
-    """Say whether the box reached the ground within the window."""
-    left = case.clearance - found.drop
+    """Say how far above the ground the box was at its lowest, or that it got there."""
+    left = case.clearance - found.lowest
     if left > 0:
         return (
-            f"It did not land: {1000 * left:.1f} mm were left below it. What happens on landing is "
-            "the matter of L03."
+            f"It did not reach the ground: at the lowest sample {1000 * left:.1f} mm were left "
+            "below it. What happens on landing is the matter of L03."
         )
     return "It reached the ground within the window, so these numbers are not of free fall alone."
 
@@ -102,24 +103,29 @@ def three_rows(found: DropMetrics, case: Drop) -> Sequence[Mapping[str, str]]:
         {
             "drop": name,
             "distance [m]": f"{drop:.6f}",
-            "against the measurement [mm]": _signed(1000 * (drop - found.drop)),
+            "against the measurement [mm]": signed(1000 * (drop - found.drop)),
         }
         for name, drop in drops.items()
     ]
 
 
-def _signed(value: float) -> str:
+def signed(value: float) -> str:
     """Write a difference with its sign, four digits after the point; none where it is zero."""
     return f"{value:+.4f}".replace("-", "−") if value else "0"
 
 
+def ahead_or_behind(gap: float) -> str:
+    """Say by how much a box is lower or higher than another, without a sign [m]."""
+    return f"{1000 * abs(gap):.3f} mm {'ahead of' if gap >= 0 else 'behind'}"
+
+
 def convergence(found: Study) -> tuple[str, ...]:
     """Say how the difference to continuous free fall goes with the solver's step."""
-    first, last = (f"{1000 * gap:.3f} mm" for gap in (found.gaps[0], found.gaps[-1]))
+    first, last = (ahead_or_behind(gap) for gap in (found.gaps[0], found.gaps[-1]))
     coarse, fine = (f"{1000 * h:g} ms" for h in (found.h[0], found.h[-1]))
     told = (
-        f"With a solver step of {coarse} the box is {first} ahead of continuous free fall at the "
-        f"end; with {fine} it is {last}."
+        f"With a solver step of {coarse} the box is {first} continuous free fall at the end; "
+        f"with {fine} it is {last} it."
     )
     apart = max(abs(g / e - 1) for g, e in zip(found.gaps, found.expected, strict=True))
     if apart <= SHARE:
@@ -129,4 +135,4 @@ def convergence(found: Study) -> tuple[str, ...]:
             f"{100 * apart:.1g} %: the method is of first order, half the step leaves half the "
             "difference.",
         )
-    return told, f"One of them is {100 * apart:.0f} % off {TERM}. {INSPECT}"
+    return told, f"The one farthest from {TERM} is {100 * apart:.0f} % off it. {LOOK}"

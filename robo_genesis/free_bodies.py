@@ -79,6 +79,18 @@ def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:
     return BodyTrace(t, link_pos, link_quat, link_vel, link_ang)
 
 
+def read_model(scene: Any, body: Any) -> dict[str, int]:
+    """Return the engine's counts: entities of the scene; links, geoms and more of the body."""
+    return {
+        "entities": len(scene.entities),
+        "links": body.n_links,
+        "geoms": body.n_geoms,
+        "joints": body.n_joints,
+        "dofs": body.n_dofs,
+        "qpos": body.n_qs,
+    }
+
+
 def read_body(body: Any) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return position (l, 3), orientation (l, 4), velocity and angular velocity (l, 3), now."""
     return (

@@ -121,7 +121,7 @@ LESSONS = {
                 l02.study_parameters, (*DROP_MODULES, "life_cycle", "substep_study")
             ),
         },
-        compared=Moving(tuple(l02.CASES), link="box_baselink", thing="box"),
+        compared=Moving(tuple(l02.CASES), link=l02.LINK, thing="box"),
         filmed=Filmed("the box"),
     ),
     l04.LESSON: Lesson(

@@ -14,6 +14,9 @@ GROUP = "life_cycle"
 
 BEFORE, AFTER = "before build", "after build"
 
+REFUSAL = "GenesisException"
+"""The engine's own exception, with which it refuses a call."""
+
 RENDER = "camera.render"
 
 BELONGS = {
@@ -44,12 +47,17 @@ class Attempt:
 
 
 def attempt(call: str, side: str, run: Callable[[], Any]) -> Attempt:
-    """Call, and keep the exception's type and first line if there is one."""
+    """Call, and keep the engine's refusal, type and first line, if there is one.
+
+    Any other exception is no refusal but a broken call, and goes on.
+    """
     try:
         run()
-    except Exception as error:  # which one it is, is what is asked
+    except Exception as error:
+        if type(error).__name__ != REFUSAL:  # the engine is not imported here
+            raise
         lines = str(error).strip().splitlines()
-        return Attempt(call, side, f"{type(error).__name__}: {lines[0] if lines else ''}")
+        return Attempt(call, side, f"{REFUSAL}: {lines[0] if lines else ''}")
     return Attempt(call, side, None)
 
 

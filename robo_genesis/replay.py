@@ -120,7 +120,10 @@ def _term(name: str) -> str:
 def _legend(runs: Runs) -> str:
     """Say what the lines of the plots mean."""
     parts = [
-        "Bold: the chosen run; each run has the line beside its name.",
+        *(
+            ["Bold: the chosen run; each run has the line beside its name."]
+            * (len(runs.traces) > 1)
+        ),
         *(level.legend for level in runs.levels),
         "Drag in a plot to move through time.",
     ]

@@ -149,6 +149,41 @@ def test_a_push_from_the_side_is_named(experiment):
     assert failing(with_trace(experiment, link_pos=position)) == ["straight_down"]
 
 
+def test_a_speed_that_is_not_g_t_is_named(experiment):
+    velocity = np.array(experiment.traces["baseline"].link_vel) / 2
+    assert failing(with_trace(experiment, link_vel=velocity)) == ["speed"]
+
+
+@pytest.mark.parametrize("turned", [(0, 1, 0, 0), (7, 0, 0, 0)])
+def test_a_box_that_was_turned_over_or_has_no_orientation_is_named(experiment, turned):
+    orientation = np.array(experiment.traces["baseline"].link_quat)
+    orientation[5:] = turned
+    assert failing(with_trace(experiment, link_quat=orientation)) == ["straight_down"]
+
+
+@pytest.mark.parametrize(
+    ("changed", "names"),
+    [({"density": 1000}, ["mass"]), ({"height": 0.6}, ["start"]), ({"steps": 10}, ["stamps"])],
+)
+def test_the_hands_on_task_fails_the_checks_that_its_answer_names(
+    make_drop, frames, changed, names
+):
+    case = replace(l02.BASELINE, **changed)
+    traces = {"baseline": make_drop(case)}
+    metrics = measure(traces, l02.CASES)
+    found = drop_checks.DropExperiment(
+        l02.EXPECTED_MODEL, case.mass, l02.CASES, traces, metrics, "camera", frames
+    )
+    assert failing(found) == names
+
+
+def test_boxes_that_end_apart_are_named():
+    assert drop_checks.same_fall({"ours": 0.3, "blue": 0.3}).passed
+    outcome = drop_checks.same_fall({"ours": 0.3, "blue": 0.29})
+    assert not outcome.passed
+    assert outcome.detail.startswith("blue ended -0.01 m")
+
+
 def test_one_picture_twice_is_named(experiment):
     same = dict.fromkeys(("initial", "final"), experiment.frames["initial"])
     assert failing(replace(experiment, frames=same)) == ["posture"]
@@ -195,11 +230,11 @@ def test_sentences_of_a_sound_run(experiment):
     said = text(experiment.metrics["baseline"])
     assert "fell 0.201105 m: from 0.5 m to 0.298895 m" in said
     assert (
-        "4.905 mm farther, and g h t / 2 is 4.905 mm: the difference is the solver's step" in said
+        "is 4.905 mm ahead of that, and g h t / 2 is 4.905 mm: the difference is the solver" in said
     )
     assert "which is float32" in said
     assert "neither moved aside" in said
-    assert "did not land: 248.9 mm were left" in said
+    assert "at the lowest sample 248.9 mm were left below it" in said
 
 
 @pytest.mark.parametrize(
@@ -207,10 +242,12 @@ def test_sentences_of_a_sound_run(experiment):
     [
         ({"formula_error": 1e-3}, "is up to 1e+03 µm off: it was not stepped as assumed"),
         ({"continuous_gap": 0.001}, "the solver's step does not explain the difference"),
-        ({"final_speed": 1.5}, "which differs by -0.46 m/s"),
+        ({"final_speed": 1.5}, "1.9620 m/s. They differ by −0.4620 m/s. Look first at"),
         ({"sideways": 0.01}, "It moved 0.01 m aside"),
         ({"turning": 0.3}, "turned at up to 0.3 rad/s"),
-        ({"drop": 0.46}, "It reached the ground within the window"),
+        ({"lowest": 0.46}, "It reached the ground within the window"),
+        ({"drop": -0.1}, "the box rose 0.100000 m: from 0.5 m to 0.600000 m"),
+        ({"continuous_gap": -0.3}, "is 300.000 mm behind that"),
     ],
 )
 def test_sentences_of_other_outcomes(experiment, changed, said):

@@ -16,7 +16,10 @@ def dropped(real_engine):
     gs = real_engine.gs
     case = l02.BASELINE
     scene = gs.Scene(
-        sim_options=gs.options.SimOptions(dt=case.dt, substeps=case.substeps), show_viewer=False
+        sim_options=gs.options.SimOptions(
+            dt=case.dt, substeps=case.substeps, gravity=(0.0, 0.0, -case.gravity)
+        ),
+        show_viewer=False,
     )
     scene.add_entity(gs.morphs.Plane())
     box = scene.add_entity(
@@ -32,9 +35,7 @@ def dropped(real_engine):
 
 
 def experiment(dropped) -> drop_checks.DropExperiment:
-    box, entities = dropped.box, len(dropped.scene.entities)
-    model = {"entities": entities, "links": box.n_links, "geoms": box.n_geoms}
-    model |= {"joints": box.n_joints, "dofs": box.n_dofs, "qpos": box.n_qs}
+    box, model = dropped.box, free_bodies.read_model(dropped.scene, dropped.box)
     metrics = measure(dropped.traces, l02.CASES)
     return drop_checks.DropExperiment(
         model, float(box.get_mass()), l02.CASES, dropped.traces, metrics, "camera", dropped.frames

@@ -6,6 +6,10 @@ from robo_genesis import life_cycle
 from robo_genesis.life_cycle import AFTER, BEFORE, BELONGS
 
 
+class GenesisException(Exception):  # noqa: N818 - the engine's name
+    """As the engine's."""
+
+
 class World:
     """A scene with one box and one camera that refuses what the engine refuses."""
 
@@ -14,7 +18,8 @@ class World:
 
     def _needs(self, built: bool):
         if self.built != built:
-            raise RuntimeError("Scene is already built." if self.built else "Not built.\nAt all.")
+            said = "Scene is already built." if self.built else "Not built.\nAt all."
+            raise GenesisException(said)
 
     def add_entity(self, morph):
         self._needs(False)
@@ -58,14 +63,19 @@ def test_without_rendering_no_camera_is_tried():
 
 def test_a_refusal_is_kept_with_type_and_first_line():
     (step,) = [a for a in tried() if (a.call, a.side) == ("scene.step", BEFORE)]
-    assert step.refusal == "RuntimeError: Not built."
+    assert step.refusal == "GenesisException: Not built."
+
+
+def test_a_call_that_is_broken_is_no_refusal():
+    with pytest.raises(AttributeError, match="no_such_call"):
+        life_cycle.attempt("call", BEFORE, lambda: World().no_such_call())
 
 
 def test_the_table_has_a_row_for_each_call():
     rows = {row["call"]: row for row in life_cycle.rows(tried())}
     assert set(rows) == {f"`{call}`" for call in BELONGS}
     assert rows["`scene.add_entity`"][BEFORE] == "goes through"
-    assert rows["`scene.add_entity`"][AFTER] == "RuntimeError: Scene is already built."
+    assert rows["`scene.add_entity`"][AFTER] == "GenesisException: Scene is already built."
 
 
 @pytest.mark.parametrize("call", BELONGS)

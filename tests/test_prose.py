@@ -17,6 +17,8 @@ CONFIGURED = {
     "rise fraction": metrics.RISE_FRACTION,
     "settling band [rad]": metrics.SETTLING_BAND,
     "saturation threshold": metrics.SATURATION_THRESHOLD,
+    "edge of the box [m]": l02.BASELINE.size,
+    "height of the box [m]": l02.BASELINE.height,
     "length of the drop [s]": l02.BASELINE.dt * l02.BASELINE.steps,
     "acceleration of gravity [m/s²]": l02.BASELINE.gravity,
     "speed nearly at rest [rad/s]": interpretation.AT_REST,

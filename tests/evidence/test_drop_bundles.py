@@ -39,7 +39,7 @@ def sound(backend, tmp_path_factory, engine, frames, make_drop) -> Path:
     )
     measured = Measured(
         joints=None,
-        links=("box",),
+        links=(l02.LINK,),
         traces=traces,
         metrics=metric_records(metrics, l02.EXPECTED_MODEL, 0.5) | life_cycle.records(WENT),
         checks=[
@@ -75,7 +75,7 @@ def test_a_sound_one_is_accepted_and_has_no_joints(dropped):
     accepted = verify_bundle(dropped)
     assert [check.name for check in accepted.predicate.checks][-1] == "sides_of_build"
     arrays = bundle.read_arrays(dropped)
-    assert (arrays.joints, arrays.coords) == ([], {"link": ["box"]})
+    assert (arrays.joints, arrays.coords) == ([], {"link": [l02.LINK]})
     units = {n: v.unit for n, v in arrays.cases["baseline"].variables.items()}
     assert units["link_vel_m_s"] == "m/s"
 
@@ -110,8 +110,8 @@ def test_it_becomes_a_table_with_units(dropped):
     trace = read_any_trace(dropped, arrays, "baseline")
     rows = list(csv.DictReader(csv_text(trace, arrays, "baseline").splitlines()))
     assert len(rows) == 21
-    assert float(rows[0]["link_pos box z [m]"]) == 0.5
-    assert float(rows[-1]["link_vel box z [m/s]"]) == pytest.approx(-9.81 * 0.2)
+    assert float(rows[0]["link_pos box_baselink z [m]"]) == 0.5
+    assert float(rows[-1]["link_vel box_baselink z [m/s]"]) == pytest.approx(-9.81 * 0.2)
 
 
 def missing_run(folder):
@@ -171,7 +171,7 @@ SPOILED = {
     "a call that was never tried": (
         "metrics", lambda f: edit(f, "metrics.json", lambda m: m["life_cycle"].popitem())),
     "one more link": ("labels", lambda f: edit(f, "arrays.json", lambda a: a["coords"].update(
-        link=["box", "lid"]))),
+        link=[l02.LINK, "lid"]))),
     "an axis of DOFs": ("labels", lambda f: edit(f, "arrays.json", lambda a: a["coords"].update(
         dof=["joint"]))),
     "a check that is left out": (
