@@ -11,6 +11,8 @@ PAGES = (
     "glossary",
     "evidence/ledger",
     "evidence/recording",
+    "lessons/l02-life-cycle/lecture",
+    "lessons/l02-life-cycle/lab",
     "lessons/l04-joint-control/lecture",
     "lessons/l04-joint-control/lab",
 )

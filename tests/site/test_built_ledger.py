@@ -8,6 +8,7 @@ import pytest
 from bs4 import BeautifulSoup
 
 from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.lessons import LESSONS
 
 pytestmark = pytest.mark.engine
 LEDGER = "evidence/ledger.html"
@@ -18,6 +19,7 @@ SHOWN = (
 UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",
+    "performance": "Measured apart from this build, see the text.",
 }
 
 
@@ -93,14 +95,15 @@ def test_illustrations_say_so_and_nothing_else_does(pages):
         for line in page.select(".provenance")
         if "Illustration, not measured." in line.text
     ]
-    assert [source.rpartition("/")[2] for _, source in said] == ["chain.svg", "chain.svg"]
+    sources = sorted(source.rpartition("/")[2] for _, source in said)
+    assert sources == ["chain.svg", "chain.svg", "life-cycle.svg"]
 
 
 def test_tables_of_chosen_values_are_called_so(pages):
     rows = pages[LEDGER].select("#figures-and-tables tbody tr")
     chosen = [row.a.get_text() for row in rows if row.select("td")[1].text == "settings"]
-    assert len(chosen) == 4
-    for head in ("start, target", "KP of joint4", "angle [rad], speed"):
+    assert len(chosen) == 5
+    for head in ("what, value", "start, target", "KP of joint4", "angle [rad], speed"):
         assert [title for title in chosen if head in title]
 
 
@@ -112,7 +115,7 @@ def test_digests_are_those_of_the_files(site, pages):
 
 def test_a_downloaded_bundle_is_accepted_and_has_the_digest_that_is_given(site, pages, tmp_path):
     blocks = [b for b in pages[LEDGER].select(".run-block") if b.select("a")]
-    assert len(blocks) == 2
+    assert len(blocks) == sum(len(lesson.pages) for lesson in LESSONS.values())
     for block in blocks:
         data = ((site / LEDGER).parent / block.a["href"]).read_bytes()
         assert hashlib.sha256(data).hexdigest() == block.select(".digest")[-1].text
@@ -122,6 +125,7 @@ def test_a_downloaded_bundle_is_accepted_and_has_the_digest_that_is_given(site, 
 
 
 def test_what_is_missing_is_named_with_its_command(pages):
-    block = pages[LEDGER].select_one(".run-block:has(.state-missing)")
-    assert "amdgpu-missing" in block.text
-    assert "make evidence LESSON=l04 BACKEND=amdgpu" in block.text
+    blocks = pages[LEDGER].select(".run-block:has(.state-missing)")
+    for block, lesson in zip(blocks, LESSONS, strict=True):
+        assert "amdgpu-missing" in block.text
+        assert f"make evidence LESSON={lesson} BACKEND=amdgpu" in block.text

@@ -5,31 +5,41 @@ import re
 import pytest
 from bs4 import BeautifulSoup
 
-from robo_genesis import l04, project
+from robo_genesis import drop_checks, l04, project, step_checks
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.lessons import LESSONS
 
 pytestmark = pytest.mark.engine
 PIN = project.engine_pin()
 LESSON = "lessons/l04-joint-control"
+FIRST = "lessons/l02-life-cycle"
 
 
 def page(site, name: str) -> BeautifulSoup:
     return BeautifulSoup((site / f"{name}.html").read_text(), "html.parser")
 
 
-@pytest.mark.parametrize("name", [f"{LESSON}/lecture", f"{LESSON}/lab"])
-def test_pages_show_executed_outputs_and_their_verdict(site, name):
-    found = page(site, name)
-    assert "L04 CHECK: PASSED" in found.get_text()
+@pytest.mark.parametrize("page_name", ["lecture", "lab"])
+@pytest.mark.parametrize(("folder", "lesson"), [(LESSON, "L04"), (FIRST, "L02")])
+def test_pages_show_executed_outputs_and_their_verdict(site, folder, lesson, page_name):
+    found = page(site, f"{folder}/{page_name}")
+    assert f"{lesson} CHECK: PASSED" in found.get_text()
     assert len(found.select("div.cell_output img[src$='.svg']")) >= 3
 
 
-@pytest.mark.parametrize("name", ["index", f"{LESSON}/lecture", f"{LESSON}/lab"])
-def test_status_is_computed_and_says_what_is_missing(site, name):
+@pytest.mark.parametrize(
+    ("name", "checks"),
+    [
+        ("index", drop_checks.CHECKS),
+        *((f"{FIRST}/{name}", drop_checks.CHECKS) for name in ("lecture", "lab")),
+        *((f"{LESSON}/{name}", step_checks.CHECKS) for name in ("lecture", "lab")),
+    ],
+)
+def test_status_is_computed_and_says_what_is_missing(site, name, checks):
     status = page(site, name).select_one(".lesson-status").get_text()
     assert f"cpu-verified Lab in a clean notebook kernel, Genesis {PIN}" in status
-    assert "12 of 12 checks passed" in status
+    assert f"{len(checks)} of {len(checks)} checks passed" in status
     assert f"amdgpu-missing No run on this backend is recorded for Genesis {PIN}" in status
 
 
@@ -81,7 +91,7 @@ def test_math_needs_no_script(site):
 
 
 def test_build_ends_with_what_it_was_made_of(build_output):
-    tail = "\n".join(build_output.splitlines()[-5:])
+    tail = "\n".join(build_output.splitlines()[-4 - len(LESSONS) :])
     expected = ["Site: ", "Engine: genesis-world", "requested cpu, actual cpu", "render camera"]
     expected += ["executed", "reused", "Checks passed: "]
     assert [words for words in expected if words not in tail] == []

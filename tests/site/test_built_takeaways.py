@@ -29,7 +29,8 @@ def run(site):
 def test_the_page_links_every_file_with_its_size(site, page):
     links = page.select("a.takeaway")
     files = {(site / LAB).parent.joinpath(link["href"]).resolve() for link in links}
-    there = {path for path in (site / "takeaways").rglob("*") if path.is_file()}
+    there = {path for path in (site / FOLDER).rglob("*") if path.is_file()}
+    there |= set((site / "takeaways").glob("*.whl"))
     assert files == there
     for link in links:
         size = (site / LAB).parent.joinpath(link["href"]).stat().st_size

@@ -15,7 +15,7 @@ from bs4 import BeautifulSoup
 from robo_genesis import build, project
 
 pytestmark = pytest.mark.engine
-LAB = "lessons/l04-joint-control/lab"
+LABS = {"l02": "lessons/l02-life-cycle/lab", "l04": "lessons/l04-joint-control/lab"}
 OURS = ("PYTHON", "VIRTUAL_ENV", "ROBO_GENESIS", "JUPYTER", "IPYTHON")
 """Variables of this environment that a reader's does not have."""
 
@@ -35,13 +35,19 @@ def run(line: str, folder: Path, environment: dict[str, str]) -> str:
     return done.stdout
 
 
-def test_the_install_line_is_enough_to_run_the_student_s_notebook(site, home):
-    box = BeautifulSoup((site / f"{LAB}.html").read_text(), "html.parser").select_one(
-        ".run-it-yourself"
-    )
+def taken(site: Path, lab: str, home: Path) -> list[str]:
+    """Take all files of a lab's box home, and return the lines that it tells to run."""
+    page = BeautifulSoup((site / f"{lab}.html").read_text(), "html.parser")
+    box = page.select_one(".run-it-yourself")
     for link in box.select("a.takeaway"):
-        shutil.copy((site / LAB).parent / link["href"], home)
-    make, install, start = box.select_one("pre").get_text().strip().splitlines()
+        shutil.copy((site / lab).parent / link["href"], home)
+    return box.select_one("pre").get_text().strip().splitlines()
+
+
+def test_the_install_line_is_enough_to_run_each_student_s_notebook(site, home):
+    lines = {lesson: taken(site, lab, home) for lesson, lab in LABS.items()}
+    (make, install), *others = {tuple(of[:2]) for of in lines.values()}
+    assert others == []  # one environment serves both
     given = {name: value for name, value in os.environ.items() if not name.startswith(OURS)}
     # Versions as the lock has them; which packages come is the wheel's and the line's to say.
     given["PIP_CONSTRAINT"] = str(project.ROOT / "requirements.lock")
@@ -52,13 +58,13 @@ def test_the_install_line_is_enough_to_run_the_student_s_notebook(site, home):
     folder = make.split()[-1]
     where = "import robo_genesis; print(robo_genesis.__file__)"
     assert run(f"{folder}/bin/python -c '{where}'", home, environment).startswith(str(home))
-    notebook = start.split()[-1]
-    execute = start.replace("jupyter lab", "jupyter execute --output=done.ipynb")
-    with build.only_build(project.CACHE):
-        run(execute, home, environment)
-    done = nbformat.read(home / "done.ipynb", as_version=4)
-    assert f"genesis-world {project.engine_pin()}" in done.cells[1].outputs[0].text
-    last = [cell for cell in done.cells if cell.cell_type == "code"][-1]
-    assert "L04 CHECK: PASSED" in last.outputs[-1].text
-    assert (home / notebook).is_file()
-    assert (home / "outputs" / "l04" / "lab" / "cpu" / "manifest.json").is_file()
+    for lesson, (*_, start) in lines.items():
+        execute = start.replace("jupyter lab", f"jupyter execute --output={lesson}-done.ipynb")
+        with build.only_build(project.CACHE):
+            run(execute, home, environment)
+        done = nbformat.read(home / f"{lesson}-done.ipynb", as_version=4)
+        assert f"genesis-world {project.engine_pin()}" in done.cells[1].outputs[0].text
+        last = [cell for cell in done.cells if cell.cell_type == "code"][-1]
+        assert f"{lesson.upper()} CHECK: PASSED" in last.outputs[-1].text
+        assert (home / start.split()[-1]).is_file()
+        assert (home / "outputs" / lesson / "lab" / "cpu" / "manifest.json").is_file()

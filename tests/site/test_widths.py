@@ -14,6 +14,8 @@ PAGES = (
     "evidence/ledger",
     "evidence/trust",
     "evidence/recording",
+    "lessons/l02-life-cycle/lecture",
+    "lessons/l02-life-cycle/lab",
     "lessons/l04-joint-control/lecture",
     "lessons/l04-joint-control/lab",
     "search",
