@@ -34,6 +34,28 @@ entry = joints.entry(l04.STEPPED_JOINT)
 found = step_runs.read_studies(folder, bundle.read_manifest(folder))
 """
 
+FROM_DROPS = """
+import matplotlib.pyplot as plt, numpy as np
+from pathlib import Path
+from PIL import Image
+from robo_genesis import drop_plots, l02, plots, substep_study
+from robo_genesis.drop_metrics import measure, predicted
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.traces import read_body_trace
+
+plots.use_course_style()
+folder = Path({folder!r})
+arrays = bundle.read_arrays(folder)
+traces = {{case: read_body_trace(folder, arrays, case) for case in arrays.cases}}
+case, trace = l02.BASELINE, traces["baseline"]
+camera = True
+frames = {{n: np.array(Image.open(folder / "frames" / f"{{n}}.png")) for n in ("initial", "final")}}
+cases = {{n: c for n, c in (l02.CASES | l02.SUBSTEP_CASES).items() if n in traces}}
+study = substep_study.study(measure(traces, cases), cases)
+"""
+
+SETUPS = {"l02": FROM_DROPS, "l04": FROM_BUNDLE}
+
 STUDIED = {"fig-l04-theory", "fig-l04-step-size", "fig-l04-convergence"}
 """Figures that are drawn when the page has all of its traces, not the baseline's alone."""
 
@@ -56,11 +78,12 @@ def svgs(cells) -> list[str]:
 
 
 @pytest.mark.parametrize("name", ["lecture", "lab"])
-def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, name):
+@pytest.mark.parametrize("lesson", SETUPS)
+def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, lesson, name):
     for variable, value in (("ROBO_GENESIS_RENDER", "1"), ("ROBO_GENESIS_BACKEND", "cpu")):
         monkeypatch.setenv(variable, value)
     pages = find_pages(BOOK)
-    (page,) = (p for p in pages if p.page == name)
+    (page,) = (p for p in pages if (p.lesson, p.page) == (lesson, name))
     folder = page_cache_folder(fingerprint(pages, ROOT))
     cache = PageCache(notebooks_folder(folder))
     executed = cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
@@ -70,7 +93,7 @@ def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, n
         for cell, ran in zip(code, executed.cells, strict=True)
         if "figure" in cell.metadata.get("tags", []) and name_of(cell) not in NOT_IN_BUNDLE
     ]
-    setup = FROM_BUNDLE.format(folder=str(outputs_folder(folder) / "l04" / name / "cpu"))
+    setup = SETUPS[lesson].format(folder=str(outputs_folder(folder) / lesson / name / "cpu"))
     sources = [setup, *(redrawing(cell) for cell, _ in tagged)]
     redrawn = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(s) for s in sources])
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
