@@ -75,13 +75,18 @@ def recorder(quiet, tmp_path, engine, monkeypatch):
     return Recorder("l04", "lab", contract, engine)
 
 
-@pytest.fixture(scope="session")
-def pristine(backend, tmp_path_factory, engine, measured) -> Path:
-    with without_engine(backend) as patch:
+def written(engine, outputs: Path, lesson: str, page: str, measured: Measured) -> Path:
+    """Write a page's bundle below a folder without a real engine, and return where it stands."""
+    with without_engine(engine.backend) as patch:
         patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
-        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lab", project.BOOK))
-        contract = runtime.Contract("cpu", True, tmp_path_factory.mktemp("pristine"))
-        return Recorder("l04", "lab", contract, engine).write(measured)
+        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest(lesson, page, project.BOOK))
+        contract = runtime.Contract("cpu", True, outputs)
+        return Recorder(lesson, page, contract, engine).write(measured)
+
+
+@pytest.fixture(scope="session")
+def pristine(tmp_path_factory, engine, measured) -> Path:
+    return written(engine, tmp_path_factory.mktemp("pristine"), "l04", "lab", measured)
 
 
 @pytest.fixture

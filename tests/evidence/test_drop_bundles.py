@@ -7,16 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import RUN_ID, without_engine
+from conftest import written
 from spoilers import edit, predicate, seal
 
-from robo_genesis import drop_checks, l02, life_cycle, project, runtime, substep_study
+from robo_genesis import drop_checks, l02, life_cycle, runtime, substep_study
 from robo_genesis.drop_metrics import measure, metric_records
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare, specification
-from robo_genesis.evidence.current import page_digest
-from robo_genesis.evidence.record import Measured, Recorder
+from robo_genesis.evidence.record import Measured
 from robo_genesis.evidence.traces import read_any_trace, read_body_trace, read_trace
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.takeaways import csv_text
@@ -30,7 +29,7 @@ WENT = {
 
 
 @pytest.fixture(scope="module")
-def sound(backend, tmp_path_factory, engine, frames, make_drop) -> Path:
+def sound(tmp_path_factory, engine, frames, make_drop) -> Path:
     """The lecture's bundle."""
     traces = {name: make_drop(case) for name, case in CASES.items()}
     metrics = measure(traces, CASES)
@@ -51,11 +50,7 @@ def sound(backend, tmp_path_factory, engine, frames, make_drop) -> Path:
         parameters=l02.study_parameters(),
         renderer=runtime.Renderer("Mesa", "llvmpipe"),
     )
-    with without_engine(backend) as patch:
-        patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
-        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l02", "lecture", project.BOOK))
-        contract = runtime.Contract("cpu", True, tmp_path_factory.mktemp("dropped"))
-        return Recorder("l02", "lecture", contract, engine).write(measured)
+    return written(engine, tmp_path_factory.mktemp("dropped"), "l02", "lecture", measured)
 
 
 @pytest.fixture

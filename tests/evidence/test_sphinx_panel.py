@@ -8,11 +8,10 @@ import pygltflib
 import pytest
 import trimesh
 from docutils import nodes
-from docutils.core import publish_doctree
 from docutils.parsers.rst import DirectiveError
 from docutils.utils import new_document
-from myst_parser.parsers.docutils_ import Parser
 from spoilers import edit, metrics, on, part, predicate, seal
+from without_sphinx import Panel
 
 from robo_genesis import (
     l04,
@@ -186,20 +185,6 @@ def test_runs_that_cannot_be_compared_say_why(folder, there):
     assert text.startswith("**Not comparable with this build's run on cpu.**")
     assert "- parameters.rise_fraction differs: 0.9 and 0.5." in text
     assert rows(text) == []
-
-
-class Panel(sphinx_panel.Evidence):
-    """The directive without Sphinx: a folder, and a parser of Markdown."""
-
-    def __init__(self, book):
-        app = SimpleNamespace(outdir=book / "_build" / "html")
-        env = SimpleNamespace(srcdir=book, app=app, docname="lessons/page")
-        self.state = SimpleNamespace(
-            document=SimpleNamespace(settings=SimpleNamespace(env=env, record_dependencies=None))
-        )
-
-    def parse_text_to_nodes(self, text):
-        return publish_doctree(text, parser=Parser()).children
 
 
 @pytest.mark.parametrize("accelerator", ["amdgpu", "cuda"])

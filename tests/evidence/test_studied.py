@@ -4,14 +4,13 @@ import shutil
 from pathlib import Path
 
 import pytest
-from conftest import RUN_ID, without_engine
+from conftest import written
 from spoilers import edit, seal
 
-from robo_genesis import l04, l04_studies, project, runtime, step_checks, studies, study_checks
+from robo_genesis import l04, l04_studies, runtime, step_checks, studies, study_checks
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare, specification
-from robo_genesis.evidence.current import page_digest
-from robo_genesis.evidence.record import Measured, Recorder
+from robo_genesis.evidence.record import Measured
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.metrics import measure, metric_records
 
@@ -19,7 +18,7 @@ LINKS = ("link0", "link4", "hand")
 
 
 @pytest.fixture(scope="module")
-def sound(backend, tmp_path_factory, engine, frames, study_runs) -> Path:
+def sound(tmp_path_factory, engine, frames, study_runs) -> Path:
     traces = dict(study_runs.traces)
     metrics = measure(traces, l04.CASES, study_runs.entry)
     run = step_checks.StepExperiment(
@@ -36,11 +35,7 @@ def sound(backend, tmp_path_factory, engine, frames, study_runs) -> Path:
         parameters=l04.parameters() | l04_studies.parameters(),
         renderer=runtime.Renderer("Mesa", "llvmpipe"),
     )
-    with without_engine(backend) as patch:
-        patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
-        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lecture", project.BOOK))
-        contract = runtime.Contract("cpu", True, tmp_path_factory.mktemp("studied"))
-        return Recorder("l04", "lecture", contract, engine).write(measured)
+    return written(engine, tmp_path_factory.mktemp("studied"), "l04", "lecture", measured)
 
 
 @pytest.fixture
