@@ -9,6 +9,7 @@ from robo_genesis.failures import Failure
 REQUEST = """
 import json, logging, sys
 import genesis as gs
+from robo_genesis.runtime import plain_theme
 
 kept = []
 keep = logging.Handler()
@@ -16,11 +17,11 @@ keep.emit = lambda record: kept.append([record.levelname, record.getMessage()])
 logging.getLogger("genesis").addHandler(keep)
 raised, found = None, None
 try:
-    gs.init(backend=getattr(gs, sys.argv[1]), theme="dumb", logging_level="warning")
+    gs.init(backend=getattr(gs, sys.argv[1]), theme=plain_theme(), logging_level="warning")
 except Exception as error:
     raised = [type(error).__name__, str(error)]
     kept.clear()
-    gs.init(backend=gs.gpu, theme="dumb", logging_level="warning")
+    gs.init(backend=gs.gpu, theme=plain_theme(), logging_level="warning")
     found = gs.backend.name
 print(json.dumps({"raised": raised, "found": found, "warnings": kept}))
 """
