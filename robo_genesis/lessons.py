@@ -88,7 +88,7 @@ class Moving(Drawn):
 class Filmed:
     """What camera frames show, in the words of their captions, and in which run."""
 
-    thing: str = "the Franka"
+    thing: str
     case: str = "the baseline"
 
 
@@ -102,8 +102,8 @@ class Lesson:
     spec: Specification
     metrics: tuple[str, ...]
     pages: Mapping[str, MeasuringPage]
+    filmed: Filmed
     compared: Compared | Moving | None = None
-    filmed: Filmed = Filmed()
 
 
 COMMON_MODULES = ("checks", "posture", "robot_model", "runtime", "scene_config", "trace")
@@ -121,8 +121,8 @@ LESSONS = {
                 l02.study_parameters, (*DROP_MODULES, "life_cycle", "substep_study")
             ),
         },
-        compared=Moving(tuple(l02.CASES), link=l02.LINK, thing="box"),
         filmed=Filmed("the box"),
+        compared=Moving(tuple(l02.CASES), link=l02.LINK, thing="box"),
     ),
     l04.LESSON: Lesson(
         spec=l04,
@@ -133,6 +133,7 @@ LESSONS = {
                 lambda: l04.parameters() | l04_studies.parameters(), STEP_MODULES + STUDY_MODULES
             ),
         },
+        filmed=Filmed("the Franka"),
         compared=Compared(tuple(l04_studies.COMPARED), l04.STEPPED_JOINT, until=0.6),
     ),
 }
@@ -157,7 +158,7 @@ def compared_cases(lesson: str) -> Compared | Moving | None:
 
 def filmed(lesson: str) -> Filmed:
     """Return what the camera frames of a lesson show."""
-    return LESSONS[lesson].filmed if lesson in LESSONS else Filmed()
+    return find_lesson(lesson).filmed
 
 
 def find_page(lesson: str, page: str) -> MeasuringPage:

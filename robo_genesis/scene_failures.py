@@ -61,7 +61,7 @@ def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
         "fixed_body",
         shown=(
             moved["fixed"] == 0
-            and moved["free"] > 0.9 * float(continuous_drop(t[-1]))
+            and moved["free"] > 0.9 * float(continuous_drop(t[-1], case.gravity))
             and (fixed.n_dofs, free.n_dofs) == (0, 6)
         ),
         evidence=(
