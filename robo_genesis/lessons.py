@@ -157,8 +157,8 @@ def compared_cases(lesson: str) -> Compared | Moving | None:
 
 
 def filmed(lesson: str) -> Filmed:
-    """Return what the camera frames of a lesson show."""
-    return find_lesson(lesson).filmed
+    """Return what the camera frames of a lesson show, in no lesson's words if it is not listed."""
+    return LESSONS[lesson].filmed if lesson in LESSONS else Filmed("the scene")
 
 
 def find_page(lesson: str, page: str) -> MeasuringPage:

@@ -19,7 +19,7 @@ from without_sphinx import Panel
 from robo_genesis import lessons, robot_shape, sphinx_glance, sphinx_palette, viewer
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_body_trace, write_traces
-from robo_genesis.lessons import Compared, Lesson, Moving
+from robo_genesis.lessons import Compared, Filmed, Lesson, Moving
 from robo_genesis.npm import packages
 from robo_genesis.pdf import chromium
 from robo_genesis.played import read_runs
@@ -56,7 +56,7 @@ def dropped(folder, monkeypatch, tmp_path):
     arrays = write_traces(folder, traces, None, ["box"])
     (folder / "arrays.json").write_text(arrays.model_dump_json(by_alias=True))
     spec = lessons.LESSONS["l04"].spec
-    monkeypatch.setitem(lessons.LESSONS, LESSON, Lesson(spec, (), {}, compared=DROPPED))
+    monkeypatch.setitem(lessons.LESSONS, LESSON, Lesson(spec, (), {}, Filmed("the box"), DROPPED))
     monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
     box = trimesh.creation.box((0.2, 0.2, 0.2))
     part = robot_shape.Part("box", (200, 80, 0), box.vertices.astype(np.float32), box.faces)
