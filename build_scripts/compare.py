@@ -41,7 +41,8 @@ def main() -> int:
             )
     old, new = Path(args.old), Path(args.new)
     try:
-        spec = specification(read_manifest(new).predicate.lesson)
+        recorded = read_manifest(new).predicate
+        spec = specification(recorded.lesson, recorded.page)
         comparison = compare(old, new, spec)
     except BundleRefused as refusal:
         return refused(f"Refused: {refusal}")

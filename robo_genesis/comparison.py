@@ -3,17 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from robo_genesis import drop_metrics
+from robo_genesis import measures
 from robo_genesis.metrics import UNITS, StepMetrics, format_value
 
-LABELS = drop_metrics.LABELS | {
-    "rise_time": "rise time",
-    "peak_speed": "peak speed",
-    "overshoot": "overshoot",
-    "settling_time": "settling time",
-    "saturation_samples": "number of saturated samples",
-    "final_error": "final error",
-}
+LABELS = measures.LABELS | {"saturation_samples": "number of saturated samples"}
 
 INSPECT = (
     "Before blaming the model, inspect saturation, the time stamps, the initial states and "

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis import records
 from robo_genesis.falling import continuous_drop, summed_drop
 from robo_genesis.free_bodies import Drop
 from robo_genesis.scene_config import FloatArray
@@ -105,16 +106,5 @@ def metric_records(
     metrics: Mapping[str, DropMetrics], model: Mapping[str, int], mass: float
 ) -> dict[str, dict[str, dict[str, Any]]]:
     """Return `metrics.json`: the model's counts, the mass, and each case's metrics."""
-    engine = ["engine"]
-    counts = {
-        name: {"value": count, "unit": "1", "class": "exact", "from": engine}
-        for name, count in model.items()
-    }
-    weighed = {"value": mass, "unit": "kg", "class": "value", "from": engine}
-    return {"model": counts, "body": {"mass": weighed}} | {
-        case: {
-            name: {"value": value, "unit": unit, "class": "value", "from": list(SOURCES[name])}
-            for name, value, unit in of.items()
-        }
-        for case, of in metrics.items()
-    }
+    of_engine = {"model": records.counts(model), "body": records.readings({"mass": mass}, "kg")}
+    return of_engine | records.cases(metrics, SOURCES)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from robo_genesis import drop_metrics, l02, l04, l04_studies, metrics
+from robo_genesis import drop_metrics, l02, l03, l04, l04_studies, metrics
 from robo_genesis.channels import listed
 
 Relation = tuple[tuple[str, str], str, str, float]
@@ -41,11 +41,13 @@ class MeasuringPage:
 
     `parameters` returns every configured input as JSON values; `modules` are those whose source
     decides what is measured: a change in one makes evidence stale. A lesson's own module is none of
-    them: what it decides is in the parameters.
+    them: what it decides is in the parameters. `cases` are those of the lesson's cases that it
+    runs, None for all.
     """
 
     parameters: Callable[[], dict[str, Any]]
     modules: tuple[str, ...]
+    cases: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,27 +96,35 @@ class Filmed:
 
 @dataclass(frozen=True, slots=True)
 class Lesson:
-    """One lesson: its module, the names of its cases' metrics, its pages that measure.
+    """One lesson: its module, the names of each case's metrics, its pages that measure.
 
-    Without `compared`, its recorded runs are shown by their facts and tables alone.
+    Without `compared`, its recorded runs are shown by their facts and tables alone. `further` are
+    cases that a page may play beside these, each under a name of its own.
     """
 
     spec: Specification
-    metrics: tuple[str, ...]
+    metrics: Mapping[str, tuple[str, ...]]
     pages: Mapping[str, MeasuringPage]
     filmed: Filmed
     compared: Compared | Moving | None = None
+    further: Mapping[str, Moving] = field(default_factory=dict)
 
 
-COMMON_MODULES = ("checks", "posture", "robot_model", "runtime", "scene_config", "trace")
+COMMON_MODULES = (
+    "checks", "posture", "records", "robot_model", "runtime", "scene_config", "trace",
+)  # fmt: skip
 DROP_MODULES = (*COMMON_MODULES, "drop_checks", "drop_metrics", "falling", "free_bodies")
+CONTACT_MODULES = (
+    *COMMON_MODULES, "contact_checks", "contact_metrics", "contacts", "energy", "falling",
+    "free_bodies", "metrics", "sliding",
+)  # fmt: skip
 STEP_MODULES = (*COMMON_MODULES, "joint_control", "metrics", "step_checks")
 STUDY_MODULES = ("dynamics", "second_engine", "studies", "study_checks", "theory")
 
 LESSONS = {
     l02.LESSON: Lesson(
         spec=l02,
-        metrics=tuple(drop_metrics.SOURCES),
+        metrics=dict.fromkeys(l02.CASES, tuple(drop_metrics.SOURCES)),
         pages={
             "lab": MeasuringPage(l02.parameters, DROP_MODULES),
             l02.STUDY_PAGE: MeasuringPage(
@@ -124,9 +134,24 @@ LESSONS = {
         filmed=Filmed("the box"),
         compared=Moving(tuple(l02.CASES), link=l02.LINK, thing="box"),
     ),
+    l03.LESSON: Lesson(
+        spec=l03,
+        metrics=l03.METRICS,
+        pages={
+            "lab": MeasuringPage(l03.parameters, CONTACT_MODULES),
+            l03.STUDY_PAGE: MeasuringPage(
+                l03.study_parameters,
+                (*CONTACT_MODULES, "contact_studies", "robot_shape", "second_contacts"),
+                cases=tuple(l03.REPEATED),
+            ),
+        },
+        filmed=Filmed("the cube"),
+        compared=Moving(("baseline", "dt10_sub1"), link=l03.LINK, thing="cube", until=0.5),
+        further={"slides": Moving(tuple(l03.SLIDES), link=l03.LINK, thing="cube", axes=("x", "z"))},
+    ),
     l04.LESSON: Lesson(
         spec=l04,
-        metrics=tuple(metrics.SOURCES),
+        metrics=dict.fromkeys(l04.CASES, tuple(metrics.SOURCES)),
         pages={
             "lab": MeasuringPage(l04.parameters, STEP_MODULES),
             l04_studies.PAGE: MeasuringPage(
@@ -154,6 +179,25 @@ def find_lesson(name: str) -> Lesson:
 def compared_cases(lesson: str) -> Compared | Moving | None:
     """Return what a lesson's pictures hold against each other, None where that is nothing."""
     return LESSONS[lesson].compared if lesson in LESSONS else None
+
+
+def drawn_cases(lesson: str, name: str = "") -> Compared | Moving:
+    """Return the cases that a replay plays: the compared ones, or further ones by their name.
+
+    Raises:
+        LookupError: the lesson has none of that name; the message says which there are.
+    """
+    compared = compared_cases(lesson)
+    if compared is None:
+        raise LookupError(
+            f"the lesson {lesson} compares no cases. With cases, and what they move, in "
+            "robo_genesis/lessons.py it has a replay."
+        )
+    further = LESSONS[lesson].further
+    if name and name not in further:
+        known = ", ".join(further) or "none"
+        raise LookupError(f"{lesson} has no further cases called {name!r}. Choices: {known}.")
+    return further[name] if name else compared
 
 
 def filmed(lesson: str) -> Filmed:

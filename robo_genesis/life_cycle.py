@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from robo_genesis import records as form
 from robo_genesis.checks import Check
 
 GROUP = "life_cycle"
@@ -117,12 +118,7 @@ def counts(attempts: Iterable[Attempt]) -> dict[str, int]:
 
 def records(went: Mapping[str, int]) -> dict[str, dict[str, dict[str, Any]]]:
     """Return the counts as a group of `metrics.json`."""
-    return {
-        GROUP: {
-            name: {"value": value, "unit": "1", "class": "exact", "from": ["engine"]}
-            for name, value in went.items()
-        }
-    }
+    return {GROUP: form.counts(went)}
 
 
 def check(went: Mapping[str, int], rendered: bool) -> Check:

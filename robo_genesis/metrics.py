@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis import records
 from robo_genesis.trace import Trace
 
 RISE_FRACTION = 0.9
@@ -63,6 +64,11 @@ LABELS = {
 }
 
 NOT_OBSERVED = "not observed"
+
+DIGITS = {
+    "s": 2, "rad": 4, "m": 4, "rad/s": 3, "m/s": 3, "N·m": 2, "N": 2, "kg": 3, "J": 4, "%": 1,
+}  # fmt: skip
+"""Digits after the point, by unit, where a value is written for a reader."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,23 +164,7 @@ def metric_records(
     metrics: Mapping[str, StepMetrics], model: Mapping[str, int]
 ) -> dict[str, dict[str, dict[str, Any]]]:
     """Return `metrics.json`: the model's counts and each case's metrics, with class and source."""
-    records = {
-        "model": {
-            name: {"value": count, "unit": "1", "class": "exact", "from": ["engine"]}
-            for name, count in model.items()
-        }
-    }
-    for case, measured in metrics.items():
-        records[case] = {
-            name: {
-                "value": value,
-                "unit": unit,
-                "class": "exact" if unit == "1" else "value",
-                "from": list(SOURCES[name]),
-            }
-            for name, value, unit in measured.items()
-        }
-    return records
+    return {"model": records.counts(model)} | records.cases(metrics, SOURCES)
 
 
 def first_time(t: np.ndarray, reached: np.ndarray) -> float | None:
@@ -196,6 +186,6 @@ def format_value(value: float | None, unit: str) -> str:
         return NOT_OBSERVED
     if unit == "1":
         return f"{value} sample" if value == 1 else f"{value} samples"
-    digits = {"s": 2, "rad": 4, "m": 4, "rad/s": 3, "m/s": 3, "N·m": 2, "N": 2, "kg": 3}[unit]
+    digits = DIGITS[unit]
     text = f"{value:.{digits}f}"
     return f"{text.removeprefix('-') if float(text) == 0 else text} {unit}"

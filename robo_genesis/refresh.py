@@ -72,7 +72,7 @@ def compare_builds(
     return Refresh(
         versions,
         moved_packages(*locks),
-        tuple(compare(old[n], new[n], specification(n.split("/")[0])) for n in shared),
+        tuple(compare(old[n], new[n], specification(*n.split("/"))) for n in shared),
         tuple(sorted(old.keys() ^ new.keys())),
         {name: (recorded[0][name], recorded[1][name]) for name in recorded[0]},
         tuple(moved_sentences(builds[0] / "html", builds[1] / "html")),

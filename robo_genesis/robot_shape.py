@@ -72,6 +72,25 @@ def floor(width: float) -> Part:
     return Part(WORLD, FLOOR_RGB, np.array(corners, np.float32), faces)
 
 
+def slab(size: Sequence[float], top: float) -> Part:
+    """Return a box that stands still, its upper face at a height above the origin.
+
+    Args:
+        size: length, width and thickness [m].
+        top: height of the upper face [m].
+    """
+    x, y = size[0] / 2, size[1] / 2
+    corners = [
+        (a, b, z) for z in (top - size[2], top) for a, b in ((-x, -y), (x, -y), (x, y), (-x, y))
+    ]
+    sides = [(k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k) for k in range(4)]
+    faces = [(0, 3, 2, 1), (4, 5, 6, 7), *sides]
+    triangles = [half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))]
+    apart = [corners[k] for half in triangles for k in half]  # flat faces share no corner
+    indices = np.arange(len(apart), dtype=np.int32).reshape(-1, 3)
+    return Part(WORLD, FLOOR_RGB, np.array(apart, np.float32), indices)
+
+
 def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
     """Require that each part moves as one link of the record, or stands still.
 

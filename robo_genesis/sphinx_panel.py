@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis import plots, project, tables
+from robo_genesis import measures, plots, project, tables
 from robo_genesis.channels import listed
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import Comparison, compare, specification
@@ -202,10 +202,10 @@ def value_rows(
     spec = specification(found.new.lesson)
     ours, theirs = (bundle.read_metrics(folder) for folder in folders)
     rows = {f.what: f for s in found.sections if s.title in VALUES for f in s.findings}
-    names = [(case, name) for case in spec.cases for name in spec.metrics]
+    names = [(case, name) for case, of in spec.metrics.items() for name in of]
     return [
         {
-            "metric": f"{case} {tables.METRIC_LABELS[name]}",
+            "metric": f"{case} {measures.LABELS[name]}",
             both[0]: format_value(ours[case][name].value, ours[case][name].unit),
             both[1]: format_value(theirs[case][name].value, theirs[case][name].unit),
             "difference": row.delta or "–",
@@ -225,7 +225,7 @@ def ordering_rows(found: Comparison, both: tuple[str, str]) -> list[dict[str, st
         metric, _, order = claim.partition(": ")
         rows.append(
             {
-                "claim": f"{tables.METRIC_LABELS[metric]}: {order}",
+                "claim": f"{measures.LABELS[metric]}: {order}",
                 both[0]: f.old,
                 both[1]: f.new,
                 "margin": f.allowed.removeprefix("margin "),

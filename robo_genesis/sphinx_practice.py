@@ -15,13 +15,12 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis import drop_metrics, metrics
 from robo_genesis.comparison import compare_values, comparison_sentence
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
+from robo_genesis.measures import UNITS
 from robo_genesis.sphinx_evidence import BACKEND, measured, outputs_folder
 
-UNITS = drop_metrics.UNITS | metrics.UNITS
 EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same, within the lesson's resolution", "higher": "more"}
 UNDECIDED = "this window cannot tell"

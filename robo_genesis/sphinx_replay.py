@@ -1,6 +1,7 @@
 """A recorded run that plays in the page, and the files that only a reader's request loads.
 
-A page writes ```` ```{replay} l04/lecture ````; the panel of a recorded run has one of its own.
+A page writes ```` ```{replay} l04/lecture ````, or with the name of further cases that its lesson
+declares, ```` ```{replay} l03/lab slides ````; the panel of a recorded run has one of its own.
 Poses and curves are the record's; the shape of what moves is the model's, handed on by the lecture.
 """
 
@@ -18,7 +19,7 @@ from robo_genesis import replay, robot_shape
 from robo_genesis.channels import Runs
 from robo_genesis.derived import derived
 from robo_genesis.evidence import bundle
-from robo_genesis.lessons import compared_cases
+from robo_genesis.lessons import drawn_cases
 from robo_genesis.played import read_runs
 from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
 from robo_genesis.sphinx_ledger import scroll_box
@@ -31,43 +32,39 @@ class ReplayDirective(SphinxDirective):
     """Play the runs of a page's bundle of this build."""
 
     required_arguments = 1
+    optional_arguments = 1
 
     def run(self) -> list[nodes.Node]:
         """Return the replay.
 
-        Errors are a page without a bundle, and a lesson that compares no cases.
+        Errors are a page without a bundle, and a lesson that compares no such cases.
         """
-        lesson_page = self.arguments[0]
-        if compared_cases(lesson_page.split("/")[0]) is None:
-            raise self.error(
-                f"replay: the lesson of {lesson_page} compares no cases. With cases, and what "
-                "they move, in robo_genesis/lessons.py it has a replay."
-            )
+        lesson_page, *further = self.arguments
         folder = outputs_folder() / lesson_page / BACKEND
         if not (folder / "manifest.json").is_file():
             raise self.error(f"replay: {lesson_page} left no bundle on {BACKEND}.")
-        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder)]
+        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *further)]
 
 
-def replay_block(directive: SphinxDirective, key: str, folder: Path) -> nodes.Node:
+def replay_block(
+    directive: SphinxDirective, key: str, folder: Path, further: str = ""
+) -> nodes.Node:
     """Return what plays an accepted bundle, with all that it says in text and in a table.
 
     Args:
         directive: which asks for it.
         key: names the run, as the ledger does.
         folder: of the bundle.
+        further: name of cases beside those that the lesson compares, empty for these.
 
     Raises:
-        DirectiveError: the lesson plays nothing or its runs cannot be played together; no page of
-            this build handed their shape on, or another shape.
+        DirectiveError: the lesson plays no such cases or its runs cannot be played together; no
+            page of this build handed their shape on, or another shape.
     """
     env, lesson = directive.env, key.split("/")[0]
-    compared = compared_cases(lesson)
-    if compared is None:
-        raise directive.error(f"replay: {lesson} compares no cases.")
-    name = f"replay-{key.replace('/', '-')}"
+    name = "-".join(("replay", *key.split("/"), *filter(None, [further])))
     try:
-        runs = read_runs(folder, compared)
+        runs = read_runs(folder, drawn_cases(lesson, further))
         shape = handed_on(lesson, runs.view.thing)
         inputs = model_inputs(shape, folder, runs)
         model = derived("replay", inputs, lambda: make_model(shape, runs))
@@ -76,7 +73,7 @@ def replay_block(directive: SphinxDirective, key: str, folder: Path) -> nodes.No
         up = "../" * env.docname.count("/") + FOLDER
         files = f"{up}/{name}.js", f"{up}/{VIEWER}"
         controls = replay.markup(name, runs, *files, round(weight / 1000))
-    except ValueError as error:
+    except (LookupError, ValueError) as error:
         raise directive.error(f"replay: {key}: {error}") from error
     summary = f"All samples of {', '.join(runs.traces)} as a table"
 

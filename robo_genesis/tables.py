@@ -3,12 +3,10 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from robo_genesis import drop_metrics, metrics
 from robo_genesis.checks import Check
-from robo_genesis.drop_metrics import DropMetrics
-from robo_genesis.metrics import StepMetrics, format_value
-
-METRIC_LABELS = drop_metrics.LABELS | metrics.LABELS
+from robo_genesis.measures import LABELS
+from robo_genesis.metrics import NOT_OBSERVED, StepMetrics, format_value
+from robo_genesis.records import Metrics
 
 
 def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
@@ -39,23 +37,28 @@ def metric_table(metrics: Mapping[str, StepMetrics]) -> str:
     names = [name for name, _, _ in metrics[cases[0]].items()]
     values = {case: {n: format_value(v, u) for n, v, u in m.items()} for case, m in metrics.items()}
     return markdown(
-        [
-            {"metric": METRIC_LABELS[name]} | {case: values[case][name] for case in cases}
-            for name in names
-        ]
+        [{"metric": LABELS[name]} | {case: values[case][name] for case in cases} for name in names]
     )
 
 
-def drop_table(metrics: Mapping[str, DropMetrics]) -> str:
-    """Return metrics of drops as rows and cases as columns, six digits of each value."""
-    units = drop_metrics.UNITS
+def six_digits(metrics: Mapping[str, Metrics]) -> str:
+    """Return metrics as rows and cases as columns, six digits of each value.
+
+    Args:
+        metrics: of cases that have the same ones.
+    """
+    found = {case: list(of.items()) for case, of in metrics.items()}
+    names = [name for name, _, _ in next(iter(found.values()))]
     return markdown(
         [
-            {"metric": METRIC_LABELS[name]}
-            | {case: f"{getattr(of, name):.6g} {units[name]}" for case, of in metrics.items()}
-            for name in units
+            {"metric": LABELS[name]} | {case: _digits(*of[row]) for case, of in found.items()}
+            for row, name in enumerate(names)
         ]
     )
+
+
+def _digits(_: str, value: float | None, unit: str) -> str:
+    return NOT_OBSERVED if value is None else f"{value:.6g} {unit}".replace("-", "−", 1)
 
 
 def check_table(outcomes: Sequence[Check]) -> str:

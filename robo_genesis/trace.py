@@ -146,3 +146,25 @@ class BodyTrace(Stamped):
             "link_vel": (states, links, 3),
             "link_ang": (states, links, 3),
         }
+
+
+@dataclass(frozen=True, slots=True)
+class ContactTrace(BodyTrace):
+    """One run of free bodies on a surface: the arrays of `BodyTrace`, and what was touched.
+
+    | field | shape | meaning |
+    |---|---|---|
+    | `contacts` | (n+1, l) | number of contact points with the surface |
+    | `penetration` | (n+1, l) | depth of the deepest of them [m], 0 where there is none |
+
+    Contacts are looked for at the beginning of a solver step. What is read after `scene.step()` is
+    of the beginning of the last one in it: a solver step older than the positions beside it.
+    """
+
+    contacts: np.ndarray
+    penetration: FloatArray
+
+    def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
+        of_bodies = BodyTrace._expected(self, states)
+        links = of_bodies["link_pos"][1]
+        return of_bodies | dict.fromkeys(("contacts", "penetration"), (states, links))

@@ -267,7 +267,7 @@ def test_tables_have_six_digits_and_signs(experiment):
     rows = drop_said.three_rows(experiment.metrics["baseline"], l02.BASELINE)
     assert [row["distance [m]"] for row in rows] == ["0.201105", "0.201105", "0.196200"]
     assert rows[2]["against the measurement [mm]"] == "−4.9050"
-    table = tables.drop_table({"baseline": experiment.metrics["baseline"]})
+    table = tables.six_digits({"baseline": experiment.metrics["baseline"]})
     assert "| distance fallen | 0.201105 m |" in table
 
 

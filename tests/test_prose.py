@@ -5,7 +5,17 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis import interpretation, l02, l04, l04_studies, metrics, scene_config
+from robo_genesis import (
+    contact_metrics,
+    contacts,
+    interpretation,
+    l02,
+    l03,
+    l04,
+    l04_studies,
+    metrics,
+    scene_config,
+)
 from robo_genesis.project import BOOK
 
 CONFIGURED = {
@@ -21,6 +31,14 @@ CONFIGURED = {
     "height of the box [m]": l02.BASELINE.height,
     "length of the drop [s]": l02.BASELINE.dt * l02.BASELINE.steps,
     "acceleration of gravity [m/s²]": l02.BASELINE.gravity,
+    "edge of the cube [m]": l03.BASELINE.size,
+    "height of the surface [m]": contacts.TOP,
+    "window of a landing [s]": l03.BASELINE.duration,
+    "own friction of the cubes": l03.PUSHED.friction,
+    "and of the other": l03.BESIDE.friction,
+    "friction of the surface": l03.PUSHED.surface_friction,
+    "and of the other surface, and the time to settle [s]": l03.PUSHED.settle,
+    "slow enough for a stop [m/s], and a damping ratio": contact_metrics.STOP_SPEED,
     "speed nearly at rest [rad/s]": interpretation.AT_REST,
 }
 PAGES = [*sorted(BOOK.glob("*.md")), *sorted(BOOK.glob("[el]*/**/*.md"))]

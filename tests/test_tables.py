@@ -1,6 +1,6 @@
 import pytest
 
-from robo_genesis import drop_metrics, tables
+from robo_genesis import drop_metrics, measures, tables
 from robo_genesis.checks import Check
 from robo_genesis.metrics import NOT_OBSERVED, step_metrics
 
@@ -32,8 +32,8 @@ def test_metric_table_has_units_and_says_what_was_not_observed(make_trace):
 
 def test_every_metric_has_a_label(make_trace):
     metrics = step_metrics(make_trace([0.0, 1.0], 1.0), 0)
-    assert {name for name, _, _ in metrics.items()} <= set(tables.METRIC_LABELS)
-    assert set(drop_metrics.UNITS) <= set(tables.METRIC_LABELS)
+    assert {name for name, _, _ in metrics.items()} <= set(measures.LABELS)
+    assert set(drop_metrics.UNITS) <= set(measures.LABELS)
 
 
 def test_check_table_shouts_a_failure():

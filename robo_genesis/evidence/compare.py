@@ -21,7 +21,7 @@ from robo_genesis.evidence.findings import (  # fmt: skip
 )
 from robo_genesis.evidence.relations import relations
 from robo_genesis.evidence.traces import read_any_trace
-from robo_genesis.lessons import find_lesson
+from robo_genesis.lessons import find_lesson, find_page
 
 LARGEST = 2**53
 
@@ -52,18 +52,21 @@ class Comparison:
         return WITHIN if found == EQUAL and moved else found
 
 
-def specification(lesson: str) -> Specification:
-    """Return what a lesson of this checkout declares.
+def specification(lesson: str, page: str = "lab") -> Specification:
+    """Return what a lesson of this checkout declares of the cases that a page of it runs.
 
     Raises:
-        BundleRefused: there is no such lesson.
+        BundleRefused: there is no such lesson or page.
     """
     try:
-        found = find_lesson(lesson)
+        found, run = find_lesson(lesson), find_page(lesson, page)
     except LookupError as error:
         raise BundleRefused("lesson", str(error)) from error
     spec = found.spec
-    return Specification(lesson, tuple(spec.CASES), found.metrics, spec.TOLERANCES, spec.RELATIONS)
+    cases = tuple(spec.CASES) if run.cases is None else run.cases
+    metrics = {case: found.metrics[case] for case in cases}
+    relations = tuple(claim for claim in spec.RELATIONS if {*claim[0]} <= {*cases})
+    return Specification(lesson, metrics, spec.TOLERANCES, relations)
 
 
 def compare(old: Path, new: Path, spec: Specification) -> Comparison:

@@ -6,8 +6,8 @@ from robo_genesis import drop_checks, l02, life_cycle
 from robo_genesis.drop_metrics import measure, metric_records
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Manifest
-from robo_genesis.evidence.recompute import Judged, read_counts, read_frames
-from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect
+from robo_genesis.evidence.recompute import Judged, read_counts, read_frames, read_readings
+from robo_genesis.evidence.strict_json import expect
 from robo_genesis.evidence.traces import read_body_trace
 from robo_genesis.substep_study import run_checks as run_study_checks
 from robo_genesis.trace import BodyTrace
@@ -24,7 +24,7 @@ def judge(folder: Path, manifest: Manifest) -> Judged:
     cases = l02.CASES | (l02.SUBSTEP_CASES if lecture else {})
     traces = read_traces(folder, list(cases))
     counts = read_counts(folder, "model", l02.EXPECTED_MODEL)
-    metrics, mass = measure(traces, cases), read_mass(folder)
+    metrics, mass = measure(traces, cases), read_readings(folder, "body", ["mass"])["mass"]
     run = drop_checks.DropExperiment(
         model=counts,
         mass=mass,
@@ -56,15 +56,3 @@ def read_traces(folder: Path, cases: list[str]) -> dict[str, BodyTrace]:
     expect("labels", "arrays.json", "names of coords", sorted(arrays.coords), ["link"])
     expect("labels", "arrays.json", "list of links", arrays.coords["link"], [l02.LINK])
     return {case: read_body_trace(folder, arrays, case) for case in cases}
-
-
-def read_mass(folder: Path) -> float:
-    """Return the engine's mass of the box as it was recorded [kg].
-
-    Raises:
-        BundleRefused: `metrics`, where it is missing.
-    """
-    recorded = bundle.read_metrics(folder).get("body", {}).get("mass")
-    if recorded is None or recorded.value is None:
-        raise BundleRefused("metrics", f"metrics.json: body.mass is missing. {AGAIN}")
-    return float(recorded.value)

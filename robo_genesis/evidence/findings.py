@@ -18,13 +18,13 @@ EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
 class Specification:
     """What a lesson declares about its runs, as data of its module.
 
-    `tolerances` is unit or metric → (atol, rtol); `relations` ((first case, second case), metric,
-    order of the second against the first, margin).
+    `metrics` names those of each case that the page must have; `tolerances` is unit or metric →
+    (atol, rtol); `relations` ((first case, second case), metric, order of the second against the
+    first, margin).
     """
 
     lesson: str
-    cases: tuple[str, ...]
-    metrics: tuple[str, ...]
+    metrics: Mapping[str, tuple[str, ...]]
     tolerances: Mapping[str, tuple[float, float]]
     relations: tuple[Relation, ...]
 

@@ -81,6 +81,25 @@ def read_counts(folder: Path, group: str, names: Iterable[str]) -> dict[str, int
     return counts
 
 
+def read_readings(folder: Path, group: str, names: Iterable[str]) -> dict[str, float]:
+    """Return values that the engine gave and no array holds, as they were recorded.
+
+    The arguments are those of `read_counts`.
+
+    Raises:
+        BundleRefused: `metrics`, where one is missing.
+    """
+    recorded = bundle.read_metrics(folder).get(group, {})
+    expected = sorted(names)
+    expect("metrics", "metrics.json", f"list of readings in {group}", sorted(recorded), expected)
+    values = {}
+    for name, metric in recorded.items():
+        if metric.value is None:
+            raise BundleRefused("metrics", f"metrics.json: {group}.{name} is missing. {AGAIN}")
+        values[name] = float(metric.value)
+    return values
+
+
 def check_metrics(folder: Path, expected: MetricRecords) -> None:
     """Require that metrics.json is what the runs give, with units, classes and sources.
 

@@ -20,8 +20,8 @@ from robo_genesis.evidence.traces import fields_of
 
 def coverage(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
     """Cases, metrics and checks stand on both sides, and say the same of themselves."""
-    metrics = {f"{case}.{name}" for case in spec.cases for name in spec.metrics}
-    yield from _present("case", set(old.traces), set(new.traces), set(spec.cases))
+    metrics = {f"{case}.{name}" for case, names in spec.metrics.items() for name in names}
+    yield from _present("case", set(old.traces), set(new.traces), set(spec.metrics))
     yield from _present("metric", set(old.numbers), set(new.numbers), metrics)
     yield from _present("check", set(old.checks), set(new.checks), set())
     if not old.checks and not new.checks:

@@ -142,7 +142,8 @@ def _shown(folder: Path, manifest: Manifest) -> Status:
     """Return the state of an accepted bundle: whether it shows what its lesson claims."""
     metrics = bundle.read_metrics(folder)
     numbers = {f"{group}.{name}": m for group, of in metrics.items() for name, m in of.items()}
-    open_ones = not_shown(numbers, specification(manifest.predicate.lesson).relations)
+    run = manifest.predicate
+    open_ones = not_shown(numbers, specification(run.lesson, run.page).relations)
     if not open_ones:
         return Status("verified", folder.name, "", manifest)
     reason = f"Not shown of what the lesson claims: {'; '.join(open_ones)}."

@@ -19,7 +19,7 @@ from robo_genesis.evidence.bundle import (
 )
 from robo_genesis.evidence.strict_json import AGAIN, expect
 from robo_genesis.robot_model import EFFORT_UNIT, POSITION_UNIT, JointMap
-from robo_genesis.trace import BodyTrace, Stamped, Trace, TraceError
+from robo_genesis.trace import BodyTrace, ContactTrace, Stamped, Trace, TraceError
 
 Field = tuple[str, list[str], str | None, str]
 
@@ -49,7 +49,18 @@ BODY_FIELDS: dict[str, Field] = {
     "link_ang": ("link_ang_rad_s", ["state", "link", "axis"], "rad/s", "angular velocity"),
 }  # fmt: skip
 
-KINDS: dict[type[Stamped], dict[str, Field]] = {Trace: FIELDS, BodyTrace: BODY_FIELDS}
+CONTACT_FIELDS: dict[str, Field] = BODY_FIELDS | {
+    "contacts": (
+        "contacts", ["state", "link"], "1",
+        "contact points with the surface at the beginning of the last solver step"),
+    "penetration": ("penetration_m", ["state", "link"], "m", "depth of the deepest of them"),
+}  # fmt: skip
+
+KINDS: dict[type[Stamped], dict[str, Field]] = {
+    Trace: FIELDS,
+    BodyTrace: BODY_FIELDS,
+    ContactTrace: CONTACT_FIELDS,
+}
 
 
 def fields_of(trace: Stamped) -> dict[str, Field]:
@@ -57,8 +68,8 @@ def fields_of(trace: Stamped) -> dict[str, Field]:
     return KINDS[type(trace)]
 
 
-DTYPES = {"t": "float64", "target": "float64"}
-"""Fields that are no values of the engine, which computes in float32."""
+DTYPES = {"t": "float64", "target": "float64", "contacts": "int32"}
+"""Fields that are no values of the engine in float32, in which it computes."""
 
 
 def dof_units(name: str, types: Sequence[str]) -> list[str]:
@@ -165,9 +176,16 @@ def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
 
 
 def read_body_trace(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
-    """Return one case's run of free bodies; as `read_trace`."""
+    """Return one case's run of free bodies, with contacts if it has them; as `read_trace`."""
     expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
-    return _read(folder, arrays, case, BodyTrace)
+    touched = "contacts" in arrays.cases[case].variables
+    return _read(folder, arrays, case, ContactTrace if touched else BodyTrace)
+
+
+def read_contact_trace(folder: Path, arrays: Arrays, case: str) -> ContactTrace:
+    """Return one case's run of free bodies on a surface; as `read_trace`."""
+    expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
+    return _read(folder, arrays, case, ContactTrace)
 
 
 def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Trace | BodyTrace:

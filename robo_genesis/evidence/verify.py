@@ -2,11 +2,24 @@
 
 from pathlib import Path
 
-from robo_genesis import l02, l04, project
-from robo_genesis.evidence import bundle, current, drop_runs, files, recompute, rules, step_runs
+from robo_genesis import l02, l03, l04, project
+from robo_genesis.evidence import (
+    bundle,
+    contact_runs,
+    current,
+    drop_runs,
+    files,
+    recompute,
+    rules,
+    step_runs,
+)
 from robo_genesis.evidence.bundle import BundleRefused, Manifest
 
-JUDGES = {l02.LESSON: drop_runs.judge, l04.LESSON: step_runs.judge}
+JUDGES = {
+    l02.LESSON: drop_runs.judge,
+    l03.LESSON: contact_runs.judge,
+    l04.LESSON: step_runs.judge,
+}
 """By lesson, what computes a bundle's metrics and checks again."""
 
 __all__ = ["BundleRefused", "verify_bundle"]

@@ -30,9 +30,9 @@ from robo_genesis.evidence.traces import read_trace
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.ledger import Run
 from robo_genesis.lessons import LESSONS, Filmed
+from robo_genesis.measures import LABELS as METRIC_LABELS
 from robo_genesis.metrics import format_value
 from robo_genesis.robot_shape import Part
-from robo_genesis.tables import METRIC_LABELS
 
 FILMED = Filmed("the box", "the first run")
 

@@ -1,0 +1,216 @@
+"""The experiments that students read: bodies on a surface, let go or pushed, and recorded."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.falling import GRAVITY
+from robo_genesis.free_bodies import read_body
+from robo_genesis.robot_model import to_numpy
+from robo_genesis.scene_config import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.trace import ContactTrace
+
+SURFACE_SIZE = (2.0, 0.8, 0.05)
+"""Length, width and thickness of the fixed box that everything lands on [m]."""
+
+TOP = 0.725
+"""Height of its upper face [m]."""
+
+SHARED = ("surface_friction", "duration", "settle", "dt", "substeps", "cone", "gravity")
+"""What cases that share one scene must agree in."""
+
+LANDING, SLIDE, BOUNCE = "landing", "slide", "bounce"
+
+State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatArray]
+
+
+class ContactError(ValueError):
+    """A run that must not be made; the message says what was found, and what is valid."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactCase:
+    """Everything that decides one run of a body above or on the surface.
+
+    `start` is the place of its centre [m]; `size` the edge of a cube or the diameter of a ball [m];
+    `density` [kg/m³]; `friction` its own coefficient, `surface_friction` that of the surface.
+    After `settle` seconds of steps it gets `speed` along x [m/s], and `duration` seconds are
+    recorded. `cone` is the engine's model of friction. `spring` are time constant [s] and stiffness
+    ratio of the contact, None for the engine's own. `gravity` is a magnitude [m/s²].
+    """
+
+    start: tuple[float, float, float]
+    duration: float
+    friction: float = 0.5
+    surface_friction: float = 0.8
+    speed: float = 0.0
+    settle: float = 0.0
+    shape: str = "cube"
+    size: float = 0.08
+    density: float = 500.0
+    dt: float = DT
+    substeps: int = SUBSTEPS
+    cone: str = "pyramidal"
+    spring: tuple[float, float] | None = None
+    gravity: float = GRAVITY
+    seed: int = SEED
+
+    def __post_init__(self) -> None:
+        if self.shape not in ("cube", "ball"):
+            raise ContactError(f"The shape {self.shape!r} was given, valid is 'cube' or 'ball'.")
+        for name, seconds in (("duration", self.duration), ("settle", self.settle)):
+            if abs(round(seconds / self.dt) * self.dt - seconds) > 1e-9:
+                raise ContactError(
+                    f"{name} is {seconds} s, no whole number of outer steps of {self.dt} s. "
+                    "Cases are compared over equal simulated time: choose one that divides it."
+                )
+
+    @property
+    def h(self) -> float:
+        """Length of one solver step [s]."""
+        return self.dt / self.substeps
+
+    @property
+    def steps(self) -> int:
+        """Outer steps that are recorded."""
+        return round(self.duration / self.dt)
+
+    @property
+    def mass(self) -> float:
+        """What the body weighs if it is solid [kg]."""
+        volume = self.size**3 * (1.0 if self.shape == "cube" else np.pi / 6)
+        return float(self.density * volume)
+
+    @property
+    def inertia(self) -> float:
+        """Its moment of inertia about any axis through the centre [kg·m²]."""
+        return self.mass * self.size**2 * (1 / 6 if self.shape == "cube" else 1 / 10)
+
+    @property
+    def rest_height(self) -> float:
+        """Height of the centre when it lies on the surface and does not sink in [m]."""
+        return TOP + self.size / 2
+
+    @property
+    def kind(self) -> str:
+        """What is asked of it: how it lands, slides or bounces."""
+        if self.spring:
+            return BOUNCE
+        return SLIDE if self.speed else LANDING
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """A built scene: the surface, one body for each case, and a camera if one was asked for."""
+
+    scene: Any
+    surface: Any
+    bodies: Mapping[str, Any]
+    cases: Mapping[str, ContactCase]
+    camera: Any = None
+
+
+def build_world(
+    gs: Any, cases: Mapping[str, ContactCase], view: Mapping[str, Any] | None = None
+) -> World:
+    """Declare a scene with the surface and a body for each case, and build it.
+
+    Args:
+        gs: the engine, started.
+        cases: by name; in one scene they share surface, time and step.
+        view: of a camera, None for none.
+
+    Raises:
+        ContactError: there are no cases, or they do not agree in what a scene has once.
+    """
+    common = shared_case(cases)
+    scene = gs.Scene(
+        sim_options=gs.options.SimOptions(
+            dt=common.dt, substeps=common.substeps, gravity=(0.0, 0.0, -common.gravity)
+        ),
+        rigid_options=gs.options.RigidOptions(friction_cone=gs.friction_cone[common.cone]),
+        profiling_options=gs.options.ProfilingOptions(show_FPS=False),  # no speed in the log
+        show_viewer=False,
+    )
+    surface = scene.add_entity(
+        morph=gs.morphs.Box(
+            size=SURFACE_SIZE, pos=(0.0, 0.0, TOP - SURFACE_SIZE[2] / 2), fixed=True
+        ),
+        material=gs.materials.Rigid(friction=common.surface_friction),
+        surface=gs.surfaces.Default(color=(0.62, 0.60, 0.56, 1.0)),
+    )
+    colours = ((0.90, 0.50, 0.10, 1.0), (0.16, 0.45, 0.70, 1.0))
+    bodies = {
+        name: scene.add_entity(
+            morph=(
+                gs.morphs.Box(size=(case.size,) * 3, pos=case.start)
+                if case.shape == "cube"
+                else gs.morphs.Sphere(radius=case.size / 2, pos=case.start)
+            ),
+            material=gs.materials.Rigid(rho=case.density, friction=case.friction),
+            surface=gs.surfaces.Default(color=colours[place % len(colours)]),
+        )
+        for place, (name, case) in enumerate(cases.items())
+    }
+    camera = scene.add_camera(**view) if view else None
+    scene.build()
+    for name, case in cases.items():
+        if case.spring:
+            for geom in (*surface.geoms, *bodies[name].geoms):
+                geom.set_sol_params((*case.spring, *geom.sol_params[2:]))
+    return World(scene, surface, bodies, dict(cases), camera)
+
+
+def run_world(world: World) -> dict[str, ContactTrace]:
+    """Bring the scene back to its start, settle, push, step; record every state of each body."""
+    common = shared_case(world.cases)
+    world.scene.reset()
+    for _ in range(round(common.settle / common.dt)):
+        world.scene.step()
+    for name, case in world.cases.items():
+        if case.speed:
+            world.bodies[name].set_dofs_velocity(np.array([case.speed, 0, 0, 0, 0, 0]))
+    states = [read_world(world)]
+    for _ in range(common.steps):
+        world.scene.step()
+        states.append(read_world(world))
+    t = np.arange(common.steps + 1) * common.dt
+    return {
+        name: ContactTrace(t, *(np.stack(c) for c in zip(*(s[name] for s in states), strict=True)))
+        for name in world.cases
+    }
+
+
+def read_world(world: World) -> dict[str, State]:
+    """Return each body's place, orientation, velocity, angular velocity now, and its contacts.
+
+    Contacts are counted, and the deepest measured; the engine found them when it last looked.
+    """
+    states = {}
+    for name, body in world.bodies.items():
+        depths = to_numpy(body.get_contacts(with_entity=world.surface)["penetration"])
+        count = np.array([len(depths)], np.int32)
+        deepest = np.array([depths.max(initial=0.0)], np.float32)
+        states[name] = (*read_body(body), count, deepest)
+    return states
+
+
+def shared_case(cases: Mapping[str, ContactCase]) -> ContactCase:
+    """Return the first case, for what all of them share.
+
+    Raises:
+        ContactError: there are none, or they differ in what one scene has once.
+    """
+    if not cases:
+        raise ContactError("No cases were given; a scene takes at least one.")
+    first = next(iter(cases.values()))
+    for name, case in cases.items():
+        for field in SHARED:
+            if getattr(case, field) != getattr(first, field):
+                raise ContactError(
+                    f"{name} asks for {field}={getattr(case, field)}, another case of the scene "
+                    f"for {getattr(first, field)}. Give it a scene of its own."
+                )
+    return first
