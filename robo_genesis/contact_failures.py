@@ -75,7 +75,7 @@ def single_sample_stop(trace: ContactTrace, case: ContactCase) -> Failure:
         shown=bool(len(slow) and first != held and later > 10 * STOP_SPEED),
         evidence=(
             f"The first slow sample is at {trace.t[first]:.2f} s. There the cube's centre is "
-            f"{1000 * above:.1f} mm higher than that of a cube that lies on the surface; afterwards "
+            f"{1000 * above:.1f} mm higher than that of a cube that lies on the surface; later on "
             f"it moves at up to {later:.2f} m/s. By the rule with a hold it stops {told}."
         ),
         curves={"speed along x": (trace.t, speed)},

@@ -90,7 +90,7 @@ def step_sentences(
         told.append(
             f"Only {listed([f'`{name}`' for name in leaving])} "
             f"{'leaves' if len(leaving) == 1 else 'leave'} the surface again. Whether that is "
-            "physics or the method, four runs cannot tell: the lecture asks smaller steps."
+            "physics or the method, four runs cannot tell: the lecture takes smaller steps."
         )
     return tuple(told)
 
@@ -183,18 +183,18 @@ def energy_sentences(
     return tuple(told)
 
 
-def landing_rows(run: ContactExperiment) -> Sequence[Mapping[str, str]]:
-    """Return one row a landing: what was chosen, how many samples, and how it sank in."""
+def landing_rows(cases: Mapping[str, ContactCase]) -> Sequence[Mapping[str, str]]:
+    """Return one row a case: what was chosen, and how many states and solver steps follow."""
     return [
         {
             "case": f"`{name}`",
-            "dt [ms]": f"{1000 * run.cases[name].dt:g}",
-            "substeps": str(run.cases[name].substeps),
-            "h [ms]": f"{1000 * run.cases[name].h:g}",
-            "states": str(len(run.traces[name].t)),
-            "solver steps": str(run.cases[name].steps * run.cases[name].substeps),
+            "dt [ms]": f"{1000 * case.dt:g}",
+            "substeps": str(case.substeps),
+            "h [ms]": f"{1000 * case.h:g}",
+            "states": str(case.steps + 1),
+            "solver steps": str(case.steps * case.substeps),
         }
-        for name in run.landings()
+        for name, case in cases.items()
     ]
 
 

@@ -137,7 +137,7 @@ TOLERANCES = {
     "stop_time": (0.08, 0.0),
     "airborne": (0.05, 0.0),
     "hop": (0.005, 0.0),
-    "spin": (12.0, 0.0),
+    "rad/s": (12.0, 0.0),
 }
 """By unit or metric, (atol, rtol) that one may differ by between engine versions or backends.
 

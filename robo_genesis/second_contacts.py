@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 
-from robo_genesis.contacts import SURFACE_SIZE, TOP, ContactCase, ContactError
+from robo_genesis.contacts import SURFACE_SIZE, TOP, ContactCase
 from robo_genesis.robot_shape import rotate
 from robo_genesis.trace import ContactTrace
 
@@ -25,17 +25,12 @@ def time_constant(h: float) -> float:
 
 
 def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
-    """Compile the surface and one free cube with the case's step, friction and cone.
+    """Compile the surface and one free body with the case's step, friction, cone and spring.
 
     Args:
-        case: of a cube.
+        case: of a cube or a ball.
         own_defaults: take MuJoCo's time constant for contacts instead of Genesis'.
-
-    Raises:
-        ContactError: the case is of a ball, which no case here needs.
     """
-    if case.shape != "cube":
-        raise ContactError(f"The case is of a {case.shape}; a second engine runs cubes only.")
     spec = mujoco.MjSpec()
     spec.option.timestep = case.h
     spec.option.gravity = (0, 0, -case.gravity)
@@ -46,8 +41,10 @@ def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
     spec.option.cone = cones[case.cone]
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     seconds = OWN_TIME_CONSTANT if own_defaults else time_constant(case.h)
-    contact = {"type": mujoco.mjtGeom.mjGEOM_BOX, "solref": (seconds, 1.0), "solimp": IMPEDANCE}
+    contact = {"solref": case.spring or (seconds, 1.0), "solimp": IMPEDANCE}
+    box, ball = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_SPHERE
     spec.worldbody.add_geom(
+        type=box,
         size=np.array(SURFACE_SIZE) / 2,
         pos=(0, 0, TOP - SURFACE_SIZE[2] / 2),
         friction=(case.surface_friction, 0, 0),
@@ -56,7 +53,11 @@ def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
     body = spec.worldbody.add_body(pos=case.start)
     body.add_freejoint()
     body.add_geom(
-        size=(case.size / 2,) * 3, density=case.density, friction=(case.friction, 0, 0), **contact
+        type=box if case.shape == "cube" else ball,
+        size=(case.size / 2,) * 3,
+        density=case.density,
+        friction=(case.friction, 0, 0),
+        **contact,
     )
     return spec.compile()
 
@@ -68,7 +69,7 @@ def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
     step, as in Genesis.
 
     Args:
-        case: of a cube.
+        case: of a cube or a ball.
         own_defaults: as in `load`.
     """
     model = load(case, own_defaults)

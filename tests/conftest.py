@@ -18,16 +18,19 @@ from matplotlib.figure import Figure
 
 from robo_genesis import (
     build,
+    l03,
     l04,
     l04_studies,
     plots,
     project,
     robot_model,
     runtime,
+    second_contacts,
     second_engine,
     step_checks,
     studies,
 )
+from robo_genesis.contacts import ContactCase
 from robo_genesis.falling import summed_drop
 from robo_genesis.free_bodies import Drop
 from robo_genesis.metrics import measure
@@ -42,7 +45,7 @@ from robo_genesis.scene_config import (
     SUBSTEPS,
     per_joint,
 )
-from robo_genesis.trace import BodyTrace, Trace
+from robo_genesis.trace import BodyTrace, ContactTrace, Trace
 
 # Tests send it to the commands they start; a shell that starts pytest with & has it ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -183,6 +186,38 @@ def make_drop() -> Callable[[Drop], BodyTrace]:
         return BodyTrace(t, position, upright, velocity, np.zeros_like(position))
 
     return build
+
+
+@pytest.fixture(scope="session")
+def slide_on_corners() -> Callable[[ContactCase], ContactTrace]:
+    """Build a cube that slides on four corners as semi-implicit Euler has Coulomb's friction."""
+
+    def build(case: ContactCase) -> ContactTrace:
+        states, friction = case.steps + 1, max(case.friction, case.surface_friction)
+        speed = case.speed - friction * case.gravity * case.h * np.arange(states * case.substeps)
+        speed = np.maximum(speed, 0)
+        x = np.concatenate([[0], np.cumsum(case.h * speed[1:])])[:: case.substeps]
+        position, velocity = (np.zeros((states, 1, 3), np.float32) for _ in range(2))
+        position[:, 0] = case.start
+        position[:, 0, 0] += x
+        velocity[:, 0, 0] = speed[:: case.substeps]
+        upright = np.zeros((states, 1, 4), np.float32)
+        upright[..., 0] = 1
+        t, corners = np.arange(states) * case.dt, np.full((states, 1), 4, np.int32)
+        still, depth = np.zeros_like(position), np.zeros((states, 1), np.float32)
+        return ContactTrace(t, position, upright, velocity, still, corners, depth)
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def contact_traces(slide_on_corners) -> dict[str, ContactTrace]:
+    """The runs of L03, of lab and lecture, with MuJoCo in the place of both engines."""
+    traces = {
+        name: second_contacts.run_case(case, own_defaults=name == l03.OWN_DEFAULTS)
+        for name, case in (l03.CASES | l03.STUDY_CASES).items()
+    }
+    return traces | {name: slide_on_corners(case) for name, case in l03.CONE_CASES.items()}
 
 
 @pytest.fixture(scope="session")

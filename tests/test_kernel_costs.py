@@ -151,5 +151,5 @@ def test_a_file_that_is_no_record_is_refused_by_name(book):
 def test_the_marked_pages_of_the_course_are_found():
     page = sphinx_costs.marked_page(project.BOOK, "l04/lecture")
     assert len(kernel_costs.set_names(page)) > 4
-    with pytest.raises(LookupError, match="Pages that do: l02/lecture, l04/lecture"):
+    with pytest.raises(LookupError, match="Pages that do: l02/lecture, l03/lecture, l04/lecture"):
         sphinx_costs.marked_page(Path(project.BOOK), "l04/lab")

@@ -24,16 +24,18 @@ def test_what_a_lesson_names_is_there(name):
     for page in lesson.pages.values():
         assert all((ROOT / "robo_genesis" / f"{module}.py").is_file() for module in page.modules)
         assert page.parameters()
-    assert lesson.compared is None or {*lesson.compared.cases} <= {*lesson.spec.CASES}
+    drawn = [lesson.compared, *lesson.further.values()]
+    assert all(of is None or {*of.cases} <= {*lesson.spec.CASES} for of in drawn)
+    assert lesson.metrics.keys() == lesson.spec.CASES.keys()
     for (first, second), metric, order, margin in lesson.spec.RELATIONS:
         assert {first, second} <= {*lesson.spec.CASES}
-        assert metric in lesson.metrics
+        assert all(metric in lesson.metrics[case] for case in (first, second))
         assert order in ("higher", "lower", "later", "no later")
         assert margin > 0
 
 
 def test_unknown_names_are_answered_with_those_there_are():
-    with pytest.raises(LookupError, match=r"'l99' is no lesson\. Choices: l02, l04"):
+    with pytest.raises(LookupError, match=r"'l99' is no lesson\. Choices: l02, l03, l04"):
         find_lesson("l99")
     with pytest.raises(LookupError, match=r"l04/exam is no page that measures\. Choices: l04/lab"):
         find_page("l04", "exam")

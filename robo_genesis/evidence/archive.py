@@ -12,6 +12,9 @@ from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect
 UNPACKED_LIMIT = 32 * 2**20
 """Bytes of all arrays of one case together; those of a lesson have under 0.2 MiB."""
 
+VALID = ("<f4", "<f8", "<i4")
+"""Types of plain numbers: the engine's, those of commands and stamps, and counts."""
+
 HEADERS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
 
 
@@ -61,8 +64,8 @@ def _read(archive: ZipFile, info: ZipInfo, where: str) -> np.ndarray:
     with archive.open(info) as stream:
         shape, fortran, dtype = HEADERS[npy.read_magic(stream)](stream)
         found = f"{dtype.str}, {'Fortran' if fortran else 'C'} order, shape {shape}"
-        if dtype.str not in ("<f4", "<f8") or fortran or any(n < 0 for n in shape):
-            raise ValueError(f"{what} is {found}; valid are <f4 and <f8 in C order")
+        if dtype.str not in VALID or fortran or any(n < 0 for n in shape):
+            raise ValueError(f"{what} is {found}; valid are {', '.join(VALID)} in C order")
         size = math.prod(shape) * dtype.itemsize
         if info.file_size - stream.tell() != size:
             raise ValueError(f"{what} has {info.file_size} bytes, which are not {found}")

@@ -30,7 +30,7 @@ from robo_genesis.evidence.traces import read_trace
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.ledger import Run
 from robo_genesis.lessons import LESSONS, Filmed
-from robo_genesis.measures import LABELS as METRIC_LABELS
+from robo_genesis.measures import LABELS
 from robo_genesis.metrics import format_value
 from robo_genesis.robot_shape import Part
 
@@ -120,7 +120,7 @@ def test_equal_runs_stand_side_by_side(folder, there):
         "metric", "cpu, this build", "amdgpu, recorded", "difference", "allowed", "verdict",
     ]  # fmt: skip
     names = LESSONS["l04"].metrics
-    labels = {f"{case} {METRIC_LABELS[name]}" for case in l04.CASES for name in names}
+    labels = {f"{case} {LABELS[name]}" for case in l04.CASES for name in names}
     assert labels <= {row[0] for row in rows(text)}
 
 

@@ -13,6 +13,8 @@ PAGES = (
     "evidence/recording",
     "lessons/l02-life-cycle/lecture",
     "lessons/l02-life-cycle/lab",
+    "lessons/l03-rigid-bodies/lecture",
+    "lessons/l03-rigid-bodies/lab",
     "lessons/l04-joint-control/lecture",
     "lessons/l04-joint-control/lab",
 )

@@ -96,13 +96,13 @@ def test_illustrations_say_so_and_nothing_else_does(pages):
         if "Illustration, not measured." in line.text
     ]
     sources = sorted(source.rpartition("/")[2] for _, source in said)
-    assert sources == ["chain.svg", "chain.svg", "life-cycle.svg"]
+    assert sources == ["chain.svg", "chain.svg", "evidence.svg", "life-cycle.svg"]
 
 
 def test_tables_of_chosen_values_are_called_so(pages):
     rows = pages[LEDGER].select("#figures-and-tables tbody tr")
     chosen = [row.a.get_text() for row in rows if row.select("td")[1].text == "settings"]
-    assert len(chosen) == 5
+    assert len(chosen) == 6
     for head in ("what, value", "start, target", "KP of joint4", "angle [rad], speed"):
         assert [title for title in chosen if head in title]
 

@@ -5,7 +5,7 @@ import re
 import pytest
 from bs4 import BeautifulSoup
 
-from robo_genesis import drop_checks, l04, project, step_checks
+from robo_genesis import contact_checks, drop_checks, l04, project, step_checks
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons import LESSONS
@@ -13,7 +13,7 @@ from robo_genesis.lessons import LESSONS
 pytestmark = pytest.mark.engine
 PIN = project.engine_pin()
 LESSON = "lessons/l04-joint-control"
-FIRST = "lessons/l02-life-cycle"
+FIRST, SECOND = "lessons/l02-life-cycle", "lessons/l03-rigid-bodies"
 
 
 def page(site, name: str) -> BeautifulSoup:
@@ -21,7 +21,7 @@ def page(site, name: str) -> BeautifulSoup:
 
 
 @pytest.mark.parametrize("page_name", ["lecture", "lab"])
-@pytest.mark.parametrize(("folder", "lesson"), [(LESSON, "L04"), (FIRST, "L02")])
+@pytest.mark.parametrize(("folder", "lesson"), [(LESSON, "L04"), (FIRST, "L02"), (SECOND, "L03")])
 def test_pages_show_executed_outputs_and_their_verdict(site, folder, lesson, page_name):
     found = page(site, f"{folder}/{page_name}")
     assert f"{lesson} CHECK: PASSED" in found.get_text()
@@ -33,6 +33,7 @@ def test_pages_show_executed_outputs_and_their_verdict(site, folder, lesson, pag
     [
         ("index", drop_checks.CHECKS),
         *((f"{FIRST}/{name}", drop_checks.CHECKS) for name in ("lecture", "lab")),
+        *((f"{SECOND}/{name}", contact_checks.CHECKS) for name in ("lecture", "lab")),
         *((f"{LESSON}/{name}", step_checks.CHECKS) for name in ("lecture", "lab")),
     ],
 )

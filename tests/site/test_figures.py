@@ -54,7 +54,39 @@ cases = {{n: c for n, c in (l02.CASES | l02.SUBSTEP_CASES).items() if n in trace
 study = substep_study.study(measure(traces, cases), cases)
 """
 
-SETUPS = {"l02": FROM_DROPS, "l04": FROM_BUNDLE}
+FROM_CONTACTS = """
+import matplotlib.pyplot as plt, numpy as np
+from pathlib import Path
+from PIL import Image
+from robo_genesis import contact_plots, contact_studies, energy, l03, plots, sliding
+from robo_genesis.contact_metrics import measure
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.traces import read_contact_trace
+
+plots.use_course_style()
+folder = Path({folder!r})
+arrays, numbers = bundle.read_arrays(folder), bundle.read_metrics(folder)
+traces = {{case: read_contact_trace(folder, arrays, case) for case in arrays.cases}}
+case, trace = l03.BASELINE, traces["baseline"]
+camera = True
+frames = {{n: np.array(Image.open(folder / "frames" / f"{{n}}.png")) for n in ("initial", "final")}}
+if folder.parent.name == "lab":
+    slid, bounced = measure(traces, l03.SLIDES), measure(traces, l03.BOUNCES)
+    coulomb = {{
+        name: sliding.coulomb_distance(of.speed, max(of.friction, of.surface_friction))
+        for name, of in l03.SLIDES.items()
+    }}
+    shares = {{l03.BOUNCES[name].h: of.first_kept for name, of in bounced.items()}}
+    expected = 100 * energy.kept_at_bounces(l03.DROPPED_BALL.spring[1])
+else:
+    seconds = {{name: metric.value for name, metric in numbers["time_constant"].items()}}
+    study = contact_studies.Studies(traces, measure(traces, l03.STUDY_CASES), seconds)
+    marks = {{"low_on_050": "G1", "high_on_050": "G2"}}
+    marks |= {{"low_elliptic": "G3", "high_elliptic": "other"}}
+    shown = {{name: l03.STUDY_CASES[name] for name in marks}}
+"""
+
+SETUPS = {"l02": FROM_DROPS, "l03": FROM_CONTACTS, "l04": FROM_BUNDLE}
 
 STUDIED = {"fig-l04-theory", "fig-l04-step-size", "fig-l04-convergence"}
 """Figures that are drawn when the page has all of its traces, not the baseline's alone."""

@@ -19,7 +19,12 @@ pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 LECTURE = "lessons/l04-joint-control/lecture"
 LAB = "lessons/l04-joint-control/lab"
-FIRST = ("lessons/l02-life-cycle/lecture", "lessons/l02-life-cycle/lab")
+FIRST = (
+    "lessons/l02-life-cycle/lecture",
+    "lessons/l02-life-cycle/lab",
+    "lessons/l03-rigid-bodies/lecture",
+    "lessons/l03-rigid-bodies/lab",
+)
 ANCHORS = Path(__file__).with_name("anchors.txt")
 PLACES = "article section[id], article section > span[id], article figure[id], article dt[id]"
 NUMBERED = re.compile(r"id\d+$")

@@ -15,7 +15,11 @@ from bs4 import BeautifulSoup
 from robo_genesis import build, project
 
 pytestmark = pytest.mark.engine
-LABS = {"l02": "lessons/l02-life-cycle/lab", "l04": "lessons/l04-joint-control/lab"}
+LABS = {
+    "l02": "lessons/l02-life-cycle/lab",
+    "l03": "lessons/l03-rigid-bodies/lab",
+    "l04": "lessons/l04-joint-control/lab",
+}
 OURS = ("PYTHON", "VIRTUAL_ENV", "ROBO_GENESIS", "JUPYTER", "IPYTHON")
 """Variables of this environment that a reader's does not have."""
 

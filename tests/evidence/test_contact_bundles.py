@@ -1,0 +1,222 @@
+"""Bundles of bodies on a surface, with contacts: accepted, compared, handed on, refused."""
+
+import csv
+import shutil
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import written
+from spoilers import edit, predicate, seal
+
+from robo_genesis import contact_checks, contact_studies, l03, records, runtime, second_contacts
+from robo_genesis.contact_metrics import measure, metric_records
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.compare import compare, specification
+from robo_genesis.evidence.record import Measured
+from robo_genesis.evidence.traces import read_any_trace, read_contact_trace
+from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.takeaways import csv_text
+from robo_genesis.trace import ContactTrace
+
+MASSES = {"cube": l03.BASELINE.mass, "ball": l03.DROPPED_BALL.mass}
+CUBE = {"cube": l03.BASELINE.mass}
+SECONDS = {n: second_contacts.time_constant(c.h) for n, c in l03.STEP_CASES.items()}
+
+
+def measured(traces, cases, frames, masses, parameters, more=()):
+    metrics = measure(traces, cases)
+    run = contact_checks.ContactExperiment(
+        l03.EXPECTED_MODEL, masses, cases, traces, metrics, "camera", frames
+    )
+    found = metric_records(metrics, l03.EXPECTED_MODEL, masses)
+    if more:
+        studies = contact_studies.Studies(traces, metrics, SECONDS)
+        outcomes = contact_checks.run_study_checks(run) + contact_studies.run_checks(studies)
+        found |= {contact_studies.GROUP: records.readings(SECONDS, "s")}
+    else:
+        outcomes = contact_checks.run_checks(run)
+    renderer = runtime.Renderer("Mesa", "llvmpipe")
+    return Measured(None, (l03.LINK,), traces, found, outcomes, frames, parameters, renderer)
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory, engine, frames, contact_traces) -> Path:
+    traces = {name: contact_traces[name] for name in l03.CASES}
+    content = measured(traces, l03.CASES, frames, MASSES, l03.parameters())
+    return written(engine, tmp_path_factory.mktemp("landed"), "l03", "lab", content)
+
+
+@pytest.fixture(scope="module")
+def lecture(tmp_path_factory, engine, frames, contact_traces) -> Path:
+    cases = l03.STUDY_CASES
+    traces = {name: contact_traces[name] for name in cases}
+    content = measured(traces, cases, frames, CUBE, l03.study_parameters(), more=SECONDS)
+    return written(engine, tmp_path_factory.mktemp("studied"), "l03", "lecture", content)
+
+
+@pytest.fixture
+def landed(lab, tmp_path) -> Path:
+    """The lab's bundle, to spoil."""
+    return Path(shutil.copytree(lab, tmp_path / "l03" / "lab" / "cpu"))
+
+
+@pytest.fixture
+def studied(lecture, tmp_path) -> Path:
+    """The lecture's."""
+    return Path(shutil.copytree(lecture, tmp_path / "l03" / "lecture" / "cpu"))
+
+
+def test_sound_ones_are_accepted(landed, studied):
+    names = [check.name for check in verify_bundle(landed).predicate.checks]
+    assert names == [check.__name__ for check in contact_checks.CHECKS]
+    names = [check.name for check in verify_bundle(studied).predicate.checks]
+    assert names[-1] == "elliptic_cones_part"
+
+
+def test_contacts_come_back_as_they_were(landed, contact_traces):
+    arrays = bundle.read_arrays(landed)
+    found = read_any_trace(landed, arrays, "baseline")
+    assert isinstance(found, ContactTrace)
+    assert found.contacts.dtype == np.int32
+    assert np.array_equal(found.contacts, contact_traces["baseline"].contacts)
+    assert np.array_equal(found.penetration, contact_traces["baseline"].penetration)
+
+
+def test_each_page_compares_with_itself_by_its_own_cases(landed, studied):
+    found = compare(landed, landed, specification("l03", "lab"))
+    assert found.state == "equal"
+    titles = {section.title: section for section in found.sections}
+    assert len(titles["Relations"].findings) == len(l03.RELATIONS)
+    other = compare(studied, studied, specification("l03", "lecture"))
+    assert other.state == "equal"
+    claims = {s.title: s for s in other.sections}["Relations"].findings
+    assert [claim.what for claim in claims] == [
+        "stop_distance: high_on_050 lower than low_on_050, held in both"
+    ]
+
+
+def test_it_becomes_a_table_with_contacts(landed):
+    arrays = bundle.read_arrays(landed)
+    trace = read_any_trace(landed, arrays, "dt20_sub1")
+    rows = list(csv.DictReader(csv_text(trace, arrays, "dt20_sub1").splitlines()))
+    assert len(rows) == 76
+    assert rows[-1]["contacts body [1]"] == "4"
+    assert float(rows[-1]["penetration body [m]"]) > 0
+
+
+def without_contacts(folder):
+    path = folder / "arrays" / "baseline.npz"
+    with np.load(path) as stored:
+        values = {name: np.array(stored[name]) for name in stored}
+    del values["contacts"]
+    np.savez_compressed(path, **values)
+    edit(folder, "arrays.json", lambda a: a["cases"]["baseline"]["variables"].pop("contacts"))
+
+
+def changed(case, name, change):
+    def spoil(folder):
+        path = folder / "arrays" / f"{case}.npz"
+        with np.load(path) as stored:
+            values = {key: np.array(stored[key]) for key in stored}
+        change(values[name])
+        np.savez_compressed(path, **values)
+
+    return spoil
+
+
+def honest_failure(folder):
+    """A cube that starts elsewhere, with metrics and checks made what the arrays now give."""
+    changed("baseline", "link_pos_m", lambda a: a[:, 0, 1].__iadd__(0.01))(folder)
+    arrays = bundle.read_arrays(folder)
+    traces = {name: read_contact_trace(folder, arrays, name) for name in l03.CASES}
+    metrics = measure(traces, l03.CASES)
+    frames = {name: np.zeros(0) for name in ("initial", "final")}
+    run = contact_checks.ContactExperiment(
+        l03.EXPECTED_MODEL, MASSES, l03.CASES, traces, metrics, "camera", frames
+    )
+    outcomes = [asdict(check) for check in contact_checks.run_checks(run)]
+    edit(folder, "metrics.json",
+         lambda m: m.update(metric_records(metrics, l03.EXPECTED_MODEL, MASSES)))  # fmt: skip
+
+    def change(m):
+        m["predicate"]["checks"] = [*outcomes[:-1], m["predicate"]["checks"][-1]]
+
+    edit(folder, "manifest.json", change)
+
+
+def metric(group, name, value):
+    def change(folder):
+        edit(folder, "metrics.json", lambda m: m[group][name].update(value=value))
+
+    return change
+
+
+def pop(file, *path):
+    def change(folder):
+        def of(content):
+            for key in path[:-1]:
+                content = content[key]
+            content.pop(path[-1])
+
+        edit(folder, file, of)
+
+    return change
+
+
+LAB = {
+    "a position was moved": ("metrics", changed("baseline", "link_pos_m",
+                                                lambda a: a[25, 0, 2:].__isub__(0.01))),
+    "a start elsewhere, told as it is": ("failed", honest_failure),
+    "contacts that were never read": ("labels", without_contacts),
+    "a count of contacts was written": ("metrics", changed("low_on_050", "contacts",
+                                                           lambda a: a.fill(4))),
+    "a metric was written": ("metrics", metric("low_on_050", "stop_distance", 0.4077)),
+    "another mass": ("checks", metric("mass", "ball", 0.2)),
+    "no mass": ("metrics", metric("mass", "cube", None)),
+    "a mass that is left out": ("metrics", pop("metrics.json", "mass", "ball")),
+    "a run is missing": ("cases", pop("arrays.json", "cases", "bounce_sub4")),
+    "another name for the body": ("labels", lambda f: edit(
+        f, "arrays.json", lambda a: a["coords"].update(link=["box_baselink"]))),
+    "a check that is left out": (
+        "checks", lambda f: edit(f, "manifest.json", lambda m: m["predicate"]["checks"].pop())),
+    "the lecture's parameters": ("stale", predicate(parameters=l03.study_parameters())),
+}  # fmt: skip
+
+LECTURE = {
+    "another time constant": ("checks", metric("time_constant", "h_20000us", 0.01)),
+    "a time constant that is left out": (
+        "metrics", pop("metrics.json", "time_constant", "h_20000us")),
+    "a run of the other engine is missing": ("cases", pop("arrays.json", "cases",
+                                                          "mujoco_baseline")),
+    "a cube that was laid down": ("metrics", changed("low_on_050", "link_pos_m",
+                                                     lambda a: a[:, 0, 2].fill(0.765))),
+}  # fmt: skip
+
+
+def refused(folder) -> str:
+    seal(folder)
+    with pytest.raises(BundleRefused) as caught:
+        verify_bundle(folder)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("name", LAB)
+def test_a_spoiled_lab_is_refused_by_its_code(landed, name):
+    code, spoil = LAB[name]
+    spoil(landed)
+    assert refused(landed).startswith(code), name
+
+
+@pytest.mark.parametrize("name", LECTURE)
+def test_a_spoiled_lecture_is_refused_by_its_code(studied, name):
+    code, spoil = LECTURE[name]
+    spoil(studied)
+    assert refused(studied).startswith(code), name
+
+
+def test_another_page_or_lesson_has_no_specification():
+    with pytest.raises(BundleRefused, match=r"l03/exam is no page that measures"):
+        specification("l03", "exam")

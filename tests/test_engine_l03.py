@@ -1,0 +1,79 @@
+"""Landing, sliding and bouncing in the real engine."""
+
+import numpy as np
+import pytest
+
+from robo_genesis import (
+    checks,
+    contact_checks,
+    contact_studies,
+    contacts,
+    free_bodies,
+    l03,
+    runtime,
+    second_contacts,
+)
+from robo_genesis.contact_metrics import measure
+
+pytestmark = pytest.mark.engine
+FIELDS = ("link_pos", "link_quat", "link_vel", "link_ang", "contacts", "penetration")
+
+
+@pytest.fixture(scope="module")
+def ran(real_engine):
+    """All runs of the lab, with the baseline's world and camera frames."""
+    gs, traces, masses = real_engine.gs, {}, {}
+    baseline = contacts.build_world(gs, {"baseline": l03.BASELINE}, l03.VIEW)
+    frames = {"initial": runtime.capture(baseline.camera)}
+    traces |= contacts.run_world(baseline)
+    frames["final"] = runtime.capture(baseline.camera)
+    for name, case in (l03.LANDINGS | l03.BOUNCES).items():
+        world = contacts.build_world(gs, {name: case})
+        traces |= contacts.run_world(world)
+        masses[case.shape] = float(world.bodies[name].get_mass())
+    for surface in ("050", "030"):
+        pair = {name: case for name, case in l03.SLIDES.items() if name.endswith(surface)}
+        traces |= contacts.run_world(contacts.build_world(gs, pair))
+    model = free_bodies.read_model(baseline.scene, baseline.bodies["baseline"])
+    return contact_checks.ContactExperiment(
+        model, masses, l03.CASES, traces, measure(traces, l03.CASES), "camera", frames
+    ), baseline
+
+
+def test_the_lab_passes_its_checks(ran):
+    experiment, _ = ran
+    assert checks.require("l03", contact_checks.run_checks(experiment)) == "L03 CHECK: PASSED"
+
+
+def test_a_second_run_of_one_scene_is_the_same_to_the_last_bit(ran):
+    experiment, world = ran
+    again = contacts.run_world(world)["baseline"]
+    for name in FIELDS:
+        first = getattr(experiment.traces["baseline"], name)
+        assert np.array_equal(getattr(again, name), first), name
+
+
+def test_the_ball_bounces_alike_in_mujoco(ran):
+    experiment, _ = ran
+    here, there = (
+        experiment.traces["bounce_sub20"],
+        second_contacts.run_case(l03.BOUNCES["bounce_sub20"]),
+    )
+    first = slice(0, 40)  # drop, first bounce and half of the second flight
+    assert np.abs(here.link_pos[first] - there.link_pos[first]).max() < 1e-4
+
+
+def test_the_studies_hold(real_engine, ran):
+    gs, traces, seconds = real_engine.gs, {}, {}
+    for name, case in l03.STEP_CASES.items():
+        world = contacts.build_world(gs, {name: case})
+        traces |= contacts.run_world(world)
+        seconds[name] = float(world.surface.geoms[0].sol_params[0])
+    for names in (("low_elliptic", "high_elliptic"), ("low_elliptic_sub10", "high_elliptic_sub10")):
+        pair = {name: l03.CONE_CASES[name] for name in names}
+        traces |= contacts.run_world(contacts.build_world(gs, pair))
+    traces |= {name: second_contacts.run_case(case) for name, case in l03.OTHER_ENGINE.items()}
+    traces[l03.OWN_DEFAULTS] = second_contacts.run_case(l03.BASELINE, own_defaults=True)
+    traces |= {name: ran[0].traces[name] for name in l03.REPEATED}
+    run = contact_studies.Studies(traces, measure(traces, l03.STUDY_CASES), seconds)
+    assert checks.require("l03", contact_studies.run_checks(run)) == "L03 CHECK: PASSED"
