@@ -33,6 +33,8 @@ Pair = tuple[Sample, Sample]
 class Row:
     """One line of the table: what is measured, against what, and the ratio it must not exceed.
 
+    Without a limit, a row states what both sides cost, and nothing is asked of it.
+
     `pairs` takes a number of runs, makes ready what they need, which is not measured, and yields
     one sample of the work and one of its opponent for each. `runs` is their usual number.
     `where` says what the time goes to, for a table in which the limit is not kept.
@@ -41,7 +43,7 @@ class Row:
     name: str
     work: str
     against: str
-    limit: float
+    limit: float | None
     pairs: Callable[[int], Iterable[Pair]]
     runs: int = 5
     where: str = ""
@@ -54,7 +56,7 @@ class Result:
     name: str
     work: str
     against: str
-    limit: float
+    limit: float | None
     samples: tuple[Sample, ...]
     opposite: tuple[Sample, ...]
     where: str = ""
@@ -83,8 +85,8 @@ class Result:
 
     @property
     def met(self) -> bool:
-        """Whether the ratio keeps to the limit."""
-        return self.ratio <= self.limit
+        """Whether the ratio keeps to the limit, if there is one."""
+        return self.limit is None or self.ratio <= self.limit
 
 
 def in_turn(work: Callable[[], Sample], against: Callable[[], Sample], runs: int) -> Iterator[Pair]:
@@ -135,7 +137,8 @@ def _line(result: Result) -> tuple[str, ...]:
     work, against = (_spread(side) for side in (result.samples, result.opposite))
     cpu = f"{result.cpu_ratio:.2f}" if result.cpu_ratio else "-"
     met = "met" if result.met else "NOT MET"
-    figures = (f"{result.ratio:.2f}", cpu, f"{result.limit:g}", met, str(len(result.samples)))
+    held = ("-", "") if result.limit is None else (f"{result.limit:g}", met)
+    figures = (f"{result.ratio:.2f}", cpu, *held, str(len(result.samples)))
     return (result.work, work, result.against, against, *figures)
 
 

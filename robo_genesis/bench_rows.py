@@ -7,10 +7,13 @@ from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
+from robo_genesis import project
 from robo_genesis.bench import BenchError, Pair, Row, Sample, in_turn
 from robo_genesis.bench_bare import write_sources
 from robo_genesis.bench_clone import Clone, make
+from robo_genesis.lessons import LESSONS
 from robo_genesis.page_cache import array_digests, outputs_folder
+from robo_genesis.pages import find_pages
 
 SPHINX = "from sphinx.cmd.build import main; import sys; sys.exit(main(sys.argv[1:]))"
 BARE_START = "import numpy, pydantic"
@@ -45,6 +48,11 @@ def rows(clone: Clone) -> list[Row]:
             partial(against_start, clone, comparing)),
         Row("recording", "step loop that records all 9 DOFs", "step loop, no reads", 1.5,
             partial(recording, clone), runs=25, where=READS),
+        *(
+            Row(lesson, f"{lesson.upper()} executed cold", "executed warm", None,
+                partial(cold_and_warm, clone, lesson), runs=1)
+            for lesson in LESSONS
+        ),
     ]  # fmt: skip
 
 
@@ -109,6 +117,21 @@ def jobs(clone: Clone, runs: int) -> Iterator[Pair]:
             moved = sorted(dict(both.arrays.items() ^ one.arrays.items()))
             raise BenchError(f"Arrays that differ between JOBS=2 and JOBS=1: {', '.join(moved)}.")
         yield pair
+
+
+def cold_and_warm(clone: Clone, lesson: str, runs: int) -> Iterator[Pair]:
+    """Execute all pages of a lesson one after the other, with no kernel compiled, and again."""
+    named = [page.docname for page in find_pages(clone.book) if page.lesson == lesson]
+    pages = executing(clone, *named, JOBS="1")
+    compiled = project.engine_cache_folder(clone.root)
+    aside = compiled.with_name(f"{compiled.name}.aside")
+    for _ in range(runs):
+        compiled.rename(aside)
+        try:
+            yield pages(), pages()
+        finally:
+            shutil.rmtree(compiled, ignore_errors=True)
+            aside.rename(compiled)
 
 
 class executing:  # noqa: N801 - reads as a function

@@ -51,7 +51,7 @@ SOURCES = {
     "penetration": ("link_pos_m", "link_quat_wxyz"),
     "rebound": ("link_pos_m", "link_quat_wxyz"),
     "separated": ("contacts", "link_pos_m", "link_quat_wxyz", "t_s"),
-    "upward_speed": ("link_vel_m_s",),
+    "upward_speed": ("link_pos_m", "link_quat_wxyz", "link_vel_m_s"),
     "resting_time": ("link_pos_m", "t_s"),
     "resting_offset": ("link_pos_m",),
     "stop_time": ("link_vel_m_s", "t_s"),
@@ -72,7 +72,7 @@ SOURCES = {
 LABELS = {
     "touchdown": "first sample at the surface",
     "penetration": "penetration proxy",
-    "rebound": "highest clearance after touchdown",
+    "rebound": "rebound",
     "separated": "time separated after touchdown",
     "upward_speed": "largest upward speed after touchdown",
     "resting_time": "settled at",
@@ -81,7 +81,7 @@ LABELS = {
     "stop_distance": "stopping distance",
     "final_distance": "distance at the end",
     "first_speed": "speed after one outer step",
-    "hop": "highest clearance",
+    "hop": "hop",
     "airborne": "time in the air",
     "spin": "largest angular speed",
     "start_energy": "energy at the start",
@@ -136,8 +136,8 @@ class BounceMetrics(CaseMetrics):
     start_energy: float
     first_kept: float | None
     later_kept: float | None
-    flight_drift: float
-    lent: float
+    flight_drift: float | None
+    lent: float | None
 
 
 def names_of(case: ContactCase) -> tuple[str, ...]:
@@ -233,14 +233,18 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
         start_energy=float(total[0]),
         first_kept=share(1),
         later_kept=share(BOUNCES_COUNTED),
-        flight_drift=max((float(np.ptp(kept[flight])) for flight in found), default=0.0),
-        lent=max((float(np.ptp(total[flight])) for flight in found), default=0.0),
+        flight_drift=max((float(np.ptp(kept[flight])) for flight in found), default=None),
+        lent=max((float(np.ptp(total[flight])) for flight in found), default=None),
     )
 
 
 def metric_records(
-    metrics: Mapping[str, CaseMetrics], model: Mapping[str, int], masses: Mapping[str, float]
+    metrics: Mapping[str, CaseMetrics],
+    model: Mapping[str, int],
+    masses: Mapping[str, float],
+    settings: Mapping[str, Mapping[str, float]],
 ) -> dict[str, dict[str, records.Record]]:
-    """Return `metrics.json`: the model's counts, the engine's masses, and each case's metrics."""
+    """Return `metrics.json`: what the engine says of the model, and each case's metrics."""
     of_engine = {"model": records.counts(model), "mass": records.readings(masses, "kg")}
+    of_engine |= {name: records.readings(found, "1") for name, found in settings.items()}
     return of_engine | records.cases(metrics, SOURCES)

@@ -2,10 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
 from matplotlib.axes import Axes
 
-from robo_genesis import l03
-from robo_genesis.contact_studies import Studies
+from robo_genesis import l03, second_contacts
+from robo_genesis.contact_metrics import CLEAR
+from robo_genesis.contact_studies import Studies, solver_step
 from robo_genesis.contacts import TOP, ContactCase
 from robo_genesis.energy import clearance, kept_energy, total_energy
 from robo_genesis.plots import look
@@ -13,15 +15,28 @@ from robo_genesis.trace import ContactTrace
 
 LANDING_MARKS = {"baseline": "baseline", "dt10_sub1": "G1", "dt20_sub2": "G3", "dt20_sub1": "G2"}
 SLIDE_MARKS = {"low_on_050": "G1", "high_on_050": "G2", "low_on_030": "G3", "high_on_030": "other"}
-BOUNCE_MARKS = ("G2", "other", "G1", "further", "G3")
 
 Cases = Mapping[str, ContactCase]
 Traces = Mapping[str, ContactTrace]
 
 
-def heights(ax: Axes, traces: Traces, cases: Cases, window: tuple[float, float]) -> Axes:
-    """Draw the clearance below each dropped cube at every sample, zero where it touches."""
-    for name, mark in LANDING_MARKS.items():
+def heights(
+    ax: Axes,
+    traces: Traces,
+    cases: Cases,
+    window: tuple[float, float],
+    marks: Mapping[str, str] = LANDING_MARKS,
+) -> Axes:
+    """Draw the clearance below each dropped cube at every sample, zero where it touches.
+
+    Args:
+        ax: where to draw.
+        traces: by case.
+        cases: those of the marks, at least.
+        window: of time [s].
+        marks: of the palette, by case.
+    """
+    for name, mark in marks.items():
         clear = 1000 * clearance(traces[name], cases[name])
         ax.plot(traces[name].t, clear, marker=".", label=name, **look(mark))
     ax.axhline(0, **look("limit"))
@@ -50,19 +65,26 @@ def counted(ax: Axes, traces: Traces, window: tuple[float, float]) -> Axes:
 
 
 def depths(ax: Axes, run: Studies) -> Axes:
-    """Draw how deep the cube sinks in and how high it leaves again, over the solver's step."""
-    h = [1000 * case.h for case in l03.STEP_CASES.values()]
-    found = [run.landing(name) for name in l03.STEP_CASES]
-    ax.semilogx(h, [1000 * of.penetration for of in found], marker="o", label="penetration proxy",
-                **look("baseline"))  # fmt: skip
-    ax.semilogx(h, [1000 * of.rebound for of in found], marker="s",
-                label="highest clearance afterwards", **look("G2"))  # fmt: skip
-    ax.axvline(5, **look("target"))
+    """Draw how deep the cubes sink in over the solver's step, those that rebound apart."""
+    stays: tuple[list[float], list[float]] = ([], [])
+    leaves: tuple[list[float], list[float]] = ([], [])
+    for step in l03.STEPS_STUDIED:
+        for found in run.landings(step):
+            into = leaves if found.rebound > CLEAR else stays
+            into[0].append(1000 * solver_step(step))
+            into[1].append(1000 * found.penetration)
+    ax.semilogx(
+        *stays, "o", markersize=4.5, color=look("G1")["color"], label="stays on the surface"
+    )
+    ax.semilogx(*leaves, "^", markersize=6, color=look("G2")["color"], label="leaves it again")
+    ax.axvline(1000 * second_contacts.DEFAULT_TIME_CONSTANT / 2, **look("target"))
+    h = [1000 * solver_step(step) for step in l03.STEPS_STUDIED]
     ax.set_xticks(h, [f"{step:g}" for step in h])
     ax.minorticks_off()
+    ax.set_ylim(bottom=0)
     ax.set_xlabel("solver step h [ms]")
-    ax.set_ylabel("length [mm]")
-    ax.set_title("Right of the dotted line, the step decides the contact's stiffness", loc="left")
+    ax.set_ylabel("penetration proxy [mm]")
+    ax.set_title("One landing from nine heights, 7 mm apart", loc="left")
     ax.legend(fontsize="small", loc="upper left")
     return ax
 
@@ -106,30 +128,27 @@ def stopping(ax: Axes, distances: Mapping[str, float | None], formula: Mapping[s
 
 
 def energies(axes: Sequence[Axes], traces: Traces, cases: Cases) -> None:
-    """Draw the energy of each bouncing ball, as it is read and less what the steps lend.
+    """Draw the energy of bouncing balls in the air, as it is read and less what the steps lend.
 
     Args:
         axes: two, one below the other.
         traces: by case.
-        cases: those to draw.
+        cases: up to three to draw.
     """
-    for (name, case), mark in zip(cases.items(), BOUNCE_MARKS, strict=True):
-        start = total_energy(traces[name], case)[0]
+    for (name, case), mark in zip(cases.items(), ("G2", "other", "G3"), strict=False):
+        trace = traces[name]
+        start, clear = total_energy(trace, case)[0], clearance(trace, case) > 0
         for ax, energy in zip(axes, (total_energy, kept_energy), strict=True):
-            share = 100 * energy(traces[name], case) / start
-            ax.plot(
-                traces[name].t,
-                share,
-                label=f"h = {1000 * case.h:g} ms",
-                **look(mark, linewidth=1.3),
-            )
+            share = np.where(clear, 100 * energy(trace, case) / start, np.nan)
+            label = f"h = {1000 * case.h:g} ms"
+            ax.plot(trace.t, share, label=label, **look(mark, linewidth=1.5))
     axes[0].set_title("Total energy", loc="left")
     axes[1].set_title("Less m g h v / 2, which semi-implicit Euler keeps in the air", loc="left")
     for ax in axes:
         ax.set_ylabel("share of the start [%]")
-        ax.set_ylim(40, 110)
+        ax.set_ylim(50, 108)
     axes[1].set_xlabel("time [s]")
-    axes[1].legend(fontsize="small", loc="lower left", ncols=2)
+    axes[1].legend(fontsize="small", loc="lower left")
 
 
 def kept(ax: Axes, shares: Mapping[float, float | None], expected: float) -> Axes:

@@ -9,7 +9,7 @@ import numpy as np
 from robo_genesis.falling import GRAVITY
 from robo_genesis.free_bodies import read_body
 from robo_genesis.robot_model import to_numpy
-from robo_genesis.scene_config import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.scene_config import DT, SUBSTEPS, FloatArray
 from robo_genesis.trace import ContactTrace
 
 SURFACE_SIZE = (2.0, 0.8, 0.05)
@@ -18,8 +18,20 @@ SURFACE_SIZE = (2.0, 0.8, 0.05)
 TOP = 0.725
 """Height of its upper face [m]."""
 
-SHARED = ("surface_friction", "duration", "settle", "dt", "substeps", "cone", "gravity")
+VALID: Mapping[str, tuple[str | None, ...]] = {
+    "shape": ("cube", "ball"),
+    "cone": ("pyramidal", "elliptic"),
+    "resolution": (None, "convex", "signorini"),
+}
+
+SHARED = (
+    "surface_friction", "duration", "settle", "dt", "substeps", "cone", "resolution", "impratio",
+    "gravity",
+)  # fmt: skip
 """What cases that share one scene must agree in."""
+
+SETTINGS = ("friction", "surface_friction", "substeps")
+"""What no array shows of a run, and is read back from the scene that made it."""
 
 LANDING, SLIDE, BOUNCE = "landing", "slide", "bounce"
 
@@ -37,8 +49,10 @@ class ContactCase:
     `start` is the place of its centre [m]; `size` the edge of a cube or the diameter of a ball [m];
     `density` [kg/m³]; `friction` its own coefficient, `surface_friction` that of the surface.
     After `settle` seconds of steps it gets `speed` along x [m/s], and `duration` seconds are
-    recorded. `cone` is the engine's model of friction. `spring` are time constant [s] and stiffness
-    ratio of the contact, None for the engine's own. `gravity` is a magnitude [m/s²].
+    recorded. `cone` is the engine's shape of friction, `resolution` how it weighs a contact's push
+    and friction against each other, `impratio` how much stiffer friction is than the push; the
+    last two are None for what the engine chooses with the cone. `spring` are time constant [s] and
+    damping ratio of the contact, None for the engine's own. `gravity` is a magnitude [m/s²].
     """
 
     start: tuple[float, float, float]
@@ -53,13 +67,16 @@ class ContactCase:
     dt: float = DT
     substeps: int = SUBSTEPS
     cone: str = "pyramidal"
+    resolution: str | None = None
+    impratio: float | None = None
     spring: tuple[float, float] | None = None
     gravity: float = GRAVITY
-    seed: int = SEED
 
     def __post_init__(self) -> None:
-        if self.shape not in ("cube", "ball"):
-            raise ContactError(f"The shape {self.shape!r} was given, valid is 'cube' or 'ball'.")
+        for name, valid in VALID.items():
+            if (given := getattr(self, name)) not in valid:
+                known = " or ".join(map(repr, valid))
+                raise ContactError(f"The {name} {given!r} was given, valid is {known}.")
         for name, seconds in (("duration", self.duration), ("settle", self.settle)):
             if abs(round(seconds / self.dt) * self.dt - seconds) > 1e-9:
                 raise ContactError(
@@ -130,7 +147,7 @@ def build_world(
         sim_options=gs.options.SimOptions(
             dt=common.dt, substeps=common.substeps, gravity=(0.0, 0.0, -common.gravity)
         ),
-        rigid_options=gs.options.RigidOptions(friction_cone=gs.friction_cone[common.cone]),
+        rigid_options=gs.options.RigidOptions(**friction_options(gs, common)),
         profiling_options=gs.options.ProfilingOptions(show_FPS=False),  # no speed in the log
         show_viewer=False,
     )
@@ -161,6 +178,37 @@ def build_world(
             for geom in (*surface.geoms, *bodies[name].geoms):
                 geom.set_sol_params((*case.spring, *geom.sol_params[2:]))
     return World(scene, surface, bodies, dict(cases), camera)
+
+
+def friction_options(gs: Any, case: ContactCase) -> dict[str, Any]:
+    """Return a case's model of friction as options of the engine; what is None stays its own."""
+    resolution = gs.contact_resolution[case.resolution] if case.resolution else None
+    return {
+        "friction_cone": gs.friction_cone[case.cone],
+        "contact_resolution": resolution,
+        "impratio": case.impratio,
+    }
+
+
+def read_settings(world: World) -> dict[str, dict[str, float]]:
+    """Return what the built scene has of `SETTINGS`, by case."""
+    surface, substeps = float(world.surface.geoms[0].friction), float(world.scene.substeps)
+    return {
+        "friction": {name: float(body.geoms[0].friction) for name, body in world.bodies.items()},
+        "surface_friction": dict.fromkeys(world.bodies, surface),
+        "substeps": dict.fromkeys(world.bodies, substeps),
+    }
+
+
+def record_world(
+    world: World,
+    traces: dict[str, ContactTrace],
+    settings: dict[str, dict[str, float]],
+) -> None:
+    """Run a world, and add its traces and what was read of its settings to those of others."""
+    traces |= run_world(world)
+    for name, found in read_settings(world).items():
+        settings.setdefault(name, {}).update(found)
 
 
 def run_world(world: World) -> dict[str, ContactTrace]:

@@ -56,10 +56,10 @@ def flights(trace: BodyTrace, case: ContactCase) -> Iterator[slice]:
             yield slice(int(first), int(after))
 
 
-def kept_at_bounces(stiffness_ratio: float) -> float:
-    """Return the share of its energy that a linear spring with that damping ratio ζ gives back.
+def kept_at_bounces(damping_ratio: float) -> float:
+    """Return the share of its energy that a linear spring with a damping ratio ζ gives back.
 
     Half a period of x″ + 2 ζ ω x′ + ω² x = 0 multiplies the velocity by e^(−π ζ / √(1 − ζ²)), and
     the energy by the square of it. Gravity is left out, and that a contact only pushes.
     """
-    return float(np.exp(-2 * np.pi * stiffness_ratio / np.sqrt(1 - stiffness_ratio**2)))
+    return float(np.exp(-2 * np.pi * damping_ratio / np.sqrt(1 - damping_ratio**2)))

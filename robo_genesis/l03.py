@@ -51,41 +51,87 @@ SLIDES = {
 DROPPED_BALL = ContactCase(
     start=(0.0, 0.0, TOP + 0.04 + 0.10), duration=2.0, shape="ball", spring=(1.0, 0.01)
 )
-BOUNCES = {f"bounce_sub{n}": replace(DROPPED_BALL, substeps=n) for n in (1, 2, 4, 10, 20)}
+BOUNCES = {f"bounce_sub{n}": replace(DROPPED_BALL, substeps=n) for n in (1, 2, 4, 10, 20, 100)}
 """One ball on a nearly undamped contact; the number of substeps is the name."""
 
 CASES = LANDINGS | SLIDES | BOUNCES
 """The lab's runs."""
 
-STEPS_STUDIED = (0.02, 0.01, 0.005, 0.0025, 0.00125, 0.000625)
-STEP_CASES = {
-    f"h_{round(1e6 * h)}us": replace(BASELINE, dt=h, substeps=1, duration=0.5)
-    for h in STEPS_STUDIED
+STEPS_STUDIED = {
+    "h_20000us": (0.02, 1),
+    "h_10000us": (0.01, 1),
+    "h_5000us": (0.005, 1),
+    "h_2500us": (0.0025, 1),
+    "h_1250us": (0.00125, 1),
+    "h_625us": (0.00125, 2),
+    "h_125us": (0.00125, 10),
 }
-"""The landing again with every solver step recorded, its length in microseconds the name."""
+"""Outer step [s] and substeps; the solver's step in microseconds is the name."""
 
-CONE_CASES = {
-    "low_elliptic": replace(PUSHED, cone="elliptic"),
-    "high_elliptic": replace(BESIDE, cone="elliptic"),
-    "low_elliptic_sub10": replace(PUSHED, cone="elliptic", substeps=10),
-    "high_elliptic_sub10": replace(BESIDE, cone="elliptic", substeps=10),
+HEIGHTS_STUDIED = tuple(round(1.0 + 0.0066 * k, 4) for k in range(-4, 5))
+"""Heights to fall from [m]: a step's distance at landing is met by them at many phases."""
+
+STEP_CASES = {
+    name: {
+        f"{name}_{round(1e4 * z)}": replace(
+            BASELINE, start=(round(0.2 * k - 0.8, 1), 0.0, z), dt=dt, substeps=n, duration=0.4
+        )
+        for k, z in enumerate(HEIGHTS_STUDIED)
+    }
+    for name, (dt, n) in STEPS_STUDIED.items()
 }
-"""The slide with the engine's other model of friction."""
+"""By solver step, the landing from each height, side by side; the height in 0.1 mm is the name."""
+
+LANDED_AGAIN = {name: case for group in STEP_CASES.values() for name, case in group.items()}
+"""All of these runs."""
+
+AS_BASELINE = "h_5000us_10000"
+"""The one of them that falls and is stepped as the baseline is, with each solver step recorded."""
+
+CLEAN_SLIDES = {
+    f"{name}_elliptic": replace(case, cone="elliptic") for name, case in SLIDES.items()
+} | {
+    f"{name}_elliptic_sub10": replace(SLIDES[name], cone="elliptic", substeps=10)
+    for name in ("low_on_050", "high_on_050")
+}
+"""The slides with the engine's other model of friction, two of them with finer steps."""
+
+CONVEX_SLIDES = {
+    f"{name}_convex": replace(SLIDES[name], cone="elliptic", resolution="convex", impratio=1.0)
+    for name in ("low_on_050", "high_on_050")
+}
+"""The round cone alone, with all else as it is by default with the pyramid."""
+
+CONE_CASES = CLEAN_SLIDES | CONVEX_SLIDES
 
 REPEATED = {name: CASES[name] for name in ("baseline", "low_on_050", "high_on_050")}
 """Cases of the lab that the lecture runs, too."""
 
 OTHER_ENGINE = {
     f"mujoco_{name}": case
-    for name, case in (LANDINGS | SLIDES | CONE_CASES).items()
-    if not name.endswith(("_030", "_sub10"))
+    for name, case in (LANDINGS | SLIDES | CONVEX_SLIDES).items()
+    if name != "dt20_sub2" and not name.endswith("_030")
 }
-"""Cases that are run in MuJoCo with equal settings; `cone` is MuJoCo's there."""
+"""Cases that are run in MuJoCo with equal settings."""
+
+ENGINE_PAIRS = {
+    "baseline": "mujoco_baseline",
+    "h_10000us_10000": "mujoco_dt10_sub1",
+    "h_20000us_10000": "mujoco_dt20_sub1",
+    "low_on_050": "mujoco_low_on_050",
+    "high_on_050": "mujoco_high_on_050",
+    "low_on_050_convex": "mujoco_low_on_050_convex",
+    "high_on_050_convex": "mujoco_high_on_050_convex",
+}
+"""Runs of the lecture that both engines make with equal settings."""
 
 OWN_DEFAULTS = "mujoco_own_baseline"
 """The baseline in MuJoCo with MuJoCo's own contact."""
 
-STUDY_CASES = REPEATED | STEP_CASES | CONE_CASES | OTHER_ENGINE | {OWN_DEFAULTS: BASELINE}
+BY_GENESIS = REPEATED | LANDED_AGAIN | CONE_CASES
+"""Those of the lecture's runs that the course's engine makes."""
+
+STUDY_CASES = REPEATED | LANDED_AGAIN | CONE_CASES | OTHER_ENGINE | {OWN_DEFAULTS: BASELINE}
 """All runs of the lecture."""
 
 METRICS = {name: names_of(case) for name, case in CASES.items()}
@@ -102,20 +148,21 @@ EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6,
 SAME_STATE = 1e-6
 """What states at shared times may differ by where the solver's steps are the same [m]."""
 
-SAME_SLIDE = 0.005
+SAME_SLIDE = 1e-4
 """What a stopping distance may change by where the pair's friction did not [m]."""
 
 COULOMB_SHARE = 0.20
 """What a stopping distance may differ from Coulomb's by, as a share of it: these cubes hop."""
 
-LEVEL_SHARE = 2e-5
-"""What the kept energy may change by in a flight, as a share of that at the start: float32."""
+LEVEL_SHARE = 1e-4
+"""What the kept energy may change by in a flight, as a share of that at the start: float32 rounds in
+each of up to some thousand solver steps. At the finest step the lent part is ten times as large."""
 
-FINE_SHARE = 1.0
-"""What the energy kept at the first bounce may differ by between the two finest steps [%]."""
+FINE_SHARE = 0.3
+"""What the finest step may keep at the first bounce beside what a linear spring does [%]."""
 
 ENGINES_APART = 5e-5
-"""What a landing may differ by between two engines of equal settings [m]."""
+"""What landings and the first hop may differ by between two engines of equal settings [m]."""
 
 VIEW = CAMERA | {"pos": (1.3, -1.5, 1.25), "lookat": (0.0, 0.0, 0.82), "fov": 34}
 """The lesson's camera, with the surface and the cube's whole way in the picture."""
@@ -141,13 +188,11 @@ TOLERANCES = {
 }
 """By unit or metric, (atol, rtol) that one may differ by between engine versions or backends.
 
-A cube that has hopped lands on an edge, and from there on rounding decides which way it turns: what
-comes after has wide ones. The engine in float32 and MuJoCo in float64 differ by as much."""
+Where a cube has hopped, the contact points that are found at its landing decide how it goes on, and
+no engine is right: what comes after has wide ones, those of times and spin little more than the
+order of magnitude. Genesis and MuJoCo with equal settings differ by as much."""
 
 RELATIONS = (
-    (("dt10_sub1", "baseline"), "penetration", "lower", 1e-3),
-    (("dt20_sub1", "dt20_sub2"), "penetration", "lower", 1e-3),
-    (("dt10_sub1", "baseline"), "rebound", "higher", 1e-3),
     (("low_on_050", "high_on_050"), "stop_distance", "lower", 0.05),
     (("low_on_050", "low_on_030"), "stop_distance", "higher", 0.05),
 )
@@ -174,4 +219,5 @@ def parameters() -> dict[str, Any]:
 def study_parameters() -> dict[str, Any]:
     """Return those of the lecture, whose runs are others."""
     own = {"cases": {name: asdict(case) for name, case in STUDY_CASES.items()}}
-    return parameters() | own | {"engines_apart_m": ENGINES_APART}
+    elsewhere = {"in_mujoco": sorted(OTHER_ENGINE), "with_its_own_contact": OWN_DEFAULTS}
+    return parameters() | own | elsewhere | {"engines_apart_m": ENGINES_APART}

@@ -5,7 +5,7 @@ from pathlib import Path
 from robo_genesis import body_runs, joint_runs
 from robo_genesis.channels import Runs
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.traces import read_body_trace, read_joints, read_trace
+from robo_genesis.evidence.traces import any_bodies, read_joints, read_trace
 from robo_genesis.lessons import Compared, Moving
 
 
@@ -23,7 +23,7 @@ def read_runs(folder: Path, drawn: Compared | Moving) -> Runs:
     arrays = bundle.read_arrays(folder)
     links = arrays.coords["link"]
     if isinstance(drawn, Moving):
-        bodies = {case: read_body_trace(folder, arrays, case) for case in drawn.cases}
+        bodies = {case: any_bodies(folder, arrays, case) for case in drawn.cases}
         return body_runs.runs(bodies, links, drawn)
     traces = {case: read_trace(folder, arrays, case) for case in drawn.cases}
     joints, metrics = read_joints(arrays), bundle.read_metrics(folder)

@@ -9,8 +9,8 @@ from robo_genesis.trace import ContactTrace
 
 VERSION = str(mujoco.__version__)
 
-SHORTEST_TIME_CONSTANT = 0.01
-"""Genesis' own default for contacts, which it never lets fall below two solver steps [s]."""
+DEFAULT_TIME_CONSTANT = 0.01
+"""Genesis' own default for contacts, where two solver steps are not longer [s]."""
 
 OWN_TIME_CONSTANT = 0.02
 """MuJoCo's default [s]."""
@@ -21,7 +21,7 @@ IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
 
 def time_constant(h: float) -> float:
     """Return the time constant that Genesis gives a contact at solver step `h` [s]."""
-    return max(SHORTEST_TIME_CONSTANT, 2 * h)
+    return max(DEFAULT_TIME_CONSTANT, 2 * h)
 
 
 def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
@@ -39,6 +39,7 @@ def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
         "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC,
     }
     spec.option.cone = cones[case.cone]
+    spec.option.impratio = case.impratio or 1.0
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     seconds = OWN_TIME_CONSTANT if own_defaults else time_constant(case.h)
     contact = {"solref": case.spring or (seconds, 1.0), "solimp": IMPEDANCE}

@@ -34,6 +34,8 @@ def stepped_distance(speed: float, friction: float, h: float, gravity: float = G
 
     Each step takes μ g h from the speed first and moves the body with what is left. That is
     semi-implicit Euler, and behind for a body that slows down as it is ahead for one that falls.
+    It is the exact sum where v / (μ g h) is a whole number of steps; else the sum is longer, by up
+    to μ g h² / 8.
     """
     return coulomb_distance(speed, friction, gravity) - speed * h / 2
 

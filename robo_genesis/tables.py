@@ -58,7 +58,7 @@ def six_digits(metrics: Mapping[str, Metrics]) -> str:
 
 
 def _digits(_: str, value: float | None, unit: str) -> str:
-    return NOT_OBSERVED if value is None else f"{value:.6g} {unit}".replace("-", "−", 1)
+    return NOT_OBSERVED if value is None else f"{value:.6g} {unit}".replace("-", "−")
 
 
 def check_table(outcomes: Sequence[Check]) -> str:

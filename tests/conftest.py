@@ -217,7 +217,7 @@ def contact_traces(slide_on_corners) -> dict[str, ContactTrace]:
         name: second_contacts.run_case(case, own_defaults=name == l03.OWN_DEFAULTS)
         for name, case in (l03.CASES | l03.STUDY_CASES).items()
     }
-    return traces | {name: slide_on_corners(case) for name, case in l03.CONE_CASES.items()}
+    return traces | {name: slide_on_corners(case) for name, case in l03.CLEAN_SLIDES.items()}
 
 
 @pytest.fixture(scope="session")

@@ -9,6 +9,7 @@ import pytest
 from robo_genesis import bench, bench_bare, bench_rows, kept
 from robo_genesis.bench import BenchError, Result, Row, Sample
 from robo_genesis.bench_clone import Clone
+from robo_genesis.lessons import LESSONS
 from robo_genesis.pages import find_pages
 from robo_genesis.project import BOOK, ROOT
 
@@ -46,6 +47,12 @@ def test_the_table_shows_medians_spread_ratio_limit_and_outcome():
     assert "4 (3-5)" in lines[2]
     assert lines[2].split()[-5:] == ["2.00", "1.00", "2", "met", "3"]
     assert lines[3].split()[-6:] == ["9.00", "-", "2", "NOT", "MET", "1"]
+
+
+def test_a_row_without_a_limit_states_what_both_sides_cost():
+    found = result([(190,)], [(38,)], limit=None)
+    assert found.met
+    assert bench.table([found]).splitlines()[2].split()[-4:] == ["5.00", "-", "-", "1"]
 
 
 def test_where_the_time_goes_is_said_of_a_limit_that_is_not_kept_alone():
@@ -156,7 +163,32 @@ def test_the_rows_are_those_that_were_promised(clone):
         "verify": 3.0,
         "compare": 3.0,
         "recording": 1.5,
-    }
+    } | dict.fromkeys(LESSONS)
+
+
+def test_kernels_are_put_aside_for_a_cold_run_and_back_after_it(clone, monkeypatch):
+    compiled = clone.root / ".cache" / "engine" / "one"
+    compiled.mkdir(parents=True)
+    (compiled / "kernel").write_text("compiled")
+    monkeypatch.setattr(bench_rows.project, "engine_cache_folder", lambda root: compiled)
+    monkeypatch.setattr(bench_rows, "find_pages", lambda book: find_pages(BOOK))
+    found = []
+
+    class executing:  # noqa: N801
+        def __init__(self, clone, *pages, **wishes):
+            self.pages = pages
+
+        def __call__(self):
+            found.append((self.pages, (compiled / "kernel").exists()))
+            compiled.mkdir(exist_ok=True)
+            (compiled / "kernel").write_text("anew")
+            return Sample(1.0)
+
+    monkeypatch.setattr(bench_rows, "executing", executing)
+    assert len(list(bench_rows.cold_and_warm(clone, "l02", 1))) == 1
+    pages = ("lessons/l02-life-cycle/lecture", "lessons/l02-life-cycle/lab")
+    assert found == [(pages, False), (pages, True)]
+    assert (compiled / "kernel").read_text() == "compiled"
 
 
 def test_a_change_of_prose_finds_its_place_in_the_lab():

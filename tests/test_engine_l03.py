@@ -10,6 +10,7 @@ from robo_genesis import (
     contacts,
     free_bodies,
     l03,
+    robot_shape,
     runtime,
     second_contacts,
 )
@@ -22,21 +23,21 @@ FIELDS = ("link_pos", "link_quat", "link_vel", "link_ang", "contacts", "penetrat
 @pytest.fixture(scope="module")
 def ran(real_engine):
     """All runs of the lab, with the baseline's world and camera frames."""
-    gs, traces, masses = real_engine.gs, {}, {}
+    gs, traces, settings, masses = real_engine.gs, {}, {}, {}
     baseline = contacts.build_world(gs, {"baseline": l03.BASELINE}, l03.VIEW)
     frames = {"initial": runtime.capture(baseline.camera)}
-    traces |= contacts.run_world(baseline)
+    contacts.record_world(baseline, traces, settings)
     frames["final"] = runtime.capture(baseline.camera)
     for name, case in (l03.LANDINGS | l03.BOUNCES).items():
         world = contacts.build_world(gs, {name: case})
-        traces |= contacts.run_world(world)
+        contacts.record_world(world, traces, settings)
         masses[case.shape] = float(world.bodies[name].get_mass())
     for surface in ("050", "030"):
         pair = {name: case for name, case in l03.SLIDES.items() if name.endswith(surface)}
-        traces |= contacts.run_world(contacts.build_world(gs, pair))
+        contacts.record_world(contacts.build_world(gs, pair), traces, settings)
     model = free_bodies.read_model(baseline.scene, baseline.bodies["baseline"])
     return contact_checks.ContactExperiment(
-        model, masses, l03.CASES, traces, measure(traces, l03.CASES), "camera", frames
+        model, masses, settings, l03.CASES, traces, measure(traces, l03.CASES), "camera", frames
     ), baseline
 
 
@@ -63,14 +64,28 @@ def test_the_ball_bounces_alike_in_mujoco(ran):
     assert np.abs(here.link_pos[first] - there.link_pos[first]).max() < 1e-4
 
 
+def test_the_drawn_table_is_the_engine_s(ran):
+    _, world = ran
+    (part,) = robot_shape.read_shape(world.surface)
+    drawn = robot_shape.slab(contacts.SURFACE_SIZE, contacts.TOP)
+    centre = world.surface.get_pos().cpu().numpy()
+    for end in (np.min, np.max):
+        assert end(drawn.vertices, axis=0) == pytest.approx(
+            end(part.vertices, axis=0) + centre, abs=1e-6
+        )
+    a, b, c = (drawn.vertices[drawn.faces[:, k]] for k in range(3))
+    outward = (np.cross(b - a, c - a) * ((a + b + c) / 3 - centre)).sum(axis=1)
+    assert (outward > 0).all()  # every face looks away from the middle
+
+
 def test_the_studies_hold(real_engine, ran):
     gs, traces, seconds = real_engine.gs, {}, {}
-    for name, case in l03.STEP_CASES.items():
-        world = contacts.build_world(gs, {name: case})
+    for name, group in l03.STEP_CASES.items():
+        world = contacts.build_world(gs, group)
         traces |= contacts.run_world(world)
         seconds[name] = float(world.surface.geoms[0].sol_params[0])
-    for names in (("low_elliptic", "high_elliptic"), ("low_elliptic_sub10", "high_elliptic_sub10")):
-        pair = {name: l03.CONE_CASES[name] for name in names}
+    for end in ("050_elliptic", "030_elliptic", "sub10", "convex"):
+        pair = {name: case for name, case in l03.CONE_CASES.items() if name.endswith(end)}
         traces |= contacts.run_world(contacts.build_world(gs, pair))
     traces |= {name: second_contacts.run_case(case) for name, case in l03.OTHER_ENGINE.items()}
     traces[l03.OWN_DEFAULTS] = second_contacts.run_case(l03.BASELINE, own_defaults=True)

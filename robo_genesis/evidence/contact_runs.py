@@ -1,11 +1,10 @@
 """Landings, slides and bounces of a bundle, as their page had them, from its files."""
 
-from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from robo_genesis import contact_checks, contact_studies, l03, records
 from robo_genesis.contact_metrics import measure, metric_records
-from robo_genesis.evidence import bundle
+from robo_genesis.contacts import SETTINGS
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.recompute import (
     Judged,
@@ -13,9 +12,8 @@ from robo_genesis.evidence.recompute import (
     read_frames,
     read_readings,
 )
-from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect
-from robo_genesis.evidence.traces import read_contact_trace
-from robo_genesis.trace import ContactTrace
+from robo_genesis.evidence.strict_json import AGAIN, BundleRefused
+from robo_genesis.evidence.traces import read_bodies, read_contact_trace
 
 
 def judge(folder: Path, manifest: Manifest) -> Judged:
@@ -27,7 +25,7 @@ def judge(folder: Path, manifest: Manifest) -> Judged:
     """
     lecture = manifest.predicate.page == l03.STUDY_PAGE
     cases = l03.STUDY_CASES if lecture else l03.CASES
-    traces = read_traces(folder, list(cases))
+    traces = read_bodies(folder, cases, l03.LINK, read_contact_trace)
     counts = read_counts(folder, "model", l03.EXPECTED_MODEL)
     masses = read_readings(folder, "mass", ("cube",) if lecture else ("cube", "ball"))
     frames = read_frames(folder, manifest)
@@ -36,28 +34,17 @@ def judge(folder: Path, manifest: Manifest) -> Judged:
         metrics = measure(traces, cases)
     except (IndexError, ValueError) as error:  # too few states for what is asked of a case
         raise BundleRefused("bad-trace", f"arrays: {error} {AGAIN}") from error
-    found = metric_records(metrics, counts, masses)
-    run = contact_checks.ContactExperiment(counts, masses, cases, traces, metrics, posture, frames)
+    settings = {
+        name: read_readings(folder, name, l03.BY_GENESIS if lecture else cases) for name in SETTINGS
+    }
+    found = metric_records(metrics, counts, masses, settings)
+    run = contact_checks.ContactExperiment(
+        counts, masses, settings, cases, traces, metrics, posture, frames
+    )
     if not lecture:
         return Judged(found, contact_checks.run_checks(run))
-    seconds = read_readings(folder, contact_studies.GROUP, l03.STEP_CASES)
+    seconds = read_readings(folder, contact_studies.GROUP, l03.STEPS_STUDIED)
     found |= {contact_studies.GROUP: records.readings(seconds, "s")}
     studies = contact_studies.Studies(traces, metrics, seconds)
     outcomes = contact_checks.run_study_checks(run) + contact_studies.run_checks(studies)
     return Judged(found, outcomes)
-
-
-def read_traces(folder: Path, cases: Iterable[str]) -> Mapping[str, ContactTrace]:
-    """Return the traces of a bundle by case, which must be those cases.
-
-    Raises:
-        BundleRefused: `cases`, `labels`, or as `read_contact_trace`.
-    """
-    expected = sorted(cases)
-    arrays = bundle.read_arrays(folder)
-    expect("cases", "arrays.json", "list of cases", sorted(arrays.cases), expected)
-    present = sorted(path.stem for path in (folder / "arrays").glob("*.npz"))
-    expect("cases", "arrays/", "list of archives", present, expected)
-    expect("labels", "arrays.json", "names of coords", sorted(arrays.coords), ["link"])
-    expect("labels", "arrays.json", "list of links", arrays.coords["link"], [l03.LINK])
-    return {case: read_contact_trace(folder, arrays, case) for case in expected}

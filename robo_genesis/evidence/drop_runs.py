@@ -4,13 +4,10 @@ from pathlib import Path
 
 from robo_genesis import drop_checks, l02, life_cycle
 from robo_genesis.drop_metrics import measure, metric_records
-from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.recompute import Judged, read_counts, read_frames, read_readings
-from robo_genesis.evidence.strict_json import expect
-from robo_genesis.evidence.traces import read_body_trace
+from robo_genesis.evidence.traces import read_bodies, read_body_trace
 from robo_genesis.substep_study import run_checks as run_study_checks
-from robo_genesis.trace import BodyTrace
 
 
 def judge(folder: Path, manifest: Manifest) -> Judged:
@@ -22,7 +19,7 @@ def judge(folder: Path, manifest: Manifest) -> Judged:
     rendered = manifest.predicate.render.mode == "camera"
     lecture = manifest.predicate.page == l02.STUDY_PAGE
     cases = l02.CASES | (l02.SUBSTEP_CASES if lecture else {})
-    traces = read_traces(folder, list(cases))
+    traces = read_bodies(folder, cases, l02.LINK, read_body_trace)
     counts = read_counts(folder, "model", l02.EXPECTED_MODEL)
     metrics, mass = measure(traces, cases), read_readings(folder, "body", ["mass"])["mass"]
     run = drop_checks.DropExperiment(
@@ -41,18 +38,3 @@ def judge(folder: Path, manifest: Manifest) -> Judged:
         outcomes += run_study_checks(metrics, cases)
         outcomes += (life_cycle.check(went, rendered),)
     return Judged(found, outcomes)
-
-
-def read_traces(folder: Path, cases: list[str]) -> dict[str, BodyTrace]:
-    """Return the traces of a bundle by case, which must be those cases.
-
-    Raises:
-        BundleRefused: `cases`, `labels`, or as `read_body_trace`.
-    """
-    arrays = bundle.read_arrays(folder)
-    expect("cases", "arrays.json", "list of cases", sorted(arrays.cases), sorted(cases))
-    present = sorted(path.stem for path in (folder / "arrays").glob("*.npz"))
-    expect("cases", "arrays/", "list of archives", present, sorted(cases))
-    expect("labels", "arrays.json", "names of coords", sorted(arrays.coords), ["link"])
-    expect("labels", "arrays.json", "list of links", arrays.coords["link"], [l02.LINK])
-    return {case: read_body_trace(folder, arrays, case) for case in cases}

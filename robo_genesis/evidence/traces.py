@@ -3,7 +3,7 @@
 A bundle holds runs of one kind: of joints, or, where it has no joints, of free bodies.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -16,6 +16,7 @@ from robo_genesis.evidence.bundle import (
     CaseArrays,
     JointRecord,
     Variable,
+    read_arrays,
 )
 from robo_genesis.evidence.strict_json import AGAIN, expect
 from robo_genesis.robot_model import EFFORT_UNIT, POSITION_UNIT, JointMap
@@ -176,10 +177,9 @@ def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
 
 
 def read_body_trace(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
-    """Return one case's run of free bodies, with contacts if it has them; as `read_trace`."""
+    """Return one case's run of free bodies; as `read_trace`."""
     expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
-    touched = "contacts" in arrays.cases[case].variables
-    return _read(folder, arrays, case, ContactTrace if touched else BodyTrace)
+    return _read(folder, arrays, case, BodyTrace)
 
 
 def read_contact_trace(folder: Path, arrays: Arrays, case: str) -> ContactTrace:
@@ -188,10 +188,47 @@ def read_contact_trace(folder: Path, arrays: Arrays, case: str) -> ContactTrace:
     return _read(folder, arrays, case, ContactTrace)
 
 
+Body = TypeVar("Body", bound=BodyTrace)
+
+
 def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Trace | BodyTrace:
     """Return one case's run, of joints if the bundle has any, else of free bodies."""
-    read = read_trace if arrays.joints else read_body_trace
-    return read(folder, arrays, case)
+    return read_trace(folder, arrays, case) if arrays.joints else any_bodies(folder, arrays, case)
+
+
+def any_bodies(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
+    """Return one case's run of free bodies, with contacts if it is described as one that has them.
+
+    What may be judged says which of both it must be: `read_body_trace`, `read_contact_trace`.
+    """
+    touched = "contacts" in arrays.cases[case].variables
+    return (read_contact_trace if touched else read_body_trace)(folder, arrays, case)
+
+
+def read_bodies(
+    folder: Path,
+    cases: Iterable[str],
+    link: str,
+    read: Callable[[Path, Arrays, str], Body],
+) -> dict[str, Body]:
+    """Return all runs of a bundle by case, each of one body.
+
+    Args:
+        folder: the bundle.
+        cases: those that it must hold, and no others.
+        link: what the body is called in it.
+        read: reads one of them.
+
+    Raises:
+        BundleRefused: `cases`, `labels`, or as `read_trace`.
+    """
+    expected, arrays = sorted(cases), read_arrays(folder)
+    expect("cases", "arrays.json", "list of cases", sorted(arrays.cases), expected)
+    present = sorted(path.stem for path in (folder / "arrays").glob("*.npz"))
+    expect("cases", "arrays/", "list of archives", present, expected)
+    expect("labels", "arrays.json", "names of coords", sorted(arrays.coords), ["link"])
+    expect("labels", "arrays.json", "list of links", arrays.coords["link"], [link])
+    return {case: read(folder, arrays, case) for case in expected}
 
 
 Kind = TypeVar("Kind", bound=Stamped)

@@ -10,7 +10,15 @@ import pytest
 from conftest import written
 from spoilers import edit, predicate, seal
 
-from robo_genesis import contact_checks, contact_studies, l03, records, runtime, second_contacts
+from robo_genesis import (
+    contact_checks,
+    contact_studies,
+    contacts,
+    l03,
+    records,
+    runtime,
+    second_contacts,
+)
 from robo_genesis.contact_metrics import measure, metric_records
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
@@ -23,15 +31,24 @@ from robo_genesis.trace import ContactTrace
 
 MASSES = {"cube": l03.BASELINE.mass, "ball": l03.DROPPED_BALL.mass}
 CUBE = {"cube": l03.BASELINE.mass}
-SECONDS = {n: second_contacts.time_constant(c.h) for n, c in l03.STEP_CASES.items()}
+SECONDS = {
+    name: second_contacts.time_constant(contact_studies.solver_step(name))
+    for name in l03.STEPS_STUDIED
+}
+
+
+def asked(cases):
+    """Return the settings of cases as a scene would give them back."""
+    return {name: {n: getattr(c, name) for n, c in cases.items()} for name in contacts.SETTINGS}
 
 
 def measured(traces, cases, frames, masses, parameters, more=()):
     metrics = measure(traces, cases)
+    settings = asked(l03.BY_GENESIS if more else cases)
     run = contact_checks.ContactExperiment(
-        l03.EXPECTED_MODEL, masses, cases, traces, metrics, "camera", frames
+        l03.EXPECTED_MODEL, masses, settings, cases, traces, metrics, "camera", frames
     )
-    found = metric_records(metrics, l03.EXPECTED_MODEL, masses)
+    found = metric_records(metrics, l03.EXPECTED_MODEL, masses, settings)
     if more:
         studies = contact_studies.Studies(traces, metrics, SECONDS)
         outcomes = contact_checks.run_study_checks(run) + contact_studies.run_checks(studies)
@@ -73,7 +90,7 @@ def test_sound_ones_are_accepted(landed, studied):
     names = [check.name for check in verify_bundle(landed).predicate.checks]
     assert names == [check.__name__ for check in contact_checks.CHECKS]
     names = [check.name for check in verify_bundle(studied).predicate.checks]
-    assert names[-1] == "elliptic_cones_part"
+    assert names[-1] == contact_studies.STUDIED[-1].__name__
 
 
 def test_contacts_come_back_as_they_were(landed, contact_traces):
@@ -135,11 +152,11 @@ def honest_failure(folder):
     metrics = measure(traces, l03.CASES)
     frames = {name: np.zeros(0) for name in ("initial", "final")}
     run = contact_checks.ContactExperiment(
-        l03.EXPECTED_MODEL, MASSES, l03.CASES, traces, metrics, "camera", frames
+        l03.EXPECTED_MODEL, MASSES, asked(l03.CASES), l03.CASES, traces, metrics, "camera", frames
     )
     outcomes = [asdict(check) for check in contact_checks.run_checks(run)]
-    edit(folder, "metrics.json",
-         lambda m: m.update(metric_records(metrics, l03.EXPECTED_MODEL, MASSES)))  # fmt: skip
+    found = metric_records(metrics, l03.EXPECTED_MODEL, MASSES, asked(l03.CASES))
+    edit(folder, "metrics.json", lambda m: m.update(found))
 
     def change(m):
         m["predicate"]["checks"] = [*outcomes[:-1], m["predicate"]["checks"][-1]]
@@ -174,6 +191,8 @@ LAB = {
     "a count of contacts was written": ("metrics", changed("low_on_050", "contacts",
                                                            lambda a: a.fill(4))),
     "a metric was written": ("metrics", metric("low_on_050", "stop_distance", 0.4077)),
+    "another friction than asked for": ("checks", metric("friction", "low_on_050", 0.45)),
+    "a friction that was not read": ("metrics", pop("metrics.json", "friction", "low_on_050")),
     "another mass": ("checks", metric("mass", "ball", 0.2)),
     "no mass": ("metrics", metric("mass", "cube", None)),
     "a mass that is left out": ("metrics", pop("metrics.json", "mass", "ball")),

@@ -154,7 +154,19 @@ def metric(group, name, value):
     return change
 
 
+def invented_contacts(folder):
+    path = folder / "arrays" / "baseline.npz"
+    with np.load(path) as stored:
+        values = {name: np.array(stored[name]) for name in stored}
+    values["contacts"] = np.zeros((21, 1), np.int32)
+    np.savez_compressed(path, **values)
+    described = {"dims": ["state", "link"], "shape": [21, 1], "dtype": "int32", "unit": "1"}
+    edit(folder, "arrays.json", lambda a: a["cases"]["baseline"]["variables"].update(
+        contacts=described | {"long_name": "contact points"}))  # fmt: skip
+
+
 SPOILED = {
+    "contacts that nobody checks": ("labels", invented_contacts),
     "a run of the study is missing": ("cases", missing_run),
     "a position was moved": ("metrics", other_position),
     "another rule of stepping": ("failed", honest_failure),

@@ -76,14 +76,12 @@ if folder.parent.name == "lab":
         name: sliding.coulomb_distance(of.speed, max(of.friction, of.surface_friction))
         for name, of in l03.SLIDES.items()
     }}
+    shown = {{n: l03.BOUNCES[n] for n in ("bounce_sub1", "bounce_sub2", "bounce_sub100")}}
     shares = {{l03.BOUNCES[name].h: of.first_kept for name, of in bounced.items()}}
     expected = 100 * energy.kept_at_bounces(l03.DROPPED_BALL.spring[1])
 else:
     seconds = {{name: metric.value for name, metric in numbers["time_constant"].items()}}
     study = contact_studies.Studies(traces, measure(traces, l03.STUDY_CASES), seconds)
-    marks = {{"low_on_050": "G1", "high_on_050": "G2"}}
-    marks |= {{"low_elliptic": "G3", "high_elliptic": "other"}}
-    shown = {{name: l03.STUDY_CASES[name] for name in marks}}
 """
 
 SETUPS = {"l02": FROM_DROPS, "l03": FROM_CONTACTS, "l04": FROM_BUNDLE}
