@@ -155,8 +155,8 @@ COULOMB_SHARE = 0.20
 """What a stopping distance may differ from Coulomb's by, as a share of it: these cubes hop."""
 
 LEVEL_SHARE = 1e-4
-"""What the kept energy may change by in a flight, as a share of that at the start: float32 rounds in
-each of up to some thousand solver steps. At the finest step the lent part is ten times as large."""
+"""What the kept energy may change by in a flight, as a share of that at the start: float32 rounds
+in each of up to some thousand solver steps. The lent part is ten times as large at least."""
 
 FINE_SHARE = 0.3
 """What the finest step may keep at the first bounce beside what a linear spring does [%]."""
