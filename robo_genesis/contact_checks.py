@@ -7,7 +7,7 @@ import numpy as np
 
 from robo_genesis import l03, sliding
 from robo_genesis import posture as postures
-from robo_genesis.checks import Check, evaluate
+from robo_genesis.checks import Check, evaluate, wrong_stamps
 from robo_genesis.contact_metrics import (
     RESTING_BAND,
     BounceMetrics,
@@ -91,13 +91,7 @@ def settings(run: ContactExperiment) -> list[str]:
 
 def stamps(run: ContactExperiment) -> list[str]:
     """Each case covers the time that it asks for: a state for t = 0 and one an outer step."""
-    problems = []
-    for name, case in run.cases.items():
-        t, asked = run.traces[name].t, np.arange(case.steps + 1) * case.dt
-        if len(t) != len(asked) or not np.allclose(t, asked, rtol=0, atol=1e-9):
-            problems.append(f"{name} has {len(t) - 1} steps to {t[-1]:g} s, asked for "
-                            f"{case.steps} steps of {case.dt:g} s")  # fmt: skip
-    return problems
+    return wrong_stamps(run.cases, run.traces)
 
 
 def start(run: ContactExperiment) -> list[str]:

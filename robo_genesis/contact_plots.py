@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from robo_genesis import l03, second_contacts
 from robo_genesis.contact_metrics import CLEAR
 from robo_genesis.contact_studies import Studies, solver_step
-from robo_genesis.contacts import TOP, ContactCase
+from robo_genesis.contacts import ContactCase
 from robo_genesis.energy import clearance, kept_energy, total_energy
 from robo_genesis.plots import look
 from robo_genesis.trace import ContactTrace
@@ -168,21 +168,4 @@ def kept(ax: Axes, shares: Mapping[float, float | None], expected: float) -> Axe
     ax.set_xlabel("solver step h [ms]")
     ax.set_ylabel("kept at the first bounce [%]")
     ax.legend(fontsize="small", loc="lower left")
-    return ax
-
-
-def schematic(ax: Axes, trace: ContactTrace, case: ContactCase) -> Axes:
-    """Draw the cube at both ends of a run as a square seen from the side, x against z [m]."""
-    half = case.size / 2
-    for label, when, name in (("start", 0, "other"), ("end", -1, "baseline")):
-        x, _, z = trace.link_pos[when, 0]
-        left, right, low, top = (x - half, x + half, z - half, z + half)
-        ax.plot([left, right, right, left, left], [low, low, top, top, low], label=label,
-                **look(name))  # fmt: skip
-    ax.axhline(TOP, color="#7a7a7a")
-    ax.set_aspect("equal")
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("z [m]")
-    ax.set_title("Schematic of measured positions: this is not a camera frame")
-    ax.legend()
     return ax

@@ -7,7 +7,7 @@ import numpy as np
 
 from robo_genesis import l02
 from robo_genesis import posture as postures
-from robo_genesis.checks import Check, evaluate
+from robo_genesis.checks import Check, evaluate, wrong_stamps
 from robo_genesis.drop_metrics import DropMetrics, fallen
 from robo_genesis.free_bodies import START_TOLERANCE, Drop
 from robo_genesis.trace import BodyTrace
@@ -66,13 +66,7 @@ def start(run: DropExperiment) -> list[str]:
 
 def stamps(run: DropExperiment) -> list[str]:
     """The record has a state for t = 0 and for each outer step asked for, stamped k · dt."""
-    problems = []
-    for name, case in run.cases.items():
-        t, asked = run.traces[name].t, np.arange(case.steps + 1) * case.dt
-        if len(t) != len(asked) or not np.allclose(t, asked, rtol=0, atol=1e-9):
-            problems.append(f"{name} has {len(t) - 1} steps to {t[-1]:g} s, asked for "
-                            f"{case.steps} steps of {case.dt:g} s")  # fmt: skip
-    return problems
+    return wrong_stamps(run.cases, run.traces)
 
 
 def falls(run: DropExperiment) -> list[str]:

@@ -75,14 +75,21 @@ def gaps(ax: Axes, found: Study) -> Axes:
     return ax
 
 
-def schematic(ax: Axes, trace: BodyTrace, size: float) -> Axes:
-    """Draw the box at both ends of a run as a square seen from the side, x against z [m]."""
+def schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) -> Axes:
+    """Draw the box at both ends of a run as a square seen from the side, x against z [m].
+
+    Args:
+        ax: where to draw.
+        trace: the run.
+        size: edge of the box [m].
+        floor: height of what it falls on [m].
+    """
     for label, when, name in (("start", 0, "other"), ("end", -1, "baseline")):
         x, _, z = trace.link_pos[when, 0]
         left, right, low, top = (x - size / 2, x + size / 2, z - size / 2, z + size / 2)
         ax.plot([left, right, right, left, left], [low, low, top, top, low], label=label,
                 **look(name))  # fmt: skip
-    ax.axhline(0, color="#7a7a7a")
+    ax.axhline(floor, color="#7a7a7a")
     ax.set_aspect("equal")
     ax.set_xlabel("x [m]")
     ax.set_ylabel("z [m]")

@@ -12,7 +12,9 @@ from robo_genesis import (
     contact_plots,
     contact_said,
     contact_studies,
+    contact_tables,
     contacts,
+    drop_plots,
     energy,
     l03,
     second_contacts,
@@ -482,7 +484,7 @@ def test_figures_are_drawn_with_labelled_axes(experiment, study):
     contact_plots.stopping(one, {"low_on_050": None}, {"low_on_050": 0.4})
     assert len(one.patches) == 0  # a cube that did not stop has no bar
     contact_plots.kept(Figure().subplots(), {0.01: 90.0, 0.001: None}, 94)
-    contact_plots.schematic(Figure().subplots(), experiment.traces["baseline"], l03.BASELINE)
+    drop_plots.schematic(Figure().subplots(), experiment.traces["baseline"], 0.08, contacts.TOP)
 
 
 # Studies
@@ -595,14 +597,14 @@ def test_engines_that_part_are_named(study):
 
 
 def test_rows_of_a_study_name_both_engines(study):
-    rows = contact_studies.engine_rows(study)
+    rows = contact_tables.engine_rows(study)
     assert [row["MuJoCo"] for row in rows] == [*l03.ENGINE_PAIRS.values(), l03.OWN_DEFAULTS]
     assert (rows[0]["over 0.05 mm from"], rows[0]["contacts there"]) == ("never", "– and –")
     assert rows[-1]["over 0.05 mm from"] != "never"
-    assert len(contact_studies.step_rows(study)) == len(l03.STEPS_STUDIED)
-    slides = contact_studies.slide_rows(study, ["low_on_050"], stepped=True)
+    assert len(contact_tables.step_rows(study)) == len(l03.STEPS_STUDIED)
+    slides = contact_tables.slide_rows(study, ["low_on_050"], stepped=True)
     assert slides[0]["v² / (2 μ g) − v h / 2 [m]"] == "0.40275"
-    assert contact_studies.slide_rows(study, ["low_on_050"])[0]["v² / (2 μ g) [m]"] == "0.40775"
+    assert contact_tables.slide_rows(study, ["low_on_050"])[0]["v² / (2 μ g) [m]"] == "0.40775"
     with pytest.raises(KeyError, match="baseline is no slide"):
         study.slide("baseline")
     with pytest.raises(KeyError, match="low_on_050 is no landing"):

@@ -58,7 +58,8 @@ FROM_CONTACTS = """
 import matplotlib.pyplot as plt, numpy as np
 from pathlib import Path
 from PIL import Image
-from robo_genesis import contact_plots, contact_studies, energy, l03, plots, sliding
+from robo_genesis import contact_plots, contact_studies, contacts, drop_plots, energy, l03, plots
+from robo_genesis import sliding
 from robo_genesis.contact_metrics import measure
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_contact_trace
