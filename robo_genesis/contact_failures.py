@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.contact_metrics import STOP_SPEED, slide_metrics, stopped_at
-from robo_genesis.contacts import TOP, ContactCase, build_world, run_world
+from robo_genesis.contacts import TOP, ContactCase, build_world, run_world, time_constant
 from robo_genesis.energy import clearance
 from robo_genesis.failures import Failure
 from robo_genesis.trace import ContactTrace
@@ -93,7 +93,7 @@ def unused_stiffness(gs: Any, case: ContactCase, seconds: float, asked: ContactT
     """
     stiff = replace(case, spring=(seconds, 1.0))
     world = build_world(gs, {"stiff": stiff})
-    kept = float(world.surface.geoms[0].sol_params[0])
+    kept = time_constant(world)
     apart = np.abs(run_world(world)["stiff"].link_pos - asked.link_pos).max()
     return Failure(
         "unused_stiffness",

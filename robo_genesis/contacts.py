@@ -176,7 +176,7 @@ def build_world(
     for name, case in cases.items():
         if case.spring:
             for geom in (*surface.geoms, *bodies[name].geoms):
-                geom.set_sol_params((*case.spring, *geom.sol_params[2:]))
+                geom.set_sol_params((*case.spring, *contact_constants(scene, geom)[2:]))
     return World(scene, surface, bodies, dict(cases), camera)
 
 
@@ -190,11 +190,29 @@ def friction_options(gs: Any, case: ContactCase) -> dict[str, Any]:
     }
 
 
+def contact_constants(scene: Any, geom: Any) -> FloatArray:
+    """Return the solver's seven numbers of a geom's contacts; the first is the time constant [s].
+
+    Damping ratio and impedance follow. What a contact uses is no shorter than two solver steps.
+    """
+    return to_numpy(scene.rigid_solver.get_sol_params(geoms_idx=[geom.idx]))[0]
+
+
+def time_constant(world: World) -> float:
+    """Return the time constant that the solver has of the surface's contacts [s]."""
+    return float(contact_constants(world.scene, world.surface.geoms[0])[0])
+
+
 def read_settings(world: World) -> dict[str, dict[str, float]]:
     """Return what the built scene has of `SETTINGS`, by case."""
-    surface, substeps = float(world.surface.geoms[0].friction), float(world.scene.substeps)
+    solver, substeps = world.scene.rigid_solver, float(world.scene.substeps)
+
+    def friction(body: Any) -> float:
+        return float(to_numpy(solver.get_geoms_friction([body.geoms[0].idx]))[0])
+
+    surface = friction(world.surface)
     return {
-        "friction": {name: float(body.geoms[0].friction) for name, body in world.bodies.items()},
+        "friction": {name: friction(body) for name, body in world.bodies.items()},
         "surface_friction": dict.fromkeys(world.bodies, surface),
         "substeps": dict.fromkeys(world.bodies, substeps),
     }
