@@ -11,8 +11,8 @@ from pathlib import Path
 
 from robo_genesis.apply import recover_or_exit
 from robo_genesis.evidence import report
-from robo_genesis.evidence.bundle import BundleRefused, read_manifest
-from robo_genesis.evidence.compare import compare, specification
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.compare import compare, specification_of
 from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE
 from robo_genesis.project import CACHE
 
@@ -41,8 +41,7 @@ def main() -> int:
             )
     old, new = Path(args.old), Path(args.new)
     try:
-        recorded = read_manifest(new).predicate
-        spec = specification(recorded.lesson, recorded.page)
+        spec = specification_of(new)
         comparison = compare(old, new, spec)
     except BundleRefused as refusal:
         return refused(f"Refused: {refusal}")

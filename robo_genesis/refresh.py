@@ -7,7 +7,7 @@ from itertools import groupby
 from pathlib import Path
 
 from robo_genesis.evidence import report
-from robo_genesis.evidence.compare import Comparison, compare, specification
+from robo_genesis.evidence.compare import Comparison, compare, specification_of
 from robo_genesis.evidence.findings import SEVERITY, worst
 from robo_genesis.evidence.report import Row
 from robo_genesis.evidence.status import Status, recorded_folders, recorded_status
@@ -72,7 +72,7 @@ def compare_builds(
     return Refresh(
         versions,
         moved_packages(*locks),
-        tuple(compare(old[n], new[n], specification(*n.split("/"))) for n in shared),
+        tuple(compare(old[n], new[n], specification_of(new[n])) for n in shared),
         tuple(sorted(old.keys() ^ new.keys())),
         {name: (recorded[0][name], recorded[1][name]) for name in recorded[0]},
         tuple(moved_sentences(builds[0] / "html", builds[1] / "html")),

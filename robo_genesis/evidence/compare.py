@@ -69,6 +69,16 @@ def specification(lesson: str, page: str = "lab") -> Specification:
     return Specification(lesson, metrics, spec.TOLERANCES, relations)
 
 
+def specification_of(folder: Path) -> Specification:
+    """Return what this checkout declares of the page that a bundle comes from.
+
+    Raises:
+        BundleRefused: its manifest cannot be read, or there is no such lesson or page.
+    """
+    run = bundle.read_manifest(folder).predicate
+    return specification(run.lesson, run.page)
+
+
 def compare(old: Path, new: Path, spec: Specification) -> Comparison:
     """Hold two bundles one against the other.
 

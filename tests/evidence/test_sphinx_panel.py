@@ -120,7 +120,7 @@ def test_equal_runs_stand_side_by_side(folder, there):
         "metric", "cpu, this build", "amdgpu, recorded", "difference", "allowed", "verdict",
     ]  # fmt: skip
     names = LESSONS["l04"].metrics
-    labels = {f"{case} {LABELS[name]}" for case in l04.CASES for name in names}
+    labels = {f"{case} {LABELS[name]}" for case in l04.CASES for name in names[case]}
     assert labels <= {row[0] for row in rows(text)}
 
 
