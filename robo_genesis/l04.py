@@ -38,7 +38,7 @@ STEPS = round(WINDOW / DT)
 EXPECTED_MODEL = {"links": 11, "joints": 9, "dofs": 9, "qpos": 9}
 EXPECTED_TYPES = ("REVOLUTE",) * 7 + ("PRISMATIC",) * 2
 
-RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "1": 0.5}
+RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "N·m": 1e-2, "1": 0.5}
 """Differences below these are called equal: the noise floor of a comparison, by unit."""
 
 
