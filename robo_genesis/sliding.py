@@ -43,14 +43,3 @@ def stepped_distance(speed: float, friction: float, h: float, gravity: float = G
 def apparent_friction(speed: float, distance: float, gravity: float = GRAVITY) -> float:
     """Return the coefficient with which Coulomb's formula gives a measured distance [m]."""
     return speed**2 / (2 * gravity * distance)
-
-
-def nearest_rule(found: float, own: float, surface: float) -> str:
-    """Return the rule of `RULES` whose coefficient comes nearest to an apparent one.
-
-    Args:
-        found: the apparent coefficient.
-        own: of the body.
-        surface: of what it slides on.
-    """
-    return min(RULES, key=lambda name: abs(RULES[name](own, surface) - found))

@@ -89,12 +89,11 @@ def test_the_stepped_distance_is_what_a_loop_adds_up_to(n):
     assert x == pytest.approx(sliding.stepped_distance(speed, friction, h, gravity), rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("found", "rule"),
-    [(0.5, "the larger"), (0.1, "the smaller"), (0.31, "the mean"), (0.22, "the geometric mean")],
-)
-def test_the_nearest_rule_is_named(found, rule):
-    assert sliding.nearest_rule(found, 0.1, 0.5) == rule
+def test_rules_for_two_coefficients_differ():
+    found = {name: rule(0.2, 0.8) for name, rule in sliding.RULES.items()}
+    assert found == pytest.approx(
+        {"the larger": 0.8, "the smaller": 0.2, "the mean": 0.5, "the geometric mean": 0.4}
+    )
 
 
 # Cases
