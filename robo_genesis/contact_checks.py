@@ -86,7 +86,7 @@ def settings(run: ContactExperiment) -> list[str]:
             asked = getattr(run.cases[case], name)
             if not abs(value - asked) <= 1e-6:
                 problems.append(f"{case} has {name} {value:g}, asked for {asked:g}")
-    return problems or [f"{n} was not read" for n in SETTINGS if n not in run.settings]
+    return problems + [f"{name} was not read" for name in SETTINGS if not run.settings.get(name)]
 
 
 def stamps(run: ContactExperiment) -> list[str]:
@@ -201,7 +201,7 @@ def near_coulomb(run: ContactExperiment) -> list[str]:
         friction = max(case.friction, case.surface_friction)
         expected = sliding.coulomb_distance(case.speed, friction, case.gravity)
         measured = found.stop_distance
-        if measured is None or abs(measured - expected) > l03.COULOMB_SHARE * expected:
+        if measured is None or not abs(measured - expected) <= l03.COULOMB_SHARE * expected:
             problems.append(f"{name} stops at {measured} m, Coulomb has {expected:g} m")
     return problems
 

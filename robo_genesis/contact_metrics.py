@@ -147,7 +147,7 @@ def names_of(case: ContactCase) -> tuple[str, ...]:
 
 
 def case_metrics(trace: ContactTrace, case: ContactCase) -> CaseMetrics:
-    """Measure one run by what is asked of it; of the case, shape, mass, gravity and step count."""
+    """Measure one run by what is asked of it; the case gives its body, gravity and solver step."""
     by_kind = {LANDING: landing_metrics, SLIDE: slide_metrics, BOUNCE: bounce_metrics}
     return by_kind[case.kind](trace, case)
 

@@ -141,7 +141,7 @@ def scatter_shrinks(run: Studies) -> list[str]:
         for fine, coarse in itertools.pairwise(names)
         if not spread[fine] < spread[coarse]
     ]
-    if spread[names[0]] > LEFT_OVER:
+    if not spread[names[0]] <= LEFT_OVER:
         problems.append(f"at the finest step {spread[names[0]]:g} m are left")
     return problems
 
