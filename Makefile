@@ -118,14 +118,6 @@ repin: $(ENVIRONMENT) ## try another engine version, then change pin and lock (G
 test-repin: $(ENVIRONMENT) ## change the pin there and back in a clone (network; an hour)
 	@"$(PY)" -m pytest -m repin tests/test_repin_round_trip.py
 
-.PHONY: costs
-costs: $(ENVIRONMENT) ## measure what the pages' kernels cost, cold and warm (minutes; a quiet machine)
-	@"$(PY)" build_scripts/costs.py
-
-.PHONY: growth
-growth: $(ENVIRONMENT) ## measure how cost grows with lessons and bundles (half an hour; a quiet machine)
-	@"$(PY)" build_scripts/growth.py
-
 # ROWS and RUNS reach the script as environment variables.
 .PHONY: bench
 bench: $(ENVIRONMENT) ## measure whole commands against bare ones (ROWS=names RUNS=n; a quiet machine)

@@ -11,7 +11,7 @@ import shutil
 import sys
 from functools import partial
 
-from robo_genesis import bench, bench_clone, bench_rows, kept, project
+from robo_genesis import bench, bench_clone, bench_rows, project
 from robo_genesis.apply import recover_or_exit
 from robo_genesis.build import Progress
 from robo_genesis.command import as_published, run
@@ -35,7 +35,7 @@ def measured() -> list[str]:
         for row in bench_rows.rows(clone):
             if row.name in names:
                 results.append(bench.take(row, runs, say))
-                kept.keep(LATEST, bench.record(results, facts))  # a later row may fail
+                bench.keep(LATEST, bench.record(results, facts))  # a later row may fail
         if bench_rows.MEMORY in names:
             say(f"{bench_rows.MEMORY}  a build that executes all pages")
             peak = bench_rows.peak_of_full_build(clone)
@@ -45,7 +45,7 @@ def measured() -> list[str]:
         for own in ("work", "bare", "executed"):  # logs stay
             shutil.rmtree(folder / own, ignore_errors=True)
     facts["load_average_after"] = bench.machine()["load_average"]
-    file = kept.keep(LATEST, bench.record(results, facts))
+    file = bench.keep(LATEST, bench.record(results, facts))
     return [
         *([bench.table(results)] if results else []),
         *last,

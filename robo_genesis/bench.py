@@ -1,5 +1,6 @@
 """What commands cost, held against bare ones: samples in turn, medians, a table and a record."""
 
+import json
 import os
 import platform
 import statistics
@@ -168,6 +169,14 @@ def record(results: Sequence[Result], facts: dict[str, Any]) -> dict[str, Any]:
 def _recorded(result: Result) -> dict[str, Any]:
     names = ("medians", "ratio", "cpu_ratio", "met")
     return asdict(result) | {name: getattr(result, name) for name in names}
+
+
+def keep(path: Path, values: dict[str, Any]) -> Path:
+    """Write JSON values to a file in one move, and return the file."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fresh = path.with_suffix(".tmp")
+    fresh.write_text(json.dumps(values, indent=1) + "\n", "utf8")
+    return fresh.replace(path)
 
 
 def chosen(names: str, known: Sequence[str]) -> list[str]:

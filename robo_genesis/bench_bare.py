@@ -16,8 +16,8 @@ from robo_genesis.pages import find_pages
 from robo_genesis.sphinx_ext import fill_outputs
 
 DIRECTIVES = (
-    "choice", "cost-growth", "course-map", "evidence", "glance", "kernel-costs", "ledger",
-    "lesson-status", "replay", "takeaways",
+    "cell-times", "choice", "course-map", "evidence", "glance", "ledger", "lesson-status",
+    "replay", "takeaways",
 )  # fmt: skip
 ROLES = ("engine-release", "engine-source", "measured")
 """The course's own that its pages use. Sphinx runs with -W: one that is missing here fails it."""

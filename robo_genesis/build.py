@@ -102,7 +102,8 @@ def run_build(build: Build) -> list[str]:
             progress("release", "clean tree, current evidence")
         progress("render", "all pages")
         staging, log = build.cache / "staging", build.cache / "render.log"
-        html = render(build.book, staging, folder, log)
+        executed = [r.page.docname for r in results if r.status == "executed"]
+        html = render(build.book, staging, folder, log, executed)
         progress("pack", pack(html).name)  # last of the site's files; the checks know it
         checked = _check(html, progress)
         project.forget_old_pages(folder)

@@ -19,7 +19,6 @@ RASTERS = (".png", ".webp", ".jpg", ".jpeg")
 UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",
-    "performance": "Measured apart from this build, see the text.",
 }
 """Kinds of items that no run of the engine made, each with the line that stands below it."""
 
@@ -46,9 +45,9 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One figure, table, camera frame, illustration, table of settings or plot of what builds cost.
+    """One figure, table, camera frame, illustration or table of settings.
 
-    `runs` are the keys of the runs that made it, none for the last three kinds. `file` is the
+    `runs` are the keys of the runs that made it, none for the last two kinds. `file` is the
     picture's path below the book, or of a table the name of its CSV; `data` is that CSV, None for
     a picture.
     """

@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 from robo_genesis.page_cache import notebooks_folder, outputs_folder
@@ -16,6 +17,7 @@ collect_rarely()
 from jupyter_book.cli.main import main
 main()
 """
+EXECUTED = "ROBO_GENESIS_EXECUTED_PAGES"
 ANSI = re.compile(r"\x1b\[[0-9;]*m")
 TELLING = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
 
@@ -24,7 +26,9 @@ class RenderError(Exception):
     """Sphinx failed or warned; the message holds what it said and where the log is."""
 
 
-def render(book: Path, staging: Path, folder: Path, log: Path) -> Path:
+def render(
+    book: Path, staging: Path, folder: Path, log: Path, executed: Iterable[str] = ()
+) -> Path:
     """Render every page of a book.
 
     Args:
@@ -32,6 +36,7 @@ def render(book: Path, staging: Path, folder: Path, log: Path) -> Path:
         staging: folder for the result; what it held before is removed.
         folder: cache folder of the executed pages.
         log: file for everything that Sphinx says.
+        executed: names of the pages that this build executed.
 
     Returns:
         The folder with the site's HTML.
@@ -49,6 +54,7 @@ def render(book: Path, staging: Path, folder: Path, log: Path) -> Path:
         "PYTHONPATH": str(ROOT),
         "ROBO_GENESIS_PAGE_CACHE": str(notebooks_folder(folder)),
         "ROBO_GENESIS_BUILD_OUTPUTS": str(outputs_folder(folder)),
+        EXECUTED: "\n".join(executed),
     }
     with log.open("w", encoding="utf8") as stream:
         done = subprocess.run(

@@ -120,8 +120,7 @@ def describe(
     caption = holder.next_node(nodes.caption)
     title = caption.astext() if caption is not None else str(node.get("alt", anchor))
     path = book / node["uri"]
-    unmeasured = "performance" if "performance" in holder else "illustration"
-    kind = unmeasured if keys is None else ledger.picture_kind(path)
+    kind = "illustration" if keys is None else ledger.picture_kind(path)
     digest = ledger.sha256(path.read_bytes())
     return Item(kind, _short(title), docname, anchor, keys or (), digest, node["uri"])
 

@@ -105,7 +105,6 @@ def run_logged(
     work: Path,
     log: Path,
     waiting: Callable[[], None] = lambda: None,
-    without: Sequence[str] = (),
 ) -> None:
     """Run a command in the copy, its output in a log; nothing of it survives this process.
 
@@ -114,15 +113,12 @@ def run_logged(
         work: the copy.
         log: file of its output, written over.
         waiting: called once a minute while it runs.
-        without: further variables that it does not get.
 
     Raises:
         CommandError: its exit status is not 0.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
-    environment = {
-        name: value for name, value in os.environ.items() if name not in (*OWN, *without)
-    }
+    environment = {name: value for name, value in os.environ.items() if name not in OWN}
     with log.open("wb") as output:
         process = subprocess.Popen(
             command,

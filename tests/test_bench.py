@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from robo_genesis import bench, bench_bare, bench_rows, kept
+from robo_genesis import bench, bench_bare, bench_rows
 from robo_genesis.bench import BenchError, Result, Row, Sample
 from robo_genesis.bench_clone import Clone
 from robo_genesis.lessons import LESSONS
@@ -82,7 +82,7 @@ def test_both_sides_are_run_in_turn_and_each_pair_is_told():
 
 def test_the_record_is_json_with_samples_figures_and_the_machine(tmp_path):
     facts = bench.machine()
-    file = kept.keep(
+    file = bench.keep(
         tmp_path / ".bench" / "latest.json", bench.record([result([(3, 2)], [(2, 1)])], facts)
     )
     found = json.loads(file.read_text())

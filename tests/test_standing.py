@@ -33,7 +33,7 @@ def root(tmp_path, monkeypatch) -> Path:
         "book/_config.yml",
         "book/_static/course.css",
         "book/evidence/l04/amdgpu/manifest.json",
-        "book/performance/l04-lecture.json",
+        "book/course_map.yml",
         "robo_genesis/l04.py",
         "robo_genesis/evidence/rules.py",
         "build_scripts/book.py",

@@ -19,7 +19,6 @@ SHOWN = (
 UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",
-    "performance": "Measured apart from this build, see the text.",
 }
 
 
