@@ -9,6 +9,7 @@ import numpy as np
 import pygltflib
 import pytest
 import trimesh
+from browsers import chromium
 from docutils import nodes
 from docutils.core import publish_from_doctree
 from docutils.parsers.rst import DirectiveError
@@ -21,7 +22,6 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_body_trace, write_traces
 from robo_genesis.lessons import Compared, Filmed, Lesson, Moving
 from robo_genesis.npm import packages
-from robo_genesis.pdf import chromium
 from robo_genesis.played import read_runs
 from robo_genesis.project import BOOK
 from robo_genesis.social_card import card

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from browsers import chromium
 from bs4 import BeautifulSoup
 from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
@@ -18,7 +19,6 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.l04 import STEPPED_JOINT
 from robo_genesis.lessons import LESSONS
-from robo_genesis.pdf import chromium
 from robo_genesis.replay_model import rotations
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
