@@ -85,14 +85,6 @@ lint: $(ENVIRONMENT) ## ruff, mypy, codespell and the schema of workflows
 compare: $(ENVIRONMENT) ## compare two bundles: OLD=path NEW=path [REPORT=folder]
 	@"$(PY)" build_scripts/compare.py --report "$${REPORT:-}" -- "$${OLD:-}" "$${NEW:-}"
 
-.PHONY: pdf has-chromium
-pdf: has-chromium book ## print each lesson and the whole course to book/_build/pdf (needs chromium)
-	@"$(PY)" build_scripts/pdf.py
-
-# Asked before the site is built, which takes minutes.
-has-chromium: $(ENVIRONMENT)
-	@"$(PY)" build_scripts/pdf.py --check
-
 .PHONY: serve
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
 	@"$(PY)" build_scripts/serve.py

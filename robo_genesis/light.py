@@ -32,9 +32,6 @@ NAMED = re.compile(r"[.#]([\w-]+)")
 # Files of the theme that no page asks for; the rest are tools of its makers.
 UNUSED = (
     "_static/**/*.map",
-    "_static/**/fa-solid-900.*",  # robo_genesis/icons.py has made a small one of it
-    "_static/**/fa-brands-400.*",  # and taken these two out of the style sheet
-    "_static/**/fa-regular-400.*",
     "_static/*webpack-macros.html",
     "_static/locales",
     "_static/scripts/fontawesome.js*",

@@ -1,26 +1,18 @@
-"""What depends on where the site will stand: canonical links, sitemap, social card, the 404 page.
+"""What depends on where the site will stand: canonical links, sitemap, social cards, the 404 page.
 
 Without an address (see `address`) nothing claims one: no canonical link, no sitemap, no card. The
 404 page is always there; a server shows it at any depth, so its links begin at the site's root.
 """
 
 from html import escape
-from pathlib import Path
 from typing import Any
 
 from sphinx.application import Sphinx
 from sphinx.config import Config
 from sphinx.errors import ConfigError
 
-from robo_genesis import social_card
 from robo_genesis.address import AddressError, site_address, site_root
-from robo_genesis.lessons import compared_cases
-from robo_genesis.sphinx_evidence import BACKEND, outputs_folder
 
-CARD = "_static/social-card.png"
-DRAWN = "l04"
-"""The lesson whose runs the card shows."""
-CARD_ALT = "Measured positions of a robot's joint over time, with three pairs of gains."
 NOT_FOUND = """\
 <h1>There is no such page</h1>
 <p>The address may be mistyped, or what stood here has moved. Search, or start from one of the
@@ -50,9 +42,6 @@ def configure(app: Sphinx, config: Config) -> None:
     config.sitemap_url_scheme = "{link}"
     config.sitemap_locales = [None]
     config.sitemap_excludes = ["404.html", "search.html", "genindex.html"]
-    if drawn_bundle().is_dir():
-        config.ogp_image, config.ogp_image_alt = address + CARD, CARD_ALT
-        app.connect("build-finished", draw_card)
 
 
 def write_not_found(app: Sphinx) -> list[Any]:
@@ -66,20 +55,6 @@ def write_not_found(app: Sphinx) -> list[Any]:
     body = NOT_FOUND.format(root=root, links=links)
     app.config.notfound_context = {"title": "Page not found", "body": body}
     return []
-
-
-def drawn_bundle() -> Path:
-    """Return the folder of the bundle that the card draws, of this build's lab."""
-    return outputs_folder() / DRAWN / "lab" / BACKEND
-
-
-def draw_card(app: Sphinx, failure: Exception | None) -> None:
-    """Draw the card that a link to the site shows elsewhere."""
-    if failure is None:
-        compared = compared_cases(DRAWN)
-        if compared is None:
-            raise ConfigError(f"The social card draws {DRAWN}, which compares no cases.")
-        (Path(app.outdir) / CARD).write_bytes(social_card.card(drawn_bundle(), compared))
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -7,7 +7,6 @@ from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
 
 from robo_genesis.accessible import mend
-from robo_genesis.icons import cut_icons
 from robo_genesis.light import drop_unused_files, lighten
 
 
@@ -15,7 +14,6 @@ def finish_site(app: Sphinx, error: Exception | None) -> None:
     """Mend and lighten all pages of a site that Sphinx has written."""
     if error is None and app.builder.name == "html":
         html = Path(app.outdir)
-        cut_icons(html)
         drop_unused_files(html)
         for path in html.rglob("*.html"):
             path.write_text(finished(path.read_text("utf8"), path.parent), "utf8")

@@ -131,7 +131,7 @@ def _git(folder: Path, *words: str) -> str | None:
 
 
 def site_digest(published: Path) -> str:
-    """Return the digest of a published folder: site and bundles; what was printed is not of it."""
+    """Return the digest of a published folder: the site and its bundles."""
     return files_digest(published, (p for n in PUBLISHED for p in _inside(published / n)))
 
 

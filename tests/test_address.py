@@ -56,3 +56,14 @@ def test_without_an_address_nothing_claims_one(tmp_path, monkeypatch):
     assert {address for address in addresses if not address.startswith("/_static/")} <= {
         "/searchindex.js"
     }
+
+
+def test_with_an_address_a_page_names_it_and_has_a_card(tmp_path, monkeypatch):
+    monkeypatch.setenv("SITE_URL", "https://example.org/robot")
+    html = build(tmp_path)
+    assert "<loc>https://example.org/robot/page.html</loc>" in (html / "sitemap.xml").read_text()
+    page = BeautifulSoup((html / "page.html").read_text(), "html.parser")
+    assert page.select_one('link[rel="canonical"]')["href"] == "https://example.org/robot/page.html"
+    tags = {tag["property"]: tag["content"] for tag in page.select('meta[property^="og:"]')}
+    assert tags["og:title"] == "Page"
+    assert (html / tags["og:image"].removeprefix("https://example.org/robot/")).is_file()

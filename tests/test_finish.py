@@ -2,10 +2,9 @@
 
 import pytest
 from bs4 import BeautifulSoup
-from fontTools.ttLib import TTFont
 from PIL import Image
 
-from robo_genesis import icons, light
+from robo_genesis import light
 from robo_genesis.sphinx_finish import finished
 
 HEAD = """\
@@ -140,71 +139,3 @@ def test_unused_files_of_the_theme_go_and_others_stay(tmp_path):
     light.drop_unused_files(tmp_path)
     assert [name for name in gone if (tmp_path / name).exists()] == []
     assert [name for name in kept if not (tmp_path / name).exists()] == []
-
-
-SHEET = """\
-.fa-sun:before{content:"\\f185"}.fa-bars:before,.fa-navicon:before{content:"\\f0c9"}\
-.fa-gear:before{content:"\\f013"}html{--icon:"\uf05a"}.more:after{content:"\\f107"}"""
-
-
-def test_icons_are_those_of_the_pages_and_those_of_the_style_sheets_own():
-    texts = ['<i class="fas fa-sun fa-lg"></i>', 'i.className = "fa-solid fa-navicon"']
-    assert icons.icons_used(texts, [SHEET]) == {0xF185, 0xF0C9, 0xF05A, 0xF107}
-
-
-def test_the_font_is_cut_and_has_another_name(tmp_path):
-    import matplotlib
-
-    whole = f"{matplotlib.get_data_path()}/fonts/ttf/DejaVuSans.ttf"
-    icons.write_font(whole, {ord("a"), ord("q"), 0xF8FE}, tmp_path / "cut.woff")
-    cut = TTFont(tmp_path / "cut.woff")
-    assert set(cut.getBestCmap()) == {ord("a"), ord("q")}
-    names = {record.nameID: str(record) for record in cut["name"].names}
-    assert names[1] == names[4] == icons.NAME
-    assert "Bitstream" in names[0]
-    assert (tmp_path / "cut.woff").stat().st_size < 5000
-
-
-FACES = """\
-@font-face{font-family:F;src:url(a/fa-solid-900.woff2) format("woff2"),url(a/fa-solid-900.ttf)}\
-@font-face{font-family:F;src:url(a/fa-regular-400.woff2)}.kept{color:red}\
-@font-face{font-family:B;src:url(a/fa-brands-400.woff2)}"""
-
-
-@pytest.fixture
-def themed(tmp_path, monkeypatch):
-    monkeypatch.setattr(icons, "write_font", lambda *args: None)
-    for folder in (icons.FONTS, icons.NOTICE.parent):
-        (tmp_path / folder).mkdir(parents=True)
-    (tmp_path / icons.NOTICE).write_text("Copyright the makers")
-    (tmp_path / "a.css").write_text(FACES)
-    return tmp_path
-
-
-def test_only_the_small_font_is_named_and_its_licence_stands_beside_it(themed):
-    (themed / "index.html").write_text('<i class="fa-solid fa-x so-far">far</i>')
-    font = icons.cut_icons(themed)
-    sheet = (themed / "a.css").read_text()
-    assert sheet.count("@font-face") == 1
-    assert icons.CUT in sheet
-    assert sheet.endswith(".kept{color:red}")
-    licence = font.with_name(icons.LICENCE).read_text()
-    assert licence.startswith("Copyright the makers\n")
-    assert "SIL OPEN FONT LICENSE Version 1.1" in licence
-    assert licence.endswith("OTHER DEALINGS IN THE FONT SOFTWARE.\n")
-
-
-@pytest.mark.parametrize("kind", ["fab", "far", "fa-brands", "fa-regular"])
-def test_an_icon_of_a_font_that_is_not_shipped_is_refused(themed, kind):
-    (themed / "index.html").write_text(
-        f'<i class="so-far">far</i><i class="fa-lg {kind} fa-x"></i>'
-    )
-    with pytest.raises(LookupError, match="solid ones alone"):
-        icons.cut_icons(themed)
-
-
-def test_a_site_without_the_known_font_rule_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(icons, "write_font", lambda *args: None)
-    (tmp_path / "a.css").write_text(SHEET)
-    with pytest.raises(LookupError, match=r"0 style sheets load fa-solid-900\.ttf"):
-        icons.cut_icons(tmp_path)

@@ -139,9 +139,6 @@ def published(tmp_path) -> Path:
 
 def test_a_site_stands_as_long_as_inputs_and_site_are_what_they_were(published):
     assert standing.standing(published, "inputs") == ["the last lines"]
-    (published / "pdf").mkdir()
-    (published / "pdf" / "course.pdf").write_text("printed later")
-    assert standing.standing(published, "inputs") == ["the last lines"]
     assert standing.standing(published, "others") is None
     assert standing.standing(published, None) is None
 

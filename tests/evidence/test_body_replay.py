@@ -9,6 +9,7 @@ import numpy as np
 import pygltflib
 import pytest
 import trimesh
+from browsers import chromium
 from docutils import nodes
 from docutils.core import publish_from_doctree
 from docutils.parsers.rst import DirectiveError
@@ -21,10 +22,8 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_body_trace, write_traces
 from robo_genesis.lessons import Compared, Filmed, Lesson, Moving
 from robo_genesis.npm import packages
-from robo_genesis.pdf import chromium
 from robo_genesis.played import read_runs
 from robo_genesis.project import BOOK
-from robo_genesis.social_card import card
 from robo_genesis.sphinx_ledger import scroll_box
 from robo_genesis.sphinx_panel import response
 from robo_genesis.sphinx_replay import replay_block
@@ -93,7 +92,6 @@ def test_pictures_draw_what_the_bundle_holds(dropped):
     )
     other = Moving(("low", "high"), link="box", thing="box")
     assert sphinx_glance.response(dropped, other).content != glance.content
-    assert card(dropped, DROPPED).startswith(b"\x89PNG")
 
 
 def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, tmp_path):

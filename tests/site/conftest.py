@@ -10,9 +10,9 @@ from pathlib import Path
 from threading import Thread
 
 import pytest
+from browsers import chromium
 from playwright.sync_api import Browser, sync_playwright
 
-from robo_genesis.pdf import chromium
 from robo_genesis.project import BOOK, ROOT
 
 

@@ -89,3 +89,22 @@ def test_the_ledger_scrolls_by_keyboard_on_a_phone(browser, address):
     page.keyboard.press("ArrowRight")
     page.wait_for_function("document.activeElement.scrollLeft > 0")
     page.close()
+
+
+SHOWN = """selectors => selectors.map(selector =>
+  [...document.querySelectorAll(selector)].filter(one => one.checkVisibility()).length)"""
+FOLDS = "article .sd-summary-content > p"
+
+
+def test_on_paper_the_menus_are_gone_and_folds_can_be_read(browser, address):
+    page = browser.new_page(viewport={"width": 1280, "height": 900}, color_scheme="dark")
+    page.goto(f"{address}/lessons/l04-joint-control/lecture.html", wait_until="networkidle")
+    sidebars = ["#pst-primary-sidebar", "#pst-secondary-sidebar"]
+    menus = [".bd-header-article", *sidebars, ".prev-next-footer"]
+    assert min(page.evaluate(SHOWN, menus)) > 0
+    folded = page.locator(FOLDS).count()
+    assert page.evaluate(SHOWN, [FOLDS])[0] < folded
+    page.emulate_media(media="print")
+    assert page.evaluate(SHOWN, menus) == [0] * len(menus)
+    assert page.evaluate(SHOWN, [FOLDS]) == [folded]
+    page.close()

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from browsers import chromium
 from bs4 import BeautifulSoup
 from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
@@ -18,13 +19,11 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import read_joints, read_trace
 from robo_genesis.l04 import STEPPED_JOINT
 from robo_genesis.lessons import LESSONS
-from robo_genesis.pdf import chromium
 from robo_genesis.replay_model import rotations
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 LECTURE = "lessons/l04-joint-control/lecture.html"
-CHROMIUM = chromium()
 MODEL = "replay-l04-lecture-cpu"
 REPLAY = f".replay[data-name={MODEL}]"
 """The replay of this build's run; a recorded run has its own on the same page."""
@@ -64,7 +63,7 @@ def playwright() -> Iterator[Playwright]:
 
 @pytest.fixture(scope="module")
 def browser(playwright) -> Iterator[Browser]:
-    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=SOFTWARE)
+    browser = playwright.chromium.launch(executable_path=chromium(), args=SOFTWARE)
     yield browser
     browser.close()
 
@@ -361,7 +360,7 @@ def test_the_case_is_named_beside_the_robot(page):
 
 def test_a_browser_without_3d_says_so_and_loads_nothing(playwright, address):
     blind = playwright.chromium.launch(
-        executable_path=CHROMIUM, args=["--no-sandbox", "--disable-3d-apis"]
+        executable_path=chromium(), args=["--no-sandbox", "--disable-3d-apis"]
     )
     asked: list[str] = []
     page = open_lecture(blind, address, asked)

@@ -9,11 +9,8 @@ from threading import Thread
 
 import pytest
 from bs4 import BeautifulSoup
-from fontTools.ttLib import TTFont
 from playwright.sync_api import Page, expect
 from watching import page_names
-
-from robo_genesis import icons
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -196,25 +193,3 @@ def test_every_image_has_its_size_and_those_below_come_late(site):
                 wrong.append(f"{name}: {image['src']}")
     assert wrong == []
     assert late
-
-
-ICONS = """() => [...document.querySelectorAll(".fas, .fa-solid")].map(icon => ({
-  what: icon.className,
-  family: getComputedStyle(icon, "::before").fontFamily,
-  shown: getComputedStyle(icon, "::before").content.replaceAll('"', ""),
-}))"""
-
-
-def test_every_icon_is_in_the_small_font(browser, address, site):
-    characters = set(TTFont(site / icons.FONTS / icons.CUT).getBestCmap())
-    page = browser.new_page()
-    seen = set()
-    for name in page_names(site):
-        page.goto(f"{address}/{name}")
-        for icon in page.evaluate(ICONS):
-            assert len(icon["shown"]) == 1, icon
-            assert ord(icon["shown"]) in characters, icon
-            seen.add(icon["shown"])
-    assert page.evaluate("document.fonts.load('900 1em \"Font Awesome 6 Free\"', '\uf0c9')") != []
-    assert len(seen) > 8
-    page.close()
