@@ -12,7 +12,6 @@ import sys
 from functools import partial
 
 from robo_genesis import bench, bench_clone, bench_rows, kept, project
-from robo_genesis.apply import recover_or_exit
 from robo_genesis.build import Progress
 from robo_genesis.command import as_published, run
 from robo_genesis.pages import PageError
@@ -87,7 +86,6 @@ def machine_line(facts: dict[str, object]) -> str:
 
 def main() -> int:
     """Measure and return the exit status."""
-    recover_or_exit()
     as_published()
     return run(measured, "kept", (bench.BenchError, PageError, ProjectError))
 

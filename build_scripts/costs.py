@@ -7,7 +7,6 @@ Exit status: 0 measured, 1 failed, 130 interrupted; unless it is 0, the old figu
 
 import sys
 
-from robo_genesis.apply import recover_or_exit
 from robo_genesis.build import BuildError, only_build
 from robo_genesis.command import as_published, run
 from robo_genesis.kernel_costs import CostsError, Measuring, measure
@@ -24,7 +23,6 @@ def measured() -> list[str]:
 
 def main() -> int:
     """Measure and return the exit status."""
-    recover_or_exit()
     as_published()
     return run(measured, "recorded", (CostsError, BuildError, PageError, ProjectError))
 

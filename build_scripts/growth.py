@@ -10,7 +10,6 @@ import sys
 from functools import partial
 
 from robo_genesis import growth, growth_measure, kept
-from robo_genesis.apply import recover_or_exit
 from robo_genesis.build import Progress
 from robo_genesis.command import as_published, run
 from robo_genesis.pages import PageError
@@ -27,7 +26,6 @@ def measured() -> list[str]:
 
 def main() -> int:
     """Measure and return the exit status."""
-    recover_or_exit()
     as_published()
     return run(measured, "recorded", (kept.KeptError, PageError, ProjectError))
 

@@ -7,7 +7,6 @@ build of the site removes them. Exit status: 0 printed, 1 failed, 130 interrupte
 import sys
 from pathlib import Path
 
-from robo_genesis.apply import recover_or_exit
 from robo_genesis.build import BuildError, only_build
 from robo_genesis.command import run
 from robo_genesis.pages import PageError
@@ -32,6 +31,5 @@ def line(path: Path) -> str:
 
 
 if __name__ == "__main__":
-    recover_or_exit()
     task = found if sys.argv[1:] == ["--check"] else printed
     sys.exit(run(task, "printed", (PdfError, BuildError, PageError)))
