@@ -10,7 +10,7 @@ SHOWN = 5
 
 
 def git(root: Path, *arguments: str) -> str:
-    """Return what git prints in a folder; the user's index is never rewritten by the way.
+    """Return what git prints in a folder; a query never rewrites the user's index.
 
     Raises:
         ProjectError: git is not installed, or it failed; the message holds what it said.

@@ -74,7 +74,7 @@ def compare_builds(
     recorded: tuple[dict[str, Status], dict[str, Status]],
     locks: Pair,
 ) -> Refresh:
-    """Compare the build with the old version with that with the new one.
+    """Compare the builds of the old and the new version.
 
     Args:
         versions: of the engine, old and new, as all pairs here.
@@ -129,8 +129,8 @@ def moved_sentences(old: Path, new: Path) -> Iterator[tuple[str, str, str]]:
     names = {page.relative_to(site) for site in (old, new) for page in site.rglob("*.html")}
     for name in sorted(names - {LEFT_OUT}):
         was, now = (list(sentences(site / name)) for site in (old, new))
-        lasting = ([VOLATILE.sub("…", text) for text in page] for page in (was, now))
-        for tag, a, b, c, d in SequenceMatcher(None, *lasting, autojunk=False).get_opcodes():
+        before, after = ([VOLATILE.sub("…", text) for text in page] for page in (was, now))
+        for tag, a, b, c, d in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
             if tag != "equal":
                 for pair in zip_longest(was[a:b], now[c:d], fillvalue=""):
                     yield name.with_suffix("").as_posix(), *pair
