@@ -19,15 +19,6 @@ else
 endif
 BASE_PYTHON ?= python3
 
-# Pin and lock change together. A make repin that was killed just then is completed first of all:
-# before any target, and before make holds the lock against .venv.
-ifneq ($(wildcard .cache/repin/apply),)
-  RECOVERED := $(shell "$(BASE_PYTHON)" robo_genesis/apply.py)
-  ifneq ($(.SHELLSTATUS),0)
-    $(error The checkout is between two pins, see above)
-  endif
-endif
-
 # The code under test is this checkout's, whatever environment runs it.
 export PYTHONPATH := $(CURDIR)
 # What pydantic accepts as evidence is decided here, not by packages that happen to be installed.

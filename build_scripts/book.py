@@ -15,7 +15,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.apply import recover_or_exit
 from robo_genesis.command import choice, collect_rarely, require_cpu, run
 from robo_genesis.project import BOOK, CACHE, ROOT
 from robo_genesis.publish import PUBLISHED
@@ -32,7 +31,6 @@ def jobs() -> int | None:
 
 def main() -> int:
     """Run the build and return its exit status."""
-    recover_or_exit()
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--book", type=Path, default=BOOK, help="folder of the pages")
     parser.add_argument("--cache", type=Path, default=CACHE, help="folder of the caches")

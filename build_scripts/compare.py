@@ -9,7 +9,6 @@ import argparse
 import sys
 from pathlib import Path
 
-from robo_genesis.apply import recover_or_exit
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare, specification_of
@@ -27,7 +26,6 @@ def refused(message: str) -> int:
 
 def main() -> int:
     """Compare, write the report and return the exit status."""
-    recover_or_exit(2)
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("old", help="folder of the bundle that is compared against")
     parser.add_argument("new", help="folder of the bundle that is compared")

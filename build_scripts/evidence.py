@@ -10,7 +10,6 @@ import os
 import sys
 from pathlib import Path
 
-from robo_genesis.apply import recover_or_exit
 from robo_genesis.build import BuildError
 from robo_genesis.command import run
 from robo_genesis.execute import TIMEOUT
@@ -32,7 +31,6 @@ def require_camera() -> None:
 
 def main() -> int:
     """Record and return the exit status."""
-    recover_or_exit()
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--book", type=Path, default=BOOK, help="folder of the pages")
     parser.add_argument("--cache", type=Path, default=CACHE, help="folder of the caches")

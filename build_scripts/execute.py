@@ -12,7 +12,6 @@ import os
 import sys
 from pathlib import Path
 
-from robo_genesis.apply import recover_or_exit
 from robo_genesis.build import Build, BuildError
 from robo_genesis.command import choice, require_cpu, run
 from robo_genesis.execute import TIMEOUT
@@ -24,7 +23,6 @@ from robo_genesis.project import BOOK, CACHE, ProjectError
 
 def main() -> int:
     """Execute or list, and return the exit status."""
-    recover_or_exit()
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--list", action="store_true", help="print the pages and execute none")
     parser.add_argument("--book", type=Path, default=BOOK, help="folder of the pages")

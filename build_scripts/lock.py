@@ -26,7 +26,6 @@ from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCK = ROOT / "requirements.lock"
-RECOVER = ROOT / "robo_genesis" / "apply.py"
 PROJECT = "robo-genesis"
 EXTRAS = ("book", "dev")
 CUDA_PART = re.compile(r"nvidia-|cuda-|triton")
@@ -99,8 +98,6 @@ def write(text: str) -> None:
 
 def main() -> int:
     """Resolve and write the lock in one step; a failed resolution leaves the old one."""
-    if subprocess.run([sys.executable, str(RECOVER)], check=False).returncode:
-        return 1  # it said why; it runs as a file, since the package need not be importable here
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--keep", action="store_true", help="keep installed versions that fit")
     parser.add_argument("constraints", nargs="*", metavar="NAME==VERSION")

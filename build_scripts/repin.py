@@ -1,15 +1,13 @@
 """Change the engine pin: `make repin GENESIS=1.2.3`.
 
-Tries the version in a copy of the checkout with an environment of its own: all lessons, all tests.
-Then pin and lock change together; a report says what moved. Nothing is committed.
-Exit status: 0 changed, 1 refused or failed, 130 interrupted. Unless it is 0, the tree is as it was;
-where the last line is "the change is not complete", the next make completes it.
+Tries the version in a git worktree with an environment of its own: all lessons, all tests. Then it
+writes pin and lock; a report says what changed. The tree must be clean; nothing is committed.
+Exit status: 0 changed, 1 refused or failed, 130 interrupted. Unless it is 0, the tree is as it was.
 """
 
 import os
 import sys
 
-from robo_genesis.apply import ApplyError, recover_or_exit
 from robo_genesis.command import run
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.pin import RepinError, installable_versions
@@ -19,7 +17,6 @@ from robo_genesis.repin import Repin, run_repin
 
 def main() -> int:
     """Change the pin and return the exit status."""
-    recover_or_exit()
     asked = Repin(
         genesis=os.environ.get("GENESIS", ""),
         root=ROOT,
@@ -27,8 +24,7 @@ def main() -> int:
         versions=installable_versions,
         say=lambda line: print(line, flush=True),
     )
-    failures = (RepinError, ProjectError, ApplyError, BundleRefused)
-    return run(lambda: run_repin(asked), "changed", failures)
+    return run(lambda: run_repin(asked), "changed", (RepinError, ProjectError, BundleRefused))
 
 
 if __name__ == "__main__":

@@ -5,14 +5,12 @@ import sys
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
-from robo_genesis.apply import recover_or_exit
 from robo_genesis.project import BOOK
 from robo_genesis.publish import PUBLISHED
 
 
 def main() -> int:
     """Serve until Ctrl-C; return 1 if there is no site, or the port is not valid or not free."""
-    recover_or_exit()
     html = BOOK / PUBLISHED / "html"
     port = os.environ.get("PORT") or "8000"
     if not (html / "index.html").is_file():

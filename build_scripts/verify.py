@@ -10,7 +10,6 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from robo_genesis.apply import recover_or_exit
 from robo_genesis.evidence.status import Status, bundle_status, recorded_folders, recorded_status
 from robo_genesis.project import BOOK, ProjectError
 from robo_genesis.publish import PUBLISHED
@@ -39,7 +38,6 @@ def _run(status: Status) -> str:
 
 def main() -> int:
     """Print the lines and return the exit status."""
-    recover_or_exit()
     asked = os.environ.get("BUNDLE")
     try:
         if asked:

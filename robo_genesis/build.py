@@ -1,12 +1,11 @@
 """The stages of `make book` in their order: execute, verify, render, pack, check, publish."""
 
-import fcntl
 import os
 import shutil
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -16,11 +15,13 @@ from robo_genesis import npm, project, standing
 from robo_genesis.address import AddressError, site_address, site_root
 from robo_genesis.evidence import place
 from robo_genesis.execute import TIMEOUT, execute_pages
+from robo_genesis.files import locked
+from robo_genesis.git import unclean
 from robo_genesis.offline import pack
 from robo_genesis.page_results import PageResult, failure_report
 from robo_genesis.pages import Page, find_pages, fingerprint
 from robo_genesis.publish import publish, recover
-from robo_genesis.release import lacking, unclean
+from robo_genesis.release import lacking
 from robo_genesis.render import render
 from robo_genesis.site_checks import check_site
 from robo_genesis.takeover import Verify, take_over
@@ -265,8 +266,7 @@ def _summary(
     return lines
 
 
-@contextmanager
-def only_build(cache: Path) -> Iterator[None]:
+def only_build(cache: Path) -> AbstractContextManager[None]:
     """Hold the lock of builds and of tests that run the engine.
 
     Args:
@@ -276,18 +276,10 @@ def only_build(cache: Path) -> Iterator[None]:
     Raises:
         BuildError: another process holds it; the message names that process.
     """
-    engine = cache / "engine"
-    engine.mkdir(parents=True, exist_ok=True)
-    with (engine / "build.lock").open("a+") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            lock.seek(0)
-            raise BuildError(
-                "Another build, or a test of the engine, runs here (process "
-                f"{lock.read().strip() or 'unknown'}). Wait for it, or stop it with Ctrl-C there."
-            ) from None
-        lock.truncate(0)
-        lock.write(str(os.getpid()))
-        lock.flush()
-        yield
+    return locked(
+        cache / "engine" / "build.lock",
+        lambda process: BuildError(
+            f"Another build, or a test of the engine, runs here (process {process}). Wait for it, "
+            "or stop it with Ctrl-C there."
+        ),
+    )

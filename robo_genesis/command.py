@@ -6,7 +6,6 @@ import signal
 import sys
 from collections.abc import Callable, Sequence
 
-from robo_genesis.apply import UnfinishedError
 from robo_genesis.project import BUILD_BACKEND
 
 
@@ -36,21 +35,19 @@ def run(task: Callable[[], Sequence[str]], done: str, failures: tuple[type[Excep
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         print("\n".join(task()))
-    except UnfinishedError as error:
-        return _failed(str(error), "the change is not complete")
     except failures as error:
-        return _failed(str(error), f"nothing was {done}")
+        return _failed(str(error), done)
     except OSError as error:
         report = f"A file cannot be used: {error}. Give it free space or write access."
-        return _failed(report, f"nothing was {done}")
+        return _failed(report, done)
     except KeyboardInterrupt:
         print(f"\nInterrupted: nothing was {done}.", file=sys.stderr)
         return 130
     return 0
 
 
-def _failed(report: str, outcome: str) -> int:
-    print(f"\n{report}\n\nFAILED: {outcome}.", file=sys.stderr)
+def _failed(report: str, done: str) -> int:
+    print(f"\n{report}\n\nFAILED: nothing was {done}.", file=sys.stderr)
     return 1
 
 

@@ -4,13 +4,13 @@ import hashlib
 import json
 import os
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
+from robo_genesis.files import write_whole
 from robo_genesis.project import CACHE, lock_digest
 from robo_genesis.standing import installed
 
@@ -39,7 +39,7 @@ def derived(
     if content is None:
         content = make()
         with suppress(OSError):  # a cache that cannot be written costs time alone
-            _put(file, content)
+            write_whole(file, hashlib.sha256(content).digest() + content)
             _forget(file.parent)
     return content
 
@@ -58,19 +58,6 @@ def _get(file: Path) -> bytes | None:
         return None
     digest, content = stored[:DIGEST], stored[DIGEST:]
     return content if hashlib.sha256(content).digest() == digest else None
-
-
-def _put(file: Path, content: bytes) -> None:
-    """Write a file in one move: a killed build leaves none in its place."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(dir=file.parent, prefix=".", delete=False) as stream:
-        partial = Path(stream.name)
-        try:
-            stream.write(hashlib.sha256(content).digest() + content)
-        except OSError:
-            partial.unlink(missing_ok=True)
-            raise
-    os.replace(partial, file)
 
 
 def _forget(folder: Path) -> None:

@@ -23,37 +23,40 @@ def recover(book: Path) -> None:
     settle(book / PUBLISHED)
 
 
-def settle(folder: Path) -> None:
+def settle(folder: Path, prefix: str = "") -> None:
     """Bring a folder that is swapped in whole into order, after a kill at any point.
 
-    Killed between the two renames, the old folder stands aside: it comes back. Killed later, it is
+    Killed between the two renames, the old folder lies aside: it comes back. Killed later, it is
     only rubbish, as is a next one that was never swapped in.
 
     Args:
         folder: what `swap` exchanges; it need not exist.
+        prefix: see `beside`.
     """
-    aside = beside(folder, OLD)
+    aside = beside(folder, OLD, prefix)
     if aside.exists() and not folder.exists():
         aside.rename(folder)
-    for other in (aside, beside(folder, NEXT)):
+    for other in (aside, beside(folder, NEXT, prefix)):
         if other.exists():
             shutil.rmtree(other)
 
 
-def swap(folder: Path) -> None:
-    """Put the complete next folder, which stands beside, in the place of a folder.
+def swap(folder: Path, prefix: str = "") -> None:
+    """Put the complete next folder, which lies beside, in the place of a folder.
 
     Args:
-        folder: `settle` mends what a kill between the two renames leaves, and removes the old one.
+        folder: `settle` repairs what a kill between the two renames leaves, and removes the old
+            one.
+        prefix: see `beside`.
     """
     if folder.exists():
-        os.rename(folder, beside(folder, OLD))
-    os.rename(beside(folder, NEXT), folder)
+        os.rename(folder, beside(folder, OLD, prefix))
+    os.rename(beside(folder, NEXT, prefix), folder)
 
 
-def beside(folder: Path, suffix: str) -> Path:
-    """Return where the next or the old state of a folder stands."""
-    return folder.with_name(folder.name + suffix)
+def beside(folder: Path, suffix: str, prefix: str = "") -> Path:
+    """Return where the next or the old state of a folder lies; a prefix `.` hides it there."""
+    return folder.with_name(f"{prefix}{folder.name}{suffix}")
 
 
 def publish(

@@ -1,20 +1,37 @@
 """The refresh report: what another engine version changes in packages, evidence and sentences."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from difflib import SequenceMatcher
 from html import escape
-from itertools import groupby
+from itertools import groupby, zip_longest
 from pathlib import Path
+
+from bs4 import BeautifulSoup
 
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import Comparison, compare, specification_of
 from robo_genesis.evidence.findings import SEVERITY, worst
 from robo_genesis.evidence.report import Row
 from robo_genesis.evidence.status import Status, recorded_folders, recorded_status
-from robo_genesis.moved import Moved, moved_sentences
 from robo_genesis.publish import PAGES
 
 Pair = tuple[str, str]
+
+VOLATILE = re.compile(
+    r"\brun[ |]+[0-9a-f]{8}\b(?!\.\d)|\b[0-9a-f]{32,64}\b"
+    r"|\b\d{4}-\d\d-\d\d(?:[T ]\d\d:\d\d[\d:.]*Z?)?"
+)
+"""What differs between any two runs of one version: run ids, digests and dates with times."""
+LOG = re.compile(r"\[(Genesis\b|[TDIWEC] \d\d/\d\d/)")
+"""How a line of the engine's or its compiler's log begins; warnings are compared from bundles."""
+END = re.compile(r"(?<=[.!?])\s+(?=[^\s\d])")
+BLOCKS = "p, li, tr, figcaption, caption, dt, dd, pre, h1, h2, h3, h4"
+HIDDEN = "math, svg, .cell_input"
+BREAK = "\x1e"
+LEFT_OUT = Path("evidence", "ledger.html")
+"""The ledger lists digests of what other pages show."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +39,8 @@ class Refresh:
     """What two builds of one checkout, each with its engine version, say of one another.
 
     `packages` is name → versions in both locks, "" where there is none; `missing` names the lessons
-    with a bundle in one build alone; `recorded` is lesson/backend → state under both pins.
+    with a bundle in one build alone; `recorded` is lesson/backend → state under both pins;
+    `moved` holds (page, old, new) of each sentence that changed, see `moved_sentences`.
     """
 
     versions: Pair
@@ -30,7 +48,7 @@ class Refresh:
     comparisons: tuple[Comparison, ...]
     missing: tuple[str, ...]
     recorded: dict[str, tuple[Status, Status]]
-    moved: tuple[Moved, ...]
+    moved: tuple[tuple[str, str, str], ...]
 
     @property
     def state(self) -> str:
@@ -56,7 +74,7 @@ def compare_builds(
     recorded: tuple[dict[str, Status], dict[str, Status]],
     locks: Pair,
 ) -> Refresh:
-    """Hold the build with the old version against that with the new one.
+    """Compare the builds of the old and the new version.
 
     Args:
         versions: of the engine, old and new, as all pairs here.
@@ -102,6 +120,42 @@ def moved_packages(old: str, new: str) -> dict[str, Pair]:
     return {name: pair for name, pair in both.items() if pair[0] != pair[1]}
 
 
+def moved_sentences(old: Path, new: Path) -> Iterator[tuple[str, str, str]]:
+    """Yield (page, old, new) of each sentence that changed between two builds' folders of HTML.
+
+    One of the texts is empty where the other has no counterpart. The pages' sources are the same,
+    so a sentence that changed holds something measured or computed.
+    """
+    names = {page.relative_to(site) for site in (old, new) for page in site.rglob("*.html")}
+    for name in sorted(names - {LEFT_OUT}):
+        was, now = (list(sentences(site / name)) for site in (old, new))
+        before, after = ([VOLATILE.sub("…", text) for text in page] for page in (was, now))
+        for tag, a, b, c, d in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
+            if tag != "equal":
+                for pair in zip_longest(was[a:b], now[c:d], fillvalue=""):
+                    yield name.with_suffix("").as_posix(), *pair
+
+
+def sentences(page: Path) -> Iterator[str]:
+    """Yield the sentences of a page's article, none where there is no page.
+
+    A table row is one piece of text, and so is a line of printed output.
+    """
+    soup = BeautifulSoup(page.read_text("utf8") if page.is_file() else "", "html.parser")
+    article = soup.select_one("article") or soup
+    for hidden in article.select(HIDDEN):
+        hidden.decompose()
+    for cell in article.select("th, td"):
+        cell.string = f"{cell.get_text(' ', strip=True)} | "
+    for output in article.select("pre"):
+        output.string = output.get_text().replace("\n", BREAK)
+    for block in article.select(BLOCKS):
+        block.insert(0, BREAK)
+        block.append(BREAK)
+    for piece in article.get_text().split(BREAK):
+        yield from (s for s in END.split(" ".join(piece.split())) if s and not LOG.match(s))
+
+
 def summary(refresh: Refresh) -> str:
     """Say the result in one line."""
     return (
@@ -143,8 +197,7 @@ def _tables(refresh: Refresh) -> Iterator[tuple[str, list[Row], str]]:
             for name, (was, now) in refresh.recorded.items()]  # fmt: skip
     head = ("bundle", f"under {refresh.versions[0]}", f"under {refresh.versions[1]}", "reason")
     yield "Recorded bundles", [head, *rows], "No bundle is recorded."
-    for page, moved in groupby(refresh.moved, key=lambda one: one.page):
-        sentences = [(one.kind, one.old, one.new) for one in moved]
-        yield f"Sentences of {page}", [("written by", "old", "new"), *sentences], ""
+    for page, moved in groupby(refresh.moved, key=lambda one: one[0]):
+        yield f"Sentences of {page}", [("old", "new"), *(one[1:] for one in moved)], ""
     if not refresh.moved:
         yield "Sentences", [("", "")], "No sentence of the site moved."

@@ -1,40 +1,12 @@
-"""What `make book RELEASE=1` asks for beyond a build: a clean tree and current evidence."""
+"""What `make book RELEASE=1` asks for beyond a build and a clean tree: current evidence."""
 
-import subprocess
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from robo_genesis.evidence.bundle import GitRecord
 from robo_genesis.evidence.status import Status, bundle_status, recorded_folders, recorded_status
+from robo_genesis.git import git
 from robo_genesis.lessons import find_lesson
-
-SHOWN = 5
-
-
-def unclean(root: Path) -> list[str]:
-    """Return why a checkout is not exactly one commit; nothing where it is.
-
-    Args:
-        root: the checkout.
-    """
-    command = ["git", "-C", str(root), "status", "--porcelain", "--untracked-files=all"]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-    except (OSError, subprocess.CalledProcessError) as error:
-        said = getattr(error, "stderr", "") or str(error)
-        return [
-            f"{root} is no git checkout: {said.strip()}. A release is built from one commit: "
-            "clone the repository and build there."
-        ]
-    changed = done.stdout.splitlines()
-    if not changed:
-        return []
-    more = f", and {len(changed) - SHOWN} more" if len(changed) > SHOWN else ""
-    names = ", ".join(line[3:] for line in changed[:SHOWN])
-    return [
-        f"The tree has {len(changed)} changed or new files ({names}{more}). A release is built "
-        "from one commit: commit or stash them."
-    ]
 
 
 def lacking(book: Path, built: Mapping[str, Path | None], root: Path) -> list[str]:
@@ -69,7 +41,7 @@ def _required(book: Path, lesson: str, folder: Path | None, root: Path) -> Itera
             f"{needed.state}: {needed.reason}"
         )
     if here.manifest is not None:
-        commit = _head(root)
+        commit = git(root, "rev-parse", "HEAD").strip()
         yield from _of_commit(f"{lesson} on {here.backend}, this build", here, commit)
 
 
@@ -88,8 +60,3 @@ def _of_commit(what: str, status: Status, commit: str | None = None) -> Iterator
         yield f"{what}: recorded {found}. Commit first, then record again."
     elif commit is not None and git.commit != commit:
         yield f"{what}: recorded at commit {git.commit}, the tree is at {commit}. Build again."
-
-
-def _head(root: Path) -> str:
-    command = ["git", "-C", str(root), "rev-parse", "HEAD"]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()

@@ -1,24 +1,22 @@
-"""The steps of `make repin`: try another engine version in a copy, then change pin and lock.
+"""The steps of `make repin`: try another engine version in a worktree, then change pin and lock.
 
-Nothing of the checkout is touched before the last step. That one is `apply`, which a kill leaves
-at the old or the new state.
+Nothing of the checkout is touched before the last step, which writes two files.
 """
 
-import fcntl
-import os
 import shutil
-import signal
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis import project, refresh
-from robo_genesis.apply import apply, digest, recover
 from robo_genesis.build import Progress
 from robo_genesis.evidence import report
 from robo_genesis.evidence.status import Status
+from robo_genesis.files import locked
+from robo_genesis.git import git, git_or_none, unclean
+from robo_genesis.logged import run_logged
 from robo_genesis.pin import (
     FILES,
     RepinError,
@@ -30,7 +28,14 @@ from robo_genesis.pin import (
 )
 from robo_genesis.project import ENGINE
 from robo_genesis.publish import PUBLISHED
-from robo_genesis.workcopy import CommandError, copy_tree, run_logged
+
+SHARED = ("engine", "pages")
+"""Caches that the worktree shares with the checkout: their folders are named by their inputs."""
+
+OLD_BUILD = "old"
+"""The folder beside the worktree that keeps the build with the old version."""
+TAIL = 25
+"""How many last lines of a log an error shows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +53,7 @@ class Repin:
 
 
 def run_repin(asked: Repin) -> list[str]:
-    """Try the version in a copy of the checkout and apply it.
+    """Try the version in a worktree of the last commit, then write pin and lock.
 
     Args:
         asked: see there.
@@ -58,78 +63,93 @@ def run_repin(asked: Repin) -> list[str]:
 
     Raises:
         RepinError, ProjectError: nothing was changed.
-        ApplyError: pin or lock were edited meanwhile; nothing was changed.
-        UnfinishedError: the next make completes the change.
     """
     folder = asked.cache / "repin"
-    recover(asked.root)
     require_plain_files(asked.root)
     old = project.engine_pin(asked.root)
     new = chosen_version(asked.genesis, old, asked.versions)
+    if problems := unclean(asked.root, "make repin tries the last commit"):
+        raise RepinError("\n".join(problems))
     require_locked_packages(asked.root)
-    with only_repin(folder):
-        work = folder / "work"
-        try:
-            steps = Steps(asked, old, new, work, folder / "logs", Progress(asked.say))
-            before = steps.copy()
-            pages = steps.try_version()
-            with uninterrupted():
-                apply(asked.root, work, before)
-                tidy(folder)
-        finally:
-            tidy(folder)
+    before = texts(asked.root)
+    with only_repin(folder), worktree(asked, folder / "work") as work:
+        steps = Steps(asked, old, new, work, folder / "logs", Progress(asked.say))
+        pages = steps.try_version()
+        if texts(asked.root) != before:
+            raise RepinError(
+                f"{' or '.join(FILES)} changed while {new} was tried, so neither is written. "
+                "Commit or stash that change, then run make repin again; what is compiled and "
+                "executed is reused."
+            )
+        write(asked.root, texts(work))
     return [
         f"Pinned: {ENGINE} {old} → {new}, in {' and '.join(FILES)}. Nothing is committed.",
         *(f"Report: {page}" for page in pages),
         "Review both; say in CHANGELOG.md under \"Evidence changed\" what changed. The next make "
         "book sets up .venv anew (with PYTHON=…, install the lock there first).",
+        f"git restore {' '.join(FILES)} brings the old pin back.",
     ]  # fmt: skip
 
 
-def tidy(folder: Path) -> None:
-    """Remove the copy and the old build; what a kill leaves, the next make repin removes."""
-    for rubbish in (folder / "work", folder / "old"):
-        shutil.rmtree(rubbish, ignore_errors=True)
+def texts(root: Path) -> dict[str, bytes]:
+    """Return the files of the pin by name."""
+    return {name: (root / name).read_bytes() for name in FILES}
 
 
-@contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Ignore a Ctrl-C that comes too late: it would say that nothing was changed."""
-    signals = (signal.SIGINT, signal.SIGTERM)
-    handlers = [signal.signal(one, signal.SIG_IGN) for one in signals]
-    try:
-        yield
-    finally:
-        for one, handler in zip(signals, handlers, strict=True):
-            signal.signal(one, handler)
+def write(root: Path, files: dict[str, bytes]) -> None:
+    """Write the files of the pin."""
+    for name, content in files.items():
+        (root / name).write_bytes(content)
 
 
-@contextmanager
-def only_repin(folder: Path) -> Iterator[None]:
+def only_repin(folder: Path) -> AbstractContextManager[None]:
     """Hold the lock of changing the pin.
 
     Raises:
         RepinError: another process holds it.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "lock").open("a+") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            lock.seek(0)
-            raise RepinError(
-                f"Another make repin runs here (process {lock.read().strip() or 'unknown'}). "
-                "Wait for it, or stop it with Ctrl-C there."
-            ) from None
-        lock.truncate(0)
-        lock.write(str(os.getpid()))
-        lock.flush()
-        yield
+    return locked(
+        folder / "lock",
+        lambda process: RepinError(
+            f"Another make repin runs here (process {process}). Wait for it, or stop it with "
+            "Ctrl-C there."
+        ),
+    )
+
+
+@contextmanager
+def worktree(asked: Repin, work: Path) -> Iterator[Path]:
+    """Check the last commit out in a worktree with shared caches; remove it in the end.
+
+    Raises:
+        ProjectError: git cannot make it.
+    """
+    remove_worktree(asked.root, work)  # of a run that was killed
+    try:
+        git(asked.root, "worktree", "add", "--detach", str(work), "HEAD")
+        (work / ".cache").mkdir()
+        for name in SHARED:
+            (asked.cache / name).mkdir(parents=True, exist_ok=True)
+            (work / ".cache" / name).symlink_to(asked.cache / name)
+        yield work
+    finally:
+        remove_worktree(asked.root, work)
+
+
+def remove_worktree(root: Path, work: Path) -> None:
+    """Remove a worktree, the old build beside it and git's record, a locked one included.
+
+    `git worktree prune` would keep the record of one whose making was killed, and forget worktrees
+    of the user on a disk that is not mounted.
+    """
+    for folder in (work, work.with_name(OLD_BUILD)):
+        shutil.rmtree(folder, ignore_errors=True)
+    git_or_none(root, "worktree", "remove", "--force", "--force", str(work))
 
 
 @dataclass(frozen=True, slots=True)
 class Steps:
-    """The steps in the copy, in their order, each with its log."""
+    """The steps in the worktree, in their order, each with its log."""
 
     asked: Repin
     old: str
@@ -138,36 +158,29 @@ class Steps:
     logs: Path
     progress: Progress
 
-    def copy(self) -> dict[str, str]:
-        """Copy the checkout; return each file that will be changed with its digest."""
-        self.progress("copy", str(self.work))
-        copy_tree(self.asked.root, self.work, self.asked.cache)
-        return {name: digest(self.work / name) for name in FILES}
-
     def try_version(self) -> list[Path]:
         """Resolve, measure with the old and the new version, report, test; return the report."""
-        old_texts = {name: (self.work / name).read_bytes() for name in FILES}
+        old_texts = texts(self.work)
         self.resolve()
-        new_texts = {name: (self.work / name).read_bytes() for name in FILES}
-        self._write(old_texts)
+        new_texts = texts(self.work)
+        write(self.work, old_texts)
         before = self.build_old()
-        self._write(new_texts)
+        write(self.work, new_texts)
         self.build_new()
         pages = self.report(old_texts, before)
         self._run("test", f"all tests with {self.new}", "make", "test")
         return pages
 
     def resolve(self) -> None:
-        """Change the pin of the copy, and in its lock only what the pin forces to change."""
+        """Change the pin of the worktree, and in its lock only what the pin forces to change."""
         set_pin(self.work, self.old, self.new)
         script = str(self.work / "build_scripts" / "lock.py")
         self._run("resolve", f"{ENGINE} {self.new}", sys.executable, script, "--keep")
 
     def build_old(self) -> tuple[Path, dict[str, Status]]:
-        """Build the book as it stands, with this environment; return it and what is recorded."""
+        """Build the book with this environment; return the build and what is recorded."""
         self._run("book", f"with {self.old}", "make", "book", f"PYTHON={sys.executable}")
-        aside = self.work.parent / "old"
-        shutil.rmtree(aside, ignore_errors=True)
+        aside = self.work.with_name(OLD_BUILD)
         (self.work / "book" / PUBLISHED).rename(aside)
         return aside, refresh.recorded(self.work)
 
@@ -180,7 +193,7 @@ class Steps:
     def report(
         self, old_texts: dict[str, bytes], before: tuple[Path, dict[str, Status]]
     ) -> list[Path]:
-        """Hold both builds one against the other and write the refresh report."""
+        """Compare both builds and write the refresh report."""
         aside, recorded = before
         found = refresh.compare_builds(
             (self.old, self.new), (aside, self.work / "book" / PUBLISHED),
@@ -192,20 +205,15 @@ class Steps:
         self.progress("report", refresh.summary(found), str(folder))
         return pages
 
-    def _write(self, texts: dict[str, bytes]) -> None:
-        for name, text in texts.items():
-            (self.work / name).write_bytes(text)
-
     def _run(self, stage: str, what: str, *command: str) -> None:
-        """Run one command of the copy; a failure says which, with which version, and what now."""
+        """Run one command in the worktree; a failure names it, its version and its log."""
         self.progress(stage, what)
-        log = (
-            self.logs / f"{stage}-{self.old if command[-1].startswith('PYTHON=') else self.new}.log"
-        )
-        try:
-            run_logged(command, self.work, log, lambda: self.progress(stage, what, "still running"))
-        except CommandError as failure:
+        version = self.old if command[-1].startswith("PYTHON=") else self.new
+        log = self.logs / f"{stage}-{version}.log"
+        if run_logged(command, self.work, log, lambda: self.progress(stage, what, "still running")):
+            lines = log.read_text("utf8", errors="replace").rstrip().splitlines()
             raise RepinError(
-                f"{failure}\n\nGENESIS={self.new}: {stage} ({what}) failed. "
+                "\n".join([*lines[-TAIL:], f"Log: {log}"])
+                + f"\n\nGENESIS={self.new}: {stage} ({what}) failed. "
                 f"The checkout still pins {self.old}, as it was."
-            ) from failure
+            )

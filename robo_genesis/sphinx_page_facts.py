@@ -1,7 +1,6 @@
 """A page's reading time below its title, its history from git at its end, and its description."""
 
 import shutil
-import subprocess
 import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,6 +11,8 @@ from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
+
+from robo_genesis.git import git_or_none
 
 WORDS_A_MINUTE = 200
 """Slow reading, as technical prose asks for; code, tables and formulas are not counted."""
@@ -55,24 +56,12 @@ def reading_time(words: int) -> str:
     return f"About {minutes} min to read: {words:,} words of text at {WORDS_A_MINUTE} a minute."
 
 
-def git(folder: Path, *arguments: str) -> str | None:
-    """Return what git prints in a folder, None where it fails or is not installed."""
-    try:
-        done = subprocess.run(
-            ["git", "-C", str(folder), *arguments],
-            capture_output=True, encoding="utf8", errors="replace", check=True,
-        )  # fmt: skip
-    except (OSError, subprocess.CalledProcessError):
-        return None
-    return done.stdout
-
-
 @lru_cache(maxsize=8)
 def _why_unknown(folder: Path) -> str:
     """Return why a folder's history cannot be read, nothing where it can."""
     if shutil.which("git") is None:
         return "Git is not installed where this site was built."
-    shallow = git(folder, "rev-parse", "--is-shallow-repository")
+    shallow = git_or_none(folder, "rev-parse", "--is-shallow-repository")
     if shallow is None:
         return "Git knows no history of this page where this site was built."
     if shallow.strip() == "true":
@@ -86,12 +75,12 @@ def history(file: Path) -> History:
     if unknown:
         return History(unknown=unknown)
     form = ("log", f"-n{COMMITS}", "--format=%cs%x09%s", "--", file.name)
-    lines = (git(file.parent, *form) or "").splitlines()
+    lines = (git_or_none(file.parent, *form) or "").splitlines()
     commits = tuple((day, said) for day, _, said in (line.partition("\t") for line in lines))
     if not commits:
         return History(unknown="The page is in no commit yet.")
     return History(
-        commits, changed=bool(git(file.parent, "status", "--porcelain", "--", file.name))
+        commits, changed=bool(git_or_none(file.parent, "status", "--porcelain", "--", file.name))
     )
 
 

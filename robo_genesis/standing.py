@@ -9,12 +9,12 @@ import hashlib
 import json
 import os
 import platform
-import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from robo_genesis.git import git_or_none
 from robo_genesis.project import COURSE, ProjectError, environment_contract, require_pinned_engine
 
 RECORD = "standing.json"
@@ -115,19 +115,9 @@ def installed(places: Sequence[str]) -> list[tuple[str, str, int]]:
 def history(book: Path) -> list[str | None]:
     """Return what the pages' histories follow from: the commit, and what is not in it."""
     return [
-        _git(book, "rev-parse", "HEAD", "--is-shallow-repository"),
-        _git(book, "status", "--porcelain", "-z", "--", "."),
+        git_or_none(book, "rev-parse", "HEAD", "--is-shallow-repository"),
+        git_or_none(book, "status", "--porcelain", "-z", "--", "."),
     ]
-
-
-def _git(folder: Path, *words: str) -> str | None:
-    """Return what git prints, None where there is none or it fails."""
-    try:
-        command = ["git", "--no-optional-locks", "-C", str(folder), *words]
-        done = subprocess.run(command, capture_output=True, check=False)
-    except FileNotFoundError:
-        return None
-    return os.fsdecode(done.stdout) if done.returncode == 0 else None
 
 
 def site_digest(published: Path) -> str:

@@ -1,6 +1,5 @@
 """The commands around the package: what `make` and `make serve` say of a wrong environment."""
 
-import json
 import os
 import shutil
 import socket
@@ -10,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis import apply
 from robo_genesis.project import ROOT
 
 
@@ -54,66 +52,9 @@ def test_a_python_without_the_packages_is_refused_with_their_names_and_the_mend(
     assert str(checkout) not in done.stdout.splitlines()
 
 
-@pytest.fixture
-def between_pins(checkout):
-    """A checkout whose make repin was killed after its first file was in place."""
-    (checkout / "robo_genesis").mkdir()
-    shutil.copy(ROOT / "robo_genesis" / "apply.py", checkout / "robo_genesis")
-    names = ("pyproject.toml", "requirements.lock")
-    staged = checkout / apply.STAGED
-    for folder, text in ((checkout, "old"), (staged / apply.FILES, "new")):
-        folder.mkdir(parents=True, exist_ok=True)
-        for name in names:
-            (folder / name).write_text(text)
-    new = apply.digest(staged / apply.FILES / names[0])
-    entries = [{"name": n, "old": apply.digest(checkout / n), "new": new} for n in names]
-    (staged / apply.JOURNAL).write_text(json.dumps(entries))
-    (checkout / names[0]).write_text("new")
-    return checkout
-
-
 def make(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     command = ["make", "-C", str(folder), *words, f"BASE_PYTHON={sys.executable}"]
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
-
-
-@pytest.mark.parametrize("target", ["help", "clean", "serve PYTHON=true"])
-def test_any_target_first_completes_a_change_of_the_pin(between_pins, target):
-    done = make(between_pins, *target.split())
-    assert done.returncode == 0, done.stderr
-    assert (between_pins / "requirements.lock").read_text() == "new"
-    assert not (between_pins / apply.STAGED).exists()
-
-
-SCRIPTS = sorted(path.name for path in (ROOT / "build_scripts").glob("*.py"))
-
-
-def run_script(checkout: Path, name: str) -> subprocess.CompletedProcess[str]:
-    """Run a script without make, with a wish that is refused soon after."""
-    for folder in ("build_scripts", "robo_genesis"):
-        ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(ROOT / folder, checkout / folder, ignore=ignored, dirs_exist_ok=True)
-    refused = {"RENDER": "7", "PORT": "none", "GENESIS": "", "BUNDLE": str(checkout / "none")}
-    words = [sys.executable, str(checkout / "build_scripts" / name), "--no-such-option"]
-    environment = os.environ | refused | {"PYTHONPATH": str(checkout)}
-    return subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
-
-
-@pytest.mark.parametrize("name", SCRIPTS)
-def test_a_script_without_make_first_completes_a_change_of_the_pin(between_pins, name):
-    done = run_script(between_pins, name)
-    assert (between_pins / "requirements.lock").read_text() == "new", done.stderr
-    assert not (between_pins / apply.STAGED).exists()
-
-
-@pytest.mark.parametrize("name", SCRIPTS)
-def test_an_edit_between_two_pins_stops_every_script(between_pins, name):
-    (between_pins / "requirements.lock").write_text("mine")
-    done = run_script(between_pins, name)
-    assert done.returncode == (2 if name == "compare.py" else 1)
-    assert done.stderr.startswith("An interrupted make repin cannot be completed: make repin was")
-    assert "Traceback" not in done.stderr
-    assert (between_pins / "requirements.lock").read_text() == "mine"
 
 
 def test_clean_keeps_what_the_engine_compiled_and_distclean_does_not(checkout):
@@ -127,15 +68,6 @@ def test_clean_keeps_what_the_engine_compiled_and_distclean_does_not(checkout):
     assert not executed.exists()
     assert make(checkout, "distclean").returncode == 0
     assert not compiled.exists()
-
-
-def test_an_edit_between_two_pins_stops_every_target(between_pins):
-    (between_pins / "requirements.lock").write_text("mine")
-    done = make(between_pins, "clean")
-    assert done.returncode != 0
-    assert "requirements.lock was edited since" in done.stderr
-    assert "The checkout is between two pins, see above" in done.stderr
-    assert (between_pins / "requirements.lock").read_text() == "mine"
 
 
 def test_a_port_in_use_is_refused(tmp_path):

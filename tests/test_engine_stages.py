@@ -1,7 +1,7 @@
 """The stages of a build in separate clones that share nothing but the executed pages.
 
-Each clone is a copy of the checkout with caches of its own, and a small book: the cells of the L04
-lab without its prose, and a ball that falls. The commands are those of the workflow.
+Each clone is a copy of the checkout's files with caches of its own, and a small book: the cells of
+the L04 lab without its prose, and a ball that falls. The commands are those of the workflow.
 """
 
 import json
@@ -18,8 +18,8 @@ from tiny_book import cell, make_book, notebook
 
 from robo_genesis import npm
 from robo_genesis.evidence.bundle import sha256
+from robo_genesis.git import git
 from robo_genesis.project import BOOK, ROOT
-from robo_genesis.workcopy import copy_tree
 
 pytestmark = pytest.mark.engine
 
@@ -38,11 +38,15 @@ print("height", float(ball.get_pos()[2]))"""
 
 
 def clone(folder: Path, name: str) -> Path:
-    """Copy the checkout with empty caches, put the small book in, lend it npm's packages."""
+    """Copy the checkout's files, with a small book; only npm's packages are shared."""
     work = folder / name
-    copy_tree(ROOT, work, folder / f"cache of {name}")
+    listed = git(ROOT, "ls-files", "-z", "--cached", "--others", "--exclude-standard")
+    for file in listed.split("\0"):
+        if (ROOT / file).is_file() and not file.startswith("book/"):
+            (work / file).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / file, work / file)
+    (work / ".cache").mkdir()
     (work / ".cache" / "npm").symlink_to(npm.packages().parents[1])
-    shutil.rmtree(work / "book")
     _, front, body = (BOOK / "lessons/l04-joint-control/lab.md").read_text().split("---\n", 2)
     lab = f"---\n{front}---\n# Lab\n\n" + "\n\n".join(CELLS.findall(body))
     make_book(work, lab=lab, ball=notebook(cell(BALL), title="Ball"))

@@ -12,6 +12,7 @@ from robo_genesis import project
 from robo_genesis.evidence import report as pages
 from robo_genesis.evidence.compare import compare, specification
 from robo_genesis.evidence.findings import EQUAL, WITHIN
+from robo_genesis.git import git
 from robo_genesis.project import ROOT
 
 pytestmark = pytest.mark.repin
@@ -44,8 +45,7 @@ def texts(clone: Path) -> dict[str, bytes]:
 
 
 def changed(clone: Path) -> list[str]:
-    command = ["git", "-C", str(clone), "status", "--porcelain"]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+    return git(clone, "status", "--porcelain").split()
 
 
 def built(clone: Path) -> Path:
@@ -91,9 +91,11 @@ def test_there_and_back(clone):
         assert f"/v{PIN}" not in html, page
         assert predicate(first)["run_id"][:8] not in html, page
 
+    identity = ("-c", "user.name=A", "-c", "user.email=a@example.org")
+    git(clone, *identity, "commit", "--quiet", "--all", "--message", f"Genesis {OTHER}")
     make(clone, "repin", f"GENESIS={PIN}")
     assert texts(clone) == before
-    assert changed(clone) == []
+    assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
     make(clone, "book")
     third = keep(clone, "third")
     assert predicate(third)["evidence_key"] == predicate(first)["evidence_key"]

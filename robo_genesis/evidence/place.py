@@ -5,8 +5,10 @@ import shutil
 from pathlib import Path
 
 from robo_genesis.project import ProjectError
+from robo_genesis.publish import NEXT, OLD, beside, settle, swap
 
-NEXT, OLD = ".next", ".old"
+HIDDEN = "."
+"""How the next and the old state of a bundle begin, so that neither is taken for a bundle."""
 
 
 def require_folder(evidence: Path) -> None:
@@ -39,35 +41,20 @@ def put(bundle: Path, lesson: Path) -> Path:
             f"{place} is no evidence bundle: it has no manifest.json, or is a link. "
             "Move it away, or name another folder with TO=folder."
         )
-    following, aside = _beside(place, NEXT), _beside(place, OLD)
     try:
-        shutil.copytree(bundle, following)
-        if place.exists():
-            os.rename(place, aside)
-        os.rename(following, place)
+        shutil.copytree(bundle, beside(place, NEXT, HIDDEN))
+        swap(place, HIDDEN)
     finally:
         recover(lesson.parent)
     return place
 
 
 def recover(evidence: Path) -> None:
-    """Bring recorded evidence into order after a command that was killed.
-
-    Killed between the two renames, the old bundle stands aside: it comes back. Killed earlier or
-    later, what is left is rubbish.
+    """Bring recorded evidence into order after a command that was killed; see `publish.settle`.
 
     Args:
         evidence: the folder of all recorded bundles.
     """
-    for aside in evidence.glob(f"*/.*{OLD}"):
-        place = aside.with_name(aside.name.removeprefix(".").removesuffix(OLD))
-        if place.exists():
-            shutil.rmtree(aside)
-        else:
-            aside.rename(place)
-    for folder in evidence.glob(f"*/.*{NEXT}"):
-        shutil.rmtree(folder)
-
-
-def _beside(place: Path, suffix: str) -> Path:
-    return place.with_name(f".{place.name}{suffix}")
+    for suffix in (OLD, NEXT):
+        for left in evidence.glob(f"*/{HIDDEN}*{suffix}"):
+            settle(left.with_name(left.stem.removeprefix(HIDDEN)), HIDDEN)

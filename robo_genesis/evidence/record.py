@@ -7,7 +7,6 @@ import json
 import os
 import platform
 import shutil
-import subprocess
 import uuid
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -24,6 +23,7 @@ from robo_genesis import project, runtime
 from robo_genesis.checks import Check
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.traces import write_traces
+from robo_genesis.git import git_or_none
 from robo_genesis.lessons import find_page
 from robo_genesis.robot_model import JointMap
 from robo_genesis.trace import Stamped
@@ -243,16 +243,9 @@ def driver_version() -> str | None:
 
 def git_record() -> dict[str, Any] | None:
     """Return commit and dirty flag of the checkout, None outside one."""
-    command = ["git", "-C", str(PACKAGE.parent)]
-    try:
-        commit, status = (
-            subprocess.run([*command, *rest], capture_output=True, text=True, check=True).stdout
-            for rest in (
-                ["rev-parse", "HEAD"],
-                ["status", "--porcelain", "--untracked-files=normal"],
-            )
-        )
-    except (OSError, subprocess.CalledProcessError):
+    commit = git_or_none(PACKAGE.parent, "rev-parse", "HEAD")
+    status = git_or_none(PACKAGE.parent, "status", "--porcelain", "--untracked-files=normal")
+    if commit is None or status is None:
         return None
     return {"commit": commit.strip(), "dirty": bool(status.strip())}
 

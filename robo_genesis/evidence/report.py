@@ -1,6 +1,5 @@
 """A comparison for readers: a summary, a Markdown page, an HTML page that fetches nothing."""
 
-import os
 from collections.abc import Iterator
 from html import escape
 from itertools import groupby
@@ -10,6 +9,7 @@ from robo_genesis import tables
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import Comparison
 from robo_genesis.evidence.findings import SEVERITY, Section
+from robo_genesis.files import write_whole
 
 COLUMNS = ("result", "what", "old", "new", "Δ", "allowed")
 Row = tuple[str, ...]
@@ -112,16 +112,10 @@ def html_page(name: str, body: list[str]) -> str:
 
 
 def write(folder: Path, markdown_text: str, html_text: str) -> list[Path]:
-    """Write both pages of a report, each in one step; return their paths."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """Write both pages of a report, each in one move; return their paths."""
     pages = {"report.md": markdown_text, "report.html": html_text}
     for name, text in pages.items():
-        partial = folder / f".{name}.{os.getpid()}.partial"
-        try:
-            partial.write_text(text, encoding="utf-8")
-            partial.replace(folder / name)
-        finally:
-            partial.unlink(missing_ok=True)
+        write_whole(folder / name, text.encode())
     return [folder / name for name in pages]
 
 

@@ -10,7 +10,8 @@ from spoilers import part, seal
 from robo_genesis import project, refresh
 from robo_genesis.evidence import bundle, status
 from robo_genesis.evidence.status import Status
-from robo_genesis.refresh import compare_builds, recorded
+from robo_genesis.refresh import LEFT_OUT, compare_builds, moved_sentences, recorded
+from robo_genesis.sphinx_ledger import LEDGER
 
 
 @pytest.fixture
@@ -148,3 +149,58 @@ def test_a_built_bundle_that_cannot_be_read_is_an_error(builds):
     (builds[1] / "evidence" / "l04" / "cpu" / "metrics.json").write_text("{}")
     with pytest.raises(bundle.BundleRefused):
         compared(builds)
+
+
+PAGE = """<nav><p>Menu 1.</p></nav><article>
+<h1>Lesson</h1>
+<p>It rose in <span class="measured">{time} s</span>. Then it
+stayed, run {run}, {date}.</p>
+<ul><li>one <ul><li>inner</li></ul></li></ul>
+<div class="cell_input"><pre>x = {source}</pre></div>
+<table><tr><th>case</th><th>value</th></tr><tr><td>G1</td><td><p>{cell}</p></td></tr></table>
+<pre>line one
+[Genesis] [04:28:32] [INFO] Built in {source} s.
+[W 11/21/26 04:41:27.754 12581] [frontend.cpp:b@1] {source}
+counted {line}</pre>
+<table><tr><td>run</td><td>{run}</td></tr><tr><td>sha256</td><td>{digest}</td></tr></table>
+<script>var n = {source};</script>
+</article>"""
+SAME = {
+    "time": "0.31", "source": "1", "cell": "7.5", "line": "12345678", "date": "2026-11-21",
+    "run": "7c694fce", "digest": "0123456789abcdef" * 4,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("change", "moved"),
+    [
+        ({}, []),
+        ({"source": "2"}, []),
+        ({"run": "12345678"}, []),
+        ({"digest": "f" * 64}, []),
+        ({"date": "2027-01-02T05:11:12.25Z"}, []),
+        ({"time": "0.32"}, [("It rose in 0.31 s.", "It rose in 0.32 s.")]),
+        ({"cell": "7.6"}, [("G1 | 7.5 |", "G1 | 7.6 |")]),
+        ({"line": "87654321"}, [("counted 12345678", "counted 87654321")]),
+        ({"line": "12345678\nmore"}, [("", "more")]),
+        ({"date": "5"}, [("Then it stayed, run 7c694fce, 2026-11-21.",
+                          "Then it stayed, run 7c694fce, 5.")]),
+    ],
+)  # fmt: skip
+def test_a_sentence_that_changed_is_listed_and_what_any_two_runs_differ_in_is_not(
+    tmp_path, change, moved
+):
+    for name, values in (("old", SAME), ("new", SAME | change)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "lab.html").write_text(PAGE.format_map(values))
+    found = list(moved_sentences(tmp_path / "old", tmp_path / "new"))
+    assert found == [("lab", *pair) for pair in moved]
+
+
+def test_a_page_of_one_build_alone_is_listed_and_the_ledger_never(tmp_path):
+    assert LEFT_OUT.as_posix() == f"{LEDGER}.html"
+    for name in (LEFT_OUT, "more.html"):
+        page = tmp_path / "new" / name
+        page.parent.mkdir(parents=True, exist_ok=True)
+        page.write_text("<p>New.</p>")
+    assert list(moved_sentences(tmp_path / "old", tmp_path / "new")) == [("more", "", "New.")]

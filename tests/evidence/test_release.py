@@ -11,7 +11,8 @@ from test_status import spoil_stale
 
 from robo_genesis import l04
 from robo_genesis.evidence.status import recorded_folders, recorded_status
-from robo_genesis.release import lacking, unclean
+from robo_genesis.git import unclean
+from robo_genesis.release import lacking
 
 
 def git(folder: Path, *arguments: str) -> str:
