@@ -86,7 +86,7 @@ clean: ## remove the built site and the executed pages, keep the compiled kernel
 
 .PHONY: distclean
 distclean: clean ## remove the environment and every cache too
-	@rm -rf .venv .cache .bench
+	@rm -rf .venv .cache
 
 .PHONY: lock
 lock: $(ENVIRONMENT) ## resolve requirements.lock anew from pyproject.toml
@@ -103,7 +103,7 @@ test-repin: $(ENVIRONMENT) ## change the pin there and back in a clone (network;
 
 # ROWS and RUNS reach the script as environment variables.
 .PHONY: bench
-bench: $(ENVIRONMENT) ## measure whole commands against bare ones (ROWS=names RUNS=n; a quiet machine)
+bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=names RUNS=n; a quiet machine)
 	@"$(PY)" build_scripts/bench.py
 
 .PHONY: has-packages

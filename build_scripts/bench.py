@@ -1,96 +1,199 @@
-"""Measure what the course's commands cost against bare ones: `make bench`.
+"""Measure the course's commands against bare counterparts: `make bench`.
 
-Environment: ROWS (names of rows, all where it is not set) and RUNS (of each side of each row). It
-works in a copy of the checkout; nothing else should run beside it. The table is printed and kept in
-`.bench/latest.json`. Exit status: 0 measured, whether the limits were kept or not, 1 a command
-failed, 130 interrupted.
+Environment: ROWS (names of rows, by default all) and RUNS (of each side, by default 3). It checks
+the last commit out in `.cache/bench`, with the compiled kernels and the executed pages of this
+checkout; uncommitted changes are not measured. The two sides of a row run in turn. Nothing else
+should run on the machine. Exit status: 0 measured, 1 a command failed, 130 interrupted.
 """
 
 import os
 import shutil
+import statistics
+import subprocess
 import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import partial
 
-from robo_genesis import bench, bench_clone, bench_rows, project
-from robo_genesis.apply import recover_or_exit
-from robo_genesis.build import Progress
-from robo_genesis.command import as_published, run
-from robo_genesis.pages import PageError
-from robo_genesis.project import CACHE, ROOT, ProjectError
+import nbformat
+import yaml
 
-LATEST = ROOT / ".bench" / "latest.json"
+from robo_genesis import project, tables
+from robo_genesis.command import run
+from robo_genesis.page_cache import notebooks_folder
+from robo_genesis.pages import Page, PageError, find_pages
 
+Sides = tuple[Callable[[], float], Callable[[], float]]
+"""Run the course's command, or its bare counterpart, and return the elapsed time [s]."""
 
-def measured() -> list[str]:
-    """Measure the rows that were asked for, and return table, peak memory and where both are."""
-    runs, say = asked_runs(), partial(Progress(partial(print, flush=True)), "bench")
-    folder = CACHE / "bench"
-    clone = bench_clone.Clone(folder / "work", folder / "logs")
-    known = [row.name for row in bench_rows.rows(clone)]
-    names = bench.chosen(os.environ.get("ROWS") or "", [*known, bench_rows.MEMORY])
+TREE = project.CACHE / "bench"
+NOT_PASSED_ON = (
+    "MAKEFLAGS", "MFLAGS", "MAKELEVEL", "RENDER", "JOBS", "RELEASE", "BUNDLE", "GENESIS",
+    "SITE_URL", "EXECUTED", "ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND",
+)  # fmt: skip
+"""Variables of the outer make that would change a measured command."""
 
-    facts, results, last = bench.machine(), list[bench.Result](), list[str]()
-    try:
-        bench_clone.make_clone(ROOT, CACHE, folder, say)
-        for row in bench_rows.rows(clone):
-            if row.name in names:
-                results.append(bench.take(row, runs, say))
-                bench.keep(LATEST, bench.record(results, facts))  # a later row may fail
-        if bench_rows.MEMORY in names:
-            say(f"{bench_rows.MEMORY}  a build that executes all pages")
-            peak = bench_rows.peak_of_full_build(clone)
-            facts[bench_rows.MEMORY] = {"peak": peak, "limit": bench_rows.MEMORY_LIMIT}
-            last = [memory_line(peak)]
-    finally:
-        for own in ("work", "bare", "executed"):  # logs stay
-            shutil.rmtree(folder / own, ignore_errors=True)
-    facts["load_average_after"] = bench.machine()["load_average"]
-    file = bench.keep(LATEST, bench.record(results, facts))
-    return [
-        *([bench.table(results)] if results else []),
-        *last,
-        machine_line(facts),
-        f"Kept: {file}",
-    ]
+BARE_CONFIG = """\
+extensions = ["myst_nb", "sphinx_external_toc", "sphinx_design", "sphinx_book_theme"]
+extensions += ["robo_genesis.sphinx_ext"]  # reads the executed pages
+html_theme = "sphinx_book_theme"
+external_toc_path, external_toc_exclude_missing = "_toc.yml", True
+exclude_patterns = ["_build*", "_decisions"]
+myst_enable_extensions = {}
+"""
+NBCLIENT = "import nbclient, nbformat, sys; nbclient.execute(nbformat.read(sys.argv[1], 4))"
 
 
-def asked_runs() -> int | None:
-    """Return RUNS, None where it is not set.
+class BenchError(Exception):
+    """A command failed or did other work than is measured; the message says which and why."""
+
+
+def seconds(*command: str, says: str = "", **variables: str) -> float:
+    """Run a command in the worktree, with more environment variables; return its duration [s].
 
     Raises:
-        BenchError: it is no positive number.
+        BenchError: it failed, or its output lacks the words `says`.
     """
-    value = os.environ.get("RUNS") or None
-    if value is not None and not (value.isdecimal() and int(value) > 0):
-        raise bench.BenchError(f"RUNS={value!r} is not valid. Give a number from 1.")
-    return int(value) if value else None
+    passed_on = {name: os.environ[name] for name in os.environ.keys() - {*NOT_PASSED_ON}}
+    environment = passed_on | {"PYTHONPATH": str(TREE)} | variables
+    begin = time.monotonic()
+    done = subprocess.run(command, cwd=TREE, env=environment, capture_output=True, check=False)
+    elapsed = time.monotonic() - begin
+    output = (done.stdout + done.stderr).decode("utf8", "replace")
+    if done.returncode or says not in output:
+        raise BenchError(
+            f"{' '.join(command)}: exit status {done.returncode}, expected 0 and the words "
+            f"{says!r}. The output ends with:\n" + "\n".join(output.rstrip().splitlines()[-15:])
+        )
+    return elapsed
 
 
-def memory_line(peak: int) -> str:
-    """Say how much memory a full build held."""
-    limit = bench_rows.MEMORY_LIMIT
-    met = "met" if peak <= limit else "NOT MET"
-    return (
-        f"Peak memory of a build that executes all pages with JOBS=2: {peak / 2**30:.2f} GiB, "
-        f"limit {limit / 2**30:g} GiB: {met}"
-    )
+python = partial(seconds, sys.executable)
+make = partial(seconds, "make", f"PYTHON={sys.executable}")
 
 
-def machine_line(facts: dict[str, object]) -> str:
-    """Say on what was measured, and how busy it was."""
-    return (
-        f"{project.ENGINE} {facts['engine']}, lock {str(facts['lock'])[:12]}, Python "
-        f"{facts['python']}, {facts['cores']} cores; load average before {facts['load_average']}, "
-        f"after {facts['load_average_after']}"
-    )
+@contextmanager
+def worktree() -> Iterator[None]:
+    """Check the last commit out at TREE, with the caches of this checkout, for a while."""
+    git = ("git", "-C", str(project.ROOT), "worktree")
+    shutil.rmtree(TREE, ignore_errors=True)  # of a bench that was killed
+    try:
+        subprocess.run([*git, "prune"], check=True)
+        subprocess.run([*git, "add", "--quiet", "--detach", str(TREE)], check=True)
+        (TREE / ".cache").symlink_to(project.CACHE)
+        yield
+    finally:
+        shutil.rmtree(TREE, ignore_errors=True)
+        subprocess.run([*git, "prune"], check=False)
 
 
-def main() -> int:
-    """Measure and return the exit status."""
-    recover_or_exit()
-    as_published()
-    return run(measured, "kept", (bench.BenchError, PageError, ProjectError))
+def last_lab() -> Page:
+    """Return the last page of the book that is the lab of a lesson."""
+    return [page for page in find_pages(TREE / "book") if page.page == "lab"][-1]
+
+
+def bare_sphinx() -> Callable[..., float]:
+    """Build the site, and its executed pages by bare Sphinx; return what repeats the latter."""
+    make("book")
+    built = max((project.CACHE / "pages").iterdir(), key=lambda path: path.stat().st_mtime)
+    book, folder = TREE / "book", TREE / "bare"
+    folder.mkdir(exist_ok=True)
+    parse = yaml.safe_load((book / "_config.yml").read_text("utf8"))["parse"]
+    (folder / "conf.py").write_text(BARE_CONFIG.format(parse["myst_enable_extensions"]), "utf8")
+    command = ("-m", "sphinx", "-c", str(folder), str(book), str(folder / "html"))
+    build = partial(python, *command, ROBO_GENESIS_PAGE_CACHE=str(notebooks_folder(built)))
+    build()
+    return build
+
+
+def unchanged() -> Sides:
+    """Return builds where nothing changed."""
+    bare = partial(bare_sphinx(), says="no targets are out of date")
+    return partial(make, "book", says="Nothing changed"), bare
+
+
+def prose() -> Sides:
+    """Return builds after a sentence was added to one page; both sides see the same edit."""
+    bare, page = bare_sphinx(), last_lab().path
+
+    def edited() -> float:
+        page.write_text(page.read_text("utf8") + "\n\nOne more sentence.\n", "utf8")
+        return make("book", says="Pages: 0 executed")
+
+    return edited, partial(bare, says="build succeeded")
+
+
+def verify() -> Sides:
+    """Return the verification of all bundles, and a start of Python with its two packages."""
+    return partial(make, "verify"), partial(python, "-c", "import numpy, pydantic")
+
+
+def execute() -> Sides:
+    """Return executions of one lab with compiled kernels, by the course and by nbclient."""
+    page, cache = last_lab(), TREE / "warm"
+    cache.mkdir()
+    (cache / "engine").symlink_to(project.CACHE / "engine")
+    nbformat.write(page.notebook, cache / "lab.ipynb")
+    compiled = project.engine_cache_environment(TREE)
+
+    def anew() -> float:
+        shutil.rmtree(cache / "pages", ignore_errors=True)
+        where = {"PAGE": page.docname, "TO": str(cache / "handed-over")}
+        return python("build_scripts/execute.py", "--cache", str(cache), **where)
+
+    anew()  # compiles what is not compiled yet
+    return anew, partial(python, "-c", NBCLIENT, str(cache / "lab.ipynb"), **compiled)
+
+
+ROWS = {
+    "unchanged": ("make book, nothing changed", "bare Sphinx", unchanged),
+    "prose": ("make book, one page's prose edited", "bare Sphinx, kept doctrees", prose),
+    "verify": ("make verify", "start of Python, NumPy and pydantic", verify),
+    "execute": ("make execute, last lab, kernels compiled", "nbclient on its cells", execute),
+}
+"""Name to the course's command, its bare counterpart, and what prepares both."""
+
+
+def chosen(asked: str) -> list[str]:
+    """Return the rows that a list names, separated by spaces or commas; all if it is empty."""
+    names = asked.replace(",", " ").split()
+    if unknown := [name for name in names if name not in ROWS]:
+        raise BenchError(f"ROWS names {', '.join(unknown)}. Choices: {', '.join(ROWS)}.")
+    return names or list(ROWS)
+
+
+def table(samples: Mapping[str, Sequence[tuple[float, float]]]) -> str:
+    """Return a Markdown table with two lines a row: the command and its bare counterpart.
+
+    Args:
+        samples: by name of the row, pairs of elapsed times [s]. The ratio is that of the medians.
+    """
+    lines = []
+    for name, pairs in samples.items():
+        sides = list(zip(*pairs, strict=True))
+        ratio = statistics.median(sides[0]) / statistics.median(sides[1])
+        for label, side, shown in zip(ROWS[name][:2], sides, (f"{ratio:.2f}", ""), strict=True):
+            figures = {"min": min(side), "median": statistics.median(side), "max": max(side)}
+            rounded = {f"{key} [s]": round(value, 2) for key, value in figures.items()}
+            lines.append({"row": name, "command": label} | rounded | {"ratio": shown})
+    return tables.markdown(lines)
+
+
+def measure() -> list[str]:
+    """Measure the rows that ROWS names, RUNS times, and return the table."""
+    names, runs = chosen(os.environ.get("ROWS") or ""), os.environ.get("RUNS") or "3"
+    if not (runs.isdecimal() and int(runs) > 0):
+        raise BenchError(f"RUNS={runs!r} is not valid. Give a number from 1.")
+    samples = {}
+    with worktree():
+        for name in names:
+            print(f"{name}: preparation, then {runs} runs of each side", flush=True)
+            course, bare = ROWS[name][2]()
+            samples[name] = [(course(), bare()) for _ in range(int(runs))]
+    return [table(samples)]
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    failures = (BenchError, PageError, project.ProjectError, subprocess.CalledProcessError)
+    sys.exit(run(measure, "measured", failures))

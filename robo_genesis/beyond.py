@@ -7,6 +7,7 @@ from robo_genesis import l04, l04_studies
 from robo_genesis.interpretation import AT_REST
 from robo_genesis.metrics import StepMetrics, format_value
 from robo_genesis.studies import Studies
+from robo_genesis.tables import listed
 from robo_genesis.theory import IdealJoint, Parting, overshoot_share, parting
 
 
@@ -207,8 +208,3 @@ def gravity_sentences(
             "contributes to it within the tolerance, or that another pose would leave the same one."
         )
     return told
-
-
-def listed(names: list[str]) -> str:
-    """Write names for a reader: `G1, G2 and G3`."""
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.channels import Channel, Runs, View, listed, said, time_digits
+from robo_genesis.channels import Channel, Runs, View, said, time_digits
 from robo_genesis.lessons import Moving
+from robo_genesis.tables import listed
 from robo_genesis.trace import BodyTrace
 
 

@@ -105,12 +105,6 @@ class Runs:
         return [level for level in self.levels if level.channel == channel.name]
 
 
-def listed(words: Sequence[str]) -> str:
-    """Return words as a list in prose: `G1, G2 and G3`."""
-    *others, last = words
-    return f"{', '.join(others)} and {last}" if others else last
-
-
 def said(value: float, unit: str, digits: int = 4) -> str:
     """Return a value as text, with a minus sign that is one, and none before a zero."""
     text = f"{value:.{digits}f}"

@@ -8,6 +8,14 @@ from robo_genesis.metrics import UNITS, StepMetrics, format_value
 
 LABELS = measures.LABELS | {"saturation_samples": "number of saturated samples"}
 
+HELD_BY = {
+    "no later": ("lower", "equal"),
+    "later": ("higher",),
+    "higher": ("higher",),
+    "lower": ("lower",),
+}
+"""The orders that hold a prediction."""
+
 INSPECT = (
     "Before blaming the model, inspect saturation, the time stamps, the initial states and "
     "the length of the window."
@@ -37,16 +45,19 @@ def compare_values(
     metric: str, unit: str, a: float | None, b: float | None, resolution: Mapping
 ) -> Comparison:
     """Order a metric's values `a` and `b` of two cases, whatever the metric is."""
-    if a is None and b is None:
-        order = None
-    elif a is None or b is None:
-        # A time that the window did not reach is later than any time within it.
-        order = "higher" if b is None else "lower"
-    elif abs(b - a) <= resolution[unit]:
-        order = "equal"
-    else:
-        order = "higher" if b > a else "lower"
-    return Comparison(metric, unit, a, b, order)
+    return Comparison(metric, unit, a, b, order(a, b, resolution[unit]))
+
+
+def order(a: float | None, b: float | None, resolution: float) -> str | None:
+    """Order `b` against `a`: lower, equal or higher; None if neither was observed.
+
+    A time that the window did not reach is later than any time within it.
+    """
+    if a is None or b is None:
+        return None if a is b else "higher" if b is None else "lower"
+    if abs(b - a) <= resolution:
+        return "equal"
+    return "higher" if b > a else "lower"
 
 
 def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
@@ -72,15 +83,6 @@ def prediction_sentence(names: tuple[str, str], comparison: Comparison, predicte
     claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
     if comparison.order is None:
         return f"{claim}. Cannot be judged: not observed in either case."
-    held = (
-        comparison.order
-        in {
-            "no later": ("lower", "equal"),
-            "later": ("higher",),
-            "higher": ("higher",),
-            "lower": ("lower",),
-        }[predicted]
-    )
-    if held:
+    if comparison.order in HELD_BY[predicted]:
         return f"{claim}. Held in this run."
     return f"{claim}. **Did not hold**: measured {comparison.order}. {INSPECT}"

@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from robo_genesis import l03, sliding
-from robo_genesis.channels import listed
 from robo_genesis.contact_checks import ContactExperiment
 from robo_genesis.contact_metrics import (
     CLEAR,
@@ -17,6 +16,7 @@ from robo_genesis.contact_metrics import (
 from robo_genesis.contacts import ContactCase
 from robo_genesis.energy import kept_at_bounces
 from robo_genesis.interpretation import Block
+from robo_genesis.tables import listed, signed
 from robo_genesis.trace import ContactTrace
 
 LOOK = (
@@ -109,7 +109,7 @@ def slide_sentence(name: str, found: SlideMetrics, case: ContactCase) -> str:
         told = (
             f"`{name}` stops after {found.stop_time:.2f} s and {found.stop_distance:.4f} m. With "
             f"μ = {friction:g}, v / (μ g) is {seconds:.2f} s and v² / (2 μ g) {expected:.4f} m: "
-            f"it stops {signed(apart)} % from there"
+            f"it stops {signed(apart, 1)} % from there"
         )
     if found.hop > CLEAR:
         return (
@@ -239,8 +239,3 @@ def step_study(found: Mapping[float, Sequence[LandingMetrics]]) -> tuple[str, ..
 def mm(value: float) -> str:
     """Write a length in millimetres [m]."""
     return f"{1000 * value:.2f} mm"
-
-
-def signed(value: float) -> str:
-    """Write a difference with its sign, one digit after the point."""
-    return f"{value:+.1f}".replace("-", "\N{MINUS SIGN}")

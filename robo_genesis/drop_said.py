@@ -9,6 +9,7 @@ from robo_genesis.free_bodies import Drop
 from robo_genesis.interpretation import Block
 from robo_genesis.l02 import AT_REST, FORMULA_TOLERANCE
 from robo_genesis.substep_study import SHARE, Study
+from robo_genesis.tables import signed
 
 LOOK = "Look first at the time stamps, the first state, gravity, and whether something was touched."
 TERM = "g h t / 2".replace(" ", "\N{NO-BREAK SPACE}")
@@ -42,7 +43,7 @@ def speed_sentence(found: DropMetrics, case: Drop) -> str:
             f"{told}, the same to within float32: under constant acceleration the stepped velocity "
             "has no error of its own."
         )
-    return f"{told}. They differ by {signed(found.final_speed - expected)} m/s. {LOOK}"
+    return f"{told}. They differ by {signed(found.final_speed - expected, 4)} m/s. {LOOK}"
 
 
 def formula_sentences(found: DropMetrics, case: Drop) -> tuple[str, ...]:
@@ -103,15 +104,10 @@ def three_rows(found: DropMetrics, case: Drop) -> Sequence[Mapping[str, str]]:
         {
             "drop": name,
             "distance [m]": f"{drop:.6f}",
-            "against the measurement [mm]": signed(1000 * (drop - found.drop)),
+            "against the measurement [mm]": signed(1000 * (drop - found.drop), 4),
         }
         for name, drop in drops.items()
     ]
-
-
-def signed(value: float) -> str:
-    """Write a difference with its sign, four digits after the point; none where it is zero."""
-    return f"{value:+.4f}".replace("-", "−") if value else "0"
 
 
 def ahead_or_behind(gap: float) -> str:

@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 
 from robo_genesis import l04, l04_studies
-from robo_genesis.beyond import listed
 from robo_genesis.comparison import LABELS
 from robo_genesis.evidence.relations import HELD
 from robo_genesis.metrics import SATURATION_THRESHOLD, format_value
 from robo_genesis.scene_config import FloatArray
 from robo_genesis.studies import ENGINES, Studies, relation_outcome
+from robo_genesis.tables import listed
 from robo_genesis.trace import Trace
 
 ENGINE_LABELS = {"Genesis": "Genesis"} | {

@@ -109,13 +109,22 @@ def reset(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> None:
     robot.set_dofs_kv(case.kv.copy(), dofs)
     robot.set_dofs_force_range(-case.effort_limit, case.effort_limit.copy(), dofs)
     robot.set_dofs_position(case.q_start.copy(), dofs, zero_velocity=True)
+    require_read_back(robot, dofs, case)
+
+
+def require_read_back(robot: Any, dofs: list[int], case: ControlCase) -> None:
+    """Raise CaseError unless the engine has gains, effort range and start of a case, at rest.
+
+    The case's arrays are (d,), or (environments, d) in a batch.
+    """
+    lower, upper = robot.get_dofs_force_range(dofs)
     read_back = {
         "kp": (robot.get_dofs_kp(dofs), case.kp),
         "kv": (robot.get_dofs_kv(dofs), case.kv),
-        "effort_limit": (robot.get_dofs_force_range(dofs)[1], case.effort_limit),
-        "-effort_limit": (robot.get_dofs_force_range(dofs)[0], -case.effort_limit),
+        "effort_limit": (upper, case.effort_limit),
+        "-effort_limit": (lower, -case.effort_limit),
         "q_start": (robot.get_dofs_position(dofs), case.q_start),
-        "velocity": (robot.get_dofs_velocity(dofs), np.zeros(len(dofs))),
+        "velocity": (robot.get_dofs_velocity(dofs), np.zeros_like(case.q_start)),
     }
     for name, (found, asked) in read_back.items():
         if not np.allclose(to_numpy(found), asked, rtol=1e-6, atol=LIMIT_TOLERANCE):

@@ -4,10 +4,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from robo_genesis.channels import Channel, Level, Runs, View, listed, said
+from robo_genesis.channels import Channel, Level, Runs, View, said
 from robo_genesis.evidence.bundle import Metric
 from robo_genesis.metrics import SETTLING_BAND, format_value
 from robo_genesis.robot_model import JointMap
+from robo_genesis.tables import listed
 from robo_genesis.trace import Trace
 
 Metrics = Mapping[str, Mapping[str, Metric]]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from robo_genesis import drop_metrics, l02, l03, l04, l04_studies, metrics
-from robo_genesis.channels import listed
+from robo_genesis.tables import listed
 
 Relation = tuple[tuple[str, str], str, str, float]
 """A claimed ordering: (first case, second case), metric, order, margin."""

@@ -5,7 +5,6 @@ as they are, and a definition does not link to itself.
 """
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,8 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.transforms.post_transforms import SphinxPostTransform
 from sphinx.util import logging
+
+from robo_genesis.sphinx_origin import above
 
 GLOSSARY = "glossary"
 FORMS = "glossary_forms.yml"
@@ -148,24 +149,16 @@ def join_texts(document: nodes.document) -> None:
 
 def is_prose(text: nodes.Text) -> bool:
     """Return whether a text stands in a paragraph, and in nothing that is kept as it is."""
-    above = list(_above(text))
-    return any(isinstance(node, nodes.paragraph) for node in above) and not any(
-        isinstance(node, KEPT) or KEPT_CLASSES & set(node["classes"]) for node in above
+    return any(above(text, nodes.paragraph)) and not any(
+        isinstance(node, KEPT) or KEPT_CLASSES & set(node["classes"]) for node in above(text)
     )
-
-
-def _above(node: nodes.Node) -> Iterator[nodes.Element]:
-    while node.parent is not None:
-        node = node.parent
-        yield node
 
 
 def _own_anchors(text: nodes.Text) -> set[str]:
     """Return the anchors of the glossary's entry that a text stands in."""
-    for node in _above(text):
-        if isinstance(node, nodes.definition_list_item):
-            return {anchor for term in node.findall(nodes.term) for anchor in term["ids"]}
-    return set()
+    entry = next(above(text, nodes.definition_list_item), None)
+    terms = entry.findall(nodes.term) if entry else ()
+    return {anchor for term in terms for anchor in term["ids"]}
 
 
 def check_forms(app: Sphinx, env: BuildEnvironment) -> None:

@@ -13,8 +13,8 @@ INPUTS = "inputs"
 """The tag of a cell whose tables hold what was chosen, and nothing that was measured."""
 
 
-def above(node: nodes.Node, kind: type) -> Iterator[Any]:
-    """Yield what holds a node, of one type, the nearest first."""
+def above(node: nodes.Node, kind: type = nodes.Element) -> Iterator[Any]:
+    """Yield the nodes that hold a node, those of one type, the nearest first."""
     while node.parent is not None:
         node = node.parent
         if isinstance(node, kind):
@@ -35,7 +35,7 @@ def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
         () where a cell shows what was chosen, None where neither a cell nor a bundle made the
         node, ("",) where a cell did and the page declares no bundle.
     """
-    parents = list(above(node, nodes.Element))
+    parents = list(above(node))
     for element in parents:
         if "evidence_runs" in element:
             return tuple(element["evidence_runs"])

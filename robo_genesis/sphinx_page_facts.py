@@ -2,7 +2,6 @@
 
 import shutil
 import textwrap
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
@@ -13,6 +12,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 
 from robo_genesis.git import git_or_none
+from robo_genesis.sphinx_origin import above
 
 WORDS_A_MINUTE = 200
 """Slow reading, as technical prose asks for; code, tables and formulas are not counted."""
@@ -40,14 +40,8 @@ def count_words(document: nodes.document) -> int:
     return sum(
         len(text.astext().split())
         for text in document.findall(nodes.Text)
-        if not any(isinstance(node, UNCOUNTED) for node in _above(text))
+        if not any(isinstance(node, UNCOUNTED) for node in above(text))
     )
-
-
-def _above(node: nodes.Node) -> Iterator[nodes.Node]:
-    while node.parent is not None:
-        node = node.parent
-        yield node
 
 
 def reading_time(words: int) -> str:

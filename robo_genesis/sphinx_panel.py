@@ -18,7 +18,6 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis import measures, plots, project, tables
-from robo_genesis.channels import listed
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import Comparison, compare, specification
 from robo_genesis.evidence.findings import DIFFERS
@@ -143,7 +142,8 @@ def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture
             plots.channel(ax, runs.t, drawn, runs.subject, runs.levels_of(drawn))
             ax.label_outer()
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    what = f"{listed([channel.name for channel in runs.channels]).capitalize()} of {runs.subject}"
+    names = tables.listed([channel.name for channel in runs.channels])
+    what = f"{names.capitalize()} of {runs.subject}"
     several = f", with the cases {compared.names} drawn over each other"
     alt = f"{what} over time on {backend}{several if len(runs.traces) > 1 else ''}."
     caption = f"{what} on {backend}, drawn from the arrays of the recorded run."

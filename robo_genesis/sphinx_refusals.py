@@ -31,7 +31,7 @@ def refuse(app: Sphinx, doctree: nodes.document) -> None:
     """Make each problem of a page that was read an error of the build."""
     env = app.env
     for node, problem in problems(doctree, Path(env.srcdir)):
-        place = next((n for n in (node, *above(node, nodes.Element)) if n.line), env.docname)
+        place = next((n for n in (node, *above(node)) if n.line), env.docname)
         logger.warning(problem, location=place)
 
 

@@ -1,19 +1,19 @@
 """Many control cases at once, one in each environment of a batched scene, and what they did."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from robo_genesis import l04
 from robo_genesis.joint_control import (
-    LIMIT_TOLERANCE,
     CaseError,
     ControlCase,
     assemble,
     read_state,
     read_step,
+    require_read_back,
     validate,
 )
 from robo_genesis.l04_grid import GridPoint
@@ -145,24 +145,19 @@ def reset_batch(scene: Any, robot: Any, joints: JointMap, cases: Sequence[Contro
             f"{sorted(asked)}. Build it with n_envs={len(cases)}, for cases of equal length."
         )
     dofs = joints.dofs_idx_local.tolist()
-    kp, kv, q_start = (stacked(cases, name) for name in ("kp", "kv", "q_start"))
-    effort_limit = stacked(cases, "effort_limit")
+    batch = replace(
+        cases[0],
+        q_start=stacked(cases, "q_start"),
+        kp=stacked(cases, "kp"),
+        kv=stacked(cases, "kv"),
+        effort_limit=stacked(cases, "effort_limit"),
+    )
     scene.reset()
-    robot.set_dofs_kp(kp, dofs)
-    robot.set_dofs_kv(kv, dofs)
-    robot.set_dofs_force_range(-effort_limit, effort_limit, dofs)
-    robot.set_dofs_position(q_start, dofs, zero_velocity=True)
-    read_back = {
-        "kp": (robot.get_dofs_kp(dofs), kp),
-        "kv": (robot.get_dofs_kv(dofs), kv),
-        "effort_limit": (robot.get_dofs_force_range(dofs)[1], effort_limit),
-        "-effort_limit": (robot.get_dofs_force_range(dofs)[0], -effort_limit),
-        "q_start": (robot.get_dofs_position(dofs), q_start),
-        "velocity": (robot.get_dofs_velocity(dofs), np.zeros_like(q_start)),
-    }
-    for name, (read, wanted) in read_back.items():
-        if not np.allclose(to_numpy(read), wanted, rtol=1e-6, atol=LIMIT_TOLERANCE):
-            raise CaseError(f"{name} reads back otherwise than asked for after the batch's reset.")
+    robot.set_dofs_kp(batch.kp, dofs)
+    robot.set_dofs_kv(batch.kv, dofs)
+    robot.set_dofs_force_range(-batch.effort_limit, batch.effort_limit, dofs)
+    robot.set_dofs_position(batch.q_start, dofs, zero_velocity=True)
+    require_read_back(robot, dofs, batch)
 
 
 def stacked(cases: Sequence[ControlCase], field: str) -> FloatArray:

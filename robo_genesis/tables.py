@@ -1,4 +1,4 @@
-"""Tables of measured values as Markdown, for pages to display."""
+"""Measured values as pages display them: Markdown tables, lists in prose, signed numbers."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -29,6 +29,17 @@ def _cell(value: Any) -> str:
         text = f"{value:.4f}".rstrip("0").rstrip(".")
         return "0" if text == "-0" else text.replace("-", "−")
     return str(value)
+
+
+def listed(words: Sequence[str]) -> str:
+    """Return words as a list in prose: `G1, G2 and G3`."""
+    *others, last = words
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def signed(value: float, digits: int) -> str:
+    """Return a difference with its sign and a number of digits after the point; `0` if it is 0."""
+    return f"{value:+.{digits}f}".replace("-", "−") if value else "0"
 
 
 def metric_table(metrics: Mapping[str, StepMetrics]) -> str:

@@ -19,6 +19,7 @@ from robo_genesis import (
 )
 from robo_genesis.metrics import step_metrics
 from robo_genesis.scene_config import DT, JOINT_NAMES, Q_START
+from robo_genesis.tables import listed
 from robo_genesis.theory import IdealJoint, Parting
 
 K = JOINT_NAMES.index(l04.STEPPED_JOINT)
@@ -196,7 +197,7 @@ def test_gravity_is_held_against_kp_times_error(measured, effort, velocity, says
     ("names", "text"), [(["G1"], "G1"), (["G1", "G2"], "G1 and G2"), (list("abc"), "a, b and c")]
 )
 def test_names_are_listed(names, text):
-    assert beyond.listed(names) == text
+    assert listed(names) == text
 
 
 @pytest.mark.parametrize(

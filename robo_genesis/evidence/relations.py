@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from robo_genesis.comparison import HELD_BY, order
 from robo_genesis.evidence.bundle import Metric
 from robo_genesis.evidence.findings import (
     DIFFERS,
@@ -24,7 +25,7 @@ def relations(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
     between them, but the lesson's claim fails, and that is reported as loudly.
     """
     for relation in spec.relations:
-        (first, second), metric, order, margin = relation
+        (first, second), metric, claim, margin = relation
         outcomes = [outcome(side.numbers, relation) for side in (old, new)]
         units = [m.unit for side in (old, new) if (m := side.numbers.get(f"{first}.{metric}"))]
         found = {held for held, _ in outcomes}
@@ -36,7 +37,7 @@ def relations(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
             state, verdict = INCONCLUSIVE, "inconclusive"
         else:
             state, verdict = EQUAL, "held in both"
-        what = f"{metric}: {second} {order} than {first}, {verdict}"
+        what = f"{metric}: {second} {claim} than {first}, {verdict}"
         old_text, new_text = (f"{held}: {text}" for held, text in outcomes)
         allowed = f"margin {number(margin, units[0] if units else '1')}"
         yield Finding(state, what, old_text, new_text, allowed=allowed)
@@ -51,33 +52,27 @@ def not_shown(numbers: Mapping[str, Metric], claimed: Sequence[Relation]) -> lis
     """
     lines = []
     for relation in claimed:
-        (first, second), metric, order, _ = relation
+        (first, second), metric, claim, _ = relation
         held, values = outcome(numbers, relation)
         if held != HELD:
-            lines.append(f"{metric} {order} in {second} than in {first} is {held} ({values})")
+            lines.append(f"{metric} {claim} in {second} than in {first} is {held} ({values})")
     return lines
 
 
 def outcome(numbers: Mapping[str, Metric], relation: Relation) -> tuple[str, str]:
     """Return whether one run holds an ordering, and the two values it is read from.
 
-    A time that the window did not reach is later than any time within it. What two values within
-    the margin of each other show is nothing, unless the claim allows them to be equal and they are.
+    Two values within the margin of each other show nothing, unless the claim is "no later" and the
+    second is not later at all.
     """
-    (first, second), metric, order, margin = relation
+    (first, second), metric, claim, margin = relation
     a, b = (numbers.get(f"{case}.{metric}") for case in (first, second))
     if a is None or b is None:
         return WITHIN_MARGIN, f"{first} or {second} is missing"
     text = f"{first} {number(a.value, a.unit)}, {second} {number(b.value, b.unit)}"
-    if a.value is None and b.value is None:
-        return WITHIN_MARGIN, text
-    if a.value is None or b.value is None:
-        apart = float("inf") if b.value is None else float("-inf")
-    else:
-        apart = b.value - a.value
-    if order == "no later" and apart <= 0:
+    resolved, exact = (order(a.value, b.value, room) for room in (margin, 0))
+    if claim == "no later" and exact in HELD_BY[claim]:
         return HELD, text
-    if abs(apart) <= margin:
+    if resolved in (None, "equal"):
         return WITHIN_MARGIN, text
-    rises = {"higher": True, "later": True, "lower": False, "no later": False}[order]
-    return (HELD if (apart > 0) == rises else BROKEN), text
+    return (HELD if resolved in HELD_BY[claim] else BROKEN), text
