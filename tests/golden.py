@@ -145,7 +145,9 @@ def differences(old: Record, new: Record, shown: int | None) -> Iterator[str]:
         both = [key for key in before if key in after and before[key] != after[key]]
         lines = cut([f"  removed {key}" for key in before if key not in after], shown)
         lines += cut([f"  added {key}" for key in after if key not in before], shown)
-        lines += cut([f"  {key}{change(before[key], after[key], shown)}" for key in both], shown)
+        lines += cut(
+            [f"  changed {key}{change(before[key], after[key], shown)}" for key in both], shown
+        )
         yield from [f"{group}:", *lines] if lines else []
 
 
@@ -180,7 +182,8 @@ def main() -> int:
     if old is None:
         options.file.write_text(json.dumps(new, indent=1, ensure_ascii=False), "utf8")
     found = list(differences(new if old is None else old, new, None if options.full else SHOWN))
-    print(*found or [", ".join(f"{len(new[group])} {group}" for group in new)], sep="\n")
+    counts = ", ".join(f"{len(new[group])} {group}" for group in new)
+    print(*found or [f"{'Written' if old is None else 'No differences'}: {counts}."], sep="\n")
     return bool(found)
 
 
