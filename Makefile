@@ -63,10 +63,11 @@ test: $(ENVIRONMENT) ## run all tests (needs Debian's chromium)
 	@"$(PY)" -m pytest
 
 .PHONY: lint
-lint: $(ENVIRONMENT) ## ruff, mypy, codespell and the schema of workflows
+lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell and the schema of workflows
 	@"$(PY)" -m ruff check .
 	@"$(PY)" -m ruff format --check .
 	@"$(PY)" -m mypy
+	@"$(PY)" -c 'from importlinter.cli import lint_imports_command; lint_imports_command()' --no-logo --no-cache
 	@"$(PY)" -m codespell_lib
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-actions .github/actions/*/action.yml
@@ -109,7 +110,7 @@ bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=
 .PHONY: has-packages
 has-packages:
 	@"$(PY)" -c 'import sys; from importlib.util import find_spec; \
-	  needed = "genesis jupyter_book pytest ruff mypy codespell_lib check_jsonschema".split(); \
+	  needed = "genesis jupyter_book pytest ruff mypy importlinter codespell_lib check_jsonschema".split(); \
 	  gone = [name for name in needed if find_spec(name) is None]; \
 	  sys.exit("PYTHON=%s lacks %s. Install the lock there: pip install -r requirements.lock" \
 	  % (sys.argv[1], ", ".join(gone)) if gone else 0)' "$(PY)"

@@ -19,10 +19,10 @@ from functools import partial
 import nbformat
 import yaml
 
-from robo_genesis import project, tables
-from robo_genesis.command import run
-from robo_genesis.page_cache import notebooks_folder
-from robo_genesis.pages import Page, PageError, find_pages
+from robo_genesis.build.command import run
+from robo_genesis.build.page_cache import notebooks_folder
+from robo_genesis.core import project, tables
+from robo_genesis.lessons.book_pages import Page, PageError, find_pages
 
 Sides = tuple[Callable[[], float], Callable[[], float]]
 """Run the course's command, or its bare counterpart, and return the elapsed time [s]."""
@@ -36,7 +36,7 @@ NOT_PASSED_ON = (
 
 BARE_CONFIG = """\
 extensions = ["myst_nb", "sphinx_external_toc", "sphinx_design", "sphinx_book_theme"]
-extensions += ["robo_genesis.sphinx_ext"]  # reads the executed pages
+extensions += ["robo_genesis.site.executed_pages"]  # reads the executed pages
 html_theme = "sphinx_book_theme"
 external_toc_path, external_toc_exclude_missing = "_toc.yml", True
 exclude_patterns = ["_build*", "_decisions"]

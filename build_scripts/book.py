@@ -15,10 +15,10 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.command import choice, collect_rarely, require_cpu, run
-from robo_genesis.project import BOOK, CACHE, ROOT
-from robo_genesis.publish import PUBLISHED
-from robo_genesis.standing import nothing_changed
+from robo_genesis.build.command import choice, collect_rarely, require_cpu, run
+from robo_genesis.build.publish import PUBLISHED
+from robo_genesis.build.up_to_date import nothing_changed
+from robo_genesis.core.project import BOOK, CACHE, ROOT
 
 
 def jobs() -> int | None:
@@ -63,12 +63,12 @@ def main() -> int:
 
 def build(cache: Path, timeout: int | None, **settings: Any) -> int:
     """Build the site; what that needs, Sphinx's and Jupyter's packages, is loaded only now."""
-    from robo_genesis.build import Build, BuildError, run_build
-    from robo_genesis.execute import TIMEOUT
-    from robo_genesis.handover import HandoverError
-    from robo_genesis.pages import PageError
-    from robo_genesis.project import ProjectError
-    from robo_genesis.render import RenderError
+    from robo_genesis.build.execute import TIMEOUT
+    from robo_genesis.build.page_export import HandoverError
+    from robo_genesis.build.render import RenderError
+    from robo_genesis.build.stages import Build, BuildError, run_build
+    from robo_genesis.core.project import ProjectError
+    from robo_genesis.lessons.book_pages import PageError
 
     collect_rarely()
     asked = Build(

@@ -9,11 +9,11 @@ import argparse
 import sys
 from pathlib import Path
 
+from robo_genesis.core.project import CACHE
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare, specification_of
 from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE
-from robo_genesis.project import CACHE
 
 STATUS = {DIFFERS: 1, INCONCLUSIVE: 1, NOT_COMPARABLE: 2}
 

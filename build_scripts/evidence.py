@@ -10,12 +10,12 @@ import os
 import sys
 from pathlib import Path
 
-from robo_genesis.build import BuildError
-from robo_genesis.command import run
-from robo_genesis.execute import TIMEOUT
-from robo_genesis.pages import PageError
-from robo_genesis.project import BOOK, CACHE, ProjectError
-from robo_genesis.recording import Recording, RecordingError, record
+from robo_genesis.build.command import run
+from robo_genesis.build.execute import TIMEOUT
+from robo_genesis.build.recording import Recording, RecordingError, record
+from robo_genesis.build.stages import BuildError
+from robo_genesis.core.project import BOOK, CACHE, ProjectError
+from robo_genesis.lessons.book_pages import PageError
 
 
 def require_camera() -> None:

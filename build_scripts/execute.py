@@ -12,13 +12,13 @@ import os
 import sys
 from pathlib import Path
 
-from robo_genesis.build import Build, BuildError
-from robo_genesis.command import choice, require_cpu, run
-from robo_genesis.execute import TIMEOUT
-from robo_genesis.execution import execute_one
-from robo_genesis.handover import HandoverError
-from robo_genesis.pages import PageError, find_pages
-from robo_genesis.project import BOOK, CACHE, ProjectError
+from robo_genesis.build.command import choice, require_cpu, run
+from robo_genesis.build.execute import TIMEOUT
+from robo_genesis.build.execute_one import execute_one
+from robo_genesis.build.page_export import HandoverError
+from robo_genesis.build.stages import Build, BuildError
+from robo_genesis.core.project import BOOK, CACHE, ProjectError
+from robo_genesis.lessons.book_pages import PageError, find_pages
 
 
 def main() -> int:

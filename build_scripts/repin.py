@@ -8,11 +8,11 @@ Exit status: 0 changed, 1 refused or failed, 130 interrupted. Unless it is 0, th
 import os
 import sys
 
-from robo_genesis.command import run
+from robo_genesis.build.command import run
+from robo_genesis.core.project import CACHE, ROOT, ProjectError
 from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.pin import RepinError, installable_versions
-from robo_genesis.project import CACHE, ROOT, ProjectError
-from robo_genesis.repin import Repin, run_repin
+from robo_genesis.maintain.pin import RepinError, installable_versions
+from robo_genesis.maintain.repin import Repin, run_repin
 
 
 def main() -> int:

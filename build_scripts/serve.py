@@ -5,8 +5,8 @@ import sys
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
-from robo_genesis.project import BOOK
-from robo_genesis.publish import PUBLISHED
+from robo_genesis.build.publish import PUBLISHED
+from robo_genesis.core.project import BOOK
 
 
 def main() -> int:

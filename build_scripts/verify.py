@@ -10,9 +10,9 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from robo_genesis.build.publish import PUBLISHED
+from robo_genesis.core.project import BOOK, ProjectError
 from robo_genesis.evidence.status import Status, bundle_status, recorded_folders, recorded_status
-from robo_genesis.project import BOOK, ProjectError
-from robo_genesis.publish import PUBLISHED
 
 
 def all_bundles() -> Iterator[tuple[str, Status]]:

@@ -18,8 +18,8 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from robo_genesis import project
-from robo_genesis.diagnosis import LINKS, Bench, Finding, examine, shareable
+from robo_genesis.core import project
+from robo_genesis.sim.diagnosis import LINKS, Bench, Finding, examine, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns, and the column of a page
 REPORT_FORMAT = 1

@@ -16,26 +16,10 @@ import pytest
 from hypothesis import settings
 from matplotlib.figure import Figure
 
-from robo_genesis import (
-    build,
-    l03,
-    l04,
-    l04_studies,
-    plots,
-    project,
-    robot_model,
-    runtime,
-    second_contacts,
-    second_engine,
-    step_checks,
-    studies,
-)
-from robo_genesis.contacts import ContactCase
-from robo_genesis.falling import summed_drop
-from robo_genesis.free_bodies import Drop
-from robo_genesis.metrics import measure
-from robo_genesis.robot_model import JointMap
-from robo_genesis.scene_config import (
+from robo_genesis.build import stages
+from robo_genesis.core import plotting, project
+from robo_genesis.core.free_fall import summed_drop
+from robo_genesis.core.scene import (
     CAMERA,
     DT,
     FRAME_SHAPE,
@@ -45,7 +29,20 @@ from robo_genesis.scene_config import (
     SUBSTEPS,
     per_joint,
 )
-from robo_genesis.trace import BodyTrace, ContactTrace, Trace
+from robo_genesis.core.trace import BodyTrace, ContactTrace, Trace
+from robo_genesis.lessons.l03 import spec as l03
+from robo_genesis.lessons.l04 import checks as step_checks
+from robo_genesis.lessons.l04 import plots, study_spec
+from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.lessons.l04 import study as studies
+from robo_genesis.lessons.l04.metrics import measure
+from robo_genesis.sim import joints as robot_model
+from robo_genesis.sim import mujoco_contacts, mujoco_joints, session
+from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim.joints import JointMap
+from robo_genesis.sim.rigid_bodies import Drop
+
+pytest_plugins = ("bundles",)
 
 # Tests send it to the commands they start; a shell that starts pytest with & has it ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -214,7 +211,7 @@ def slide_on_corners() -> Callable[[ContactCase], ContactTrace]:
 def contact_traces(slide_on_corners) -> dict[str, ContactTrace]:
     """The runs of L03, of lab and lecture, with MuJoCo in the place of both engines."""
     traces = {
-        name: second_contacts.run_case(case, own_defaults=name == l03.OWN_DEFAULTS)
+        name: mujoco_contacts.run_case(case, own_defaults=name == l03.OWN_DEFAULTS)
         for name, case in (l03.CASES | l03.STUDY_CASES).items()
     }
     return traces | {name: slide_on_corners(case) for name, case in l03.CLEAN_SLIDES.items()}
@@ -250,17 +247,17 @@ def study_runs(joints) -> studies.Studies:
     Genesis is played at a fine step, and G2's overshoot is made to fall with the substeps.
     """
     k = joints.entry(l04.STEPPED_JOINT)
-    cases = l04.CASES | l04_studies.STEP_CASES
-    traces = {name: second_engine.run_case(case, LINKS, 0.0005) for name, case in cases.items()}
-    for name, run in l04_studies.SECOND_RUNS.items():
+    cases = l04.CASES | study_spec.STEP_CASES
+    traces = {name: mujoco_joints.run_case(case, LINKS, 0.0005) for name, case in cases.items()}
+    for name, run in study_spec.SECOND_RUNS.items():
         case = l04.CASES[run.case]
-        traces[name] = second_engine.run_case(case, LINKS, run.timestep, run.integrator)
+        traces[name] = mujoco_joints.run_case(case, LINKS, run.timestep, run.integrator)
     falling = (0.06, 0.05, 0.04, 0.03, 0.025, 0.023)
-    for n, overshoot in zip(l04_studies.SUBSTEPS_STUDIED, falling, strict=True):
+    for n, overshoot in zip(study_spec.SUBSTEPS_STUDIED, falling, strict=True):
         q = np.array(traces["G2"].q)
         q[q[:, k].argmax(), k] = traces["G2"].target[0, k] + overshoot
         traces[studies.run_name("Genesis", "G2", n)] = replace(traces["G2"], q=q)
-    inertia, gravity = (float(v[k]) for v in second_engine.at_rest(l04.G1, Q_START))
+    inertia, gravity = (float(v[k]) for v in mujoco_joints.at_rest(l04.G1, Q_START))
     return studies.Studies(
         joints=joints,
         traces=traces,
@@ -268,7 +265,7 @@ def study_runs(joints) -> studies.Studies:
         gravity_at_start=dict.fromkeys(("Genesis", "MuJoCo"), gravity),
         passive_damping=1.0,
         gravity={
-            name: float(second_engine.at_rest(case, traces[name].q[-1])[1][k])
+            name: float(mujoco_joints.at_rest(case, traces[name].q[-1])[1][k])
             for name, case in l04.CASES.items()
         },
     )
@@ -281,11 +278,11 @@ def real_engine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleName
     It holds the lock of builds: one that starts meanwhile would take the engine's lock files for
     stale. Module scope gives the lock back before the tests of the site build theirs.
     """
-    contract = runtime.Contract("cpu", True, tmp_path_factory.mktemp("outputs"))
-    with build.only_build(project.CACHE), pytest.MonkeyPatch.context() as patch:
+    contract = session.Contract("cpu", True, tmp_path_factory.mktemp("outputs"))
+    with stages.only_build(project.CACHE), pytest.MonkeyPatch.context() as patch:
         for name, value in project.engine_cache_environment().items():
             patch.setitem(os.environ, name, value)
-        engine = runtime.start(contract)
+        engine = session.start(contract)
         import genesis as gs
 
         yield SimpleNamespace(gs=gs, contract=contract, engine=engine)
@@ -322,7 +319,7 @@ def draw_svg(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., bytes]]:
         return stream.getvalue()
 
     with mpl.rc_context():
-        plots.use_course_style()
+        plotting.use_course_style()
         yield draw
 
 

@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from robo_genesis.project import ROOT
+from robo_genesis.core.project import ROOT
 
 ENGINE = ("genesis", "quadrants", "torch")
 JUPYTER = ("sphinx", "nbformat", "myst_nb", "jupyter_cache", "IPython")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.project import ROOT
+from robo_genesis.core.project import ROOT
 
 
 @pytest.fixture

@@ -10,9 +10,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from robo_genesis import diagnosis, doctor, joint_control, l04, project, runtime
-from robo_genesis.diagnosis import LINKS, Finding, shareable
+from robo_genesis import doctor
+from robo_genesis.core import project
 from robo_genesis.doctor import main, table
+from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.sim import diagnosis, joint_control, session
+from robo_genesis.sim.diagnosis import LINKS, Finding, shareable
 
 NAMES = [link.__name__ for link in LINKS]
 
@@ -83,9 +86,9 @@ def test_an_outputs_folder_that_cannot_be_written_is_found(looked_at, capsys, mo
 
 def test_a_missing_model_is_found(looked_at, capsys, monkeypatch):
     backend = SimpleNamespace(requested="cpu", actual="cpu", device_name="a processor")
-    log = runtime.EngineLog()
+    log = session.EngineLog()
     started = SimpleNamespace(backend=backend, log=log)
-    monkeypatch.setattr(runtime, "start", lambda contract: started)
+    monkeypatch.setattr(session, "start", lambda contract: started)
     monkeypatch.setattr(diagnosis, "FRANKA_MJCF", "xml/no_robot.xml")
     assert_broken(looked_at, capsys, "model_file", "genesis/assets/xml/no_robot.xml", "pip install")
 
@@ -119,8 +122,8 @@ def scene(lab, monkeypatch):
     gs = SimpleNamespace(
         Scene=lambda **options: scene, options=lab.gs.options, morphs=lab.gs.morphs
     )
-    monkeypatch.setattr(runtime, "start", lambda contract: lab.engine)
-    monkeypatch.setattr(runtime, "import_engine", lambda: gs)
+    monkeypatch.setattr(session, "start", lambda contract: lab.engine)
+    monkeypatch.setattr(session, "import_engine", lambda: gs)
     return scene
 
 
@@ -141,7 +144,7 @@ def test_a_scene_that_is_not_built_is_found(looked_at, capsys, scene):
 
 @pytest.mark.engine
 def test_an_empty_picture_is_found(looked_at, capsys, scene):
-    empty = np.zeros(runtime.FRAME_SHAPE, np.uint8)
+    empty = np.zeros(session.FRAME_SHAPE, np.uint8)
     scene.camera = SimpleNamespace(render=lambda: [empty])
     assert_broken(looked_at, capsys, "render", "empty picture")
 
@@ -154,21 +157,23 @@ def test_an_unknown_joint_is_found(looked_at, capsys, monkeypatch, scene):
 
 @pytest.mark.engine
 def test_another_model_is_found(looked_at, capsys, monkeypatch, scene):
-    monkeypatch.setattr(l04, "EXPECTED_MODEL", {"links": 12, "joints": 9, "dofs": 9, "qpos": 9})
+    monkeypatch.setattr(diagnosis, "FRANKA_MODEL", {"links": 12, "joints": 9, "dofs": 9, "qpos": 9})
     assert_broken(looked_at, capsys, "names", "'links': 11", "'links': 12")
 
 
 @pytest.mark.engine
 def test_a_target_past_its_limit_is_found(looked_at, capsys, monkeypatch, scene):
     monkeypatch.setattr(
-        l04, "BASELINE", replace(l04.BASELINE, q_target=l04.with_entry(l04.Q_START, 1.0))
+        diagnosis,
+        "BASELINE",
+        replace(diagnosis.BASELINE, q_target=l04.with_entry(l04.Q_START, 1.0)),
     )
     assert_broken(looked_at, capsys, "target", "q_target[joint4] is 1 rad", "none is clipped")
 
 
 @pytest.mark.engine
 def test_a_reset_that_does_not_fit_the_scene_is_found(looked_at, capsys, monkeypatch, scene):
-    monkeypatch.setattr(l04, "BASELINE", replace(l04.BASELINE, dt=0.02))
+    monkeypatch.setattr(diagnosis, "BASELINE", replace(diagnosis.BASELINE, dt=0.02))
     assert_broken(looked_at, capsys, "reset", "dt=0.02", "Restart")
 
 
@@ -182,13 +187,13 @@ def test_values_that_are_not_finite_are_found(looked_at, capsys, monkeypatch, sc
 @pytest.mark.engine
 def test_a_joint_that_does_not_come_nearer_is_found(looked_at, capsys, monkeypatch, scene):
     weak = np.full(9, 0.5)
-    monkeypatch.setattr(l04, "BASELINE", replace(l04.BASELINE, effort_limit=weak))
+    monkeypatch.setattr(diagnosis, "BASELINE", replace(diagnosis.BASELINE, effort_limit=weak))
     assert_broken(looked_at, capsys, "saturation", "120 of 120 samples", "look at limit")
 
 
 @pytest.mark.engine
 def test_a_healthy_machine_passes_with_a_scene_of_its_own(looked_at, capsys, monkeypatch, lab):
-    monkeypatch.setattr(runtime, "start", lambda contract: lab.engine)
+    monkeypatch.setattr(session, "start", lambda contract: lab.engine)
     assert main([]) == 0
     output = capsys.readouterr().out
     assert looked_at == NAMES

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 import yaml
 
-from robo_genesis.pages import find_pages
-from robo_genesis.project import BOOK, ROOT, engine_cache_folder
+from robo_genesis.core.project import BOOK, ROOT, engine_cache_folder
+from robo_genesis.lessons.book_pages import find_pages
 
 WORKFLOW = ROOT / ".github" / "workflows" / "book.yml"
 SETUP = ROOT / ".github" / "actions" / "setup" / "action.yml"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import yaml
 
-from robo_genesis.project import BOOK
+from robo_genesis.core.project import BOOK
 
 FRONT = (
     "---\nfile_format: mystnb\nkernelspec: {{name: python3}}\n{front}---\n# {title}\n\nA page.\n"

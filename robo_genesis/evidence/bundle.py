@@ -16,7 +16,8 @@ from typing import Annotated, Any, Literal
 import rfc8785
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect, parse_strict
+from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
+from robo_genesis.evidence.strict_json import parse_strict
 
 STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
 PREDICATE_TYPE = "urn:robo-genesis:evidence:v1"

@@ -7,7 +7,8 @@ from typing import Any
 
 from robo_genesis.evidence import bundle, sections
 from robo_genesis.evidence.bundle import BundleRefused, Predicate
-from robo_genesis.evidence.findings import (  # fmt: skip
+from robo_genesis.evidence.claims import relations
+from robo_genesis.evidence.findings import (
     EQUAL,
     NOT_COMPARABLE,
     SEVERITY,
@@ -19,9 +20,8 @@ from robo_genesis.evidence.findings import (  # fmt: skip
     section,
     worst,
 )
-from robo_genesis.evidence.relations import relations
-from robo_genesis.evidence.traces import read_any_trace
-from robo_genesis.lessons import find_lesson, find_page
+from robo_genesis.evidence.trace_files import read_any_trace
+from robo_genesis.lessons.registry import find_lesson, find_page
 
 LARGEST = 2**53
 
@@ -64,7 +64,7 @@ def specification(lesson: str, page: str = "lab") -> Specification:
         raise BundleRefused("lesson", str(error)) from error
     spec = found.spec
     cases = tuple(spec.CASES) if run.cases is None else run.cases
-    metrics = {case: found.metrics[case] for case in cases}
+    metrics = {case: tuple(found.metrics[case].about("unit")) for case in cases}
     relations = tuple(claim for claim in spec.RELATIONS if {*claim[0]} <= {*cases})
     return Specification(lesson, metrics, spec.TOLERANCES, relations)
 

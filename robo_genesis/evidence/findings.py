@@ -3,10 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from robo_genesis.core.orderings import Relation
+from robo_genesis.core.trace import Stamped
 from robo_genesis.evidence.bundle import Arrays, Manifest, Metric
-from robo_genesis.lessons import Relation
-from robo_genesis.metrics import NOT_OBSERVED
-from robo_genesis.trace import Stamped
 
 EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
     "equal", "shown", "within tolerance", "inconclusive", "differs", "not comparable",
@@ -89,11 +88,3 @@ def section(title: str, findings: Iterator[Finding], empty: str = "") -> Section
     """Return a section with its rows worst first, otherwise in their order."""
     rows = sorted(findings, key=lambda f: (-SEVERITY.index(f.state), -f.weight))
     return Section(title, tuple(rows), empty)
-
-
-def number(value: float | None, unit: str) -> str:
-    """Write one number for a reader, with its unit."""
-    if value is None:
-        return NOT_OBSERVED
-    text = str(value) if isinstance(value, int) else f"{value:.6g}"
-    return text if unit == "1" else f"{text} {unit}"

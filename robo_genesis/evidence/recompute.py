@@ -1,103 +1,156 @@
-"""Everything that the arrays and frames of a bundle decide, held against what it says of itself."""
+"""Everything that the arrays and frames of a bundle decide, compared with its own claims."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from PIL import Image
 
-from robo_genesis.checks import Check
-from robo_genesis.evidence import bundle
-from robo_genesis.evidence.bundle import Manifest
-from robo_genesis.evidence.strict_json import AGAIN, BundleRefused, expect
-from robo_genesis.runtime import require_frame
-from robo_genesis.scene_config import CAMERA_RES
+from robo_genesis.core.checks import Check
+from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
+from robo_genesis.core.scene import CAMERA_RES
+from robo_genesis.core.trace import BodyTrace, ContactTrace, Trace
+from robo_genesis.evidence import bundle, trace_files
+from robo_genesis.evidence.bundle import Arrays, Manifest
+from robo_genesis.sim.joints import JointMap
+from robo_genesis.sim.session import require_frame
 
 MetricRecords = Mapping[str, Mapping[str, Mapping[str, Any]]]
 """Group → name → {value, unit, class, from}, the content of metrics.json."""
 
-
-@dataclass(frozen=True, slots=True)
-class Judged:
-    """What the runs of a bundle give, computed again: metrics, and outcomes of the named checks."""
-
-    metrics: MetricRecords
-    outcomes: Sequence[Check]
+Body = TypeVar("Body", bound=BodyTrace)
 
 
-def read_frames(folder: Path, manifest: Manifest) -> dict[str, np.ndarray]:
-    """Return the camera frames by name, each a picture of this run.
+@dataclass(frozen=True)
+class Reader:
+    """The files of one bundle, as `lessons.declaration.BundleReader` describes them."""
 
-    Raises:
-        BundleRefused: `frames`.
-    """
-    render, run_id = manifest.predicate.render, manifest.predicate.run_id
-    found = sorted(path.name for path in (folder / "frames").glob("*"))
-    expected = ["final.png", "initial.png"] if render.mode == "camera" else []
-    expect("frames", "frames/", f"list of frames with render mode {render.mode}", found, expected)
-    frames = {}
-    for name in found:
-        try:
-            with Image.open(folder / "frames" / name, formats=["PNG"]) as picture:
-                if picture.size != CAMERA_RES:  # before decoding: the header may lie
-                    expect("frames", f"frames/{name}", "size", picture.size, CAMERA_RES)
-                stamp, pixels = picture.info.get("run_id"), np.array(picture)
-            require_frame(pixels)
-        except (OSError, SyntaxError, ValueError) as error:
-            if isinstance(error, BundleRefused):
-                raise
-            raise BundleRefused(
-                "frames", f"frames/{name}: {error}, expected a camera frame. {AGAIN}"
-            ) from error
-        expect("frames", f"frames/{name}", "run_id of the stamp", stamp, run_id)
-        frames[Path(name).stem] = pixels
-    return frames
+    folder: Path
+    manifest: Manifest
 
+    @property
+    def page(self) -> str:
+        """The page that recorded the bundle."""
+        return self.manifest.predicate.page
 
-def read_counts(folder: Path, group: str, names: Iterable[str]) -> dict[str, int]:
-    """Return counts that the engine gave and no array holds, as they were recorded.
+    @property
+    def end_state(self) -> str:
+        """`camera` where the run was rendered, else `schematic`."""
+        return "camera" if self.manifest.predicate.render.mode == "camera" else "schematic"
 
-    Args:
-        folder: the bundle.
-        group: of its metrics.json, `model` for what the engine says of the model.
-        names: those that it must have, and no others.
+    @cached_property
+    def arrays(self) -> Arrays:
+        """The description of the arrays."""
+        return bundle.read_arrays(self.folder)
 
-    Raises:
-        BundleRefused: `metrics`, where a count is missing or is no count.
-    """
-    recorded = bundle.read_metrics(folder).get(group, {})
-    expected = sorted(names)
-    expect("metrics", "metrics.json", f"list of counts in {group}", sorted(recorded), expected)
-    counts = {}
-    for name, metric in recorded.items():
-        if not isinstance(metric.value, int):
-            raise BundleRefused(
-                "metrics",
-                f"metrics.json: {group}.{name} is {metric.value}, expected an integer. {AGAIN}",
-            )
-        counts[name] = metric.value
-    return counts
+    def joints(self) -> JointMap:
+        """Return the joint behind each DOF of the arrays."""
+        return trace_files.read_joints(self.arrays)
 
+    def traces(
+        self, required: Iterable[str], check_coords: Callable[[Mapping[str, list[str]]], None]
+    ) -> dict[str, Trace]:
+        """Return all runs of joints by case, once their labels have passed `check_coords`.
 
-def read_readings(folder: Path, group: str, names: Iterable[str]) -> dict[str, float]:
-    """Return values that the engine gave and no array holds, as they were recorded.
+        Raises:
+            BundleRefused: `cases` where a required one is missing; as `read_trace`.
+        """
+        present = sorted(path.stem for path in (self.folder / "arrays").glob("*.npz"))
+        missing = sorted(set(required) - set(self.arrays.cases))
+        expect("cases", "arrays.json", "list of missing cases", missing, [])
+        expect("cases", "arrays/", "list of archives", present, sorted(self.arrays.cases))
+        check_coords(self.arrays.coords)
+        cases = self.arrays.cases
+        return {case: trace_files.read_trace(self.folder, self.arrays, case) for case in cases}
 
-    The arguments are those of `read_counts`.
+    def bodies(self, cases: Iterable[str], link: str) -> dict[str, BodyTrace]:
+        """Return the runs of one free body by case; the bundle holds no others."""
+        return trace_files.read_bodies(self.folder, cases, link, trace_files.read_body_trace)
 
-    Raises:
-        BundleRefused: `metrics`, where one is missing.
-    """
-    recorded = bundle.read_metrics(folder).get(group, {})
-    expected = sorted(names)
-    expect("metrics", "metrics.json", f"list of readings in {group}", sorted(recorded), expected)
-    values = {}
-    for name, metric in recorded.items():
-        if metric.value is None:
-            raise BundleRefused("metrics", f"metrics.json: {group}.{name} is missing. {AGAIN}")
-        values[name] = float(metric.value)
-    return values
+    def contacts(self, cases: Iterable[str], link: str) -> dict[str, ContactTrace]:
+        """Return the runs of one free body with its contacts by case; it holds no others."""
+        return trace_files.read_bodies(self.folder, cases, link, trace_files.read_contact_trace)
+
+    def frames(self) -> dict[str, np.ndarray]:
+        """Return the camera frames by name, each a picture of this run.
+
+        Raises:
+            BundleRefused: `frames`.
+        """
+        render, run_id = self.manifest.predicate.render, self.manifest.predicate.run_id
+        found = sorted(path.name for path in (self.folder / "frames").glob("*"))
+        expected = ["final.png", "initial.png"] if render.mode == "camera" else []
+        expect(
+            "frames", "frames/", f"list of frames with render mode {render.mode}", found, expected
+        )
+        frames = {}
+        for name in found:
+            try:
+                with Image.open(self.folder / "frames" / name, formats=["PNG"]) as picture:
+                    if picture.size != CAMERA_RES:  # before decoding: the header may lie
+                        expect("frames", f"frames/{name}", "size", picture.size, CAMERA_RES)
+                    stamp, pixels = picture.info.get("run_id"), np.array(picture)
+                require_frame(pixels)
+            except (OSError, SyntaxError, ValueError) as error:
+                if isinstance(error, BundleRefused):
+                    raise
+                raise BundleRefused(
+                    "frames", f"frames/{name}: {error}, expected a camera frame. {AGAIN}"
+                ) from error
+            expect("frames", f"frames/{name}", "run_id of the stamp", stamp, run_id)
+            frames[Path(name).stem] = pixels
+        return frames
+
+    def counts(self, group: str, names: Iterable[str]) -> dict[str, int]:
+        """Return counts that the engine gave and no array holds, as they were recorded.
+
+        Args:
+            group: of its metrics.json, `model` for what the engine says of the model.
+            names: those that it must have, and no others.
+
+        Raises:
+            BundleRefused: `metrics`, where a count is missing or is no count.
+        """
+        recorded = bundle.read_metrics(self.folder).get(group, {})
+        expected = sorted(names)
+        expect("metrics", "metrics.json", f"list of counts in {group}", sorted(recorded), expected)
+        found = {}
+        for name, metric in recorded.items():
+            if not isinstance(metric.value, int):
+                raise BundleRefused(
+                    "metrics",
+                    f"metrics.json: {group}.{name} is {metric.value}, expected an integer. {AGAIN}",
+                )
+            found[name] = metric.value
+        return found
+
+    def recorded(self, group: str) -> dict[str, float]:
+        """Return whatever values a group of metrics.json has, those observed."""
+        found = bundle.read_metrics(self.folder).get(group, {})
+        return {name: metric.value for name, metric in found.items() if metric.value is not None}
+
+    def readings(self, group: str, names: Iterable[str]) -> dict[str, float]:
+        """Return values that the engine gave and no array holds, as they were recorded.
+
+        The arguments are those of `counts`.
+
+        Raises:
+            BundleRefused: `metrics`, where one is missing.
+        """
+        recorded = bundle.read_metrics(self.folder).get(group, {})
+        expected = sorted(names)
+        expect(
+            "metrics", "metrics.json", f"list of readings in {group}", sorted(recorded), expected
+        )
+        values = {}
+        for name, metric in recorded.items():
+            if metric.value is None:
+                raise BundleRefused("metrics", f"metrics.json: {group}.{name} is missing. {AGAIN}")
+            values[name] = float(metric.value)
+        return values
 
 
 def check_metrics(folder: Path, expected: MetricRecords) -> None:

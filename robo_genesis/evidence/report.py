@@ -5,11 +5,11 @@ from html import escape
 from itertools import groupby
 from pathlib import Path
 
-from robo_genesis import tables
+from robo_genesis.core import tables
+from robo_genesis.core.files import write_whole
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import Comparison
 from robo_genesis.evidence.findings import SEVERITY, Section
-from robo_genesis.files import write_whole
 
 COLUMNS = ("result", "what", "old", "new", "Δ", "allowed")
 Row = tuple[str, ...]

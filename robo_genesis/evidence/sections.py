@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from robo_genesis.core.quantities import six_digits
 from robo_genesis.evidence.bundle import JointRecord, Metric
 from robo_genesis.evidence.findings import (
     DIFFERS,
@@ -13,9 +14,8 @@ from robo_genesis.evidence.findings import (
     Finding,
     Side,
     Specification,
-    number,
 )
-from robo_genesis.evidence.traces import fields_of
+from robo_genesis.evidence.trace_files import fields_of
 
 
 def coverage(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
@@ -52,7 +52,7 @@ def _joints(old: Side, new: Side) -> Iterator[Finding]:
 
 def _owned(joint: JointRecord) -> str:
     limits = (
-        "no limit" if limit is None else number(limit, joint.unit)
+        "no limit" if limit is None else six_digits(limit, joint.unit)
         for limit in (joint.lower, joint.upper)
     )
     places = f"DOF {joint.dof_idx_local}, qpos {joint.q_idx_local}"
@@ -90,15 +90,17 @@ def exact(old: Side, new: Side) -> Iterator[Finding]:
     """Counts are equal."""
     for name, a, b in pairs(old, new, "exact"):
         both = a.value is not None and b.value is not None
-        delta = number(b.value - a.value, a.unit) if both else ""  # type: ignore[operator]
+        delta = six_digits(b.value - a.value, a.unit) if both else ""  # type: ignore[operator]
         state = EQUAL if a.value == b.value else DIFFERS
-        yield Finding(state, name, number(a.value, a.unit), number(b.value, b.unit), delta, "0")
+        yield Finding(
+            state, name, six_digits(a.value, a.unit), six_digits(b.value, b.unit), delta, "0"
+        )
 
 
 def values(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
     """Measured values agree within atol + rtol · the larger magnitude."""
     for name, a, b in pairs(old, new, "value"):
-        text = number(a.value, a.unit), number(b.value, b.unit)
+        text = six_digits(a.value, a.unit), six_digits(b.value, b.unit)
         if a.value is None or b.value is None:
             yield Finding(EQUAL if a.value == b.value else DIFFERS, name, *text)
             continue
@@ -110,7 +112,7 @@ def values(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
         weight = abs(delta) / allowed if allowed else abs(delta)
         yield Finding(
             moved if delta else EQUAL, name, *text,
-            number(delta, a.unit), number(allowed, a.unit), weight,
+            six_digits(delta, a.unit), six_digits(allowed, a.unit), weight,
         )  # fmt: skip
 
 
@@ -127,11 +129,11 @@ def arrays(old: Side, new: Side) -> Iterator[Finding]:
             apart = float(np.abs(b.astype(np.float64) - a.astype(np.float64)).max(initial=0.0))
             units = unit if isinstance(unit, str) else " or ".join(dict.fromkeys(unit))
             text = f"{a.shape}"
-            yield Finding(SHOWN if apart else EQUAL, what, text, text, number(apart, units),
+            yield Finding(SHOWN if apart else EQUAL, what, text, text, six_digits(apart, units),
                           weight=apart)  # fmt: skip
 
 
 def performance(old: Side, new: Side) -> Iterator[Finding]:
     """Speed is shown and decides nothing."""
     for name, a, b in pairs(old, new, "performance"):
-        yield Finding(SHOWN, name, number(a.value, a.unit), number(b.value, b.unit))
+        yield Finding(SHOWN, name, six_digits(a.value, a.unit), six_digits(b.value, b.unit))

@@ -4,12 +4,12 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from robo_genesis import project
-from robo_genesis.evidence import bundle, current
+from robo_genesis.core import project
+from robo_genesis.evidence import bundle, evidence_key
 from robo_genesis.evidence.bundle import BundleRefused, Manifest
+from robo_genesis.evidence.claims import not_shown
 from robo_genesis.evidence.compare import specification
-from robo_genesis.evidence.relations import not_shown
-from robo_genesis.evidence.rules import AGREEMENT
+from robo_genesis.evidence.manifest_rules import AGREEMENT
 from robo_genesis.evidence.verify import verify_bundle
 
 RECORDED_PAGE = "lab"
@@ -159,7 +159,7 @@ def why_stale(manifest: Manifest, book: Path, root: Path = project.ROOT) -> str:
         root: the checkout, for pin, lock and modules.
     """
     found = manifest.predicate.model_dump()
-    asked = current.question(found["lesson"], found["page"], root, book)
+    asked = evidence_key.question(found["lesson"], found["page"], root, book)
     versions = (("Genesis", "version"), ("Quadrants", "quadrants_version"))
     changed = [
         f"it was recorded with {name} {found['engine'][key]}; this site uses {asked['engine'][key]}"

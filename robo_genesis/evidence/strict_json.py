@@ -1,47 +1,10 @@
-"""Refusals, and JSON that can be read in one way only."""
+"""JSON that can be read in one way only."""
 
 import json
 import math
-import re
 from typing import Any
 
-AGAIN = "Record the bundle again."
-LONGEST_SHOWN = 160
-
-
-class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepted or refused
-    """A bundle that must not become evidence. `code` is stable; the message says what to do."""
-
-    def __init__(self, code: str, message: str) -> None:
-        super().__init__(f"{code}: {message}")
-        self.code = code
-
-
-def shown(value: object) -> str:
-    """Return a value as Python writes it, cut where it is long: a message is read by people."""
-    text = repr(value)
-    if re.fullmatch("'[0-9a-f]{64}'", text):
-        return f"{text[:13]}…'"
-    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
-
-
-def expect(
-    code: str, file: str, what: str, found: object, expected: object, mend: str = AGAIN
-) -> None:
-    """Raise BundleRefused with `code` unless `found` equals `expected`.
-
-    Args:
-        code: stable name of the refusal.
-        file: where in the bundle the value stands.
-        what: the value's name.
-        found: the bundle's.
-        expected: the right one.
-        mend: what to do about it.
-    """
-    if found != expected:
-        raise BundleRefused(
-            code, f"{file}: {what} is {shown(found)}, expected {shown(expected)}. {mend}"
-        )
+from robo_genesis.core.refusals import AGAIN, BundleRefused, shown
 
 
 def parse_strict(text: str, where: str) -> Any:

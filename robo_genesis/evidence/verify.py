@@ -2,25 +2,10 @@
 
 from pathlib import Path
 
-from robo_genesis import l02, l03, l04, project
-from robo_genesis.evidence import (
-    bundle,
-    contact_runs,
-    current,
-    drop_runs,
-    files,
-    recompute,
-    rules,
-    step_runs,
-)
+from robo_genesis.core import project
+from robo_genesis.evidence import bundle, bundle_files, evidence_key, manifest_rules, recompute
 from robo_genesis.evidence.bundle import BundleRefused, Manifest
-
-JUDGES = {
-    l02.LESSON: drop_runs.judge,
-    l03.LESSON: contact_runs.judge,
-    l04.LESSON: step_runs.judge,
-}
-"""By lesson, what computes a bundle's metrics and checks again."""
+from robo_genesis.lessons.registry import find_lesson
 
 __all__ = ["BundleRefused", "verify_bundle"]
 
@@ -53,17 +38,17 @@ def verify_bundle(
         BundleRefused: with a code, and a message that names what was expected and found.
         ProjectError, PageError: the checkout itself cannot be read.
     """
-    present = files.scan(folder)
+    present = bundle_files.scan(folder)
     manifest = bundle.read_manifest(folder)
-    rules.check_identity(manifest, run_id, lesson, page)
-    files.check_files(folder, present, manifest)
-    rules.check_backend(folder, manifest)
-    rules.check_environment(manifest)
-    rules.check_render(manifest)
-    rules.check_log(folder, manifest)
-    rules.check_engine_files(manifest)
-    current.check_current(manifest, root, book)
-    judged = JUDGES[manifest.predicate.lesson](folder, manifest)
-    recompute.check_metrics(folder, judged.metrics)
-    recompute.check_outcomes(manifest, judged.outcomes)
+    manifest_rules.check_identity(manifest, run_id, lesson, page)
+    bundle_files.check_files(folder, present, manifest)
+    manifest_rules.check_backend(folder, manifest)
+    manifest_rules.check_environment(manifest)
+    manifest_rules.check_render(manifest)
+    manifest_rules.check_log(folder, manifest)
+    manifest_rules.check_engine_files(manifest)
+    evidence_key.check_current(manifest, root, book)
+    again = find_lesson(manifest.predicate.lesson).recompute(recompute.Reader(folder, manifest))
+    recompute.check_metrics(folder, again.metrics)
+    recompute.check_outcomes(manifest, again.outcomes)
     return manifest

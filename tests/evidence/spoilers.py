@@ -18,10 +18,13 @@ import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from robo_genesis import l04, step_checks
-from robo_genesis.evidence import bundle, files, step_runs, traces
-from robo_genesis.evidence.archive import UNPACKED_LIMIT
-from robo_genesis.metrics import measure, metric_records
+from robo_genesis.evidence import bundle, bundle_files, trace_files
+from robo_genesis.evidence.npz_archive import UNPACKED_LIMIT
+from robo_genesis.evidence.recompute import Reader
+from robo_genesis.lessons.l04 import checks as step_checks
+from robo_genesis.lessons.l04 import recompute as step_runs
+from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.lessons.l04.metrics import measure, metric_records
 
 
 def edit(folder, name, change):
@@ -155,7 +158,7 @@ def pad(name):
     """Make a file too long for its kind."""
 
     def change(folder):
-        limit = files.SIZE_LIMITS.get(name, files.OTHER_LIMIT)
+        limit = bundle_files.SIZE_LIMITS.get(name, bundle_files.OTHER_LIMIT)
         with (folder / name).open("ab") as stream:
             stream.truncate(limit + 1)
 
@@ -163,14 +166,14 @@ def pad(name):
 
 
 def crowd(folder):
-    for number in range(files.ENTRIES_LIMIT):
+    for number in range(bundle_files.ENTRIES_LIMIT):
         (folder / f"{number}.txt").touch()
 
 
 # --- arrays ---------------------------------------------------------------------------------
 
 G1 = "arrays/G1.npz"
-NAMES = {field: name for field, (name, *_) in traces.FIELDS.items()}
+NAMES = {field: name for field, (name, *_) in trace_files.FIELDS.items()}
 
 
 def rewrite(**fields):
@@ -201,14 +204,15 @@ def described(folder):
 def measured_again(folder):
     """Make metrics.json what the arrays now give."""
     arrays = bundle.read_arrays(folder)
-    found = {case: traces.read_trace(folder, arrays, case) for case in arrays.cases}
+    found = {case: trace_files.read_trace(folder, arrays, case) for case in arrays.cases}
     records = metric_records(measure(found, l04.CASES, 3), l04.EXPECTED_MODEL)
     (folder / "metrics.json").write_text(json.dumps(records), "utf8")
 
 
 def checked_again(folder):
     """Make the recorded checks those of the arrays and joints, failures included."""
-    run = step_runs.read_run(folder, bundle.read_manifest(folder))
+    files = Reader(folder, bundle.read_manifest(folder))
+    run = step_runs.read_run(files, step_runs.read_traces(files))
     predicate(checks=[asdict(outcome) for outcome in step_checks.run_checks(run)])(folder)
 
 
@@ -230,7 +234,7 @@ def as_revolute(folder):
         for case in arrays["cases"].values():
             for name, variable in case["variables"].items():
                 if isinstance(variable["unit"], list):
-                    variable["unit"] = traces.dof_units(name, of_type)
+                    variable["unit"] = trace_files.dof_units(name, of_type)
 
     edit(folder, "arrays.json", change)
 

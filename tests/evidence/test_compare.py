@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robo_genesis import l04
+from robo_genesis.core.project import ROOT
 from robo_genesis.evidence import bundle, report
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare, specification
 from robo_genesis.evidence.findings import SEVERITY
-from robo_genesis.metrics import UNITS
-from robo_genesis.project import ROOT
-from robo_genesis.studies import READING_UNITS
+from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.lessons.l04.metrics import StepMetrics
+from robo_genesis.lessons.l04.study import READING_UNITS
 
 SPEC = specification("l04")
 
@@ -359,19 +359,20 @@ def test_numbers_beyond_measure_and_arrays_of_words_are_refused(folder, other):
 
 def test_an_unknown_lesson_is_refused():
     with pytest.raises(
-        BundleRefused, match=r"^lesson: 'l99' is no lesson. Choices: l02, l03, l04\."
+        BundleRefused, match=r"^lesson: Lesson 'l99' does not exist. Choices: l02, l03, l04\."
     ):
         specification("l99")
 
 
 def test_the_lesson_declares_every_unit_and_margins_above_the_noise():
-    units = set(UNITS.values()) | set(READING_UNITS.values())
+    by_name = StepMetrics.about("unit")
+    units = set(by_name.values()) | set(READING_UNITS.values())
     assert units - {"1"} <= set(l04.TOLERANCES)
-    assert set(l04.TOLERANCES) <= units | set(UNITS)
+    assert set(l04.TOLERANCES) <= units | set(by_name)
     assert len(l04.RELATIONS) == sum(map(len, l04.PREDICTIONS.values()))
     for pair, metric, order, margin in l04.RELATIONS:
         assert (metric, order) in l04.PREDICTIONS[pair]
-        assert margin > l04.RESOLUTION[UNITS[metric]]
+        assert margin > l04.RESOLUTION[by_name[metric]]
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from spoilers import (
     seal,
 )
 
-from robo_genesis import l04, project
+from robo_genesis.core import project
 from robo_genesis.evidence.status import (
     bundle_status,
     page_status,
@@ -24,8 +24,9 @@ from robo_genesis.evidence.status import (
     recorded_status,
     refused_records,
 )
-from robo_genesis.metrics import measure, metric_records
-from robo_genesis.step_checks import StepExperiment, run_checks
+from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.lessons.l04.checks import StepExperiment, run_checks
+from robo_genesis.lessons.l04.metrics import measure, metric_records
 
 
 @pytest.fixture

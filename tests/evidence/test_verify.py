@@ -8,22 +8,19 @@ from pathlib import Path
 import pytest
 from spoilers import SPOILED, moved, on, part, seal
 
-import robo_genesis.evidence
-from robo_genesis import project
+import robo_genesis
+from robo_genesis.core import project
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.verify import verify_bundle
 
-READERS = (
-    "strict_json", "bundle", "files", "rules", "current", "archive", "traces", "recompute",
-    "drop_runs", "step_runs", "verify",
-)  # fmt: skip
+READERS = ("evidence/*.py", "core/refusals.py", "lessons/*/recompute.py")
 
 
 def codes():
     """Every code that the readers can refuse with, from their source."""
-    folder = Path(robo_genesis.evidence.__file__).parent
-    trees = [ast.parse((folder / f"{name}.py").read_text("utf8")) for name in READERS]
+    package = Path(robo_genesis.__file__).parent
+    trees = [ast.parse(file.read_text("utf8")) for name in READERS for file in package.glob(name)]
     return {
         call.args[0].value
         for tree in trees
@@ -127,9 +124,9 @@ LAB = "book/lessons/l04-joint-control/lab.md"
     [
         ("pyproject.toml", "genesis-world==", "genesis-world==9.", "engine.version"),
         ("requirements.lock", "\nquadrants==", "\nquadrants==9.", "engine.quadrants_version"),
-        (LAB, "plots.use_course_style()", "pass", "source.page"),
-        ("robo_genesis/metrics.py", "RISE_FRACTION = 0.9", "RISE_FRACTION = 0.8",
-         "source.modules.metrics"),
+        (LAB, "plotting.use_course_style()", "pass", "source.page"),
+        ("robo_genesis/lessons/l04/metrics.py", "RISE_FRACTION = 0.9", "RISE_FRACTION = 0.8",
+         r"source.modules.lessons\.l04\.metrics"),
     ],
 )  # fmt: skip
 def test_an_edit_of_pin_lock_lab_or_module_makes_a_bundle_stale(
@@ -147,7 +144,7 @@ VERIFY = (
     "import sys; from pathlib import Path; from robo_genesis.evidence.status import bundle_status; "
     "print(bundle_status(Path(sys.argv[1])).state)"
 )
-LESSON, METRICS = "robo_genesis/l04.py", "robo_genesis/metrics.py"
+LESSON, METRICS = "robo_genesis/lessons/l04/spec.py", "robo_genesis/lessons/l04/metrics.py"
 
 
 def test_an_edit_of_the_lesson_makes_stale_what_it_decides_and_nothing_else(folder, checkout):
@@ -184,7 +181,7 @@ def test_an_edit_of_the_lesson_makes_stale_what_it_decides_and_nothing_else(fold
 
 
 def test_an_edit_of_prose_or_plots_does_not(folder, checkout):
-    for name, more in ((LAB, "\nMore words.\n"), ("robo_genesis/plots.py", "\nMORE = 1\n")):
+    for name, more in ((LAB, "\nMore words.\n"), ("robo_genesis/core/plotting.py", "\nMORE = 1\n")):
         with (checkout / name).open("a", encoding="utf8") as stream:
             stream.write(more)
     verify_bundle(folder, root=checkout, book=checkout / "book")

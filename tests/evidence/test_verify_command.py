@@ -7,8 +7,8 @@ import pytest
 from loading import ENGINE, JUPYTER, run_watched
 from spoilers import on, part, seal
 
-from robo_genesis import l04
-from robo_genesis.project import ROOT, engine_pin
+from robo_genesis.core.project import ROOT, engine_pin
+from robo_genesis.lessons.l04 import spec as l04
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ import pytest
 from browsers import chromium
 from playwright.sync_api import Browser, sync_playwright
 
-from robo_genesis.project import BOOK, ROOT
+from robo_genesis.core.project import BOOK, ROOT
 
 
 class QuietHandler(SimpleHTTPRequestHandler):

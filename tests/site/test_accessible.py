@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Page
 from watching import drawn, page_names
 
-from robo_genesis import npm
+from robo_genesis.build import npm
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 

@@ -8,7 +8,7 @@ import pytest
 from bs4 import BeautifulSoup
 
 from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons.registry import LESSONS
 
 pytestmark = pytest.mark.engine
 LEDGER = "evidence/ledger.html"

@@ -5,10 +5,14 @@ import re
 import pytest
 from bs4 import BeautifulSoup
 
-from robo_genesis import contact_checks, drop_checks, l04, project, step_checks
+from robo_genesis.core import project
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons.l02 import checks as drop_checks
+from robo_genesis.lessons.l03 import checks as contact_checks
+from robo_genesis.lessons.l04 import checks as step_checks
+from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.lessons.registry import LESSONS
 
 pytestmark = pytest.mark.engine
 PIN = project.engine_pin()

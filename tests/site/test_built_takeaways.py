@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from bs4 import BeautifulSoup
 
-from robo_genesis import project
+from robo_genesis.core import project
 from robo_genesis.evidence import bundle
 
 pytestmark = pytest.mark.engine

@@ -7,8 +7,9 @@ import pytest
 from bs4 import BeautifulSoup
 from playwright.sync_api import Page
 
+from robo_genesis.core.quantities import format_value
 from robo_genesis.evidence import bundle
-from robo_genesis.metrics import LABELS, UNITS, format_value
+from robo_genesis.lessons.l04.metrics import StepMetrics
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -93,8 +94,8 @@ def test_the_widget_opens_at_g2_with_what_the_bundle_holds(page, site):
     assert "(the case G2)" in sentence
     records = bundle.read_metrics(site.parent / "evidence" / "l04" / "cpu")["G2"]
     assert metrics == {
-        label: format_value(records[name].value, UNITS[name])
-        for name, label in LABELS.items()
+        label: format_value(records[name].value, records[name].unit)
+        for name, label in StepMetrics.about("label").items()
         if name != "initial_error"
     }
 

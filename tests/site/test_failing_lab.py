@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from robo_genesis.project import BOOK, CACHE, ROOT
+from robo_genesis.core.project import BOOK, CACHE, ROOT
 
 pytestmark = pytest.mark.engine
 LAB = "lessons/l04-joint-control/lab"

@@ -4,9 +4,9 @@ import nbformat
 import pytest
 from nbclient import NotebookClient
 
-from robo_genesis.page_cache import PageCache, notebooks_folder, outputs_folder
-from robo_genesis.pages import find_pages, fingerprint
-from robo_genesis.project import BOOK, ROOT, page_cache_folder
+from robo_genesis.build.page_cache import PageCache, notebooks_folder, outputs_folder
+from robo_genesis.core.project import BOOK, ROOT, page_cache_folder
+from robo_genesis.lessons.book_pages import find_pages, fingerprint
 
 pytestmark = pytest.mark.engine
 
@@ -16,9 +16,9 @@ from pathlib import Path
 from PIL import Image
 from robo_genesis import engines_compared, l04, l04_studies, plots, studies, study_plots
 from robo_genesis.evidence import bundle, step_runs
-from robo_genesis.evidence.traces import read_trace
-from robo_genesis.robot_model import JointMap
-from robo_genesis.scene_config import JOINT_NAMES
+from robo_genesis.evidence.trace_files import read_trace
+from robo_genesis.sim.joints import JointMap
+from robo_genesis.core.scene import JOINT_NAMES
 
 plots.use_course_style()
 folder = Path({folder!r})
@@ -39,9 +39,9 @@ import matplotlib.pyplot as plt, numpy as np
 from pathlib import Path
 from PIL import Image
 from robo_genesis import drop_plots, l02, plots, substep_study
-from robo_genesis.drop_metrics import measure, predicted
+from robo_genesis.lessons.l02.metrics import measure, predicted
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.traces import read_body_trace
+from robo_genesis.evidence.trace_files import read_body_trace
 
 plots.use_course_style()
 folder = Path({folder!r})
@@ -59,10 +59,10 @@ import matplotlib.pyplot as plt, numpy as np
 from pathlib import Path
 from PIL import Image
 from robo_genesis import contact_plots, contact_studies, contacts, drop_plots, energy, l03, plots
-from robo_genesis import sliding
-from robo_genesis.contact_metrics import measure
+from robo_genesis.lessons.l03 import friction as sliding
+from robo_genesis.lessons.l03.metrics import measure
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.traces import read_contact_trace
+from robo_genesis.evidence.trace_files import read_contact_trace
 
 plots.use_course_style()
 folder = Path({folder!r})

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from bs4 import BeautifulSoup
 
-from robo_genesis.lessons import LESSONS
-from robo_genesis.project import BOOK
+from robo_genesis.core.project import BOOK
+from robo_genesis.lessons.registry import LESSONS
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 

@@ -5,8 +5,8 @@ import re
 import pytest
 from bs4 import BeautifulSoup
 
-from robo_genesis import project
-from robo_genesis.diagnosis import LINKS
+from robo_genesis.core import project
+from robo_genesis.sim.diagnosis import LINKS
 
 pytestmark = pytest.mark.engine
 PARTS = ("Symptom.", "Evidence.", "Diagnosis.", "Mend.")

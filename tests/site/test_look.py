@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Page, expect
 
-from robo_genesis.palette import CASES, GROUNDS, MARKS, contrast, css_name
+from robo_genesis.core.palette import CASES, GROUNDS, MARKS, contrast, css_name
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 

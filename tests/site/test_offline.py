@@ -7,8 +7,8 @@ import pytest
 from bs4 import BeautifulSoup
 from watching import SERVED_ONLY, only_from, page_names, watch
 
-from robo_genesis.offline import ARCHIVE, FOLDER
-from robo_genesis.site_checks import check_site
+from robo_genesis.build.site_archive import ARCHIVE, FOLDER
+from robo_genesis.build.site_checks import check_site
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 

@@ -6,10 +6,11 @@ import pytest
 from bs4 import BeautifulSoup
 from PIL import Image
 
-from robo_genesis import pages, project
-from robo_genesis.offline import pack
-from robo_genesis.render import render
-from robo_genesis.site_checks import check_site
+from robo_genesis.build.render import render
+from robo_genesis.build.site_archive import pack
+from robo_genesis.build.site_checks import check_site
+from robo_genesis.core import project
+from robo_genesis.lessons import book_pages
 
 pytestmark = pytest.mark.engine
 ADDRESS = "https://example.org/robot/course/"
@@ -19,7 +20,7 @@ ADDRESS = "https://example.org/robot/course/"
 def html(site, tmp_path_factory):
     """The pages that the site was just built from, rendered once more with an address."""
     folder = tmp_path_factory.mktemp("address")
-    fingerprint = pages.fingerprint(pages.find_pages(project.BOOK), project.ROOT)
+    fingerprint = book_pages.fingerprint(book_pages.find_pages(project.BOOK), project.ROOT)
     executed = project.page_cache_folder(fingerprint)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SITE_URL", ADDRESS.rstrip("/"))

@@ -14,12 +14,13 @@ from browsers import chromium
 from bs4 import BeautifulSoup
 from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
-from robo_genesis import npm, sphinx_replay
+from robo_genesis.build import npm
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.traces import read_joints, read_trace
-from robo_genesis.l04 import STEPPED_JOINT
-from robo_genesis.lessons import LESSONS
-from robo_genesis.replay_model import rotations
+from robo_genesis.evidence.trace_files import read_joints, read_trace
+from robo_genesis.lessons.l04.spec import STEPPED_JOINT
+from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.site.replay import directive as sphinx_replay
+from robo_genesis.site.replay.model import rotations
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 

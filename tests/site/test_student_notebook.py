@@ -12,7 +12,8 @@ import nbformat
 import pytest
 from bs4 import BeautifulSoup
 
-from robo_genesis import build, project
+from robo_genesis.build import stages
+from robo_genesis.core import project
 
 pytestmark = pytest.mark.engine
 LABS = {
@@ -64,7 +65,7 @@ def test_the_install_line_is_enough_to_run_each_student_s_notebook(site, home):
     assert run(f"{folder}/bin/python -c '{where}'", home, environment).startswith(str(home))
     for lesson, (*_, start) in lines.items():
         execute = start.replace("jupyter lab", f"jupyter execute --output={lesson}-done.ipynb")
-        with build.only_build(project.CACHE):
+        with stages.only_build(project.CACHE):
             run(execute, home, environment)
         done = nbformat.read(home / f"{lesson}-done.ipynb", as_version=4)
         assert f"genesis-world {project.engine_pin()}" in done.cells[1].outputs[0].text

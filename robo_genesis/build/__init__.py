@@ -1,0 +1,1 @@
+"""The stages of `make book`, and what executes, checks and publishes pages."""

@@ -1,0 +1,160 @@
+"""Kernels that nothing of the user's configuration reaches, and that never outlive the build."""
+
+import multiprocessing
+import os
+import shutil
+import signal
+import threading
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import psutil  # type: ignore[import-untyped]
+from jupyter_client.kernelspec import KernelSpecManager
+from jupyter_client.manager import AsyncKernelManager
+from jupyter_core.paths import jupyter_runtime_dir
+from traitlets import default
+
+from robo_genesis.core.project import ENGINE_PREFIXES
+
+# What a kernel gets of the user's environment: the machine's own, and the engine's switches, which
+# are part of the pages' fingerprint. All else (MPLBACKEND, PYTHONSTARTUP …) would change pages.
+MACHINE = ("HOME", "LANG", "LD_LIBRARY_PATH", "LOGNAME", "PATH", "TMPDIR", "TZ", "USER")
+ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
+
+# ipykernel 7 hangs for ever, or 10 s, in about one of ten of its own exit handlers. They run last:
+# one that is registered right after them runs right before them, after the engine's, and ends it.
+END_BEFORE_IPYKERNEL = "__import__('atexit').register(__import__('os')._exit, 0)"
+ARGUMENTS = [f"--IPKernelApp.exec_lines={END_BEFORE_IPYKERNEL}"]
+
+
+class CleanKernelManager(AsyncKernelManager):
+    """Starts the kernel of this interpreter and knows no installed kernelspec.
+
+    `busy` is set while a cell runs. There is one kernel per worker process, so a class attribute
+    will do; nbclient takes a class, not an instance.
+    """
+
+    busy = False
+
+    @default("shutdown_wait_time")
+    def _time_to_save(self) -> float:
+        """Return the seconds for a kernel's exit; SIGTERM comes after the first half of them.
+
+        The engine saves what it compiled in its exit handler, so the usual 5 s are short.
+        """
+        return 120.0
+
+    @default("transport")
+    def _sockets_as_files(self) -> str:
+        """Return ipc: kernels that start at the same time can draw the same TCP port."""
+        return "ipc"
+
+    @default("ip")
+    def _place_of_sockets(self) -> str:
+        """Return an absolute path: the default is relative, and kernels run in other folders."""
+        return str(Path(jupyter_runtime_dir()) / "kernel")
+
+    @default("kernel_spec_manager")
+    def _no_installed_kernelspecs(self) -> KernelSpecManager:
+        """Return a manager that finds no folder, so that only the native kernel is left."""
+        return KernelSpecManager(kernel_dirs=[])
+
+    async def shutdown_kernel(  # type: ignore[override]
+        self, now: bool = False, restart: bool = False
+    ) -> None:
+        """Stop the kernel, at once if a cell still runs: then it would not hear a request."""
+        await super().shutdown_kernel(now=now or type(self).busy, restart=restart)
+
+
+def clean_environment(
+    home: Path, runtime: Path, root: Path, extra: Mapping[str, str]
+) -> dict[str, str]:
+    """Return the whole environment for a kernel.
+
+    Args:
+        home: folder for IPython's and Jupyter's own files.
+        runtime: folder for the kernel's sockets; its path must be short (107 characters in all).
+        root: the checkout, the only entry of the kernel's PYTHONPATH.
+        extra: variables of this run.
+    """
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if name in MACHINE or name.startswith(ALLOWED)
+    }
+    folders = {
+        "IPYTHONDIR": home / "ipython",
+        "JUPYTER_CONFIG_DIR": home / "jupyter-config",
+        "JUPYTER_DATA_DIR": home / "jupyter-data",
+        "JUPYTER_RUNTIME_DIR": runtime,
+    }
+    for folder in folders.values():
+        folder.mkdir(parents=True, exist_ok=True)
+    own = {
+        "JUPYTER_NO_CONFIG": "1",
+        "JUPYTER_PREFER_ENV_PATH": "1",
+        "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+        "PYTHONNOUSERSITE": "1",
+        "PYTHONPATH": str(root),
+    }
+    return {**kept, **{name: str(path) for name, path in folders.items()}, **own, **extra}
+
+
+@contextmanager
+def interrupts_blocked() -> Iterator[None]:
+    """Start processes that a Ctrl-C of the terminal does not reach.
+
+    The mask is inherited: the parent alone answers the interrupt, and kills them.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def kill_with_descendants(pids: Iterable[int]) -> None:
+    """Kill processes and everything below them.
+
+    Kernels lead sessions of their own, so no process group holds them all. The processes are
+    stopped first: a stopped worker cannot start one more kernel while the list is made.
+
+    Args:
+        pids: process ids; those that are gone are passed over.
+    """
+    doomed: list[Any] = []
+    for pid in pids:
+        try:
+            process = psutil.Process(pid)
+            process.suspend()
+            doomed += [process, *process.children(recursive=True)]
+        except psutil.NoSuchProcess:
+            continue
+    for process in doomed:
+        try:
+            process.kill()
+        except psutil.NoSuchProcess:
+            continue
+    psutil.wait_procs(doomed, timeout=10)
+
+
+def die_with_parent(scratch: Path) -> None:
+    """Make this worker kill its kernel and itself when the build process is gone.
+
+    Args:
+        scratch: temporary folder of the build, which then nobody else removes.
+    """
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+
+    def wait_and_die() -> None:
+        parent.join()
+        children = psutil.Process().children(recursive=True)
+        kill_with_descendants(child.pid for child in children)
+        shutil.rmtree(scratch, ignore_errors=True)
+        os._exit(1)
+
+    threading.Thread(target=wait_and_die, daemon=True).start()

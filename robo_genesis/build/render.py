@@ -1,0 +1,73 @@
+"""Render the book with Sphinx into a fresh folder, from executed pages and nothing else."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+from robo_genesis.build.page_cache import notebooks_folder, outputs_folder
+from robo_genesis.core.project import ROOT
+
+COMMAND = """\
+from robo_genesis.build.command import collect_rarely
+collect_rarely()
+from jupyter_book.cli.main import main
+main()
+"""
+EXECUTED = "ROBO_GENESIS_EXECUTED_PAGES"
+ANSI = re.compile(r"\x1b\[[0-9;]*m")
+TELLING = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
+
+
+class RenderError(Exception):
+    """Sphinx failed or warned; the message holds what it said and where the log is."""
+
+
+def render(
+    book: Path, staging: Path, folder: Path, log: Path, executed: Iterable[str] = ()
+) -> Path:
+    """Render every page of a book.
+
+    Args:
+        book: folder with `_config.yml`, `_toc.yml` and the pages.
+        staging: folder for the result; what it held before is removed.
+        folder: cache folder of the executed pages.
+        log: file for everything that Sphinx says.
+        executed: names of the pages that this build executed.
+
+    Returns:
+        The folder with the site's HTML.
+
+    Raises:
+        RenderError: Sphinx failed or gave a warning.
+    """
+    shutil.rmtree(staging, ignore_errors=True)
+    staging.mkdir(parents=True)
+    log.parent.mkdir(parents=True, exist_ok=True)
+    command = [sys.executable, "-c", COMMAND, "build", str(book), "--path-output", str(staging)]
+    command += ["-n", "-W", "--keep-going", "--all", "--builder", "html"]
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(ROOT),
+        "ROBO_GENESIS_PAGE_CACHE": str(notebooks_folder(folder)),
+        "ROBO_GENESIS_BUILD_OUTPUTS": str(outputs_folder(folder)),
+        EXECUTED: "\n".join(executed),
+    }
+    with log.open("w", encoding="utf8") as stream:
+        done = subprocess.run(
+            command, env=environment, stdout=stream, stderr=subprocess.STDOUT, check=False
+        )
+    html = staging / "_build" / "html"
+    if done.returncode != 0 or not (html / "index.html").is_file():
+        raise RenderError(f"{_complaints(log)}\nThe complete log is in {log}")
+    return html
+
+
+def _complaints(log: Path) -> str:
+    """Return the warnings and errors of a log, or its end where it names none."""
+    lines = ANSI.sub("", log.read_text("utf8", errors="replace")).splitlines()
+    found = list(dict.fromkeys(line for line in lines if TELLING.search(line)))
+    return "\n".join(found or lines[-20:])

@@ -1,0 +1,1 @@
+"""Plain data and numerics: what every other sub-package builds on."""

@@ -1,0 +1,70 @@
+"""One metric of two cases: its order, the sentence about it, and a prediction held against it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from robo_genesis.core.metrics import CaseMetrics
+from robo_genesis.core.orderings import HELD_BY, order
+from robo_genesis.core.quantities import format_value
+
+INSPECT = (
+    "Before blaming the model, inspect saturation, the time stamps, the initial states and "
+    "the length of the window."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """One metric of two cases. `order` ranks the second relative to the first.
+
+    It is lower, equal or higher, and None where the values cannot be ranked.
+    """
+
+    label: str
+    unit: str
+    first: float | None
+    second: float | None
+    order: str | None
+
+
+def compare(
+    metric: str, first: CaseMetrics, second: CaseMetrics, resolution: Mapping[str, float]
+) -> Comparison:
+    """Order one metric of two cases; a difference below the resolution of its unit is equal."""
+    noun, unit = (first.about(what)[metric] for what in ("noun", "unit"))
+    return compare_values(noun, unit, getattr(first, metric), getattr(second, metric), resolution)
+
+
+def compare_values(
+    label: str, unit: str, a: float | None, b: float | None, resolution: Mapping[str, float]
+) -> Comparison:
+    """Order the values `a` and `b` of one metric in two cases; `label` is its name in prose."""
+    return Comparison(label, unit, a, b, order(a, b, resolution[unit]))
+
+
+def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
+    """Say how one metric of two cases compares."""
+    label, unit = comparison.label, comparison.unit
+    first, second = (format_value(v, unit) for v in (comparison.first, comparison.second))
+    values = f"{names[0]} {first}, {names[1]} {second}"
+    if comparison.order is None:
+        return f"The {label} was not observed in either case, so this window cannot rank them."
+    if None in (comparison.first, comparison.second):
+        seen, unseen = names if comparison.second is None else names[::-1]
+        return (
+            f"The {label} was observed for {seen} alone ({values}); within this window "
+            f"{unseen} is the slower one, by how much is unknown."
+        )
+    verb = {"lower": "goes down", "higher": "goes up", "equal": "does not change measurably"}
+    return f"The {label} {verb[comparison.order]} ({values})."
+
+
+def prediction_sentence(names: tuple[str, str], comparison: Comparison, predicted: str) -> str:
+    """Hold one prediction against the measured order; one that fails says what to inspect."""
+    label = comparison.label
+    claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
+    if comparison.order is None:
+        return f"{claim}. Cannot be judged: not observed in either case."
+    if comparison.order in HELD_BY[predicted]:
+        return f"{claim}. Held in this run."
+    return f"{claim}. **Did not hold**: measured {comparison.order}. {INSPECT}"

@@ -1,0 +1,66 @@
+"""Files that follow from their inputs alone: made once, then taken from the cache by content."""
+
+import hashlib
+import json
+import os
+import sys
+import time
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+
+from robo_genesis.core.files import write_whole
+from robo_genesis.core.project import CACHE, installed, lock_digest
+
+DIGEST = hashlib.sha256().digest_size
+KEPT = 30 * 24 * 3600
+"""Seconds for which a file stays that no build asked for."""
+
+
+def derived(
+    kind: str, inputs: Iterable[bytes], make: Callable[[], bytes], cache: Path = CACHE
+) -> bytes:
+    """Return what `make` makes; only where the same inputs and lock were not met before.
+
+    Args:
+        kind: a word for what it is.
+        inputs: everything that decides it, the sources of the code that makes it included; lock,
+            Python and installed packages are added.
+        make: called where the cache has no such file.
+        cache: the cache folder.
+    """
+    key = hashlib.sha256(json.dumps([lock_digest(), sys.version, _installed()]).encode())
+    for part in inputs:
+        key.update(hashlib.sha256(part).digest())
+    file = cache / "derived" / kind / key.hexdigest()
+    content = _get(file)
+    if content is None:
+        content = make()
+        with suppress(OSError):  # a cache that cannot be written costs time alone
+            write_whole(file, hashlib.sha256(content).digest() + content)
+            _forget(file.parent)
+    return content
+
+
+@lru_cache(maxsize=1)
+def _installed() -> list[tuple[str, str, int]]:
+    return installed(sys.path)
+
+
+def _get(file: Path) -> bytes | None:
+    """Return what a file keeps, None if there is none, or not all of it."""
+    try:
+        os.utime(file)
+        stored = file.read_bytes()
+    except OSError:
+        return None
+    digest, content = stored[:DIGEST], stored[DIGEST:]
+    return content if hashlib.sha256(content).digest() == digest else None
+
+
+def _forget(folder: Path) -> None:
+    oldest = time.time() - KEPT
+    for file in folder.iterdir():
+        if file.stat().st_mtime < oldest:
+            file.unlink()

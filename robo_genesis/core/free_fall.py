@@ -1,0 +1,53 @@
+"""Free fall from rest, three ways: as calculus has it, as a solver steps it, and as one formula.
+
+Nothing here knows an engine. Heights are distances fallen, so down is positive [m].
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from robo_genesis.core.scene import FloatArray
+
+GRAVITY = 9.81
+"""Magnitude of the engine's default acceleration of gravity [m/s²]."""
+
+
+def continuous_drop(t: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
+    """Return g t² / 2, the distance fallen from rest after times `t` (k,) [s]: (k,) [m]."""
+    return 0.5 * gravity * np.asarray(t, dtype=np.float64) ** 2
+
+
+def stepped_drop(h: float, steps: int, gravity: float = GRAVITY) -> FloatArray:
+    """Step free fall from rest as semi-implicit Euler does: velocity first, then position with it.
+
+    Args:
+        h: length of one solver step [s].
+        steps: how many are taken, n.
+        gravity: acceleration of gravity [m/s²].
+
+    Returns:
+        The distance fallen before the first step and after each, (n+1,) [m].
+    """
+    v, z, fallen = 0.0, 0.0, [0.0]
+    for _ in range(steps):
+        v = v + gravity * h
+        z = z + v * h  # the new velocity moves the body
+        fallen.append(z)
+    return np.array(fallen)
+
+
+def summed_drop(h: float, steps: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
+    """Return g h² n (n + 1) / 2, what `stepped_drop` adds up to after n = `steps` steps [m].
+
+    The velocity after step k is k g h, so step k moves by k g h²; 1 + 2 + … + n is n (n + 1) / 2.
+    """
+    n = np.asarray(steps, dtype=np.float64)
+    return gravity * h**2 * n * (n + 1) / 2
+
+
+def ahead_of_continuous(h: float, t: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
+    """Return g h t / 2: how much farther the stepped body is than g t² / 2 after times `t` [m].
+
+    With t = n h, g h² n (n + 1) / 2 is g t² / 2 + g h t / 2. The second term goes to zero with h.
+    """
+    return 0.5 * gravity * h * np.asarray(t, dtype=np.float64)

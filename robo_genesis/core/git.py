@@ -1,0 +1,57 @@
+"""What git says of a checkout."""
+
+import subprocess
+from pathlib import Path
+
+from robo_genesis.core.project import ProjectError
+
+SHOWN = 5
+"""How many changed files a message names."""
+
+
+def git(root: Path, *arguments: str) -> str:
+    """Return what git prints in a folder; a query never rewrites the user's index.
+
+    Raises:
+        ProjectError: git is not installed, or it failed; the message holds what it said.
+    """
+    command = ["git", "--no-optional-locks", "-C", str(root), *arguments]
+    try:
+        done = subprocess.run(
+            command, capture_output=True, encoding="utf8", errors="replace", check=False
+        )
+    except OSError as error:
+        raise ProjectError("Git is not installed. Install it: apt install git.") from error
+    if done.returncode:
+        said = done.stderr.strip() or f"exit status {done.returncode}"
+        raise ProjectError(f"git {arguments[0]} failed in {root}: {said}")
+    return done.stdout
+
+
+def git_or_none(root: Path, *arguments: str) -> str | None:
+    """Return what `git` returns, None where it fails or is not installed."""
+    try:
+        return git(root, *arguments)
+    except ProjectError:
+        return None
+
+
+def unclean(root: Path, reason: str = "A release is built from one commit") -> list[str]:
+    """Return why a checkout is not exactly one commit; nothing where it is.
+
+    Args:
+        root: the checkout.
+        reason: why it must be one, as the messages say it.
+    """
+    try:
+        changed = git(root, "status", "--porcelain", "--untracked-files=all").splitlines()
+    except ProjectError as error:
+        return [f"{root} is no git checkout: {error} {reason}: clone the repository, run it there."]
+    if not changed:
+        return []
+    more = f", and {len(changed) - SHOWN} more" if len(changed) > SHOWN else ""
+    names = ", ".join(line[3:] for line in changed[:SHOWN])
+    return [
+        f"The tree has {len(changed)} changed or new files ({names}{more}). {reason}: commit or "
+        "stash them (git stash --include-untracked)."
+    ]

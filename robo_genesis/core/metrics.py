@@ -1,0 +1,74 @@
+"""What a metric is: a field of a case's results, with unit, label and the arrays it comes from.
+
+Its form in `metrics.json` is value, unit, class and source. A value that was not observed is None.
+"""
+
+from collections.abc import Mapping
+from dataclasses import Field, field, fields
+from typing import Any
+
+Record = dict[str, Any]
+
+ENGINE = ["engine"]
+"""The source of a value that the engine reported and no array holds."""
+
+
+def metric(unit: str, label: str, *sources: str, noun: str = "") -> Any:
+    """Return a dataclass field for one metric.
+
+    Args:
+        unit: as written for a reader; "1" for counts.
+        label: in the head of a table.
+        sources: the arrays that it is computed from, by their names in a bundle.
+        noun: its name in a sentence, by default the label.
+    """
+    about = {"unit": unit, "label": label, "sources": sources, "noun": noun or label}
+    return field(metadata=about)
+
+
+class CaseMetrics:
+    """Base of the metrics of one case: a frozen dataclass whose fields are all `metric`."""
+
+    __slots__ = ()
+
+    @classmethod
+    def about(cls, what: str) -> dict[str, Any]:
+        """Return `unit`, `label`, `sources` or `noun` of each metric by its name."""
+        declared: tuple[Field[Any], ...] = fields(cls)  # type: ignore[arg-type]
+        return {one.name: one.metadata[what] for one in declared}
+
+    def items(self) -> list[tuple[str, float | None, str]]:
+        """Return (name, value, unit) in the order of the table."""
+        return [(name, getattr(self, name), unit) for name, unit in self.about("unit").items()]
+
+
+def count_records(found: Mapping[str, int]) -> dict[str, Record]:
+    """Return counts that the engine reported; another run must report the same ones."""
+    return {
+        name: {"value": count, "unit": "1", "class": "exact", "from": ENGINE}
+        for name, count in found.items()
+    }
+
+
+def reading_records(found: Mapping[str, float], unit: str) -> dict[str, Record]:
+    """Return values in one unit that the engine reported."""
+    return {
+        name: {"value": value, "unit": unit, "class": "value", "from": ENGINE}
+        for name, value in found.items()
+    }
+
+
+def case_records(metrics: Mapping[str, CaseMetrics]) -> dict[str, dict[str, Record]]:
+    """Return the metrics of each case with class and source."""
+    return {
+        case: {
+            name: {
+                "value": value,
+                "unit": unit,
+                "class": "exact" if unit == "1" else "value",
+                "from": list(of.about("sources")[name]),
+            }
+            for name, value, unit in of.items()
+        }
+        for case, of in metrics.items()
+    }

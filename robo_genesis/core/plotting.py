@@ -1,0 +1,157 @@
+"""Figures of the course: axes in, axes out; no numerics, no show()."""
+
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+
+from robo_genesis.core.channels import Channel, Level, Runs
+from robo_genesis.core.palette import CASES, MARKS, marks_of
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
+
+
+def look(name: str, **more: Any) -> dict[str, Any]:
+    """Return how Matplotlib draws a mark of the palette, on the light ground of its figures."""
+    mark = MARKS[name]
+    return {"color": mark.light, "linestyle": (0, mark.dashes) if mark.dashes else "-", **more}
+
+
+TARGET = look("target", linewidth=1.4)
+LIMIT = look("limit", linewidth=1.4)
+
+
+def use_course_style() -> None:
+    """Set fonts, grid and sizes; notebooks embed figures as SVG, the same bytes each run."""
+    mpl.rcParams.update(
+        {
+            "axes.grid": True,
+            "axes.spines.right": False,
+            "axes.spines.top": False,
+            "axes.titlesize": "medium",
+            "figure.constrained_layout.use": True,
+            "figure.facecolor": "white",
+            "font.size": 11,
+            "grid.color": "#d9d9d9",
+            "legend.frameon": False,
+            "lines.linewidth": 1.9,
+            "svg.fonttype": "path",
+            "svg.hashsalt": "robo-genesis",
+        }
+    )
+    interactive = sys.modules.get("IPython")
+    if interactive is None or interactive.get_ipython() is None:  # not in a notebook
+        return
+    from matplotlib_inline.backend_inline import set_matplotlib_formats
+
+    set_matplotlib_formats("svg", metadata={"Date": None, "Creator": None})
+
+
+@contextmanager
+def course_style() -> Iterator[None]:
+    """Draw in the course's style whatever a user's Matplotlib settings say, and restore them."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        use_course_style()
+        yield
+
+
+def style(name: str) -> dict[str, Any]:
+    """Return the line style of a case; an unknown name gets the baseline's."""
+    return look(name if name in CASES else "baseline")
+
+
+def channel(
+    ax: Axes, t: FloatArray, drawn: Channel, subject: str, levels: Sequence[Level] = ()
+) -> Axes:
+    """Draw one channel of each case, and what it is held against.
+
+    Args:
+        ax: where to draw.
+        t: times of the states (n+1,) [s].
+        drawn: the channel.
+        subject: whose it is.
+        levels: of this channel; equal ones of several cases are drawn once.
+    """
+    for level in levels:
+        values = dict.fromkeys(value for case in level.values.values() for value in case)
+        for number, value in enumerate(values):
+            if level.band:
+                label = "" if number else f"band ±{level.band:g} {drawn.unit}"
+                edges = value - level.band, value + level.band
+                ax.axhspan(*edges, color="#e9e4d4", zorder=0, label=label)
+            name = "" if number else level.name
+            ax.axhline(value, **look(level.mark, label=name, linewidth=1.4))
+    for case, mark in marks_of(list(drawn.values)).items():
+        ax.plot(t, drawn.values[case], label=case, **look(mark))
+    return finish(ax, f"{drawn.name.capitalize()} of {subject}", f"{drawn.head} [{drawn.unit}]")
+
+
+def first_channel(ax: Axes, runs: Runs) -> Axes:
+    """Draw the channel that stands for the runs where there is room for one."""
+    first = runs.channels[0]
+    return channel(ax, runs.t, first, runs.subject, runs.levels_of(first))
+
+
+def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], title: str, unit: str) -> Axes:
+    """Draw the positions of a failure over time: one curve or two, the mistake first."""
+    for number, (label, (t, q)) in enumerate(curves.items()):
+        ax.plot(t, q, label=label, **look(("other", "baseline")[number]))
+    return finish(ax, title, f"position [{unit}]", "best")
+
+
+def frames(axes: Sequence[Axes], pictures: Mapping[str, np.ndarray]) -> Sequence[Axes]:
+    """Show camera frames side by side."""
+    for ax, (name, picture) in zip(axes, pictures.items(), strict=True):
+        ax.imshow(picture)
+        ax.set_axis_off()
+        ax.set_title(f"Camera frame, {name}")
+    return axes
+
+
+def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
+    """Draw the measured link origins at both ends as a stick figure seen from the side.
+
+    Args:
+        ax: where to draw.
+        trace: its first and last link positions are drawn, x against z [m].
+        parents: for each link the local index of its parent, -1 for the base.
+    """
+    ends = (("before the first step", 0, "other"), ("after the last step", -1, "baseline"))
+    for label, when, name in ends:
+        points = trace.link_pos[when]
+        drawn = look(name, marker="o", markersize=4)
+        bones = [points[[parent, link]] for link, parent in enumerate(parents) if parent >= 0]
+        for number, bone in enumerate(bones):
+            ax.plot(bone[:, 0], bone[:, 2], label="" if number else label, **drawn)
+    ax.set_aspect("equal")
+    ax.set_xlabel("x [m]")
+    ax.set_ylabel("z [m]")
+    ax.set_title("Schematic of measured link origins: this is not a camera frame")
+    ax.legend()
+    return ax
+
+
+def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
+    """Label a plot over time; the legend is `above` it or at a place that Matplotlib names."""
+    ax.set_title(title, loc="left")
+    ax.set_xlabel("time [s]")
+    ax.set_ylabel(ylabel)
+    ax.margins(x=0.01)
+    if legend == "above":
+        legend_above(ax)
+    else:
+        ax.legend(fontsize="small", loc=legend)  # type: ignore[call-overload]
+    return ax
+
+
+def legend_above(ax: Axes) -> None:
+    """Put the legend on the title's line, clear of curves and limits."""
+    ax.legend(
+        fontsize="small", columnspacing=1.0, borderaxespad=0.2, loc="lower right",
+        bbox_to_anchor=(1.01, 0.99), ncols=len(ax.get_legend_handles_labels()[1]),
+    )  # fmt: skip

@@ -1,0 +1,225 @@
+"""Where things are: the checkout, the engine pin, the lock and the cache folders."""
+
+import hashlib
+import os
+import re
+import shutil
+import tomllib
+from collections.abc import Mapping, Sequence
+from importlib.metadata import PackageNotFoundError, distributions, version
+from pathlib import Path
+
+from packaging.requirements import Requirement
+
+ROOT = Path(__file__).resolve().parents[2]
+BOOK = ROOT / "book"
+PUBLISHED = "_build"
+"""The folder of a book that holds its published site."""
+
+CACHE = ROOT / ".cache"
+ENGINE = "genesis-world"
+COURSE = "robo-genesis"
+BUILD_BACKEND = "cpu"
+"""What every page of the site is executed on."""
+
+# Variables that switch the engine, its compiler and the drivers below it.
+ENGINE_PREFIXES = ("GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "HSA_", "CUDA_")
+HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
+CACHE_FOLDERS = {
+    "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
+    "NUMBA_CACHE_DIR": "numba",
+    "MESA_SHADER_CACHE_DIR": "mesa",
+    "MPLCONFIGDIR": "matplotlib",  # its font list; also keeps a user's matplotlibrc out
+}
+# The engine's own limit of 100 MB throws out what it just compiled.
+CACHE_LIMIT = {"QD_OFFLINE_CACHE_MAX_SIZE_OF_FILES": "2000000000"}
+
+
+class ProjectError(Exception):
+    """The checkout or the environment is not fit for a build; the message says what to do."""
+
+
+def engine_pin(root: Path = ROOT) -> str:
+    """Return the engine version that pyproject.toml pins.
+
+    Args:
+        root: the checkout.
+
+    Returns:
+        The version X of the dependency `genesis-world==X`.
+
+    Raises:
+        ProjectError: pyproject.toml cannot be read, the dependency is missing, or it is not one
+            exact version.
+    """
+    try:
+        project = tomllib.loads((root / "pyproject.toml").read_text("utf8"))["project"]
+        requirements = [Requirement(line) for line in project["dependencies"]]
+    except (KeyError, ValueError) as error:  # InvalidRequirement is a ValueError
+        raise ProjectError(
+            f"{root / 'pyproject.toml'} cannot be read: {error}\n"
+            'Valid lines of project.dependencies are like "numpy>=2.0"; mend that one.'
+        ) from error
+    found = [str(line) for line in requirements if line.name == ENGINE]
+    pins = [spec for line in requirements if line.name == ENGINE for spec in line.specifier]
+    if len(pins) != 1 or pins[0].operator != "==" or pins[0].version.endswith("*"):
+        raise ProjectError(
+            f"pyproject.toml declares {found or 'no engine'}; "
+            f'exactly one line "{ENGINE}==X" must stand in project.dependencies.'
+        )
+    return pins[0].version
+
+
+def installed_version(package: str) -> str | None:
+    """Return the installed version of a package, None where it is not installed."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None
+
+
+def installed_packages() -> list[str]:
+    """Return `name==version` of everything that is installed for this interpreter, sorted.
+
+    The course itself is left out: what of it counts is read from the checkout, and what pip leaves
+    there when it looks at a checkout is no installation.
+    """
+    found = {f"{package.name}=={package.version}" for package in distributions()}
+    return sorted(name for name in found if not name.startswith(f"{COURSE}=="))
+
+
+def installed(places: Sequence[str]) -> list[tuple[str, str, int]]:
+    """Return each installed package by folder, name with version, and when it was installed.
+
+    The course itself is left out: pip leaves its metadata in a checkout that it has looked at.
+    """
+    found = []
+    for place in places:
+        folder = Path(place or ".")
+        if folder.is_dir():
+            found += [
+                (str(folder), path.name, path.stat().st_mtime_ns)
+                for path in folder.iterdir()
+                if path.suffix in (".dist-info", ".egg-info", ".egg-link", ".pth")
+                and not path.name.startswith(f"{COURSE.replace('-', '_')}.")
+            ]
+    return sorted(found)
+
+
+def require_pinned_engine(root: Path = ROOT) -> str:
+    """Return the pinned engine version after checking that this environment has it.
+
+    Args:
+        root: the checkout.
+
+    Raises:
+        ProjectError: another engine version is installed, or none.
+    """
+    pin, installed = engine_pin(root), installed_version(ENGINE)
+    if installed != pin:
+        raise ProjectError(
+            f"Installed is {ENGINE} {installed or '(none)'}, pinned in pyproject.toml is {pin}. "
+            "Install the lock (pip install -r requirements.lock), or change pin and lock together."
+        )
+    return pin
+
+
+def lock_digest(root: Path = ROOT) -> str:
+    """Return the sha256 of requirements.lock as hex digits.
+
+    Args:
+        root: the checkout.
+
+    Raises:
+        ProjectError: there is no lock.
+    """
+    lock = root / "requirements.lock"
+    if not lock.is_file():
+        raise ProjectError(f"No {lock}. `make lock` writes it.")
+    return hashlib.sha256(lock.read_bytes()).hexdigest()
+
+
+def engine_cache_folder(root: Path = ROOT, cache: Path | None = None) -> Path:
+    """Return the folder for what the engine compiles: one per engine version and lock."""
+    name = f"{engine_pin(root)}-{lock_digest(root)[:12]}"
+    return (cache or root / ".cache") / "engine" / name
+
+
+def page_cache_folder(fingerprint: str, cache: Path = CACHE) -> Path:
+    """Return the folder of the pages that were executed under a fingerprint."""
+    return cache / "pages" / fingerprint
+
+
+def forget_old_pages(current: Path, keep: int = 4) -> None:
+    """Remove the page caches of fingerprints that were not built for long.
+
+    Args:
+        current: the page cache folder of this build.
+        keep: how many to keep, this one included; RENDER=0 and RENDER=1 have one each.
+    """
+    current.touch()
+    folders = sorted(current.parent.iterdir(), key=lambda path: path.stat().st_mtime)
+    for folder in folders[:-keep]:
+        shutil.rmtree(folder)
+
+
+def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> dict[str, str]:
+    """Return the variables that make the engine keep its compiled code in the cache folder.
+
+    Args:
+        root: the checkout.
+        cache: the cache folder, by default `.cache` of the checkout.
+
+    Returns:
+        Variable to value; the folders that they name exist.
+    """
+    base = engine_cache_folder(root, cache)
+    paths = {name: base / folder for name, folder in CACHE_FOLDERS.items()}
+    for path in paths.values():
+        path.mkdir(parents=True, exist_ok=True)
+    return {name: str(path) for name, path in paths.items()} | CACHE_LIMIT
+
+
+def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:
+    """Remove lock files that killed engine processes left in the kernel caches.
+
+    The file names no owner, so nobody can tell a stale one from a live one: call this only at the
+    start of a build, while the build lock says that no other build runs.
+
+    Returns:
+        The removed files.
+    """
+    stale = sorted((cache / "engine").glob("*/kernels/**/*.lock"))
+    for path in stale:
+        path.unlink(missing_ok=True)
+    return stale
+
+
+def environment_contract(environment: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Return the variables that decide what a page measures.
+
+    Args:
+        environment: variables, by default those of this process.
+
+    Returns:
+        Backend and render with their defaults filled in, and the engine's switches that are set;
+        where the engine keeps compiled code is not among them.
+    """
+    given = os.environ if environment is None else environment
+    defaults = {"ROBO_GENESIS_BACKEND": BUILD_BACKEND, "ROBO_GENESIS_RENDER": "1"}
+    asked = {name: given.get(name) or default for name, default in defaults.items()}
+    return asked | engine_switches(given)
+
+
+def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables among some that switch the engine, its compiler or its drivers."""
+    elsewhere = CACHE_FOLDERS.keys() | CACHE_LIMIT.keys()
+    switches = {name for name in environment if name.startswith(ENGINE_PREFIXES)} - elsewhere
+    return {name: environment[name] for name in sorted(switches)}
+
+
+def without_home(text: str) -> str:
+    """Return a text with each home folder in it written `~`: its name is nobody else's business."""
+    own = re.escape(os.path.expanduser("~"))
+    text = re.sub(rf"{own}(?![\w.-])", "~", text) if own != "/" else text
+    return HOME_FOLDER.sub("~", text)

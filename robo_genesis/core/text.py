@@ -1,0 +1,39 @@
+"""Words shared by generated sentences: lists, signed numbers, and blocks of sentences."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """One block of the interpretation: a title and its sentences, in order."""
+
+    title: str
+    sentences: tuple[str, ...]
+
+    def markdown(self) -> str:
+        """Return the block as a Markdown list under a bold title."""
+        return "\n".join([f"**{self.title}**", "", *(f"- {s}" for s in self.sentences), ""])
+
+
+def listed(words: Sequence[str]) -> str:
+    """Return words as a list in prose: `G1, G2 and G3`."""
+    *others, last = words
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+def signed(value: float, digits: int) -> str:
+    """Return a difference with its sign and a number of digits after the point; `0` if it is 0."""
+    return f"{value:+.{digits}f}".replace("-", "−") if value else "0"
+
+
+def said(value: float, unit: str, digits: int = 4) -> str:
+    """Return a value as text, with a minus sign that is one, and none before a zero."""
+    text = f"{value:.{digits}f}"
+    text = text.removeprefix("-") if float(text) == 0 else text.replace("-", "−")
+    return f"{text} {unit}"
+
+
+def time_digits(dt: float) -> int:
+    """Return how many digits after the point a time takes on a grid of `dt` [s], at least two."""
+    return next((n for n in (2, 3, 4, 5) if abs(round(dt, n) - dt) < 1e-9), 6)

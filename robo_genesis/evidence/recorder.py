@@ -1,0 +1,261 @@
+"""Write what a page measured as one bundle: whole, or not at all."""
+
+import base64
+import hashlib
+import importlib.metadata
+import json
+import os
+import platform
+import shutil
+import uuid
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+from robo_genesis.core import project
+from robo_genesis.core.checks import Check
+from robo_genesis.core.git import git_or_none
+from robo_genesis.core.trace import Stamped
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.trace_files import write_traces
+from robo_genesis.lessons.registry import find_page
+from robo_genesis.sim import session
+from robo_genesis.sim.joints import JointMap
+
+PACKAGE = Path(__file__).resolve().parents[1]
+ENGINE, COMPILER = project.ENGINE, "quadrants"
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What a page hands over.
+
+    `joints` is None for runs of free bodies. `metrics` is group → name → {value, unit, class,
+    from}; `frames` name → RGB, empty without a camera; `parameters` must be JSON values; `notes`
+    says by case what its arrays are where they are no ordinary run.
+    """
+
+    joints: JointMap | None
+    links: Sequence[str]
+    traces: Mapping[str, Stamped]
+    metrics: Mapping[str, Mapping[str, Mapping[str, Any]]]
+    checks: Sequence[Check]
+    frames: Mapping[str, np.ndarray]
+    parameters: Mapping[str, Any]
+    renderer: session.Renderer | None
+    notes: Mapping[str, str] = field(default_factory=dict)
+
+
+class Recorder:
+    """Notes when a page starts and writes its bundle when it has measured.
+
+    Args:
+        lesson, page: whose bundle it is; with the actual backend they name its folder.
+        contract: names the folder of all outputs.
+        engine: as started.
+    """
+
+    def __init__(
+        self, lesson: str, page: str, contract: session.Contract, engine: session.Engine
+    ) -> None:
+        self.lesson, self.page, self.contract, self.engine = lesson, page, contract, engine
+        self.started = _now()
+        self.run_id = os.environ.get("ROBO_GENESIS_RUN_ID") or uuid.uuid4().hex
+        reader = ThreadPoolExecutor(1)  # the engine's files are many; the page goes on meanwhile
+        self._match = reader.submit(files_match_wheel, ENGINE, COMPILER)
+        reader.shutdown(wait=False)
+
+    @property
+    def folder(self) -> Path:
+        """Where the bundle will stand."""
+        return self.contract.outputs / self.lesson / self.page / self.engine.backend.actual
+
+    def facts(self) -> list[dict[str, str]]:
+        """Return what the run is made of as rows of a table: engine, backend, rendering, folder."""
+        engine, backend = self.engine, self.engine.backend
+        found = {
+            "Genesis": engine.version,
+            "requested backend": backend.requested,
+            "actual backend": f"{backend.actual} ({backend.device_name})",
+            "rendering": "camera" if self.contract.render else "SKIP (ROBO_GENESIS_RENDER=0)",
+            "precision": f"float{engine.precision}",
+            "seed": str(engine.seed),
+            "run": self.run_id[:8],
+            "outputs": f"{self.lesson}/{self.page}/{backend.actual}",
+        }
+        return [{"what": name, "value": value} for name, value in found.items()]
+
+    def write(self, measured: Measured) -> Path:
+        """Write the bundle beside its place, then move it there in one step.
+
+        Raises:
+            ContractError: a camera was asked for and none was used, or the other way round.
+
+        Returns:
+            Its folder. An earlier bundle of the same page and backend is replaced.
+        """
+        if self.contract.render != (measured.renderer is not None):
+            raise session.ContractError(
+                f"ROBO_GENESIS_RENDER asks for {'a camera' if self.contract.render else 'none'}, "
+                f"but the page hands over {'a' if measured.renderer else 'no'} renderer. A page "
+                "follows the contract: it renders where it was asked to, and says SKIP elsewhere."
+            )
+        partial = self.contract.outputs / f".{self.lesson}-{self.page}-{self.run_id}.partial"
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir(parents=True)
+        try:
+            self._write_files(partial, measured)
+            self.folder.parent.mkdir(parents=True, exist_ok=True)
+            if self.folder.exists():
+                shutil.rmtree(self.folder)
+            partial.rename(self.folder)
+        finally:
+            shutil.rmtree(partial, ignore_errors=True)
+        return self.folder
+
+    def _write_files(self, folder: Path, measured: Measured) -> None:
+        arrays = write_traces(
+            folder, measured.traces, measured.joints, list(measured.links), measured.notes
+        )
+        _write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
+        _write_json(folder / "metrics.json", measured.metrics)
+        for name, frame in measured.frames.items():
+            (folder / "frames").mkdir(exist_ok=True)
+            stamp = PngInfo()
+            stamp.add_text("run_id", self.run_id)
+            Image.fromarray(frame).save(folder / "frames" / f"{name}.png", pnginfo=stamp)
+        (folder / "log.txt").write_text(self.engine.log.text(), encoding="utf-8")
+        files = sorted(path for path in folder.rglob("*") if path.is_file())
+        statement = {
+            "_type": bundle.STATEMENT_TYPE,
+            "subject": [
+                {
+                    "name": path.relative_to(folder).as_posix(),
+                    "digest": {"sha256": bundle.sha256(path)},
+                }
+                for path in files
+            ],
+            "predicateType": bundle.PREDICATE_TYPE,
+            "predicate": self._predicate(measured),
+        }
+        bundle.Manifest.model_validate(statement)
+        _write_json(folder / "manifest.json", statement)
+
+    def _predicate(self, measured: Measured) -> dict[str, Any]:
+        backend, renderer = self.engine.backend, measured.renderer
+        predicate: dict[str, Any] = {
+            "schema_version": bundle.SCHEMA_VERSION,
+            "lesson": self.lesson,
+            "page": self.page,
+            "run_id": self.run_id,
+            "started": self.started,
+            "ended": _now(),
+            "command": os.environ.get("ROBO_GENESIS_COMMAND", "notebook run by hand"),
+            "engine": {
+                "version": self.engine.version,
+                "quadrants_version": self.engine.quadrants_version,
+                "precision": self.engine.precision,
+                "files_match_wheel": self._match.result(),
+            },
+            "backend": asdict(backend)
+            | {
+                "actual_at_end": session.probe(backend.requested).actual,
+                "driver": driver_version(),
+            },
+            "render": {
+                "mode": "camera" if renderer else "skip",
+                "vendor": renderer.vendor if renderer else None,
+                "renderer": renderer.name if renderer else None,
+                "software": renderer.software if renderer else None,
+            },
+            "host": host_record(backend.device_name if backend.actual == "cpu" else None),
+            "environment": {
+                name: project.without_home(value) for name, value in self.engine.switches.items()
+            },
+            "parameters": dict(measured.parameters),
+            "seed": self.engine.seed,
+            "checks": [asdict(check) for check in measured.checks],
+            "warnings": self.engine.log.warnings,
+            "git": git_record(),
+            "source": source_record(self.lesson, self.page),
+        }
+        return predicate | {"evidence_key": bundle.evidence_key(predicate)}
+
+
+def source_record(lesson: str, page: str) -> dict[str, Any]:
+    """Digest the code that computes: the page's code cells (where known) and the modules."""
+    return {
+        "page": os.environ.get("ROBO_GENESIS_PAGE_SHA256"),
+        "modules": {
+            name: bundle.sha256(PACKAGE / f"{name.replace('.', '/')}.py")
+            for name in find_page(lesson, page).modules
+        },
+    }
+
+
+def files_match_wheel(*distributions: str) -> bool:
+    """Whether every installed file of the packages has the digest that its wheel recorded.
+
+    A package without recorded digests, such as an editable one, does not match.
+    """
+    for name in distributions:
+        compared = 0
+        for file in importlib.metadata.distribution(name).files or []:
+            if file.hash is None:
+                continue
+            path = Path(str(file.locate()))
+            if not path.is_file():
+                return False
+            digest = hashlib.new(file.hash.mode, path.read_bytes()).digest()
+            if base64.urlsafe_b64encode(digest).rstrip(b"=").decode() != file.hash.value:
+                return False
+            compared += path.suffix == ".py"
+        if not compared:
+            return False
+    return True
+
+
+def host_record(cpu: str | None) -> dict[str, Any]:
+    """Describe the machine and every installed package."""
+    packages = {d.metadata["Name"]: d.version for d in importlib.metadata.distributions()}
+    return {
+        "os": platform.platform(),
+        "machine": platform.machine(),
+        "cpu": cpu or platform.processor() or "unknown",
+        "cores": os.cpu_count() or 1,
+        "python": platform.python_version(),
+        "packages": dict(sorted(packages.items())),
+    }
+
+
+def driver_version() -> str | None:
+    """Return the accelerator's kernel driver version, None where there is none."""
+    for path in ("/sys/module/amdgpu/version", "/sys/module/nvidia/version"):
+        if Path(path).is_file():
+            return Path(path).read_text().strip()
+    return None
+
+
+def git_record() -> dict[str, Any] | None:
+    """Return commit and dirty flag of the checkout, None outside one."""
+    commit = git_or_none(PACKAGE.parent, "rev-parse", "HEAD")
+    status = git_or_none(PACKAGE.parent, "status", "--porcelain", "--untracked-files=normal")
+    if commit is None or status is None:
+        return None
+    return {"commit": commit.strip(), "dirty": bool(status.strip())}
+
+
+def _now() -> str:
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
+
+
+def _write_json(path: Path, value: Any) -> None:
+    text = json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")

@@ -1,0 +1,269 @@
+"""Traces and joints as files and back: npz with units in the names, described in `arrays.json`.
+
+A bundle holds runs of one kind: of joints, or, where it has no joints, of free bodies.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from robo_genesis.core.refusals import AGAIN, expect
+from robo_genesis.core.trace import BodyTrace, ContactTrace, Stamped, Trace, TraceError
+from robo_genesis.evidence.bundle import (
+    Arrays,
+    BundleRefused,
+    CaseArrays,
+    JointRecord,
+    Variable,
+    read_arrays,
+)
+from robo_genesis.evidence.npz_archive import read_archive
+from robo_genesis.sim.joints import EFFORT_UNIT, POSITION_UNIT, JointMap
+
+Field = tuple[str, list[str], str | None, str]
+
+# Trace field → name in the file, dimensions, unit (None: that of each DOF), long name.
+FIELDS: dict[str, Field] = {
+    "t": ("t_s", ["state"], "s", "time of each state, the first before any step"),
+    "q": ("q_rad_or_m", ["state", "dof"], None, "position"),
+    "qd": ("qd_rad_s_or_m_s", ["step", "dof"], None, "velocity after each step"),
+    "target": ("target_rad_or_m", ["step", "dof"], None, "position command of each step"),
+    "control_force": (
+        "control_force_Nm_or_N", ["step", "dof"], None, "get_dofs_control_force after each step"),
+    "internal_force": (
+        "internal_force_Nm_or_N", ["step", "dof"], None, "get_dofs_force after each step"),
+    "start_control_force": (
+        "start_control_force_Nm_or_N", ["dof"], None, "control force before the first step"),
+    "start_qd": ("start_qd_rad_s_or_m_s", ["dof"], None, "velocity before the first step"),
+    "effort_limit": ("effort_limit_Nm_or_N", ["dof"], None, "get_dofs_force_range, read back"),
+    "link_pos": ("link_pos_m", ["state", "link", "axis"], "m", "link position in the world"),
+    "link_quat": ("link_quat_wxyz", ["state", "link", "wxyz"], "1", "link orientation"),
+}  # fmt: skip
+
+BODY_FIELDS: dict[str, Field] = {
+    "t": FIELDS["t"],
+    "link_pos": FIELDS["link_pos"],
+    "link_quat": FIELDS["link_quat"],
+    "link_vel": ("link_vel_m_s", ["state", "link", "axis"], "m/s", "velocity of the link's origin"),
+    "link_ang": ("link_ang_rad_s", ["state", "link", "axis"], "rad/s", "angular velocity"),
+}  # fmt: skip
+
+CONTACT_FIELDS: dict[str, Field] = BODY_FIELDS | {
+    "contacts": (
+        "contacts", ["state", "link"], "1",
+        "contact points with the surface at the beginning of the last solver step"),
+    "penetration": ("penetration_m", ["state", "link"], "m", "depth of the deepest of them"),
+}  # fmt: skip
+
+KINDS: dict[type[Stamped], dict[str, Field]] = {
+    Trace: FIELDS,
+    BodyTrace: BODY_FIELDS,
+    ContactTrace: CONTACT_FIELDS,
+}
+
+
+def fields_of(trace: Stamped) -> dict[str, Field]:
+    """Return name in the file, dimensions, unit and long name of each array of a run."""
+    return KINDS[type(trace)]
+
+
+DTYPES = {"t": "float64", "target": "float64", "contacts": "int32"}
+"""Fields that are no values of the engine in float32, in which it computes."""
+
+
+def dof_units(name: str, types: Sequence[str]) -> list[str]:
+    """Return the unit of each DOF, by its joint's type, for one array name of `FIELDS`."""
+    positions = [POSITION_UNIT[kind] for kind in types]
+    if name.startswith(("q_", "target")):
+        return positions
+    if "qd" in name:
+        return [f"{unit}/s" for unit in positions]
+    return [EFFORT_UNIT[kind] for kind in types]
+
+
+def write_traces(
+    folder: Path,
+    traces: Mapping[str, Stamped],
+    joints: JointMap | None,
+    links: list[str],
+    notes: Mapping[str, str] | None = None,
+) -> Arrays:
+    """Write `arrays/<case>.npz` for every trace and return their description, with the joints.
+
+    Runs of free bodies have none, and their arrays no axis of DOFs.
+
+    `notes` says by case in what its arrays differ from the long names; most cases need none.
+    """
+    (folder / "arrays").mkdir()
+    types = joints.types if joints else ()
+    cases = {}
+    for case, trace in traces.items():
+        described = fields_of(trace)
+        values = {name: getattr(trace, field) for field, (name, *_) in described.items()}
+        np.savez_compressed(folder / "arrays" / f"{case}.npz", **values)
+        variables = {
+            name: Variable(
+                dims=dims,
+                shape=list(values[name].shape),
+                dtype=str(values[name].dtype),
+                unit=dof_units(name, types) if unit is None else unit,
+                long_name=long_name,
+            )
+            for name, dims, unit, long_name in described.values()
+        }
+        cases[case] = CaseArrays(
+            file=f"arrays/{case}.npz", note=(notes or {}).get(case, ""), variables=variables
+        )
+    dofs = {"dof": list(joints.names)} if joints else {}
+    return Arrays(
+        coords=dofs | {"link": links},
+        joints=joint_records(joints) if joints else [],
+        cases=cases,
+    )
+
+
+def joint_records(joints: JointMap) -> list[JointRecord]:
+    """Return a record of each joint, in the map's order.
+
+    Raises:
+        ValueError: a limit is not a number.
+    """
+    return [
+        JointRecord(
+            name=name,
+            type=joints.types[k],
+            dof_idx_local=int(joints.dofs_idx_local[k]),
+            q_idx_local=int(joints.qs_idx_local[k]),
+            lower=None if joints.lower[k] == -np.inf else float(joints.lower[k]),
+            upper=None if joints.upper[k] == np.inf else float(joints.upper[k]),
+            unit=joints.position_units[k],
+        )
+        for k, name in enumerate(joints.names)
+    ]
+
+
+def read_joints(arrays: Arrays) -> JointMap:
+    """Return the joint map of a run as it was recorded, held against the labels of its arrays.
+
+    Raises:
+        BundleRefused: `labels`, where names, types or units contradict each other.
+    """
+    joints, file = arrays.joints, "arrays.json joints"
+    expect("labels", file, "list of names", [j.name for j in joints], arrays.coords.get("dof", []))
+    for joint in joints:
+        if joint.type_ not in POSITION_UNIT:
+            expect("labels", file, f"type of {joint.name}", joint.type_, sorted(POSITION_UNIT))
+        expect("labels", file, f"unit of {joint.name}", joint.unit, POSITION_UNIT[joint.type_])
+    return JointMap(
+        names=tuple(joint.name for joint in joints),
+        types=tuple(joint.type_ for joint in joints),
+        dofs_idx_local=np.array([joint.dof_idx_local for joint in joints]),
+        qs_idx_local=np.array([joint.q_idx_local for joint in joints]),
+        lower=np.array([-np.inf if j.lower is None else j.lower for j in joints]),
+        upper=np.array([np.inf if j.upper is None else j.upper for j in joints]),
+    )
+
+
+def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
+    """Return one case's run of joints after holding its arrays against their description.
+
+    Raises:
+        BundleRefused: `labels`, `too-big` or `bad-array`; `bad-trace` where its arrays do not form
+            one run.
+    """
+    return _read(folder, arrays, case, Trace)
+
+
+def read_body_trace(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
+    """Return one case's run of free bodies; as `read_trace`."""
+    expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
+    return _read(folder, arrays, case, BodyTrace)
+
+
+def read_contact_trace(folder: Path, arrays: Arrays, case: str) -> ContactTrace:
+    """Return one case's run of free bodies on a surface; as `read_trace`."""
+    expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
+    return _read(folder, arrays, case, ContactTrace)
+
+
+Body = TypeVar("Body", bound=BodyTrace)
+
+
+def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Trace | BodyTrace:
+    """Return one case's run, of joints if the bundle has any, else of free bodies."""
+    return read_trace(folder, arrays, case) if arrays.joints else any_bodies(folder, arrays, case)
+
+
+def any_bodies(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
+    """Return one case's run of free bodies, with contacts if it is described as one that has them.
+
+    What may be judged says which of both it must be: `read_body_trace`, `read_contact_trace`.
+    """
+    touched = "contacts" in arrays.cases[case].variables
+    return (read_contact_trace if touched else read_body_trace)(folder, arrays, case)
+
+
+def read_bodies(
+    folder: Path,
+    cases: Iterable[str],
+    link: str,
+    read: Callable[[Path, Arrays, str], Body],
+) -> dict[str, Body]:
+    """Return all runs of a bundle by case, each of one body.
+
+    Args:
+        folder: the bundle.
+        cases: those that it must hold, and no others.
+        link: what the body is called in it.
+        read: reads one of them.
+
+    Raises:
+        BundleRefused: `cases`, `labels`, or as `read_trace`.
+    """
+    expected, arrays = sorted(cases), read_arrays(folder)
+    expect("cases", "arrays.json", "list of cases", sorted(arrays.cases), expected)
+    present = sorted(path.stem for path in (folder / "arrays").glob("*.npz"))
+    expect("cases", "arrays/", "list of archives", present, expected)
+    expect("labels", "arrays.json", "names of coords", sorted(arrays.coords), ["link"])
+    expect("labels", "arrays.json", "list of links", arrays.coords["link"], [link])
+    return {case: read(folder, arrays, case) for case in expected}
+
+
+Kind = TypeVar("Kind", bound=Stamped)
+
+
+def _read(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
+    described, known = arrays.cases[case], KINDS[kind]
+    expect("path", "arrays.json", f"file of case {case}", described.file, f"arrays/{case}.npz")
+    _check_labels(arrays, case, known)
+    values = read_archive(folder / described.file, described.file, {n for n, *_ in known.values()})
+    for name, variable in described.variables.items():
+        found = (list(values[name].shape), str(values[name].dtype))
+        what = f"shape and type of {name}"
+        expect("bad-array", described.file, what, found, (variable.shape, variable.dtype))
+    try:
+        return kind(**{field: values[name] for field, (name, *_) in known.items()})
+    except TraceError as error:
+        raise BundleRefused("bad-trace", f"{described.file}: {error} {AGAIN}") from error
+
+
+def _check_labels(arrays: Arrays, case: str, known: Mapping[str, Field]) -> None:
+    """Require that names, dimensions, units and types are those that `write_traces` gives."""
+    variables = arrays.cases[case].variables
+    types = read_joints(arrays).types if arrays.joints else ()
+    names = sorted(name for name, *_ in known.values())
+    expect("labels", "arrays.json", f"list of arrays of {case}", sorted(variables), names)
+    lengths = {"axis": 3, "wxyz": 4} | {dim: len(them) for dim, them in arrays.coords.items()}
+    for field, (name, dims, unit, long_name) in known.items():
+        found, file = variables[name], f"arrays.json {case}.{name}"
+        units = dof_units(name, types) if unit is None else unit
+        expect("labels", file, "unit", found.unit, units)
+        expect("labels", file, "dims", found.dims, dims)
+        expect("labels", file, "long_name", found.long_name, long_name)
+        expect("labels", file, "dtype", found.dtype, DTYPES.get(field, "float32"))
+        expect("labels", file, "number of dimensions", len(found.shape), len(dims))
+        for dim, length in zip(dims, found.shape, strict=True):
+            if dim in lengths:
+                expect("labels", file, f"length of {dim}", length, lengths[dim])

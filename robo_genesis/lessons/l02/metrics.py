@@ -1,0 +1,80 @@
+"""Metrics of a dropped box, from its trace alone, and their form in `metrics.json`."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.free_fall import continuous_drop, summed_drop
+from robo_genesis.core.metrics import (
+    CaseMetrics,
+    case_records,
+    count_records,
+    metric,
+    reading_records,
+)
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.rigid_bodies import Drop
+
+
+@dataclass(frozen=True, slots=True)
+class DropMetrics(CaseMetrics):
+    """What one dropped box did, down is positive."""
+
+    duration: float = metric("s", "duration", "t_s")
+    drop: float = metric("m", "distance fallen", "link_pos_m")
+    lowest: float = metric("m", "distance fallen at the lowest sample", "link_pos_m")
+    final_speed: float = metric("m/s", "speed at the end", "link_vel_m_s")
+    formula_error: float = metric(
+        "m", "largest distance from the stepped formula", "link_pos_m", "t_s"
+    )
+    continuous_gap: float = metric("m", "farther than continuous free fall", "link_pos_m", "t_s")
+    sideways: float = metric("m", "largest sideways motion", "link_pos_m")
+    turning: float = metric("rad/s", "largest angular speed", "link_ang_rad_s")
+
+
+def fallen(trace: BodyTrace) -> FloatArray:
+    """Return how far the first link is below its start at each sample, (n+1,) [m]."""
+    height = trace.link_pos[:, 0, 2].astype(np.float64)
+    return height[0] - height
+
+
+def predicted(trace: BodyTrace, case: Drop) -> FloatArray:
+    """Return what semi-implicit Euler drops by at each sample, (n+1,) [m]."""
+    solver_steps = case.substeps * np.arange(len(trace.t))
+    return summed_drop(case.h, solver_steps, case.gravity)
+
+
+def drop_metrics(trace: BodyTrace, case: Drop) -> DropMetrics:
+    """Measure one drop; the case gives gravity and solver step to the formulas alone."""
+    below = fallen(trace)
+    aside = trace.link_pos[:, 0, :2].astype(np.float64)
+    return DropMetrics(
+        duration=float(trace.t[-1]),
+        drop=float(below[-1]),
+        lowest=float(below.max()),
+        final_speed=float(-trace.link_vel[-1, 0, 2]),
+        formula_error=float(np.abs(below - predicted(trace, case)).max()),
+        continuous_gap=float(below[-1] - continuous_drop(trace.t[-1:], case.gravity)[0]),
+        sideways=float(np.linalg.norm(aside - aside[0], axis=1).max()),
+        turning=float(np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1).max()),
+    )
+
+
+def measure(traces: Mapping[str, BodyTrace], cases: Mapping[str, Drop]) -> dict[str, DropMetrics]:
+    """Return the metrics of each case.
+
+    Raises:
+        KeyError: a case has no trace.
+    """
+    return {name: drop_metrics(traces[name], case) for name, case in cases.items()}
+
+
+def metric_records(
+    metrics: Mapping[str, DropMetrics], model: Mapping[str, int], mass: float
+) -> dict[str, dict[str, dict[str, Any]]]:
+    """Return `metrics.json`: the model's counts, the mass, and each case's metrics."""
+    of_engine = {"model": count_records(model), "body": reading_records({"mass": mass}, "kg")}
+    return of_engine | case_records(metrics)

@@ -1,0 +1,125 @@
+"""Failures of scenes, made on purpose: wrong side of build, bodies that do not fall as meant.
+
+Every function makes one mistake and measures what follows. None is a way to do anything.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.free_fall import continuous_drop
+from robo_genesis.core.mistakes import Failure, quoted, refused
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.rigid_bodies import Drop, read_body
+from robo_genesis.sim.session import FrameError, require_frame
+
+LEAP = 0.5
+"""How far a box must rise to count as leaping, as a share of its edge."""
+
+
+def second_init(gs: Any) -> Failure:
+    """Initialise the engine, which runs already, once more."""
+    error = refused(lambda: gs.init(backend=gs.cpu))
+    return Failure(
+        "second_init",
+        shown=type(error).__name__ == "GenesisException",
+        evidence=f"The second call of `gs.init` in this page's process: {quoted(error)}",
+    )
+
+
+def late_entity(scene: Any, morph: Any) -> Failure:
+    """Add an entity to a scene that was built."""
+    before = len(scene.entities)
+    error = refused(lambda: scene.add_entity(morph))
+    return Failure(
+        "late_entity",
+        shown=type(error).__name__ == "GenesisException" and len(scene.entities) == before,
+        evidence=(
+            f"Added after `build`: {quoted(error)} The scene had {before} entities before, and has "
+            f"{len(scene.entities)} now."
+        ),
+    )
+
+
+def heights(scene: Any, bodies: dict[str, Any], steps: int) -> dict[str, FloatArray]:
+    """Reset, step, and return the height of each body's first link at every state, (steps+1,)."""
+    scene.reset()
+    found = {name: [read_body(body)[0][0, 2]] for name, body in bodies.items()}
+    for _ in range(steps):
+        scene.step()
+        for name, body in bodies.items():
+            found[name].append(read_body(body)[0][0, 2])
+    return {name: np.array(values, dtype=np.float64) for name, values in found.items()}
+
+
+def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
+    """Drop a box whose morph was made with `fixed=True`, beside one that is free."""
+    found = heights(scene, {"fixed": fixed, "free": free}, case.steps)
+    t = np.arange(case.steps + 1) * case.dt
+    moved = {name: float(z[0] - z[-1]) for name, z in found.items()}
+    return Failure(
+        "fixed_body",
+        shown=(
+            moved["fixed"] == 0
+            and moved["free"] > 0.9 * float(continuous_drop(t[-1], case.gravity))
+            and (fixed.n_dofs, free.n_dofs) == (0, 6)
+        ),
+        evidence=(
+            f"In {t[-1]:g} s the free box fell {moved['free']:.4f} m, the fixed one "
+            f"{moved['fixed']:.4f} m. The free one has {free.n_dofs} DOFs, the fixed one "
+            f"{fixed.n_dofs}."
+        ),
+        curves={"fixed=True": (t, found["fixed"]), "free": (t, found["free"])},
+    )
+
+
+def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
+    """Put a box 'on' the ground by giving the height of its centre as zero."""
+    z = heights(scene, {"sunken": sunken}, case.steps)["sunken"]
+    t = np.arange(case.steps + 1) * case.dt
+    speed, below = float(np.diff(z).max() / case.dt), 1000 * (case.size / 2 - float(z[0]))
+    return Failure(
+        "centre_for_underside",
+        shown=bool(z[0] < case.size / 2 and z.max() > z[0] + LEAP * case.size),
+        evidence=(
+            f"Its centre began at {z[0]:.3f} m and its underside {below:.0f} mm below the ground. "
+            f"The centre was at most {z.max():.3f} m high; the fastest motion upwards between two "
+            f"samples was {speed:.2f} m/s."
+        ),
+        curves={"pos=(…, 0)": (t, z)},
+    )
+
+
+def picture_of_nothing(camera: Any) -> Failure:
+    """Turn the camera away from everything that is in the scene, and render."""
+    pose = np.array(camera.transform)
+    x, y, z = (float(value) for value in np.asarray(camera.pos).reshape(-1)[:3])
+    camera.set_pose(pos=(x, y, z), lookat=(2 * x, 2 * y, z + 2.0))
+    rgb = camera.render()[0]
+    camera.set_pose(transform=pose)
+    error = refused(lambda: require_frame(rgb))
+    return Failure(
+        "picture_of_nothing",
+        shown=isinstance(error, FrameError) and "empty picture" in str(error),
+        evidence=(
+            f"`camera.render()` returned an array of shape {np.shape(rgb)}, dtype "
+            f"{np.asarray(rgb).dtype}, without a complaint. The course's own test: {quoted(error)}"
+        ),
+    )
+
+
+def kept_reading(scene: Any, box: Any, case: Drop) -> Failure:
+    """Read once before the loop and call that the state ever after."""
+    scene.reset()
+    kept = box.get_pos()
+    for _ in range(case.steps):
+        scene.step()
+    old, new = (float(np.asarray(of.cpu())[2]) for of in (kept, box.get_pos()))
+    return Failure(
+        "kept_reading",
+        shown=old != new,
+        evidence=(
+            f"`z = box.get_pos()[2]`, read before the loop, is {old:.4f} m after "
+            f"{case.steps} steps; read again, it is {new:.4f} m."
+        ),
+    )

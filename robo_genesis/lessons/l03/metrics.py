@@ -1,0 +1,213 @@
+"""Metrics of bodies that land, slide or bounce, from their traces alone, and their definitions."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from robo_genesis.core.metrics import (
+    CaseMetrics,
+    Record,
+    case_records,
+    count_records,
+    metric,
+    reading_records,
+)
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import ContactTrace, first_time, settled_from
+from robo_genesis.lessons.l03.energy import clearance, flights, kept_energy, total_energy
+from robo_genesis.sim.contacts import BOUNCE, LANDING, SLIDE, ContactCase
+
+CLEAR = 1e-4
+"""Clearance from which a body without contact points counts as separated [m]."""
+
+RESTING_BAND = 5e-4
+"""Half width of the band around the resting height in which a body has settled [m]."""
+
+STOP_SPEED, STOP_HOLD = 0.01, 0.10
+"""A body has stopped at the first sample from which it is slower [m/s] for this long [s]."""
+
+BOUNCES_COUNTED = 4
+"""After so many bounces the energy that is left is asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class LandingMetrics(CaseMetrics):
+    """How a dropped body came to lie; `resting_offset` is negative where it has sunk in."""
+
+    touchdown: float | None = metric(
+        "s", "first sample at the surface", "link_pos_m", "link_quat_wxyz", "t_s"
+    )
+    penetration: float = metric("m", "penetration proxy", "link_pos_m", "link_quat_wxyz")
+    rebound: float = metric("m", "rebound", "link_pos_m", "link_quat_wxyz")
+    separated: float = metric(
+        "s", "time separated after touchdown", "contacts", "link_pos_m", "link_quat_wxyz", "t_s"
+    )
+    upward_speed: float = metric(
+        "m/s",
+        "largest upward speed after touchdown",
+        "link_pos_m",
+        "link_quat_wxyz",
+        "link_vel_m_s",
+    )
+    resting_time: float | None = metric("s", "settled at", "link_pos_m", "t_s")
+    resting_offset: float = metric("m", "height at the end against the ideal one", "link_pos_m")
+
+
+@dataclass(frozen=True, slots=True)
+class SlideMetrics(CaseMetrics):
+    """How far a pushed body came, and how."""
+
+    stop_time: float | None = metric("s", "stop time", "link_vel_m_s", "t_s")
+    stop_distance: float | None = metric(
+        "m", "stopping distance", "link_pos_m", "link_vel_m_s", "t_s"
+    )
+    final_distance: float = metric("m", "distance at the end", "link_pos_m")
+    first_speed: float = metric("m/s", "speed after one outer step", "link_vel_m_s")
+    hop: float = metric("m", "hop", "link_pos_m", "link_quat_wxyz")
+    airborne: float = metric(
+        "s", "time in the air", "contacts", "link_pos_m", "link_quat_wxyz", "t_s"
+    )
+    spin: float = metric("rad/s", "largest angular speed", "link_ang_rad_s")
+
+
+@dataclass(frozen=True, slots=True)
+class BounceMetrics(CaseMetrics):
+    """What a bouncing body kept of its energy."""
+
+    start_energy: float = metric(
+        "J", "energy at the start", "link_pos_m", "link_vel_m_s", "link_ang_rad_s"
+    )
+    first_kept: float | None = metric(
+        "%", "energy kept at the first bounce", "link_pos_m", "link_vel_m_s", "link_ang_rad_s"
+    )
+    later_kept: float | None = metric(
+        "%",
+        f"energy left after {BOUNCES_COUNTED} bounces",
+        "link_pos_m",
+        "link_vel_m_s",
+        "link_ang_rad_s",
+    )
+    flight_drift: float | None = metric(
+        "J",
+        "largest change of the kept energy in a flight",
+        "link_pos_m",
+        "link_vel_m_s",
+        "link_ang_rad_s",
+    )
+    lent: float | None = metric(
+        "J",
+        "largest change of the total energy in a flight",
+        "link_pos_m",
+        "link_vel_m_s",
+        "link_ang_rad_s",
+    )
+
+
+def metrics_class(case: ContactCase) -> type[CaseMetrics]:
+    """Return the class of a case's metrics, by the kind of the experiment."""
+    return {LANDING: LandingMetrics, SLIDE: SlideMetrics, BOUNCE: BounceMetrics}[case.kind]
+
+
+def case_metrics(trace: ContactTrace, case: ContactCase) -> CaseMetrics:
+    """Measure one run by what is asked of it; the case gives its body, gravity and solver step."""
+    by_kind = {LANDING: landing_metrics, SLIDE: slide_metrics, BOUNCE: bounce_metrics}
+    return by_kind[case.kind](trace, case)
+
+
+def measure(
+    traces: Mapping[str, ContactTrace], cases: Mapping[str, ContactCase]
+) -> dict[str, CaseMetrics]:
+    """Return the metrics of each case.
+
+    Raises:
+        KeyError: a case has no trace.
+    """
+    return {name: case_metrics(traces[name], case) for name, case in cases.items()}
+
+
+def landing_metrics(trace: ContactTrace, case: ContactCase) -> LandingMetrics:
+    """Measure how a dropped body lands.
+
+    touchdown    first sample at or below the surface
+    penetration  max(0, −min clearance): a proxy, since it sees samples only
+    separated    samples after touchdown without contact points and with clearance, times dt
+    """
+    clear = clearance(trace, case)
+    landed = np.maximum.accumulate(clear <= 0)
+    after = landed & (np.arange(len(clear)) > 0)
+    apart = after & (clear > CLEAR) & (trace.contacts[:, 0] == 0)
+    offset = trace.link_pos[:, 0, 2].astype(np.float64) - case.rest_height
+    upward = np.where(after, trace.link_vel[:, 0, 2], 0.0)
+    return LandingMetrics(
+        touchdown=first_time(trace.t, clear <= 0),
+        penetration=float(max(0.0, -clear.min())),
+        rebound=float(np.where(after, clear, 0.0).max(initial=0.0)),
+        separated=float(apart.sum() * trace.dt),
+        upward_speed=float(upward.max(initial=0.0)),
+        resting_time=settled_from(trace.t, np.abs(offset) <= RESTING_BAND),
+        resting_offset=float(offset[-1]),
+    )
+
+
+def stopped_at(speed: FloatArray, dt: float) -> int | None:
+    """Return the first sample from which |speed| < STOP_SPEED for STOP_HOLD, None if there is none.
+
+    Args:
+        speed: at each state, (n+1,) [m/s].
+        dt: outer step [s]; a hold of k steps takes k + 1 samples.
+    """
+    hold = round(STOP_HOLD / dt)
+    slow = np.abs(speed) < STOP_SPEED
+    return next((k for k in range(len(slow) - hold) if slow[k : k + hold + 1].all()), None)
+
+
+def slide_metrics(trace: ContactTrace, case: ContactCase) -> SlideMetrics:
+    """Measure how a pushed body slides; distance and speed are those along x, of its centre."""
+    x = trace.link_pos[:, 0, 0].astype(np.float64)
+    speed = trace.link_vel[:, 0, 0].astype(np.float64)
+    clear, stop = clearance(trace, case), stopped_at(speed, trace.dt)
+    apart = (clear > CLEAR) & (trace.contacts[:, 0] == 0)
+    turning = np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1)
+    return SlideMetrics(
+        stop_time=None if stop is None else float(trace.t[stop]),
+        stop_distance=None if stop is None else float(x[stop] - x[0]),
+        final_distance=float(x[-1] - x[0]),
+        first_speed=float(speed[1]),
+        hop=float(max(0.0, clear.max())),
+        airborne=float(apart.sum() * trace.dt),
+        spin=float(turning.max()),
+    )
+
+
+def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
+    """Measure what a bouncing body keeps: energies of its flights, by the energy that steps keep.
+
+    lent  largest change of the total energy within one flight, which comes back with the velocity
+    """
+    kept, total = kept_energy(trace, case), total_energy(trace, case)
+    found = list(flights(trace, case))
+    levels = [float(np.median(kept[flight])) for flight in found]
+
+    def share(bounces: int) -> float | None:
+        return 100 * levels[bounces] / levels[0] if len(levels) > bounces else None
+
+    return BounceMetrics(
+        start_energy=float(total[0]),
+        first_kept=share(1),
+        later_kept=share(BOUNCES_COUNTED),
+        flight_drift=max((float(np.ptp(kept[flight])) for flight in found), default=None),
+        lent=max((float(np.ptp(total[flight])) for flight in found), default=None),
+    )
+
+
+def metric_records(
+    metrics: Mapping[str, CaseMetrics],
+    model: Mapping[str, int],
+    masses: Mapping[str, float],
+    settings: Mapping[str, Mapping[str, float]],
+) -> dict[str, dict[str, Record]]:
+    """Return `metrics.json`: what the engine says of the model, and each case's metrics."""
+    of_engine = {"model": count_records(model), "mass": reading_records(masses, "kg")}
+    of_engine |= {name: reading_records(found, "1") for name, found in settings.items()}
+    return of_engine | case_records(metrics)

@@ -1,0 +1,71 @@
+"""What the engine does when it is asked, by name or in general, for a backend that is not there."""
+
+import json
+import subprocess
+import sys
+
+from robo_genesis.core.mistakes import Failure
+
+REQUEST = """
+import json, logging, sys
+import genesis as gs
+from robo_genesis.sim.session import plain_theme
+
+kept = []
+keep = logging.Handler()
+keep.emit = lambda record: kept.append([record.levelname, record.getMessage()])
+logging.getLogger("genesis").addHandler(keep)
+raised, found = None, None
+try:
+    gs.init(backend=getattr(gs, sys.argv[1]), theme=plain_theme(), logging_level="warning")
+except Exception as error:
+    raised = [type(error).__name__, str(error)]
+    kept.clear()
+    gs.init(backend=gs.gpu, theme=plain_theme(), logging_level="warning")
+    found = gs.backend.name
+print(json.dumps({"raised": raised, "found": found, "warnings": kept}))
+"""
+"""Two requests in a process of its own, since an engine is started once: by name, then any GPU."""
+
+
+def absent_backend(hip_version: str | None) -> Failure:
+    """Ask for the accelerator whose Torch is not installed here, then for any accelerator.
+
+    Args:
+        hip_version: of the installed Torch, as the probe reads it; None for one without ROCm.
+    """
+    name = "cuda" if hip_version else "amdgpu"
+    done = subprocess.run(
+        [sys.executable, "-c", REQUEST, name], capture_output=True, text=True, check=False
+    )
+    if done.returncode:
+        raise RuntimeError(f"The engine did not start in a process of its own:\n{done.stderr}")
+    return judge(name, **json.loads(done.stdout.splitlines()[-1]))
+
+
+def judge(
+    name: str, raised: list[str] | None, found: str | None, warnings: list[list[str]]
+) -> Failure:
+    """Tell what the two requests came to.
+
+    Args:
+        name: the backend that was asked for by name.
+        raised: type and message of its exception, None if there was none.
+        found: the backend after `gs.gpu` was asked for.
+        warnings: level and message of each line that the engine logged at that.
+    """
+    if raised is None:
+        return Failure("absent_backend", False, f"`gs.init(backend=gs.{name})` raised nothing.")
+    plain = [text.replace("~", "") for _, text in warnings]
+    said = " ".join(plain) if plain else "nothing"
+    fell_back = found != "cpu" or (len(plain) == 1 and "Falling back to CPU" in plain[0])
+    refused = raised[0] == "GenesisException" and "not available" in raised[1]
+    return Failure(
+        "absent_backend",
+        shown=refused and fell_back,
+        evidence=(
+            f"`gs.init(backend=gs.{name})` raised `{raised[0]}`: {raised[1].replace('~', '')} "
+            f"`gs.init(backend=gs.gpu)` raised nothing and started on `{found}`; "
+            f"its warnings ({len(plain)}): {said}"
+        ),
+    )

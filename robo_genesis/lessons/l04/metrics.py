@@ -1,0 +1,125 @@
+"""Step-response metrics of one joint, from a trace alone, and their form in `metrics.json`.
+
+All of them look through a finite window at samples dt apart. They say what was seen there; none of
+them is a proof of stability. What was not seen is None, written `not observed`.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.metrics import CaseMetrics, case_records, count_records, metric
+from robo_genesis.core.trace import Trace, first_time, settled_from
+
+RISE_FRACTION = 0.9
+"""Share of the step that counts as risen."""
+
+SETTLING_BAND = 0.01
+"""Half width of the settling band around the target [rad or m]."""
+
+SATURATION_THRESHOLD = 0.99
+"""Share of the read-back limit from which a sample is called saturated: a detector, no limit."""
+
+
+@dataclass(frozen=True, slots=True)
+class StepMetrics(CaseMetrics):
+    """What one joint did in the window, None where it was not observed."""
+
+    initial_error: float = metric("rad", "initial error", "q_rad_or_m", "target_rad_or_m")
+    rise_time: float | None = metric("s", "rise time", "q_rad_or_m", "target_rad_or_m", "t_s")
+    overshoot: float = metric("rad", "overshoot", "q_rad_or_m", "target_rad_or_m")
+    settling_time: float | None = metric(
+        "s", "settling time", "q_rad_or_m", "target_rad_or_m", "t_s"
+    )
+    final_error: float = metric("rad", "final error", "q_rad_or_m", "target_rad_or_m")
+    final_velocity: float = metric("rad/s", "final velocity", "qd_rad_s_or_m_s")
+    peak_speed: float = metric("rad/s", "peak speed", "qd_rad_s_or_m_s")
+    peak_control: float = metric("N·m", "peak control", "control_force_Nm_or_N")
+    saturation_samples: int = metric(
+        "1",
+        "saturation",
+        "control_force_Nm_or_N",
+        "effort_limit_Nm_or_N",
+        noun="number of saturated samples",
+    )
+    saturation_duration: float = metric(
+        "s", "saturation, seconds", "control_force_Nm_or_N", "effort_limit_Nm_or_N", "t_s"
+    )
+
+    @property
+    def saturated(self) -> bool:
+        """Whether any sample reached the saturation threshold."""
+        return self.saturation_samples > 0
+
+
+def step_metrics(trace: Trace, entry: int) -> StepMetrics:
+    """Measure the response of one revolute joint to a constant, higher target.
+
+    rise       first sample with q − q₀ ≥ 0.9 (q_target − q₀)
+    overshoot  max(0, max(q − q_target))
+    settling   first sample from which |q − q_target| ≤ 0.01 holds to the end of the record
+    saturation samples with |control force| ≥ 0.99 · read-back limit, stamped dt … n·dt
+
+    Args:
+        trace: the run; its target must not change on the way.
+        entry: column of the joint in the trace's arrays.
+
+    Raises:
+        ValueError: the step is zero or negative (rise and overshoot are one-sided), the target
+            changes during the run, or `entry` is no column.
+    """
+    if not 0 <= entry < trace.q.shape[1]:
+        raise ValueError(f"entry {entry} given, the trace has joints 0 to {trace.q.shape[1] - 1}.")
+    q = trace.q[:, entry].astype(np.float64)
+    target = trace.target[:, entry].astype(np.float64)
+    if not (target == target[0]).all():
+        raise ValueError("The target changes during the run; these metrics take a constant one.")
+    q_target = float(target[0])
+    step = q_target - q[0]
+    if step <= 0:
+        raise ValueError(
+            f"The step is {step:g} (from {q[0]:g} to {q_target:g}); rise and overshoot are "
+            "defined for a positive step. Measure the mirrored response, or choose a higher target."
+        )
+    control = np.abs(trace.control_force[:, entry].astype(np.float64))
+    threshold = SATURATION_THRESHOLD * float(trace.effort_limit[entry])
+    saturation_samples = int((control >= threshold).sum())
+    qd = trace.qd[:, entry].astype(np.float64)
+    return StepMetrics(
+        initial_error=float(step),
+        rise_time=first_time(trace.t, q - q[0] >= RISE_FRACTION * step),
+        overshoot=float(max(0.0, (q - q_target).max())),
+        settling_time=settled_from(trace.t, np.abs(q - q_target) <= SETTLING_BAND),
+        final_error=float(abs(q_target - q[-1])),
+        final_velocity=float(qd[-1]),
+        peak_speed=float(np.abs(qd).max()),
+        peak_control=float(control.max()),
+        saturation_samples=saturation_samples,
+        saturation_duration=saturation_samples * trace.dt,
+    )
+
+
+def measure(
+    traces: Mapping[str, Trace], cases: Iterable[str], entry: int
+) -> dict[str, StepMetrics]:
+    """Return the metrics of each of the cases, from its trace alone.
+
+    Args:
+        traces: the runs by case; others than the cases are left out.
+        cases: whose metrics are wanted.
+        entry: column of the joint in the traces' arrays.
+
+    Raises:
+        KeyError: a case has no trace.
+        ValueError: as `step_metrics`.
+    """
+    return {case: step_metrics(traces[case], entry) for case in cases}
+
+
+def metric_records(
+    metrics: Mapping[str, StepMetrics], model: Mapping[str, int]
+) -> dict[str, dict[str, dict[str, Any]]]:
+    """Return `metrics.json`: the model's counts and each case's metrics, with class and source."""
+    return {"model": count_records(model)} | case_records(metrics)

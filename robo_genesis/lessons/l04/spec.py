@@ -1,0 +1,137 @@
+"""Specification of lesson L04: cases, predictions and what they are compared by.
+
+Pages, checks, verification and tests read the experiment here; none of them repeats it. It is data
+and computes nothing: what of it decides a measured value or a check is in `parameters()`, and only
+a change there makes evidence stale.
+"""
+
+from dataclasses import asdict, replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import (
+    DT,
+    EFFORT_LIMIT,
+    FRANKA_MJCF,
+    FRANKA_MODEL,
+    FRANKA_TYPES,
+    JOINT_NAMES,
+    KP_BASELINE,
+    KV_BASELINE,
+    Q_START,
+    FloatArray,
+)
+from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
+from robo_genesis.sim.joint_control import ControlCase
+
+LESSON = "l04"
+MINIMUM_HARDWARE = "cpu"
+
+STEPPED_JOINT = "joint4"
+STEP = 0.25
+"""Height of the commanded step [rad]."""
+
+WINDOW = 1.2
+"""Length of every run [s]."""
+
+STEPS = round(WINDOW / DT)
+
+EXPECTED_MODEL, EXPECTED_TYPES = FRANKA_MODEL, FRANKA_TYPES
+
+RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "N·m": 1e-2, "1": 0.5}
+"""Differences below these are called equal: the noise floor of a comparison, by unit."""
+
+
+def with_entry(values: FloatArray, value: float) -> FloatArray:
+    """Return a read-only copy of `values` (9,) in which only the stepped joint's entry differs."""
+    changed = np.array(values)
+    changed[JOINT_NAMES.index(STEPPED_JOINT)] = value
+    changed.setflags(write=False)
+    return changed
+
+
+START_OF_STEP = float(Q_START[JOINT_NAMES.index(STEPPED_JOINT)])
+
+BASELINE = ControlCase(
+    q_start=Q_START,
+    q_target=with_entry(Q_START, START_OF_STEP + STEP),
+    kp=KP_BASELINE,
+    kv=KV_BASELINE,
+    effort_limit=EFFORT_LIMIT,
+    steps=STEPS,
+)
+G1 = replace(BASELINE, kp=with_entry(KP_BASELINE, 3500.0), kv=with_entry(KV_BASELINE, 100.0))
+G2 = replace(G1, kp=with_entry(KP_BASELINE, 7000.0))
+G3 = replace(G2, kv=with_entry(KV_BASELINE, 300.0))
+
+CASES = {"baseline": BASELINE, "G1": G1, "G2": G2, "G3": G3}
+
+ONE_FACTOR = {("G1", "G2"): [f"kp[{STEPPED_JOINT}]"], ("G2", "G3"): [f"kv[{STEPPED_JOINT}]"]}
+"""What may differ between two compared cases, and nothing else."""
+
+PREDICTIONS = {
+    ("G1", "G2"): (
+        ("rise_time", "no later"),
+        ("peak_speed", "higher"),
+        ("overshoot", "higher"),
+        ("saturation_samples", "higher"),
+    ),
+    ("G2", "G3"): (
+        ("peak_speed", "lower"),
+        ("overshoot", "lower"),
+        ("rise_time", "later"),
+    ),
+}
+"""Written down before the runs: what the second case of a pair would do against the first."""
+
+MARGINS = {
+    "rise_time": 1.5 * DT,
+    "peak_speed": 0.05,
+    "overshoot": 1e-3,
+    "saturation_samples": 1.5,
+}
+"""What an order must exceed to count as shown when runs are compared, above `RESOLUTION`: a time
+or a count may fall one sample to either side."""
+
+RELATIONS = tuple(
+    (pair, metric, order, MARGINS[metric])
+    for pair, predicted in PREDICTIONS.items()
+    for metric, order in predicted
+)
+"""The orderings that the lesson claims: a refreshed run must still show them."""
+
+TOLERANCES = {
+    "rad": (1e-4, 1e-3),
+    "rad/s": (1e-3, 1e-3),
+    "s": (DT / 2, 0.0),
+    "N·m": (1e-2, 1e-3),
+    "kg·m²": (1e-4, 1e-3),
+    "N·m·s/rad": (1e-6, 0.0),
+    "initial_error": (1e-6, 0.0),
+}
+"""By unit, or by metric where that is stricter: (atol, rtol) that one metric may differ by between
+engine versions or backends. A time on the grid of samples may not move at all; counts are exact."""
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input of the lesson as JSON values, for the evidence key.
+
+    Predictions, margins, tolerances and resolutions are no inputs: they are held against what was
+    measured, and do not change it.
+    """
+    return {
+        "joints": list(JOINT_NAMES),
+        "stepped_joint": STEPPED_JOINT,
+        "model": FRANKA_MJCF,
+        "expected_model": dict(EXPECTED_MODEL),
+        "expected_types": list(EXPECTED_TYPES),
+        "one_factor": [[*pair, *entries] for pair, entries in ONE_FACTOR.items()],
+        "rise_fraction": RISE_FRACTION,
+        "settling_band_rad": SETTLING_BAND,
+        "saturation_threshold": SATURATION_THRESHOLD,
+        "cases": {
+            name: {key: np.asarray(value).tolist() for key, value in asdict(case).items()}
+            for name, case in CASES.items()
+        },
+    }

@@ -1,0 +1,142 @@
+"""The ideal second-order joint, and the sample at which a measured response leaves it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l04.metrics import SATURATION_THRESHOLD
+
+CRITICAL = 1e-9
+"""Distance from one below which a damping ratio counts as critical."""
+
+
+@dataclass(frozen=True, slots=True)
+class IdealJoint:
+    """One linear joint, I ë + D ė + KP e = 0, without gravity, limits or neighbours.
+
+    | field | meaning |
+    |---|---|
+    | `inertia` | I, effective inertia [kg·m²] |
+    | `damping` | D = KV + the joint's passive damping [N·m·s/rad] |
+    | `kp` | KP [N·m/rad] |
+
+    Raises:
+        ValueError: inertia or KP is not positive, or the damping is negative.
+    """
+
+    inertia: float
+    damping: float
+    kp: float
+
+    def __post_init__(self) -> None:
+        if not (self.inertia > 0 and self.kp > 0 and self.damping >= 0):
+            raise ValueError(
+                f"inertia={self.inertia}, kp={self.kp}, damping={self.damping}: inertia and KP "
+                "must be positive, damping zero or more. Give them in SI units."
+            )
+
+    @property
+    def omega(self) -> float:
+        """Natural frequency ω = √(KP / I) [rad/s]."""
+        return float(np.sqrt(self.kp / self.inertia))
+
+    @property
+    def zeta(self) -> float:
+        """Damping ratio ζ = D / (2 √(KP I))."""
+        return float(self.damping / (2 * np.sqrt(self.kp * self.inertia)))
+
+    @property
+    def overshoot(self) -> float:
+        """Overshoot as a share of the step: exp(−π ζ / √(1 − ζ²)), zero from ζ = 1 on."""
+        if self.zeta >= 1:
+            return 0.0
+        return float(np.exp(-np.pi * self.zeta / np.sqrt(1 - self.zeta**2)))
+
+    def response(self, t: FloatArray) -> FloatArray:
+        """Return the response (n,) to a unit step from rest at times `t` (n,) [s].
+
+        Åström and Murray, Feedback Systems, section on second-order systems.
+        """
+        omega, zeta = self.omega, self.zeta
+        t = np.asarray(t, dtype=np.float64)
+        if abs(zeta - 1) < CRITICAL:
+            return 1 - np.exp(-omega * t) * (1 + omega * t)
+        if zeta < 1:
+            omega_d = omega * np.sqrt(1 - zeta**2)
+            swing = np.cos(omega_d * t) + zeta * omega / omega_d * np.sin(omega_d * t)
+            return 1 - np.exp(-zeta * omega * t) * swing
+        root = np.sqrt(zeta**2 - 1)
+        slow, fast = omega * (zeta - root), omega * (zeta + root)  # both decay
+        return 1 - (fast * np.exp(-slow * t) - slow * np.exp(-fast * t)) / (fast - slow)
+
+
+@dataclass(frozen=True, slots=True)
+class Parting:
+    """Where a measured response leaves an ideal one.
+
+    | field | meaning |
+    |---|---|
+    | `time` | first sample further away than the threshold [s], None where there is none |
+    | `apart` | largest distance of the whole record, in the responses' unit |
+    | `clipped`, `efforts` | efforts before that sample (all, without one): clipped ones, count |
+    """
+
+    time: float | None
+    apart: float
+    clipped: int
+    efforts: int
+
+
+def parting(
+    trace: Trace, measured: FloatArray, ideal: FloatArray, entry: int, threshold: float
+) -> Parting:
+    """Find where `measured` (n+1,) first differs from `ideal` (n+1,) by more than `threshold`.
+
+    The efforts that lead to state k are those at t[0] … t[k−1]: the first is `start_control_force`.
+
+    Raises:
+        ValueError: the responses do not have one value for each state of the trace.
+    """
+    if measured.shape != trace.t.shape or ideal.shape != trace.t.shape:
+        raise ValueError(
+            f"measured has shape {measured.shape}, ideal {ideal.shape}; expected {trace.t.shape}: "
+            "one value for each state of the trace, t = 0 included."
+        )
+    distance = np.abs(measured - ideal)
+    beyond = np.flatnonzero(distance > threshold)
+    k = int(beyond[0]) if beyond.size else trace.steps
+    effort = np.append(trace.start_control_force[entry], trace.control_force[:, entry])[:k]
+    clipped = np.abs(effort) >= SATURATION_THRESHOLD * trace.effort_limit[entry]
+    return Parting(
+        time=float(trace.t[k]) if beyond.size else None,
+        apart=float(distance.max()),
+        clipped=int(clipped.sum()),
+        efforts=k,
+    )
+
+
+def step_share(step: Trace, hold: Trace, entry: int) -> FloatArray:
+    """Return (q_step − q_hold) / step (n+1,): a response freed of what acts on both runs alike.
+
+    For a linear joint the two motions add up, so subtracting the run that is told to stay where it
+    starts takes gravity out.
+
+    Raises:
+        ValueError: the runs differ in start or time, or the command does not differ.
+    """
+    if step.t.shape != hold.t.shape or not (step.t == hold.t).all():
+        raise ValueError("The two runs have other time stamps: run both with one dt and window.")
+    if not (step.q[0] == hold.q[0]).all():
+        raise ValueError("The two runs start elsewhere: reset both to one state.")
+    height = float(step.target[0, entry]) - float(hold.target[0, entry])
+    if height <= 0:
+        raise ValueError(f"The step is {height:g} above the held target; expected a positive one.")
+    apart = step.q[:, entry].astype(np.float64) - hold.q[:, entry].astype(np.float64)
+    return np.asarray(apart / height)
+
+
+def overshoot_share(share: FloatArray) -> float:
+    """Return by how much a response to a unit step passes one, as a share of the step."""
+    return float(max(0.0, share.max() - 1))

@@ -1,0 +1,68 @@
+"""The lessons of the course: each folder of this sub-package that has an `__init__.py`."""
+
+from importlib import import_module
+from pathlib import Path
+
+from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, MeasuringPage, Moving
+
+
+def _discovered() -> dict[str, Lesson]:
+    folders = sorted(path.parent.name for path in Path(__file__).parent.glob("*/__init__.py"))
+    return {name: import_module(f"{__package__}.{name}").LESSON for name in folders}
+
+
+LESSONS: dict[str, Lesson] = _discovered()
+"""By name, in the order in which a reader meets them."""
+
+
+def find_lesson(name: str) -> Lesson:
+    """Return a lesson by its name.
+
+    Raises:
+        LookupError: there is none; the message lists the lessons that exist.
+    """
+    if name not in LESSONS:
+        raise LookupError(f"Lesson {name!r} does not exist. Choices: {', '.join(LESSONS)}.")
+    return LESSONS[name]
+
+
+def compared_cases(lesson: str) -> Compared | Moving | None:
+    """Return the cases that a lesson's pictures show, None where it declares none."""
+    return LESSONS[lesson].compared if lesson in LESSONS else None
+
+
+def drawn_cases(lesson: str, name: str = "") -> Compared | Moving:
+    """Return the cases of a replay: the compared ones, or further ones by their name.
+
+    Raises:
+        LookupError: the lesson has none of that name; the message says which it has.
+    """
+    compared = compared_cases(lesson)
+    if compared is None:
+        raise LookupError(
+            f"The lesson {lesson} declares no compared cases, so it has no replay. Add `compared` "
+            f"to the LESSON in robo_genesis/lessons/{lesson}/__init__.py."
+        )
+    further = LESSONS[lesson].further
+    if name and name not in further:
+        known = ", ".join(further) or "none"
+        raise LookupError(f"{lesson} has no further cases called {name!r}. Choices: {known}.")
+    return further[name] if name else compared
+
+
+def filmed(lesson: str) -> Filmed:
+    """Return what a lesson's camera frames show, `the scene` for an unknown lesson."""
+    return LESSONS[lesson].filmed if lesson in LESSONS else Filmed("the scene")
+
+
+def find_page(lesson: str, page: str) -> MeasuringPage:
+    """Return a page that measures.
+
+    Raises:
+        LookupError: the lesson has none of that name; the message lists its measuring pages.
+    """
+    pages = find_lesson(lesson).pages
+    if page not in pages:
+        known = ", ".join(f"{lesson}/{name}" for name in pages)
+        raise LookupError(f"{lesson}/{page} does not measure anything. Choices: {known}.")
+    return pages[page]

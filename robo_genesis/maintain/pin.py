@@ -1,0 +1,124 @@
+"""The engine pin: which version may take its place, and writing it."""
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from importlib.metadata import distributions
+from pathlib import Path
+
+from packaging.utils import canonicalize_name
+from packaging.version import InvalidVersion, Version
+
+from robo_genesis.core import project
+from robo_genesis.core.project import ENGINE, ProjectError
+
+FILES = ("pyproject.toml", "requirements.lock")
+"""What a change of the pin changes: measured results are never kept in the tree."""
+
+USAGE = "Usage: make repin GENESIS=1.2.3"
+Versions = Callable[[bool], list[str]]
+
+
+class RepinError(Exception):
+    """The new pin was refused or failed; the message is the whole report."""
+
+
+def chosen_version(given: str, pin: str, versions: Versions) -> str:
+    """Return the wanted version as the index spells it.
+
+    Args:
+        given: what the user gave.
+        pin: the version that is pinned now.
+        versions: returns those that can be installed, pre-releases included where asked for.
+
+    Raises:
+        RepinError: none was given, it is no version, it is the pin, or it cannot be installed.
+    """
+    if not given:
+        raise RepinError(f"GENESIS is not given. {USAGE} (the pin is {pin}).")
+    try:
+        version = Version(given)
+    except InvalidVersion:
+        raise RepinError(
+            f"GENESIS={given!r} is not a version. {USAGE} (the pin is {pin})."
+        ) from None
+    if version == Version(pin):
+        raise RepinError(f"GENESIS={given} is the pin already. Give another version.")
+    known = versions(version.is_prerelease)
+    found = [name for name in known if Version(name) == version]
+    if not found:
+        newest = ", ".join(sorted(known, key=Version, reverse=True)[:12])
+        raise RepinError(
+            f"GENESIS={given}: there is no {ENGINE} {given} for this Python. Newest first, there "
+            f"are: {newest}{', …' if len(known) > 12 else ''}. Give one of them."
+        )
+    return found[0]
+
+
+def installable_versions(prereleases: bool) -> list[str]:
+    """Return the engine's versions that pip finds for this Python.
+
+    Raises:
+        RepinError: pip cannot ask its index.
+    """
+    command = [sys.executable, "-m", "pip", "index", "versions", ENGINE]
+    command += ["--pre"] if prereleases else []
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    line = re.search(r"^Available versions: (.+)$", done.stdout, re.MULTILINE)
+    if done.returncode or line is None:
+        raise RepinError(
+            f"pip cannot list the versions of {ENGINE}: {done.stderr.strip()[-600:]}\n"
+            "A new pin needs the network: look after it, or after pip's index (pip config list)."
+        )
+    return line[1].split(", ")
+
+
+def require_locked_packages(root: Path) -> None:
+    """Raise RepinError where this environment is not the one that the lock describes.
+
+    What is installed is what the new lock keeps, so it has to be what the old one says.
+    """
+    installed = {canonicalize_name(d.name): d.version.split("+")[0] for d in distributions()}
+    unlike = [
+        f"{name} {installed.get(canonicalize_name(name), '(none)')} instead of {version}"
+        for name, version in locked(root).items()
+        if installed.get(canonicalize_name(name)) != version
+    ]
+    if unlike:
+        raise RepinError(
+            f"This environment does not hold what requirements.lock names: {', '.join(unlike[:5])}"
+            f"{', …' if unlike[5:] else ''}. Install the lock (pip install -r requirements.lock), "
+            "or leave PYTHON=… out, so that .venv is used."
+        )
+
+
+def require_plain_files(root: Path) -> None:
+    """Raise RepinError where a file of the pin is a link: the new pin would be written through."""
+    links = [name for name in FILES if (root / name).is_symlink()]
+    if links:
+        raise RepinError(
+            f"{' and '.join(links)} in {root}: a link, expected the file itself, since make repin "
+            "would change what it leads to. Put the file there."
+        )
+
+
+def locked(root: Path) -> dict[str, str]:
+    """Return package to version of a checkout's lock."""
+    lines = (root / FILES[1]).read_text("utf8").splitlines()
+    return dict(line.split("==") for line in lines if line and not line.startswith("#"))
+
+
+def set_pin(root: Path, old: str, new: str) -> None:
+    """Write another engine version into the one line that pins it.
+
+    Raises:
+        ProjectError: the line is written in a way that cannot be changed here.
+    """
+    path = root / FILES[0]
+    pattern = rf"(?<=[\"']){ENGINE}\s*==\s*{re.escape(old)}(?=[\"'])"
+    text, count = re.subn(pattern, f"{ENGINE}=={new}", path.read_text("utf8"))
+    if count != 1:
+        raise ProjectError(f'{path} has {count} times "{ENGINE}=={old}", expected once.')
+    path.write_text(text, "utf8")
+    project.engine_pin(root)

@@ -1,0 +1,203 @@
+"""The refresh report: what another engine version changes in packages, evidence and sentences."""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from difflib import SequenceMatcher
+from html import escape
+from itertools import groupby, zip_longest
+from pathlib import Path
+
+from bs4 import BeautifulSoup
+
+from robo_genesis.build.publish import PAGES
+from robo_genesis.evidence import report
+from robo_genesis.evidence.compare import Comparison, compare, specification_of
+from robo_genesis.evidence.findings import SEVERITY, worst
+from robo_genesis.evidence.report import Row
+from robo_genesis.evidence.status import Status, recorded_folders, recorded_status
+
+Pair = tuple[str, str]
+
+VOLATILE = re.compile(
+    r"\brun[ |]+[0-9a-f]{8}\b(?!\.\d)|\b[0-9a-f]{32,64}\b"
+    r"|\b\d{4}-\d\d-\d\d(?:[T ]\d\d:\d\d[\d:.]*Z?)?"
+)
+"""What differs between any two runs of one version: run ids, digests and dates with times."""
+LOG = re.compile(r"\[(Genesis\b|[TDIWEC] \d\d/\d\d/)")
+"""How a line of the engine's or its compiler's log begins; warnings are compared from bundles."""
+END = re.compile(r"(?<=[.!?])\s+(?=[^\s\d])")
+BLOCKS = "p, li, tr, figcaption, caption, dt, dd, pre, h1, h2, h3, h4"
+HIDDEN = "math, svg, .cell_input"
+BREAK = "\x1e"
+LEFT_OUT = Path("evidence", "ledger.html")
+"""The ledger lists digests of what other pages show."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refresh:
+    """What two builds of one checkout, each with its engine version, say of one another.
+
+    `packages` is name → versions in both locks, "" where there is none; `missing` names the lessons
+    with a bundle in one build alone; `recorded` is lesson/backend → state under both pins;
+    `moved` holds (page, old, new) of each sentence that changed, see `moved_sentences`.
+    """
+
+    versions: Pair
+    packages: dict[str, Pair]
+    comparisons: tuple[Comparison, ...]
+    missing: tuple[str, ...]
+    recorded: dict[str, tuple[Status, Status]]
+    moved: tuple[tuple[str, str, str], ...]
+
+    @property
+    def state(self) -> str:
+        """The worst state of a lesson; a lesson that one build lacks cannot be compared."""
+        lacking = [SEVERITY[-1]] if self.missing else []
+        return worst([comparison.state for comparison in self.comparisons] + lacking)
+
+    @property
+    def title(self) -> str:
+        """The heading of the report."""
+        return f"Engine {self.versions[0]} → {self.versions[1]}"
+
+    @property
+    def stale(self) -> list[str]:
+        """Recorded bundles that the new pin makes stale."""
+        both = self.recorded.items()
+        return [name for name, (was, now) in both if now.state == "stale" != was.state]
+
+
+def compare_builds(
+    versions: Pair,
+    builds: tuple[Path, Path],
+    recorded: tuple[dict[str, Status], dict[str, Status]],
+    locks: Pair,
+) -> Refresh:
+    """Compare the builds of the old and the new version.
+
+    Args:
+        versions: of the engine, old and new, as all pairs here.
+        builds: folders with `html` and `evidence`.
+        recorded: what `recorded` returned under each pin.
+        locks: texts of requirements.lock.
+
+    Raises:
+        BundleRefused: a built bundle cannot be read.
+    """
+    old, new = (built_bundles(build) for build in builds)
+    shared = sorted(old.keys() & new.keys())
+    return Refresh(
+        versions,
+        moved_packages(*locks),
+        tuple(compare(old[n], new[n], specification_of(new[n])) for n in shared),
+        tuple(sorted(old.keys() ^ new.keys())),
+        {name: (recorded[0][name], recorded[1][name]) for name in recorded[0]},
+        tuple(moved_sentences(builds[0] / "html", builds[1] / "html")),
+    )
+
+
+def built_bundles(build: Path) -> dict[str, Path]:
+    """Return lesson/backend (a lab's) or lesson/page/backend → folder of all bundles of a build."""
+    labs = {"/".join(folder.parts[-2:]): folder for folder in recorded_folders(build)}
+    return labs | {"/".join(f.parts[-3:]): f for f in sorted((build / PAGES).glob("*/*/*"))}
+
+
+def recorded(root: Path) -> dict[str, Status]:
+    """Return lesson/backend → state of every recorded bundle under a checkout's own pin."""
+    book = root / "book"
+    keys = [folder.parts[-2:] for folder in recorded_folders(book)]
+    return {"/".join(key): recorded_status(book, *key, root=root) for key in keys}
+
+
+def moved_packages(old: str, new: str) -> dict[str, Pair]:
+    """Return name → (old, new) version of each package that two locks do not agree on."""
+    was, now = (
+        dict(line.split("==") for line in text.splitlines() if "==" in line and line[0] != "#")
+        for text in (old, new)
+    )
+    both = {name: (was.get(name, ""), now.get(name, "")) for name in {**was, **now}}
+    return {name: pair for name, pair in both.items() if pair[0] != pair[1]}
+
+
+def moved_sentences(old: Path, new: Path) -> Iterator[tuple[str, str, str]]:
+    """Yield (page, old, new) of each sentence that changed between two builds' folders of HTML.
+
+    One of the texts is empty where the other has no counterpart. The pages' sources are the same,
+    so a sentence that changed holds something measured or computed.
+    """
+    names = {page.relative_to(site) for site in (old, new) for page in site.rglob("*.html")}
+    for name in sorted(names - {LEFT_OUT}):
+        was, now = (list(sentences(site / name)) for site in (old, new))
+        before, after = ([VOLATILE.sub("…", text) for text in page] for page in (was, now))
+        for tag, a, b, c, d in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
+            if tag != "equal":
+                for pair in zip_longest(was[a:b], now[c:d], fillvalue=""):
+                    yield name.with_suffix("").as_posix(), *pair
+
+
+def sentences(page: Path) -> Iterator[str]:
+    """Yield the sentences of a page's article, none where there is no page.
+
+    A table row is one piece of text, and so is a line of printed output.
+    """
+    soup = BeautifulSoup(page.read_text("utf8") if page.is_file() else "", "html.parser")
+    article = soup.select_one("article") or soup
+    for hidden in article.select(HIDDEN):
+        hidden.decompose()
+    for cell in article.select("th, td"):
+        cell.string = f"{cell.get_text(' ', strip=True)} | "
+    for output in article.select("pre"):
+        output.string = output.get_text().replace("\n", BREAK)
+    for block in article.select(BLOCKS):
+        block.insert(0, BREAK)
+        block.append(BREAK)
+    for piece in article.get_text().split(BREAK):
+        yield from (s for s in END.split(" ".join(piece.split())) if s and not LOG.match(s))
+
+
+def summary(refresh: Refresh) -> str:
+    """Say the result in one line."""
+    return (
+        f"{refresh.state}; packages that moved: {len(refresh.packages)}, sentences: "
+        f"{len(refresh.moved)}; recorded bundles that became stale: {len(refresh.stale)}"
+    )
+
+
+def markdown(refresh: Refresh) -> str:
+    """Return the report as a Markdown page."""
+    parts = [f"# {refresh.title}", f"**{summary(refresh).capitalize()}.**"]
+    parts += [report.markdown(comparison, level=2) for comparison in refresh.comparisons]
+    for name, rows, empty in _tables(refresh):
+        parts += [f"## {name}", report.markdown_table(rows) if len(rows) > 1 else empty]
+    return "\n\n".join(part.strip() for part in parts) + "\n"
+
+
+def html(refresh: Refresh) -> str:
+    """Return the report as one HTML page that fetches nothing."""
+    state = refresh.state.replace(" ", "-")
+    body = [f"<h1>{escape(refresh.title)}</h1>"]
+    body.append(f'<p class="verdict {state}">{escape(summary(refresh).capitalize())}.</p>')
+    for comparison in refresh.comparisons:
+        body += report.html_body(comparison, level=2)
+    for name, rows, empty in _tables(refresh):
+        table = report.html_table(name, rows) if len(rows) > 1 else f"<p>{empty}</p>"
+        body += [f"<h2>{escape(name)}</h2>", table]
+    return report.html_page(refresh.title, body)
+
+
+def _tables(refresh: Refresh) -> Iterator[tuple[str, list[Row], str]]:
+    """Yield (heading, rows with their head, what stands there without rows)."""
+    lacking = [(name, "in one build alone") for name in refresh.missing]
+    if lacking:
+        yield "Lessons without a counterpart", [("lesson", "evidence"), *lacking], ""
+    packages = [(name, *versions) for name, versions in refresh.packages.items()]
+    yield "Packages", [("package", "old", "new"), *packages], "No other package moved."
+    rows = [(name, was.state, now.state, now.reason)
+            for name, (was, now) in refresh.recorded.items()]  # fmt: skip
+    head = ("bundle", f"under {refresh.versions[0]}", f"under {refresh.versions[1]}", "reason")
+    yield "Recorded bundles", [head, *rows], "No bundle is recorded."
+    for page, moved in groupby(refresh.moved, key=lambda one: one[0]):
+        yield f"Sentences of {page}", [("old", "new"), *(one[1:] for one in moved)], ""
+    if not refresh.moved:
+        yield "Sentences", [("", "")], "No sentence of the site moved."

@@ -1,0 +1,34 @@
+"""What shows where a run began and ended: two camera frames, or a schematic of measured links."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.session import FrameError, require_frame
+
+POSTURES = ("camera", "schematic")
+
+
+def problems(posture: str, frames: Mapping[str, np.ndarray], links: FloatArray) -> list[str]:
+    """Return what is wrong with the evidence of a posture, nothing where it holds.
+
+    Args:
+        posture: what it is called, one of `POSTURES`.
+        frames: the camera's pictures by name.
+        links: (n+1, l, 3) link positions of the run [m], which a schematic draws.
+    """
+    if posture not in POSTURES:
+        return [f"posture evidence is called {posture!r}, expected one of {POSTURES}"]
+    if posture == "schematic":
+        found = ["a schematic must not come with camera frames"] if frames else []
+        return found + (["no link moved"] if (links[0] == links[-1]).all() else [])
+    if set(frames) != {"initial", "final"}:
+        return [f"camera frames are {sorted(frames)}, expected initial and final"]
+    try:
+        for frame in frames.values():
+            require_frame(frame)
+    except FrameError as error:
+        return [str(error)]
+    same = (frames["initial"] == frames["final"]).all()
+    return ["initial and final frame are the same picture"] if same else []

@@ -1,0 +1,236 @@
+"""The experiment that students read: reset, command a target, step, record."""
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim.joints import JointMap, to_numpy
+
+LIMIT_TOLERANCE = 1e-6
+"""Room for float32 when a position is compared with a model limit [rad or m]."""
+
+
+class CaseError(ValueError):
+    """A control case that must not be run; the message says which entry, and what is valid."""
+
+
+@dataclass(frozen=True, slots=True)
+class ControlCase:
+    """Everything that decides one run. Arrays have one entry a joint, in the map's order.
+
+    `q_start`, `q_target` [rad or m]; `kp` [N·m/rad or N/m]; `kv` [N·m·s/rad or N·s/m];
+    `effort_limit` [N·m or N], symmetric; `dt` [s]; `steps` counts outer steps.
+    """
+
+    q_start: FloatArray
+    q_target: FloatArray
+    kp: FloatArray
+    kv: FloatArray
+    effort_limit: FloatArray
+    steps: int
+    dt: float = DT
+    substeps: int = SUBSTEPS
+    seed: int = SEED
+
+
+def differences(one: ControlCase, other: ControlCase, joints: JointMap) -> list[str]:
+    """Name every field, and joint within it, in which two cases differ: `["kp[joint4]"]`."""
+    found = []
+    for field in fields(ControlCase):
+        a, b = getattr(one, field.name), getattr(other, field.name)
+        if np.ndim(a) == 0:
+            found += [field.name] if a != b else []
+        else:
+            found += [f"{field.name}[{joints.names[k]}]" for k in np.flatnonzero(a != b)]
+    return found
+
+
+def validate(case: ControlCase, joints: JointMap) -> None:
+    """Refuse a case that cannot be run as it is written; nothing is clipped or broadcast.
+
+    Raises:
+        CaseError: naming the field, the joint, the value and what is valid.
+    """
+    n = len(joints.names)
+    for name in ("q_start", "q_target", "kp", "kv", "effort_limit"):
+        values = getattr(case, name)
+        if np.shape(values) != (n,):
+            raise CaseError(
+                f"{name} has shape {np.shape(values)}, expected ({n},): one value for each of "
+                f"{', '.join(joints.names)}. Slice values and indices together."
+            )
+        for k in np.flatnonzero(~np.isfinite(values)):
+            raise CaseError(f"{name}[{joints.names[k]}] is {values[k]}, expected a finite number.")
+    for name in ("q_start", "q_target"):
+        _within_limits(name, getattr(case, name), joints)
+    for name in ("kp", "kv", "effort_limit"):
+        for k in np.flatnonzero(np.asarray(getattr(case, name)) < 0):
+            value = getattr(case, name)[k]
+            raise CaseError(f"{name}[{joints.names[k]}] is {value}, expected zero or more.")
+    if case.steps < 1 or not case.dt > 0 or case.substeps < 1:
+        raise CaseError(
+            f"steps={case.steps}, dt={case.dt}, substeps={case.substeps}: all must be positive."
+        )
+
+
+def _within_limits(name: str, q: FloatArray, joints: JointMap) -> None:
+    outside = (q < joints.lower - LIMIT_TOLERANCE) | (q > joints.upper + LIMIT_TOLERANCE)
+    for k in np.flatnonzero(outside):
+        raise CaseError(
+            f"{name}[{joints.names[k]}] is {q[k]:g} {joints.position_units[k]}, outside its range "
+            f"[{joints.lower[k]:g}, {joints.upper[k]:g}]. Choose a value inside; none is clipped."
+        )
+
+
+def reset(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> None:
+    """Bring scene and controller to the case's start, whatever ran before.
+
+    `scene.reset()` clears state and control mode but keeps gains and effort range, so these are
+    set again and read back; then the start position is assigned with zero velocity.
+
+    Raises:
+        CaseError: the scene is not built yet or has another time step, or what the engine reads
+            back differs from what was asked for.
+    """
+    if not scene.is_built:
+        raise CaseError("The scene is not built: call scene.build() before any joint call.")
+    if (scene.dt, scene.substeps) != (case.dt, case.substeps):
+        raise CaseError(
+            f"The scene was built with dt={scene.dt}, substeps={scene.substeps}; the case asks for "
+            f"dt={case.dt}, substeps={case.substeps}. Restart and build the scene for this case."
+        )
+    validate(case, joints)
+    dofs = joints.dofs_idx_local.tolist()
+    scene.reset()
+    robot.set_dofs_kp(case.kp.copy(), dofs)  # copies: Torch takes no read-only array
+    robot.set_dofs_kv(case.kv.copy(), dofs)
+    robot.set_dofs_force_range(-case.effort_limit, case.effort_limit.copy(), dofs)
+    robot.set_dofs_position(case.q_start.copy(), dofs, zero_velocity=True)
+    require_read_back(robot, dofs, case)
+
+
+def require_read_back(robot: Any, dofs: list[int], case: ControlCase) -> None:
+    """Raise CaseError unless the engine has gains, effort range and start of a case, at rest.
+
+    The case's arrays are (d,), or (environments, d) in a batch.
+    """
+    lower, upper = robot.get_dofs_force_range(dofs)
+    read_back = {
+        "kp": (robot.get_dofs_kp(dofs), case.kp),
+        "kv": (robot.get_dofs_kv(dofs), case.kv),
+        "effort_limit": (upper, case.effort_limit),
+        "-effort_limit": (lower, -case.effort_limit),
+        "q_start": (robot.get_dofs_position(dofs), case.q_start),
+        "velocity": (robot.get_dofs_velocity(dofs), np.zeros_like(case.q_start)),
+    }
+    for name, (found, asked) in read_back.items():
+        if not np.allclose(to_numpy(found), asked, rtol=1e-6, atol=LIMIT_TOLERANCE):
+            raise CaseError(f"{name} reads back {to_numpy(found)} after reset, asked for {asked}.")
+
+
+def run_case(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Trace:
+    """Reset, then command the constant target and step; record every state.
+
+    Position, link poses: before the first step and after each. Velocity and both forces: after
+    each step, stamped with the time that it ends at. `get_dofs_control_force` is computed when it
+    is called, from the state at that moment; read after a step it belongs to the new state.
+
+    Returns:
+        A trace of `case.steps` steps.
+    """
+    reset(scene, robot, joints, case)
+    dofs = joints.dofs_idx_local.tolist()
+    states, steps, targets = [read_state(robot, dofs)], [], []
+    start_qd = to_numpy(robot.get_dofs_velocity(dofs))
+    q_target = case.q_target.copy()
+    robot.control_dofs_position(q_target, dofs)
+    start_control_force = to_numpy(robot.get_dofs_control_force(dofs))
+    effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
+    begin = engine_time(scene)
+    for _ in range(case.steps):
+        robot.control_dofs_position(q_target, dofs)  # at t[k]: repeat the target
+        scene.step()  # bounded effort drives the dynamics for dt
+        states.append(read_state(robot, dofs))  # at t[k+1]: the new state
+        steps.append(read_step(robot, dofs))
+        targets.append(q_target)
+    passed = engine_time(scene) - begin
+    if not np.isclose(passed, case.steps * case.dt, rtol=1e-5, atol=0):
+        raise CaseError(
+            f"The engine's clock advanced {passed:g} s in {case.steps} steps of {case.dt:g} s: the "
+            "stamps k · dt would be wrong. Build the scene with the case's dt."
+        )
+    return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)
+
+
+def engine_time(scene: Any) -> float:
+    """Return the time that the engine's own clock shows [s]."""
+    return float(scene.get_time() if hasattr(scene, "get_time") else scene.t * scene.dt)
+
+
+def assign_path(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Trace:
+    """Overwrite the state along a straight line from start to target; nothing is controlled.
+
+    No step is taken: this is what a sequence of resets looks like, for contrast with `run_case`.
+
+    Returns:
+        A trace of the assigned positions. Its time is nominal: none passed.
+    """
+    reset(scene, robot, joints, case)
+    dofs = joints.dofs_idx_local.tolist()
+    start_qd, start_force, _ = read_step(robot, dofs)
+    effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
+    states, steps = [read_state(robot, dofs)], []
+    path = np.linspace(case.q_start, case.q_target, case.steps + 1)[1:]
+    for q in path:
+        robot.set_dofs_position(q, dofs, zero_velocity=True)
+        states.append(read_state(robot, dofs))
+        steps.append(read_step(robot, dofs))
+    return assemble(case, states, steps, list(path), start_qd, start_force, effort_limit)
+
+
+def assemble(
+    case: ControlCase,
+    states: list[tuple[FloatArray, FloatArray, FloatArray]],
+    steps: list[tuple[FloatArray, FloatArray, FloatArray]],
+    targets: list[FloatArray],
+    start_qd: FloatArray,
+    start_control_force: FloatArray,
+    effort_limit: FloatArray,
+) -> Trace:
+    """Stack the n+1 states, n step readings and n targets of a run of `case` into a trace."""
+    q, link_pos, link_quat = (np.stack(column) for column in zip(*states, strict=True))
+    qd, control_force, internal_force = (np.stack(column) for column in zip(*steps, strict=True))
+    return Trace(
+        t=np.arange(case.steps + 1) * case.dt,
+        q=q,
+        qd=qd,
+        target=np.stack(targets),
+        control_force=control_force,
+        internal_force=internal_force,
+        start_control_force=start_control_force,
+        start_qd=start_qd,
+        effort_limit=effort_limit,
+        link_pos=link_pos,
+        link_quat=link_quat,
+    )
+
+
+def read_state(robot: Any, dofs: list[int]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return position (d,), link positions (l, 3) [m] and orientations (l, 4), now."""
+    return (
+        to_numpy(robot.get_dofs_position(dofs)),
+        to_numpy(robot.get_links_pos()),
+        to_numpy(robot.get_links_quat()),
+    )
+
+
+def read_step(robot: Any, dofs: list[int]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return velocity, control force and internal force, each (d,), of the state now."""
+    return (
+        to_numpy(robot.get_dofs_velocity(dofs)),
+        to_numpy(robot.get_dofs_control_force(dofs)),
+        to_numpy(robot.get_dofs_force(dofs)),
+    )

@@ -1,0 +1,129 @@
+"""From names in a model file to entity-local DOFs, with types, units and limits."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+
+POSITION_UNIT = {"REVOLUTE": "rad", "PRISMATIC": "m"}
+EFFORT_UNIT = {"REVOLUTE": "N·m", "PRISMATIC": "N"}
+
+
+class JointError(LookupError):
+    """A joint that was asked for by name cannot be used as one scalar DOF."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointMap:
+    """One-DOF joints of one entity; entry k of every array belongs to `names[k]`.
+
+    | field | shape | meaning |
+    |---|---|---|
+    | `dofs_idx_local` | (n,) | DOF index within the entity |
+    | `qs_idx_local` | (n,) | index into the entity's generalised position |
+    | `lower`, `upper` | (n,) | position limits of the model [rad or m] |
+    """
+
+    names: tuple[str, ...]
+    types: tuple[str, ...]
+    dofs_idx_local: np.ndarray
+    qs_idx_local: np.ndarray
+    lower: FloatArray
+    upper: FloatArray
+
+    @property
+    def position_units(self) -> tuple[str, ...]:
+        """Unit of each position: rad or m."""
+        return tuple(POSITION_UNIT[kind] for kind in self.types)
+
+    @property
+    def effort_units(self) -> tuple[str, ...]:
+        """Unit of each effort: N·m or N."""
+        return tuple(EFFORT_UNIT[kind] for kind in self.types)
+
+    def entry(self, name: str) -> int:
+        """Return where `name` stands in this map's arrays.
+
+        Raises:
+            JointError: the map has no such joint; the message lists those it has.
+        """
+        if name not in self.names:
+            raise JointError(
+                f"Joint {name!r} is not in this map. Available: {', '.join(self.names)}."
+            )
+        return self.names.index(name)
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return the name-to-DOF table, one dict a joint, for display and for evidence."""
+        return [
+            {
+                "name": name,
+                "type": self.types[k].lower(),
+                "local DOF": int(self.dofs_idx_local[k]),
+                "local qpos": int(self.qs_idx_local[k]),
+                "lower": float(self.lower[k]),
+                "upper": float(self.upper[k]),
+                "unit": self.position_units[k],
+            }
+            for k, name in enumerate(self.names)
+        ]
+
+
+def resolve_joints(robot: Any, names: Sequence[str]) -> JointMap:
+    """Ask a built entity which local DOF each named joint owns.
+
+    Args:
+        robot: rigid entity of a built scene.
+        names: joints that must own exactly one DOF and one qpos each.
+
+    Returns:
+        The map, in the order of `names`.
+
+    Raises:
+        JointError: a name is unknown (the message lists the model's names), or its joint is not
+            one DOF and one qpos (the message gives both counts).
+    """
+    joints = [one_dof_joint(robot, name) for name in names]
+    dofs_idx_local = np.array([joint.dofs_idx_local[0] for joint in joints])  # (n,)
+    qs_idx_local = np.array([joint.qs_idx_local[0] for joint in joints])  # (n,)
+    if len(set(dofs_idx_local.tolist())) != len(names):
+        raise JointError(f"Names {', '.join(names)} share DOFs: {dofs_idx_local.tolist()}.")
+    limits = robot.get_dofs_limit(dofs_idx_local.tolist())
+    lower, upper = (to_numpy(bound).astype(np.float64) for bound in limits)  # as JSON keeps them
+    for array in (dofs_idx_local, qs_idx_local, lower, upper):
+        array.setflags(write=False)
+    types = tuple(joint.type.name for joint in joints)
+    return JointMap(tuple(names), types, dofs_idx_local, qs_idx_local, lower, upper)
+
+
+def one_dof_joint(robot: Any, name: str) -> Any:
+    """Return the joint called `name` after checking that it is one DOF and one qpos."""
+    available = [joint.name for joint in robot.joints]
+    if name not in available:
+        raise JointError(
+            f"Joint {name!r} is not in this model. Available: {', '.join(available)}. "
+            "Check the spelling, the model file and the engine version; do not guess an index."
+        )
+    joint = robot.get_joint(name)
+    if (joint.n_dofs, joint.n_qs) != (1, 1):
+        raise JointError(
+            f"Joint {name!r} has {joint.n_dofs} DOFs and {joint.n_qs} qpos; this course's control "
+            "arrays take joints with one of each. Control it through its own DOF slice instead."
+        )
+    return joint
+
+
+def link_parents(robot: Any) -> list[int]:
+    """Return for each link the position of its parent among `robot.links`, -1 for the base."""
+    first = robot.links[0].idx
+    return [link.parent_idx - first if link.parent_idx >= first else -1 for link in robot.links]
+
+
+def to_numpy(values: Any) -> FloatArray:
+    """Return an engine tensor as a NumPy array of its own, on the host, same shape."""
+    if hasattr(values, "detach"):
+        values = values.detach().cpu().numpy()
+    return np.array(values)

@@ -1,0 +1,100 @@
+"""Landings and slides in MuJoCo with the engine's own contact settings: a second engine's word."""
+
+import mujoco
+import numpy as np
+
+from robo_genesis.core.trace import ContactTrace
+from robo_genesis.sim.contacts import SURFACE_SIZE, TOP, ContactCase
+from robo_genesis.sim.visual_shape import rotate
+
+VERSION = str(mujoco.__version__)
+
+DEFAULT_TIME_CONSTANT = 0.01
+"""Genesis' own default for contacts, where two solver steps are not longer [s]."""
+
+OWN_TIME_CONSTANT = 0.02
+"""MuJoCo's default [s]."""
+
+IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
+"""Depth-dependent rigidity of a contact, the default of both engines."""
+
+
+def time_constant(h: float) -> float:
+    """Return the time constant that Genesis gives a contact at solver step `h` [s]."""
+    return max(DEFAULT_TIME_CONSTANT, 2 * h)
+
+
+def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
+    """Compile the surface and one free body with the case's step, friction, cone and spring.
+
+    Args:
+        case: of a cube or a ball.
+        own_defaults: take MuJoCo's time constant for contacts instead of Genesis'.
+    """
+    spec = mujoco.MjSpec()
+    spec.option.timestep = case.h
+    spec.option.gravity = (0, 0, -case.gravity)
+    cones = {
+        "pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL,
+        "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC,
+    }
+    spec.option.cone = cones[case.cone]
+    spec.option.impratio = case.impratio or 1.0
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    seconds = OWN_TIME_CONSTANT if own_defaults else time_constant(case.h)
+    contact = {"solref": case.spring or (seconds, 1.0), "solimp": IMPEDANCE}
+    box, ball = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_SPHERE
+    spec.worldbody.add_geom(
+        type=box,
+        size=np.array(SURFACE_SIZE) / 2,
+        pos=(0, 0, TOP - SURFACE_SIZE[2] / 2),
+        friction=(case.surface_friction, 0, 0),
+        **contact,
+    )
+    body = spec.worldbody.add_body(pos=case.start)
+    body.add_freejoint()
+    body.add_geom(
+        type=box if case.shape == "cube" else ball,
+        size=(case.size / 2,) * 3,
+        density=case.density,
+        friction=(case.friction, 0, 0),
+        **contact,
+    )
+    return spec.compile()
+
+
+def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
+    """Run a case as `contacts.run_world` does, computed in float64, kept in float32.
+
+    Contacts are those that MuJoCo found when it last looked, at the beginning of the last solver
+    step, as in Genesis.
+
+    Args:
+        case: of a cube or a ball.
+        own_defaults: as in `load`.
+    """
+    model = load(case, own_defaults)
+    data = mujoco.MjData(model)
+    settle = round(case.settle / case.h)
+    if settle:
+        mujoco.mj_step(model, data, nstep=settle)
+    data.qvel[0] += case.speed
+    states = [_state(data)]
+    for _ in range(case.steps):
+        mujoco.mj_step(model, data, nstep=case.substeps)
+        states.append(_state(data))
+    t = np.arange(case.steps + 1) * case.dt
+    return ContactTrace(t, *(np.stack(column) for column in zip(*states, strict=True)))
+
+
+def _state(data: mujoco.MjData) -> tuple[np.ndarray, ...]:
+    """Return position, orientation, velocity, angular velocity in the world's axes, contacts."""
+    quat = data.qpos[3:7]
+    turning = rotate(quat, data.qvel[None, 3:6])  # MuJoCo has it in the body's axes
+    deepest = max((-contact.dist for contact in data.contact), default=0.0)
+    kept = (data.qpos[None, :3], quat[None], data.qvel[None, :3], turning)
+    return (
+        *(np.array(values, np.float32) for values in kept),
+        np.array([data.ncon], np.int32),
+        np.array([max(deepest, 0.0)], np.float32),
+    )

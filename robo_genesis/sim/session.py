@@ -1,0 +1,297 @@
+"""Environment contract, the one `gs.init` of a process, actual backend, kept engine warnings."""
+
+import ctypes
+import importlib
+import logging
+import os
+import re
+import sys
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core import project
+from robo_genesis.core.scene import FRAME_SHAPE, SEED
+
+BACKENDS = ("auto", "cpu")
+RENDER_CHOICES = ("0", "1")
+PRECISION = "32"
+
+
+class ContractError(ValueError):
+    """An environment variable of the contract has a value outside its choices."""
+
+
+class EngineError(RuntimeError):
+    """The engine cannot be started, is started twice, or contradicts itself."""
+
+
+class FrameError(ValueError):
+    """A camera was asked for and what it returned is no usable RGB frame."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contract:
+    """What the environment asks of a page: backend, camera or none, and where it may write."""
+
+    backend: str
+    render: bool
+    outputs: Path
+
+
+def read_contract(environ: Mapping[str, str] | None = None) -> Contract:
+    """Read ROBO_GENESIS_BACKEND (auto|cpu), ROBO_GENESIS_RENDER (0|1) and ROBO_GENESIS_OUTPUTS_DIR.
+
+    Unset means cpu, 1 and `outputs` in the working directory.
+
+    Raises:
+        ContractError: naming the variable, its value and the choices.
+    """
+    environ = os.environ if environ is None else environ
+    backend = _choice(environ, "ROBO_GENESIS_BACKEND", "cpu", BACKENDS)
+    render = _choice(environ, "ROBO_GENESIS_RENDER", "1", RENDER_CHOICES)
+    outputs = Path(environ.get("ROBO_GENESIS_OUTPUTS_DIR") or "outputs").resolve()
+    try:
+        outputs.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=outputs):
+            pass
+    except OSError as error:
+        raise ContractError(
+            f"ROBO_GENESIS_OUTPUTS_DIR={str(outputs)!r} cannot be written: {error.strerror}. "
+            "Name a folder that you may create and write."
+        ) from error
+    return Contract(backend, render == "1", outputs)
+
+
+def _choice(
+    environ: Mapping[str, str], variable: str, default: str, choices: tuple[str, ...]
+) -> str:
+    value = environ.get(variable, default)
+    if value not in choices:
+        raise ContractError(
+            f"{variable}={value!r} is not valid. Choose one of: {', '.join(choices)}."
+        )
+    return value
+
+
+@dataclass(frozen=True, slots=True)
+class Backend:
+    """Where the engine really computes, read after `gs.init` from engine, Quadrants and Torch."""
+
+    requested: str
+    actual: str
+    arch: str
+    torch_device: str
+    torch_version: str
+    hip_version: str | None
+    cuda_version: str | None
+    device_name: str
+
+
+class EngineLog(logging.Handler):
+    """Keeps every line that the engine logs, without its colour marks."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.lines: list[tuple[str, str]] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Keep (level, message)."""
+        self.lines.append((record.levelname, re.sub("~{1,4}<|>~{1,4}", "", record.getMessage())))
+
+    @property
+    def warnings(self) -> list[str]:
+        """Messages at level WARNING or above, in order."""
+        return [text for level, text in self.lines if level not in ("DEBUG", "INFO")]
+
+    def text(self) -> str:
+        """Return the log, one `LEVEL message` line each."""
+        return "".join(f"{level} {text}\n" for level, text in self.lines)
+
+
+class WithoutPrivatePaths(logging.Filter):
+    """Takes the folders of packages and of the user out of the engine's lines: both are private."""
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Rewrite the message; keep every record."""
+        installed = Path(importlib.import_module("genesis").__file__ or "").parents[1]
+        record.msg = project.without_home(str(record.msg).replace(str(installed), "site-packages"))
+        return True
+
+
+@dataclass(frozen=True, slots=True)
+class Engine:
+    """The started engine: its versions, its backend, its log.
+
+    `switches` are the variables that were set for engine, compiler or drivers before the start.
+    """
+
+    version: str
+    quadrants_version: str
+    precision: str
+    seed: int
+    backend: Backend
+    log: EngineLog
+    switches: Mapping[str, str] = field(default_factory=dict)
+
+
+def start(contract: Contract, seed: int = SEED) -> Engine:
+    """Initialise Genesis, once per process, and probe where it runs.
+
+    Raises:
+        EngineError: Genesis is missing or already initialised, a graphics library is missing, or
+            engine, Quadrants and Torch disagree on the backend.
+    """
+    switches = project.engine_switches(os.environ)  # now: importing the engine sets some itself
+    gs = import_engine()
+    if getattr(gs, "_initialized", False):
+        raise EngineError(
+            f"Genesis is already initialised in this process (backend {gs.backend.name}). A "
+            "backend, seed or precision cannot be changed afterwards: restart the kernel."
+        )
+    log = EngineLog()
+    logging.getLogger("genesis").addFilter(WithoutPrivatePaths())
+    logging.getLogger("genesis").addHandler(log)
+    gs.init(
+        backend=gs.cpu if contract.backend == "cpu" else gs.gpu,
+        seed=seed,
+        precision=PRECISION,
+        theme=plain_theme(),
+        logging_level="info",
+        use_deterministic_algorithms=True,
+    )
+    quadrants_version = ".".join(map(str, importlib.import_module("quadrants").__version__))
+    backend = probe(contract.backend)
+    return Engine(gs.__version__, quadrants_version, PRECISION, seed, backend, log, switches)
+
+
+def plain_theme() -> str:
+    """Return the engine's name for a log without colour codes: `raw`, in older versions `dumb`."""
+    styles = importlib.import_module("genesis.styles")
+    return "raw" if hasattr(styles, "THEME") else "dumb"
+
+
+def import_engine() -> Any:
+    """Import Genesis after the libraries that it needs even without a camera.
+
+    Raises:
+        EngineError: saying what is missing and the command that installs it.
+    """
+    if sys.platform == "linux":
+        require_libraries("libEGL.so.1", "libGL.so.1")
+    try:
+        return importlib.import_module("genesis")
+    except ImportError as error:
+        raise EngineError(
+            f"Genesis cannot be imported: {error}. Install what requirements.lock names."
+        ) from error
+
+
+def require_libraries(*names: str) -> None:
+    """Raise EngineError for a shared library that cannot be loaded."""
+    for name in names:
+        try:
+            ctypes.CDLL(name)
+        except OSError as error:
+            raise EngineError(
+                f"{name} cannot be loaded ({error}). Genesis needs EGL and OpenGL even without a "
+                "camera. On Debian: apt install libegl1 libgl1"
+            ) from error
+
+
+def probe(requested: str) -> Backend:
+    """Read the actual backend from engine, Quadrants and Torch, and require that they agree."""
+    gs = importlib.import_module("genesis")
+    torch = importlib.import_module("torch")
+    quadrants = importlib.import_module("quadrants")
+    found = Backend(
+        requested=requested,
+        actual=gs.backend.name,
+        arch=str(quadrants.cfg.arch).removeprefix("Arch."),
+        torch_device=gs.device.type,
+        torch_version=torch.__version__,
+        hip_version=torch.version.hip,
+        cuda_version=torch.version.cuda,
+        device_name=str(gs.utils.get_device(gs.backend)[1]),
+    )
+    require_agreement(found)
+    return found
+
+
+def require_agreement(found: Backend) -> None:
+    """Raise EngineError where engine, Quadrants and Torch do not name one and the same backend.
+
+    ROCm and CUDA both call their Torch device `cuda`; only `torch.version` tells them apart.
+    """
+    expected = {
+        "cpu": (("x64", "arm64"), "cpu"),
+        "cuda": (("cuda",), "cuda"),
+        "amdgpu": (("amdgpu",), "cuda"),
+        "metal": (("metal",), "mps"),
+    }
+    if found.actual not in expected:
+        raise EngineError(f"Backend {found.actual!r} is unknown. Known: {', '.join(expected)}.")
+    archs, device = expected[found.actual]
+    agree = found.arch in archs and found.torch_device == device
+    if found.actual == "amdgpu":
+        agree = agree and found.hip_version is not None
+    if found.actual == "cuda":
+        agree = agree and found.cuda_version is not None and found.hip_version is None
+    if found.requested == "cpu":
+        agree = agree and found.actual == "cpu"
+    if not agree:
+        raise EngineError(
+            f"The backend is not one thing here: {found}. Unset QD_ARCH and "
+            "GS_TORCH_FORCE_CPU_DEVICE, check the Torch build, and restart the kernel."
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Renderer:
+    """The OpenGL implementation that draws, and whether it draws in software."""
+
+    vendor: str
+    name: str
+
+    @property
+    def software(self) -> bool:
+        """Whether Mesa's software rasteriser draws."""
+        return any(word in self.name.lower() for word in ("llvmpipe", "softpipe", "swrast"))
+
+
+def read_renderer(scene: Any) -> Renderer:
+    """Ask the scene's OpenGL context for GL_VENDOR and GL_RENDERER."""
+    gl = importlib.import_module("OpenGL.GL")
+    context = scene.visualizer._rasterizer._renderer  # Genesis offers no public way to it
+    context.make_current()
+    try:
+        vendor, name = (gl.glGetString(item).decode() for item in (gl.GL_VENDOR, gl.GL_RENDERER))
+    finally:
+        context.make_uncurrent()
+    return Renderer(vendor, name)
+
+
+def capture(camera: Any) -> np.ndarray:
+    """Render one frame, shape (540, 720, 3), uint8; a frame that is not usable is an error."""
+    rgb = camera.render()[0]
+    require_frame(rgb)
+    return np.array(rgb)
+
+
+def require_frame(rgb: Any) -> None:
+    """Raise FrameError unless `rgb` is a finite, non-empty RGB picture of the course's shape."""
+    shape = np.shape(rgb)
+    if shape != FRAME_SHAPE:
+        raise FrameError(f"The camera returned shape {shape}, expected {FRAME_SHAPE}.")
+    picture = np.asarray(rgb)
+    if picture.dtype != np.uint8 and not np.isfinite(picture).all():
+        raise FrameError("The camera returned values that are not finite.")
+    if (picture == picture[0, 0]).all():
+        raise FrameError(
+            f"The camera returned an empty picture: every pixel is {picture[0, 0].tolist()}. "
+            "It shows nothing but the background: look at its place and at what it looks at."
+        )

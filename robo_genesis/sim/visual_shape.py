@@ -1,0 +1,156 @@
+"""What moves looks like: the engine's own visual meshes, in the frames of their links."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+
+FILE = "shape.npz"
+
+WORLD = "world"
+"""The link of parts that stand still; their frame is the record's, z up."""
+
+FLOOR_RGB = (205, 205, 205)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """The triangles of one link that have one colour.
+
+    `vertices` (v, 3) [m] in the link's frame; `faces` (f, 3) count vertices; `rgb` 0 to 255.
+    """
+
+    link: str
+    rgb: tuple[int, int, int]
+    vertices: FloatArray
+    faces: np.ndarray
+
+
+def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
+    """Return the visual geometry of a built entity, one part for each colour of each link.
+
+    Args:
+        entity: a robot, or a single body such as a box.
+        names: of its links in the record, where they are not the engine's: two boxes have one name.
+
+    Raises:
+        ValueError: there are not as many names as links.
+    """
+    names = [link.name for link in entity.links] if names is None else names
+    if len(names) != len(entity.links):
+        raise ValueError(
+            f"{len(names)} names given for {len(entity.links)} links: "
+            f"{', '.join(link.name for link in entity.links)}. Give one a link, in this order."
+        )
+    parts = []
+    for name, link in zip(names, entity.links, strict=True):
+        by_colour: dict[tuple[int, int, int], list[tuple[FloatArray, np.ndarray]]] = {}
+        for geom in link.vgeoms:
+            mesh = geom.get_trimesh()
+            red, green, blue = (int(value) for value in mesh.visual.main_color[:3])
+            placed = rotate(geom.init_quat, mesh.vertices) + geom.init_pos
+            by_colour.setdefault((red, green, blue), []).append((placed, np.array(mesh.faces)))
+        parts += [Part(name, rgb, *joined(meshes)) for rgb, meshes in by_colour.items()]
+    return parts
+
+
+def floor(width: float) -> Part:
+    """Return a square of the plane z = 0 around the origin, seen from above.
+
+    The engine's plane has no end; a viewer frames what there is.
+
+    Args:
+        width: of the square [m].
+    """
+    half = width / 2
+    corners = [[-half, -half, 0], [half, -half, 0], [half, half, 0], [-half, half, 0]]
+    faces = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+    return Part(WORLD, FLOOR_RGB, np.array(corners, np.float32), faces)
+
+
+def slab(size: Sequence[float], top: float) -> Part:
+    """Return a box that stands still, its upper face at a height above the origin.
+
+    Args:
+        size: length, width and thickness [m].
+        top: height of the upper face [m].
+    """
+    x, y = size[0] / 2, size[1] / 2
+    corners = [
+        (a, b, z) for z in (top - size[2], top) for a, b in ((-x, -y), (x, -y), (x, y), (-x, y))
+    ]
+    sides = [(k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k) for k in range(4)]
+    faces = [(0, 3, 2, 1), (4, 5, 6, 7), *sides]
+    triangles = [half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))]
+    apart = [corners[k] for half in triangles for k in half]  # flat faces share no corner
+    indices = np.arange(len(apart), dtype=np.int32).reshape(-1, 3)
+    return Part(WORLD, FLOOR_RGB, np.array(apart, np.float32), indices)
+
+
+def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
+    """Require that each part moves as one link of the record, or stands still.
+
+    Raises:
+        ValueError: a part belongs to a link that is not in the record, or two links have one name.
+    """
+    twice = sorted({link for link in links if links.count(link) > 1 or link == WORLD})
+    if twice:
+        raise ValueError(
+            f"The record has links of one name, or of that of the world: {', '.join(twice)}. Give "
+            "each a name of its own when the bundle is written, and the same to read_shape."
+        )
+    unknown = sorted({part.link for part in shape} - {*links, WORLD})
+    if unknown:
+        raise ValueError(
+            f"The shape has parts of {', '.join(unknown)}; the record knows {', '.join(links)}. "
+            "Both must come from one model: run the lecture and the recorded lab at one pin."
+        )
+
+
+def rotate(quat: FloatArray, points: FloatArray) -> FloatArray:
+    """Return points (n, 3) rotated by a unit quaternion (w, x, y, z)."""
+    w, axis = quat[0], np.asarray(quat[1:])
+    crossed = 2 * np.cross(axis, points)
+    return points + w * crossed + np.cross(axis, crossed)
+
+
+def joined(meshes: Sequence[tuple[FloatArray, np.ndarray]]) -> tuple[FloatArray, np.ndarray]:
+    """Return (vertices, faces) of several meshes as one."""
+    first = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
+    faces = [faces + begin for (_, faces), begin in zip(meshes, first[:-1], strict=True)]
+    vertices = np.concatenate([vertices for vertices, _ in meshes])
+    return vertices.astype(np.float32), np.concatenate(faces).astype(np.int32)
+
+
+def write_shape(folder: Path, parts: Sequence[Part]) -> Path:
+    """Write the parts to a file in `folder`, which is made where it is missing."""
+    folder.mkdir(parents=True, exist_ok=True)
+    vertices, faces = joined([(part.vertices, part.faces) for part in parts])
+    np.savez_compressed(
+        folder / FILE,
+        link=[part.link for part in parts],
+        rgb=np.array([part.rgb for part in parts], np.uint8),
+        sizes=[(len(part.vertices), len(part.faces)) for part in parts],
+        vertices_m=vertices,
+        faces=faces,
+    )
+    return folder / FILE
+
+
+def load_shape(file: Path) -> list[Part]:
+    """Return the parts that `write_shape` wrote."""
+    with np.load(file, allow_pickle=False) as stored:
+        links, colours, vertices, faces = (
+            stored[k] for k in ("link", "rgb", "vertices_m", "faces")
+        )
+        ends = np.cumsum(stored["sizes"], axis=0)
+    parts, begin = [], (0, 0)
+    for link, (red, green, blue), end in zip(links.tolist(), colours.tolist(), ends, strict=True):
+        own = vertices[begin[0] : end[0]], faces[begin[1] : end[1]] - begin[0]
+        parts.append(Part(link, (red, green, blue), *own))
+        begin = end
+    return parts

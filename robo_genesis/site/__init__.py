@@ -1,0 +1,1 @@
+"""Sphinx extensions, and what is done to the pages that Sphinx has written."""

@@ -1,0 +1,1 @@
+"""Measured values, provenance and the ledger on the pages."""

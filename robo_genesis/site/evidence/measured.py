@@ -1,0 +1,199 @@
+"""Measured numbers and lesson states in prose: always read from an accepted bundle.
+
+Roles and directive, as pages write them:
+
+| in a page | shows |
+|---|---|
+| {measured}`l04/lab G2.overshoot` | a metric, written with its unit |
+| {measured}`l04/lab engine` | the engine version that the page ran on |
+| {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
+| {engine-release}`some words` | the pinned release |
+| {lesson-state}`l04` | a badge for each backend of a lesson: backend and state |
+| {lesson-status} l04 (directive) | what was run for a lesson, and its state |
+"""
+
+import importlib.metadata
+import os
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective, SphinxRole
+
+from robo_genesis.core import project
+from robo_genesis.core.quantities import format_value
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.status import Status, page_status, recorded_folders, recorded_status
+
+BUILD_OUTPUTS = "ROBO_GENESIS_BUILD_OUTPUTS"
+BACKEND = project.BUILD_BACKEND
+REFERENCE = "amdgpu"
+REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"
+
+
+def outputs_folder() -> Path:
+    """Return the folder of this build's bundles, which the build names in the environment."""
+    return Path(os.environ[BUILD_OUTPUTS])
+
+
+def measured(lesson_page: str, name: str) -> tuple[str, str]:
+    """Return (text, provenance) of one measured value.
+
+    Args:
+        lesson_page: `l04/lab`.
+        name: `group.metric` of its metrics.json, or `engine`.
+
+    Raises:
+        LookupError: there is no such metric; the message lists those there are.
+        BundleRefused: the bundle cannot be read.
+    """
+    folder = outputs_folder() / lesson_page / BACKEND
+    predicate = bundle.read_manifest(folder).predicate
+    origin = f"Measured by {lesson_page} on {BACKEND}, Genesis {predicate.engine.version}, "
+    origin += f"run {predicate.run_id[:8]}, {predicate.started[:10]}"
+    if name == "engine":
+        return predicate.engine.version, origin
+    group, _, metric = name.partition(".")
+    records = bundle.read_metrics(folder)
+    if metric not in records.get(group, {}):
+        known = ", ".join(f"{g}.{m}" for g, items in records.items() for m in items)
+        raise LookupError(f"{lesson_page} has no metric {name!r}. Known: {known}.")
+    record = records[group][metric]
+    text = str(record.value) if group == "model" else format_value(record.value, record.unit)
+    return text, f"{origin}, from {', '.join(record.source)}"
+
+
+class measured_value(nodes.inline):  # noqa: N801 - docutils names nodes in lower case
+    """A measured value in prose; its attribute `provenance` says where it comes from."""
+
+
+class Measured(SphinxRole):
+    """Insert one measured value; an unknown one is an error of the build."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return the value as text that carries its provenance."""
+        lesson_page, _, name = self.text.partition(" ")
+        try:
+            text, origin = measured(lesson_page, name)
+        except (LookupError, bundle.BundleRefused) as error:
+            message = self.inliner.reporter.error(f"measured: {error}", line=self.lineno)
+            return [], [message]
+        node = measured_value(self.rawtext, text, classes=["measured"], provenance=origin)
+        return [node], []
+
+
+def lesson_backends(book: Path, lesson: str) -> list[str]:
+    """Return the backends of a lesson's recorded runs, the reference first, recorded or not."""
+    recorded = [path.name for path in recorded_folders(book) if path.parent.name == lesson]
+    return [REFERENCE, *(name for name in recorded if name != REFERENCE)]
+
+
+@lru_cache(maxsize=64)
+def page_state(outputs: Path, lesson: str, page: str, book: Path) -> Status:
+    """Return the state of a page's bundle of this build; it does not change while Sphinx runs."""
+    return page_status(outputs, lesson, page, BACKEND, book)
+
+
+@lru_cache(maxsize=64)
+def recorded_state(book: Path, lesson: str, backend: str) -> Status:
+    """Return the state of a recorded run; it does not change while Sphinx runs."""
+    return recorded_status(book, lesson, backend)
+
+
+def lesson_statuses(book: Path, lesson: str) -> list[Status]:
+    """Return the states of a lesson's lab: of this build on CPU, then of the recorded runs."""
+    recorded = [recorded_state(book, lesson, name) for name in lesson_backends(book, lesson)]
+    return [page_state(outputs_folder(), lesson, "lab", book), *recorded]
+
+
+class evidence_badge(nodes.inline):  # noqa: N801
+    """A state; no markup of a page makes this node, so an imitation is told apart."""
+
+
+def badge_node(status: Status) -> nodes.Node:
+    """Return a state as the site shows it everywhere: one word, and a colour that follows it."""
+    return evidence_badge("", status.badge, classes=["evidence-badge", f"state-{status.state}"])
+
+
+def make_command(lesson: str, backend: str, recorded: bool) -> nodes.Node:
+    """Return the command that makes the evidence which is not there.
+
+    Args:
+        lesson: as `l04`.
+        backend: on which it is missing.
+        recorded: whether it is committed with the book; each build makes its own anew.
+    """
+    command = f"$ make evidence LESSON={lesson} BACKEND={backend}" if recorded else "$ make book"
+    return nodes.literal_block(command, command, language="console")
+
+
+class LessonStatus(SphinxDirective):
+    """Say what was run for a lesson: the states of its lab, each with a badge and a sentence."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return one line a backend."""
+        lines = nodes.bullet_list(classes=["lesson-status"])
+        for status in lesson_statuses(Path(self.env.srcdir), self.arguments[0]):
+            line = nodes.paragraph("", "", badge_node(status), nodes.Text(f" {status.sentence}"))
+            lines += nodes.list_item("", line)
+        return [lines]
+
+
+class LessonState(SphinxRole):
+    """Show the badges of a lesson."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return one badge a backend."""
+        shown: list[nodes.Node] = []
+        for status in lesson_statuses(Path(self.env.srcdir), self.text):
+            shown += [badge_node(status), nodes.Text(" ")]
+        return shown[:-1], []
+
+
+class EngineSource(SphinxRole):
+    """Link to a file of the engine at the pin; a path that it does not have is an error."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return the link, its text the path."""
+        installed = importlib.metadata.distribution("genesis-world")
+        if not Path(str(installed.locate_file(f"genesis/{self.text}"))).is_file():
+            message = f"engine-source: Genesis {installed.version} has no file genesis/{self.text}"
+            return [], [self.inliner.reporter.error(message, line=self.lineno)]
+        target = f"{REPOSITORY}/blob/v{project.engine_pin()}/genesis/{self.text}"
+        literal = nodes.literal(self.text, self.text)
+        return [nodes.reference(self.rawtext, "", literal, refuri=target)], []
+
+
+class EngineRelease(SphinxRole):
+    """Link to the pinned release of the engine."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return the link, its text as given."""
+        target = f"{REPOSITORY}/releases/tag/v{project.engine_pin()}"
+        return [nodes.reference(self.rawtext, self.text, refuri=target)], []
+
+
+def visit_measured(self: Any, node: measured_value) -> None:
+    """Write a value that shows its provenance on hover, focus or touch."""
+    provenance = {"data-provenance": node["provenance"], "aria-description": node["provenance"]}
+    self.body.append(self.starttag(node, "span", "", tabindex="0", role="note", **provenance))
+
+
+def depart_measured(self: Any, node: measured_value) -> None:
+    """Close the element."""
+    self.body.append("</span>")
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register role, directive and their writer."""
+    app.add_role("measured", Measured())
+    app.add_role("lesson-state", LessonState())
+    app.add_role("engine-source", EngineSource())
+    app.add_role("engine-release", EngineRelease())
+    app.add_directive("lesson-status", LessonStatus)
+    app.add_node(measured_value, html=(visit_measured, depart_measured))
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,176 @@
+"""Finds each figure and measured table of a page, and says below it where it comes from.
+
+Measured is every picture and table that a code cell put out, in its place or glued elsewhere, or
+that was read from a bundle. The tables of a cell that is tagged `inputs` were chosen; a picture
+that no run made is an illustration; a table typed in prose is not listed.
+"""
+
+import re
+import textwrap
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
+from sphinx.util import logging
+
+from robo_genesis.evidence.status import RECORDED_PAGE
+from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.site.evidence import ledger_data, refusals
+from robo_genesis.site.evidence import origin as sphinx_origin
+from robo_genesis.site.evidence.ledger_data import Item, Run
+from robo_genesis.site.evidence.measured import (
+    BACKEND,
+    lesson_backends,
+    outputs_folder,
+    page_state,
+    recorded_state,
+)
+from robo_genesis.site.evidence.origin import INPUTS, above, origin
+
+TITLE = 80
+"""Longest title in the ledger, in characters."""
+
+logger = logging.getLogger(__name__)
+
+
+@lru_cache(maxsize=4)
+def measured_pages(book: Path) -> dict[str, str]:
+    """Return docname → `lesson/page` of the pages that run the engine."""
+    return {p.docname: f"{p.lesson}/{p.page}" for p in find_pages(book) if p.declares_bundle}
+
+
+@lru_cache(maxsize=4)
+def all_runs(book: Path) -> dict[str, Run]:
+    """Return the runs of this build and the recorded ones by key, those that are missing too."""
+    here = outputs_folder()
+    declared = [page.split("/") for page in measured_pages(book).values()]
+    runs = [
+        Run(f"{lesson}/{page}", here / lesson / page / BACKEND,
+            page_state(here, lesson, page, book))
+        for lesson, page in declared
+    ]  # fmt: skip
+    for lesson in dict.fromkeys(lesson for lesson, _ in declared):
+        for backend in lesson_backends(book, lesson):
+            folder = book / "evidence" / lesson / backend
+            status = recorded_state(book, lesson, backend)
+            runs.append(Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True))
+    return {run.key: run for run in runs}
+
+
+def read_page(app: Sphinx, doctree: nodes.document) -> None:
+    """List what a page shows, and say below each item where it comes from."""
+    env = app.env
+    book, items = Path(env.srcdir), []
+    known = all_runs(book)
+    for node in list(doctree.findall(lambda n: isinstance(n, nodes.table | nodes.image))):
+        keys = origin(node, measured_pages(book).get(env.docname))
+        is_table = isinstance(node, nodes.table)
+        if keys is None and is_table:
+            continue
+        problem = _problem(keys, known, is_table)
+        if problem:
+            logger.warning(problem, location=env.docname)
+            continue
+        holder = node if is_table else next(above(node, nodes.figure), node)
+        item = describe(holder, node, env.docname, keys, book)
+        items.append(item)
+        runs = [known[key] for key in item.runs]
+        add_line(holder, ledger_data.provenance(item.kind, runs), item.row)
+    all_items(env)[env.docname] = items
+
+
+def _problem(keys: tuple[str, ...] | None, known: Mapping[str, Run], is_table: bool) -> str | None:
+    """Return why an item cannot be listed."""
+    if keys == () and not is_table:
+        return f"a cell tagged {INPUTS} shows a picture. The tag is for tables: remove it there."
+    if not set(keys or ()) <= known.keys():
+        what = "table" if is_table else "picture"
+        return (
+            f"a cell shows a {what}, but the page declares no bundle. Give its front matter "
+            f"`robo_genesis: {{lesson, page}}`, or tag a cell of chosen values `{INPUTS}`."
+        )
+    return None
+
+
+def describe(
+    holder: nodes.Element,
+    node: nodes.Element,
+    docname: str,
+    keys: tuple[str, ...] | None,
+    book: Path,
+) -> Item:
+    """Return the ledger's item of a table or picture, and give `holder` an anchor."""
+    section = next(above(holder, nodes.section), None)
+    if not holder["ids"]:
+        _name(holder, "table" if isinstance(node, nodes.table) else "picture", section)
+    anchor = holder["ids"][0]
+    if isinstance(node, nodes.table):
+        rows = [[e.astext() for e in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
+        data = ledger_data.csv_bytes(rows)
+        heading = section.next_node(nodes.title).astext() if section is not None else docname
+        title = f"{heading}: {', '.join(filter(None, rows[0]))}"
+        name = f"{docname}-{anchor}.csv".replace("/", "-")
+        kind = "table" if keys else "settings"
+        return Item(
+            kind, _short(title), docname, anchor, keys or (), ledger_data.sha256(data), name, data
+        )
+    caption = holder.next_node(nodes.caption)
+    title = caption.astext() if caption is not None else str(node.get("alt", anchor))
+    path = book / node["uri"]
+    kind = "illustration" if keys is None else ledger_data.picture_kind(path)
+    digest = ledger_data.sha256(path.read_bytes())
+    return Item(kind, _short(title), docname, anchor, keys or (), digest, node["uri"])
+
+
+def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:
+    """Give an anchor from the section's, which stands still when other sections change."""
+    base = f"{word}-{section['ids'][0]}" if section is not None else word
+    document, name, number = holder.document, base, 1
+    while name in document.ids:
+        number += 1
+        name = f"{base}-{number}"
+    document.ids[name] = holder
+    holder["ids"].append(name)
+
+
+def _short(text: str) -> str:
+    first = re.sub(r"^\d+\. ", "", text).split(". ")[0].removesuffix(".")
+    return textwrap.shorten(first, TITLE, placeholder=" …")
+
+
+def add_line(holder: nodes.Element, text: str, row: str) -> None:
+    """Put the line of provenance at the end of a caption, or below what has none."""
+    link = nodes.reference("", "ledger", internal=True, refuri="", ledger_row=row)
+    caption = holder.next_node(nodes.caption) if isinstance(holder, nodes.figure) else None
+    parts = [nodes.Text(f"{text} · " if text[-1] != "." else f"{text} "), link]
+    if caption is not None:
+        caption += [nodes.Text(" "), nodes.inline("", "", *parts, classes=["provenance"])]
+    else:
+        line = nodes.paragraph("", "", *parts, classes=["provenance"])
+        block = next(above(holder, nodes.paragraph), holder)
+        block.parent.insert(block.parent.index(block) + 1, line)
+
+
+def all_items(env: BuildEnvironment) -> dict[str, list[Item]]:
+    """Return the items of all pages read so far, by page."""
+    if not hasattr(env, "robo_genesis_items"):
+        env.robo_genesis_items = {}  # type: ignore[attr-defined]
+    return env.robo_genesis_items  # type: ignore[attr-defined]
+
+
+def forget_page(app: Sphinx, env: BuildEnvironment, docname: str) -> None:
+    """Forget the items of a page that is read again."""
+    all_items(env).pop(docname, None)
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the passes over each page that was read."""
+    sphinx_origin.register(app)
+    refusals.register(app)
+    app.connect("env-purge-doc", forget_page)
+    app.connect("doctree-read", read_page, priority=900)  # pictures are collected before
+    return {"version": "1", "parallel_read_safe": False, "parallel_write_safe": True}

@@ -1,0 +1,110 @@
+"""Multiple choice whose right answer is what was measured.
+
+A page asks how one metric of a case compares with that of another; which option is right is read
+from the accepted bundle when the page is rendered, so it cannot go stale:
+
+    ```{choice} l04/lecture rise_time G1 G2
+    When does G2 reach 90 % of its step?
+    ```
+"""
+
+from html import escape
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from robo_genesis.core.comparison import compare_values, comparison_sentence
+from robo_genesis.evidence import bundle
+from robo_genesis.lessons.registry import find_lesson
+from robo_genesis.site.evidence.measured import BACKEND, measured, outputs_folder
+
+EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
+LOWER = {"lower": "less", "equal": "the same, within the lesson's resolution", "higher": "more"}
+UNDECIDED = "this window cannot tell"
+"""What the second case does against the first, as a reader would say it."""
+
+
+class choice(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes in lower case
+    """A question; `options` are (text, right) pairs, `answer` and `origin` what was measured."""
+
+
+class Choice(SphinxDirective):
+    """Ask how the second of two cases compares with the first in one metric."""
+
+    required_arguments = 4
+    has_content = True
+
+    def run(self) -> list[nodes.Node]:
+        """Return the question with its options; an unknown page, case or metric is an error."""
+        lesson_page, metric, *cases = self.arguments
+        try:
+            order, unit, answer, origin = measured_order(lesson_page, metric, cases)
+        except (LookupError, bundle.BundleRefused) as error:
+            raise self.error(f"choice: {error}") from error
+        question, messages = self.parse_inline(" ".join(self.content), lineno=self.lineno)
+        node = choice(
+            "",
+            *question,
+            number=self.env.new_serialno("choice"),
+            options=options(unit, order),
+            answer=answer,
+            origin=origin,
+        )
+        return [node, *messages]
+
+
+def measured_order(
+    lesson_page: str, metric: str, cases: list[str]
+) -> tuple[str | None, str, str, str]:
+    """Return (order of the second case relative to the first, unit, sentence, provenance).
+
+    Raises:
+        LookupError: the metric or a case is not in the bundle; the message lists what is.
+        BundleRefused: the bundle cannot be read.
+    """
+    _, origin = (measured(lesson_page, f"{case}.{metric}")[1] for case in cases)
+    records = bundle.read_metrics(outputs_folder() / lesson_page / BACKEND)
+    first, second = (records[case][metric] for case in cases)
+    lesson = find_lesson(lesson_page.split("/")[0])
+    noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION
+    found = compare_values(noun, first.unit, first.value, second.value, resolution)
+    return found.order, found.unit, comparison_sentence((cases[0], cases[1]), found), origin
+
+
+def options(unit: str, order: str | None) -> list[tuple[str, bool]]:
+    """Return each option with whether it is the measured one; exactly one is."""
+    words = EARLIER if unit == "s" else LOWER
+    return [*((text, order == name) for name, text in words.items()), (UNDECIDED, order is None)]
+
+
+def visit_choice(self: Any, node: choice) -> None:
+    """Open the question; its text follows."""
+    self.body.append('<fieldset class="choice"><legend>')
+
+
+def depart_choice(self: Any, node: choice) -> None:
+    """Write options, each with what choosing it tells, and the answer in a fold; no script."""
+    name, answer = f"choice-{node['number']}", escape(node["answer"])
+    rows = []
+    for k, (text, right) in enumerate(node["options"]):
+        verdict = "Yes." if right else "No."
+        rows.append(
+            f'<div><input type="radio" name="{name}" id="{name}-{k}"/>'
+            f'<label for="{name}-{k}">{escape(text)}</label>'
+            f'<p class="feedback {"right" if right else "wrong"}">{verdict} {answer}</p></div>'
+        )
+    right = next(text for text, is_right in node["options"] if is_right)
+    self.body.append(
+        f"</legend>{''.join(rows)}<details><summary>Answer</summary>"
+        f"<p><strong>{escape(right)}</strong>. {answer}</p>"
+        f'<p class="origin">{escape(node["origin"])}.</p></details></fieldset>'
+    )
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the directive."""
+    app.add_directive("choice", Choice)
+    app.add_node(choice, html=(visit_choice, depart_choice))
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

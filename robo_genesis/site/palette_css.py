@@ -1,0 +1,131 @@
+"""The palette in style sheets, and a mark of its line beside a case's name in a table.
+
+`_static/palette.css` is written by each build. It declares, for both themes, each mark's colour
+(`--case-g1`, `--target`) and its dashes for an SVG line two units wide (`--case-g1-dash`).
+"""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.transforms.post_transforms import SphinxPostTransform
+
+from robo_genesis.core.palette import CASES, MARKS, Mark, css_name
+
+THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
+STROKE = 2
+"""Width of the SVG lines that the dashes are meant for, in their own units."""
+LINE, LENGTH = 0.12, 1.9
+"""Width of the line beside a case's name, and about its length, in letter heights."""
+NAME = re.compile(rf"\b({'|'.join(name for name in CASES if name != 'baseline')})\b")
+OTHER_TEXT = (nodes.literal, nodes.literal_block, nodes.math, nodes.raw, nodes.reference)
+
+
+def css() -> str:
+    """Return the style sheet of the palette."""
+    rules = [
+        _rule(
+            selector, {f"--{css_name(name)}": getattr(mark, theme) for name, mark in MARKS.items()}
+        )
+        for theme, selector in THEMES.items()
+    ]
+    dashes = {f"--{css_name(name)}-dash": _svg_dashes(mark) for name, mark in MARKS.items()}
+    rules.insert(1, _rule(":root", dashes))
+    rules += [_rule(f".time-plot .{css_name(name)}", _ink(name)) for name in MARKS]
+    rules += [
+        _rule(f".case-name.{css_name(name)}", {"color": f"var(--{css_name(name)})"})
+        for name in CASES
+    ]
+    rules += [_rule(f".case-mark.{css_name(name)}::before", _stripe(name)) for name in CASES]
+    return "\n".join(["/* Written from robo_genesis/core/palette.py. */", *rules, ""])
+
+
+def _rule(selector: str, properties: dict[str, str]) -> str:
+    lines = "".join(f"  {name}: {value};\n" for name, value in properties.items())
+    return f"{selector} {{\n{lines}}}"
+
+
+def _ink(name: str) -> dict[str, str]:
+    return {"--ink": f"var(--{css_name(name)})", "--dash": f"var(--{css_name(name)}-dash)"}
+
+
+def _svg_dashes(mark: Mark) -> str:
+    return " ".join(f"{STROKE * length:g}" for length in mark.dashes) or "none"
+
+
+def _stripe(name: str) -> dict[str, str]:
+    """Return a background that repeats a mark's dashes, and a width that holds them whole.
+
+    Half of the first dash goes to the end, so that a single gap stands inside the line.
+    """
+    dashes, colour = MARKS[name].dashes, f"var(--{css_name(name)})"
+    if not dashes:
+        return {"background": colour, "width": f"{LENGTH}em"}
+    half = dashes[0] / 2
+    at, stops = 0.0, []
+    for number, length in enumerate((half, *dashes[1:], half)):
+        paint = "transparent" if number % 2 else colour
+        stops.append(f"{paint} {at * LINE:.2f}em {(at + length) * LINE:.2f}em")
+        at += length
+    width = at * LINE * max(1, round(LENGTH / (at * LINE)))
+    background = f"repeating-linear-gradient(90deg, {', '.join(stops)})"
+    return {"background": background, "width": f"{width:.2f}em"}
+
+
+class MarkCases(SphinxPostTransform):
+    """Mark each case that is named.
+
+    A cell of a table that holds a case's name, and nothing else, gets the line of the plots beside
+    it; in running text the name has the case's colour. The word "baseline" is no such name there.
+    """
+
+    default_priority = 400  # outputs of cells have been chosen by then
+
+    def run(self, **kwargs: Any) -> None:
+        """Mark cells, then what is left of the text."""
+        for entry in self.document.findall(nodes.entry):
+            name = entry.astext()
+            paragraph = entry.next_node(nodes.paragraph)
+            if name in CASES and paragraph is not None:
+                paragraph["classes"] += ["case-mark", css_name(name)]
+        for text in list(self.document.findall(nodes.Text)):
+            if NAME.search(text) and _is_running(text):
+                text.parent.replace(text, _named(text))
+
+
+def _is_running(text: nodes.Text) -> bool:
+    """Whether a text stands in a paragraph or a caption, and is neither code, link nor marked."""
+    parent = text.parent
+    while not isinstance(parent, nodes.paragraph | nodes.caption):
+        if parent is None or isinstance(parent, OTHER_TEXT):
+            return False
+        parent = parent.parent
+    return "case-mark" not in parent["classes"]
+
+
+def _named(text: nodes.Text) -> list[nodes.Node]:
+    """Return a text with each case's name in an element of its own."""
+    parts: list[nodes.Node] = []
+    for number, part in enumerate(NAME.split(text)):
+        if number % 2:
+            parts.append(nodes.inline(part, part, classes=["case-name", css_name(part)]))
+        elif part:
+            parts.append(nodes.Text(part))
+    return parts
+
+
+def write_css(app: Sphinx) -> None:
+    """Write the style sheet where Sphinx collects the site's own."""
+    folder = Path(app.outdir) / "_static"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "palette.css").write_text(css(), "utf8")
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register style sheet and marks."""
+    app.add_post_transform(MarkCases)
+    app.add_css_file("palette.css", priority=400)  # before the sheets that use it
+    app.connect("builder-inited", write_css)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,1 @@
+"""Recorded runs that play in a page."""

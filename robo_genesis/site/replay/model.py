@@ -1,0 +1,204 @@
+"""Recorded runs as a GLB: the shape of what moves, moved as the link poses of the record say.
+
+One node per link, placed in the world and moved by one animation per case, whose keys are the
+samples of the record; one more for what stands still. Nothing is compressed: what unpacks such
+meshes would have to be loaded.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+
+import fast_simplification
+import numpy as np
+import pygltflib as gltf
+import trimesh
+
+from robo_genesis.core.channels import Run
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.visual_shape import WORLD, Part, check_links
+
+KEPT = 0.05
+"""Share of the triangles of a large part that is kept: with the small ones, about 10,000 of the
+Franka's 135,000."""
+
+SMALLEST = 400
+"""Triangles below which a part is left as it is: rings would break open and lamps vanish."""
+
+CREASE = np.radians(40)
+"""Angle between triangles above which an edge is drawn sharp [rad]."""
+
+STILL = "still"
+"""The node of what belongs to no link."""
+
+Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
+"""Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it."""
+
+
+class Binary:
+    """The binary chunk of a GLB and its accessors; equal arrays are stored once."""
+
+    def __init__(self, model: gltf.GLTF2) -> None:
+        self.model, self.data, self.known = model, bytearray(), dict[tuple[str, bytes], int]()
+
+    def add(
+        self, array: np.ndarray, kind: str, target: int | None = None, bounds: bool = False
+    ) -> int:
+        """Store an array (n,) or (n, k) and return its accessor; float32 or uint16 or uint32.
+
+        glTF demands `bounds`, the smallest and largest values, of positions and of key times.
+        """
+        packed = array.tobytes()
+        if (kind, packed) not in self.known:
+            component = {"f": gltf.FLOAT, "u": gltf.UNSIGNED_INT}[array.dtype.kind]
+            if array.dtype == np.uint16:
+                component = gltf.UNSIGNED_SHORT
+            view = gltf.BufferView(
+                buffer=0, byteOffset=len(self.data), byteLength=len(packed), target=target
+            )
+            accessor = gltf.Accessor(
+                bufferView=len(self.model.bufferViews),
+                componentType=component,
+                count=len(array),
+                type=kind,
+                min=np.atleast_1d(array.min(axis=0)).tolist() if bounds else None,
+                max=np.atleast_1d(array.max(axis=0)).tolist() if bounds else None,
+            )
+            self.data += packed + bytes(-len(packed) % 4)
+            self.known[kind, packed] = len(self.model.accessors)
+            self.model.bufferViews.append(view)
+            self.model.accessors.append(accessor)
+        return self.known[kind, packed]
+
+
+def glb(
+    shape: Sequence[Part],
+    links: Sequence[str],
+    traces: Mapping[str, Run],
+    credit: str | None = None,
+) -> bytes:
+    """Return the model with one animation a case.
+
+    Args:
+        shape: the parts of what moves; those of `WORLD` stand still.
+        links: names of the links, in the order of the record.
+        traces: the record by case.
+        credit: whose the shape is, None where it needs no notice.
+
+    Raises:
+        ValueError: a part belongs to a link that is not in the record, or two links have one name.
+    """
+    check_links(shape, links)
+    model = gltf.GLTF2(asset=gltf.Asset(version="2.0", generator="RoboGenesis", copyright=credit))
+    binary = Binary(model)
+    model.nodes = [gltf.Node(name=WORLD, rotation=Z_UP_TO_Y_UP, children=[])]
+    first = next(iter(traces.values()))
+    for k, link in enumerate(links):
+        node = gltf.Node(
+            name=link,
+            translation=first.link_pos[0, k].astype(float).tolist(),
+            rotation=rotations(first.link_quat[:1, k])[0].astype(float).tolist(),
+            mesh=_mesh(binary, link, shape),
+        )
+        model.nodes.append(node)
+    still = _mesh(binary, WORLD, shape)
+    if still is not None:
+        model.nodes.append(gltf.Node(name=STILL, mesh=still))
+    model.nodes[0].children = list(range(1, len(model.nodes)))
+    model.animations = [_animation(binary, name, trace) for name, trace in traces.items()]
+    model.scene, model.scenes = 0, [gltf.Scene(nodes=[0])]
+    model.buffers = [gltf.Buffer(byteLength=len(binary.data))]
+    model.set_binary_blob(bytes(binary.data))
+    return b"".join(model.save_to_bytes())
+
+
+def _mesh(binary: Binary, link: str, shape: Sequence[Part]) -> int | None:
+    """Add a link's mesh and return its number, None where the link has no parts."""
+    model, primitives = binary.model, []
+    for part in (part for part in shape if part.link == link):
+        mesh = light(part)
+        attributes = gltf.Attributes(
+            POSITION=binary.add(_float32(mesh.vertices), "VEC3", gltf.ARRAY_BUFFER, bounds=True),
+            NORMAL=binary.add(_float32(mesh.vertex_normals), "VEC3", gltf.ARRAY_BUFFER),
+        )
+        faces = np.asarray(mesh.faces).ravel()
+        small = np.uint16 if len(mesh.vertices) < 2**16 else np.uint32
+        indices = binary.add(faces.astype(small), "SCALAR", gltf.ELEMENT_ARRAY_BUFFER)
+        primitives.append(
+            gltf.Primitive(attributes=attributes, indices=indices, material=_material(model, part))
+        )
+    if not primitives:
+        return None
+    model.meshes.append(gltf.Mesh(name=link, primitives=primitives))
+    return len(model.meshes) - 1
+
+
+def light(part: Part) -> trimesh.Trimesh:
+    """Return a part with few triangles, its vertices split where an edge is sharp."""
+    mesh = trimesh.Trimesh(part.vertices, part.faces, process=False)
+    mesh.merge_vertices(merge_norm=True)
+    target = max(round(KEPT * len(mesh.faces)), SMALLEST)
+    if len(mesh.faces) > target:
+        vertices, faces = fast_simplification.simplify(
+            _float32(mesh.vertices), np.asarray(mesh.faces), target_count=target
+        )
+        mesh = trimesh.Trimesh(vertices, faces, process=False)
+    mesh.update_faces(mesh.nondegenerate_faces())
+    return trimesh.graph.smooth_shade(mesh, angle=CREASE)
+
+
+def _material(model: gltf.GLTF2, part: Part) -> int:
+    """Return the number of the material of a part's colour."""
+    name = json.dumps(part.rgb)
+    known = [material.name for material in model.materials]
+    if name not in known:
+        colour = [*linear(np.array(part.rgb) / 255).tolist(), 1.0]
+        look = gltf.PbrMetallicRoughness(
+            baseColorFactor=colour, metallicFactor=0.0, roughnessFactor=0.6
+        )
+        model.materials.append(
+            gltf.Material(name=name, pbrMetallicRoughness=look, alphaCutoff=None)
+        )
+        known.append(name)
+    return known.index(name)
+
+
+def linear(srgb: FloatArray) -> FloatArray:
+    """Return sRGB values 0 to 1 as linear light, in which glTF gives its factors."""
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+
+
+def _animation(binary: Binary, name: str, trace: Run) -> gltf.Animation:
+    """Return the animation of a case: every link's position and orientation at every sample."""
+    animation = gltf.Animation(name=name, channels=[], samplers=[])
+    times = binary.add(_float32(trace.t), "SCALAR", bounds=True)
+    for k in range(trace.link_pos.shape[1]):
+        for path, values, kind in (
+            ("translation", _float32(trace.link_pos[:, k]), "VEC3"),
+            ("rotation", rotations(trace.link_quat[:, k]), "VEC4"),
+        ):
+            target = gltf.AnimationChannelTarget(node=k + 1, path=path)
+            animation.channels.append(
+                gltf.AnimationChannel(sampler=len(animation.samplers), target=target)
+            )
+            animation.samplers.append(
+                gltf.AnimationSampler(
+                    input=times, output=binary.add(values, kind), interpolation="LINEAR"
+                )
+            )
+    return animation
+
+
+def rotations(wxyz: FloatArray) -> FloatArray:
+    """Return unit quaternions (n, 4) as (x, y, z, w), float32, without sign flips between samples.
+
+    q and −q are one orientation; a viewer that blends from one sample to the next would turn the
+    long way round where the sign flips.
+    """
+    unit = wxyz.astype(float) / np.linalg.norm(wxyz.astype(float), axis=1, keepdims=True)
+    flips = np.where((unit[1:] * unit[:-1]).sum(axis=1) < 0, -1.0, 1.0)
+    signs = np.cumprod([1.0, *flips])
+    return _float32((unit * signs[:, None])[:, [1, 2, 3, 0]])
+
+
+def _float32(values: FloatArray) -> FloatArray:
+    return np.ascontiguousarray(values, dtype=np.float32)

@@ -1,0 +1,152 @@
+"""What a reader takes from a lab, and the commands that run it: ```` ```{takeaways} l04/lab ````.
+
+The files are written while the page is read, so that the page can say how big they are, and are
+moved into the site when it is complete.
+"""
+
+import os
+import shutil
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from nbformat import NotebookNode
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+from sphinx.util.osutil import relative_uri
+
+from robo_genesis.build.page_cache import PageCache
+from robo_genesis.evidence import bundle
+from robo_genesis.lessons.book_pages import Page, find_pages
+from robo_genesis.site.evidence.measured import BACKEND, measured, outputs_folder
+from robo_genesis.site.executed_pages import PAGE_CACHE
+from robo_genesis.site.takeaways.files import Takeaways, system, write_takeaways
+from robo_genesis.site.takeaways.plain_markdown import ProseError
+
+FOLDER = "takeaways"
+
+
+class TakeawaysBox(SphinxDirective):
+    """Show how to run a lab at home, and list what was measured for download."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return the box and the list; a page without a run of its own is an error."""
+        page = self.page(self.arguments[0])
+        name = f"{page.lesson}/{page.page}"
+        files = staging(self.env.app)
+        try:
+            found = write_takeaways(
+                page,
+                executed(page),
+                outputs_folder() / name / BACKEND,
+                files,
+                lambda value: measured(*value.split(" ", 1))[0],
+            )
+        except (LookupError, ProseError, bundle.BundleRefused) as error:
+            raise self.error(f"takeaways: {error}") from error
+        links = Links(relative_uri(f"{self.env.docname}.html", FOLDER), files)
+        return [self.box(found, links), *self.downloads(found, links)]
+
+    def page(self, name: str) -> Page:
+        """Return the page that `lesson/page` names."""
+        pages = {f"{p.lesson}/{p.page}": p for p in find_pages(Path(self.env.srcdir))}
+        if name not in pages:
+            known = ", ".join(sorted(pages.keys() - {"None/None"}))
+            raise self.error(f"takeaways: no page is {name!r}. Choices: {known}.")
+        return pages[name]
+
+    def box(self, found: Takeaways, links: "Links") -> nodes.Node:
+        """Return what to download and the commands that run the lab."""
+        commands = "\n".join(found.commands)
+        box = nodes.admonition("", nodes.title("", "Run it yourself"), classes=["run-it-yourself"])
+        box += self.prose(f"On {system()}: save these two files in one folder.")
+        box += bullets(
+            (links(found.student), ", the lab without outputs or solutions"),
+            (links(found.wheel), ", the course's package, which brings the pinned engine"),
+        )
+        box += self.prose("In that folder:")
+        box += nodes.literal_block(commands, commands, language="bash")
+        box += self.prose(
+            "The second line downloads several gigabytes, mostly Torch. The notebook's first "
+            "cell checks the engine's version and says what to do if yours differs. In its first "
+            "run the engine compiles its kernels, which takes minutes."
+        )
+        return box
+
+    def downloads(self, found: Takeaways, links: "Links") -> Iterable[nodes.Node]:
+        """Return the list of what this run of the lab left."""
+        yield from self.prose("Results of the run on this page, for your own tools:")
+        tables = [
+            part
+            for case, table, archive in found.arrays
+            for part in (f"{case} ", links(table, "CSV"), " and ", links(archive, "npz"), "; ")
+        ]
+        figures = [part for path in found.figures for part in (links(path), ", ")]
+        yield bullets(
+            (links(found.executed), ", the notebook as it ran"),
+            ("arrays of each case: ", *tables, "their units are in the CSV's head and in ",
+             links(found.units)),
+            ("figures: ", *figures[:-1]),
+        )  # fmt: skip
+
+    def prose(self, text: str) -> list[nodes.Node]:
+        """Return Markdown as nodes."""
+        return list(self.parse_text_to_nodes(text))
+
+
+class Links:
+    """Makes a link to a file of the takeaways, with its size.
+
+    Args:
+        base: where they are on the site, seen from the page.
+        staging: where they are now.
+    """
+
+    def __init__(self, base: str, staging: Path):
+        self.base, self.staging = base, staging
+
+    def __call__(self, file: Path, text: str = "") -> list[nodes.Node]:
+        """Return the link, named by the file unless `text` is given, and the size."""
+        address = f"{self.base}/{file.relative_to(self.staging).as_posix()}"
+        link = nodes.reference(
+            "", text or file.name, internal=True, refuri=address, classes=["takeaway"]
+        )
+        return [link, nodes.Text(f" ({max(1, round(file.stat().st_size / 1000))} kB)")]
+
+
+def bullets(*items: Iterable[str | list[nodes.Node]]) -> nodes.Node:
+    """Return a list; an item is made of words and links."""
+    found = nodes.bullet_list()
+    for item in items:
+        line = nodes.paragraph()
+        for part in item:
+            line += nodes.Text(part) if isinstance(part, str) else part
+        found += nodes.list_item("", line)
+    return found
+
+
+def executed(page: Page) -> NotebookNode:
+    """Return a page's code cells with the outputs of this build."""
+    cache = PageCache(os.environ[PAGE_CACHE])
+    return cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
+
+
+def staging(app: Sphinx) -> Path:
+    """Return where the files stand until the site is complete."""
+    return Path(app.outdir).parent / FOLDER
+
+
+def move_in(app: Sphinx, exception: Exception | None) -> None:
+    """Put the files into the site."""
+    if exception is None and app.builder.format == "html" and staging(app).is_dir():
+        shutil.copytree(staging(app), Path(app.outdir) / FOLDER, dirs_exist_ok=True)
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the directive, and what moves its files."""
+    app.add_directive("takeaways", TakeawaysBox)
+    app.connect("build-finished", move_in)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,205 @@
+"""What a reader takes from a lab: notebooks, arrays with units, figures, the package's wheel."""
+
+import csv
+import io
+import re
+import shutil
+import tomllib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import nbformat
+import numpy as np
+from nbformat import NotebookNode
+
+from robo_genesis.core import project
+from robo_genesis.core.trace import Stamped
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.bundle import Arrays, Variable
+from robo_genesis.evidence.trace_files import fields_of, read_any_trace
+from robo_genesis.lessons.book_pages import Page
+from robo_genesis.site.takeaways.notebooks import Origin, executed_notebook, student_notebook
+from robo_genesis.site.takeaways.plain_markdown import Writer
+from robo_genesis.site.takeaways.wheel import stored_wheel
+
+ENVIRONMENT = "course"
+UNTOLD = "*(your run measures it)*"
+"""Stands in the student notebook for a value that the site measured."""
+
+CHECKOUT = "robo-genesis"
+"""Stands for the folder that the site was built in."""
+
+AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z")}
+AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
+"""What each step's trace was before the first step, where that was read."""
+
+DEBIAN = ("python3-venv", "libegl1", "libgl1")
+"""Packages of Debian that a fresh system lacks."""
+
+
+@dataclass(frozen=True, slots=True)
+class Takeaways:
+    """The files of one lab; arrays are (case, its CSV, its npz)."""
+
+    student: Path
+    executed: Path
+    wheel: Path
+    units: Path
+    arrays: tuple[tuple[str, Path, Path], ...]
+    figures: tuple[Path, ...]
+    commands: tuple[str, ...]
+
+
+def write_takeaways(
+    page: Page, executed: NotebookNode, run: Path, folder: Path, measured: Callable[[str], str]
+) -> Takeaways:
+    """Write everything that a reader takes from a lab.
+
+    Args:
+        page: the lab.
+        executed: its code cells with outputs.
+        run: the accepted bundle of that run.
+        folder: gets the wheel, and a folder for the lab.
+        measured: returns a measured value as the site writes it.
+    """
+    name = f"{page.lesson}-{page.page}"
+    own = folder / name
+    own.mkdir(parents=True, exist_ok=True)
+    wheel = stored_wheel(folder)
+    student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
+    commands = run_commands(wheel.name, student.name)
+    origin = _origin(page, run, wheel.name, commands)
+    _write(student, student_notebook(page, origin, Writer(page.path.parent, lambda _: UNTOLD)))
+    writer = Writer(page.path.parent, measured)
+    _write(ran, executed_notebook(page, executed, origin, writer))
+    shutil.copy(run / "arrays.json", own)
+    arrays = tuple(_arrays(run, own))
+    figures = tuple(_figures(page, executed, own))
+    return Takeaways(student, ran, wheel, own / "arrays.json", arrays, figures, commands)
+
+
+def run_commands(wheel: str, notebook: str) -> tuple[str, ...]:
+    """Return the commands that run a student notebook in an environment of its own.
+
+    Args:
+        wheel: file name of the package, which pins the engine.
+        notebook: file name of the notebook; both lie in the present folder.
+    """
+    return (
+        f"python3 -m venv {ENVIRONMENT}",
+        f"{ENVIRONMENT}/bin/pip install ./{wheel} jupyterlab",
+        f"{ENVIRONMENT}/bin/jupyter lab {notebook}",
+    )
+
+
+def system() -> str:
+    """Return what the commands run on."""
+    python = package_facts()["requires-python"].replace(",", ", ")
+    return f"Linux with Python {python} (Debian: `apt install {' '.join(DEBIAN)}` first)"
+
+
+def package_facts(root: Path = project.ROOT) -> dict[str, str]:
+    """Return name, version and valid Python versions of the package."""
+    facts = tomllib.loads((root / "pyproject.toml").read_text("utf8"))["project"]
+    return {key: facts[key] for key in ("name", "version", "requires-python")}
+
+
+def _origin(page: Page, run: Path, wheel: str, commands: tuple[str, ...]) -> Origin:
+    predicate = bundle.read_manifest(run).predicate
+    lines = (line for cell in page.notebook.cells for line in cell.source.splitlines())
+    title = next((line[2:] for line in lines if line.startswith("# ")), page.docname)
+    return Origin(
+        title=title,
+        system=system(),
+        engine=project.engine_pin(),
+        package=package_facts()["version"],
+        wheel=wheel,
+        commands=commands,
+        run=predicate.run_id[:8],
+        measured=predicate.started[:10],
+    )
+
+
+def _write(path: Path, notebook: NotebookNode) -> None:
+    path.write_text(without_places(nbformat.writes(notebook)) + "\n", "utf8")
+
+
+def without_places(text: str, root: Path = project.ROOT) -> str:
+    """Return a text without the builder's own folders: only the checkout's name, and `~`."""
+    checkout = rf"(?<![\w.-]){re.escape(str(root))}(?![\w.-])"
+    return project.without_home(re.sub(checkout, CHECKOUT, text))
+
+
+def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
+    """Copy each case's archive, and write it as a table; yield (case, CSV, npz)."""
+    described = bundle.read_arrays(run)
+    for case in described.cases:
+        archive, table = folder / f"{case}.npz", folder / f"{case}.csv"
+        shutil.copy(run / described.cases[case].file, archive)
+        table.write_text(csv_text(read_any_trace(run, described, case), described, case), "utf8")
+        yield case, table, archive
+
+
+def csv_text(trace: Stamped, described: Arrays, case: str) -> str:
+    """Return a run as a table: one row a state, one column a number, its unit in the head.
+
+    The first row is the state before any step, so what is read after a step is empty there unless
+    it was read before, too. What holds for the whole run stands in each row. Each number is the
+    shortest that gives the recorded one back.
+    """
+    states = len(trace.t)
+    columns: dict[str, list[str]] = {}
+    for field, (name, dims, *_) in fields_of(trace).items():
+        if field in AT_REST.values():
+            continue
+        values = _by_state(trace, field, dims, states)
+        for label, column in zip(
+            _labels(field, described.cases[case].variables[name], described), values, strict=True
+        ):
+            columns[label] = ["" if value is None else str(value) for value in column]
+    stream = io.StringIO()
+    writer = csv.writer(stream)
+    writer.writerow(columns)
+    writer.writerows(zip(*columns.values(), strict=True))
+    return stream.getvalue()
+
+
+def _by_state(trace: Stamped, field: str, dims: list[str], states: int) -> list[list[np.generic]]:
+    """Return the columns of a field, each with one entry a state, None where nothing was read."""
+    values = np.asarray(getattr(trace, field))
+    rows = values.reshape(len(values), -1) if dims[0] in ("state", "step") else values[None]
+    listed = [list(row) for row in rows]
+    if dims[0] == "step":
+        first = getattr(trace, AT_REST[field]) if field in AT_REST else [None] * rows.shape[1]
+        listed = [list(first), *listed]
+    elif dims[0] != "state":
+        listed = listed * states
+    return [list(column) for column in zip(*listed, strict=True)]
+
+
+def _labels(field: str, variable: Variable, described: Arrays) -> list[str]:
+    """Return the head of each column: field, joint or link, axis and unit."""
+    inner = [dim for dim in variable.dims if dim not in ("state", "step")]
+    names = [field]
+    for dim in inner:
+        names = [
+            f"{name} {part}"
+            for name in names
+            for part in described.coords.get(dim, AXES.get(dim, ()))
+        ]
+    units = variable.unit if isinstance(variable.unit, list) else [variable.unit] * len(names)
+    return [f"{name} [{unit}]" for name, unit in zip(names, units, strict=True)]
+
+
+def _figures(page: Page, executed: NotebookNode, folder: Path) -> Iterator[Path]:
+    """Write each figure that a cell drew as SVG, under the name that the page gives it."""
+    cells = [cell for cell in page.notebook.cells if cell.cell_type == "code"]
+    for number, (cell, ran) in enumerate(zip(cells, executed.cells, strict=True), 1):
+        for output in ran.outputs:
+            drawn = output.get("data", {}).get("image/svg+xml")
+            if drawn:
+                named = cell.metadata.get("mystnb", {}).get("figure", {})
+                path = folder / f"{named.get('name', f'figure-{number}')}.svg"
+                path.write_text(drawn.strip(), "utf8")
+                yield path

@@ -1,0 +1,182 @@
+"""A lab as notebooks to take away: one to work in, without outputs or solutions, one as it ran."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import nbformat
+from markdown_it import MarkdownIt
+from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from robo_genesis.build.page_results import ANSI
+from robo_genesis.core.project import COURSE, ENGINE
+from robo_genesis.lessons.book_pages import Page
+from robo_genesis.site.takeaways.plain_markdown import SOLUTION, ProseError, Writer, plain
+
+SITE_ONLY = "site-only"
+"""The tag of a cell that makes sense on the site alone."""
+
+WORK_SHEET = "worksheet.md"
+BEFORE = "before the run"
+"""What a heading of the work sheet says where its part comes first."""
+
+OWN_NOTE = re.compile(r"^\[I \d\d/\d\d/\d\d [\d:.]+ \d+\] .*\n?", re.MULTILINE)
+"""A note of the engine's compiler on its own process: date, time and process number."""
+
+KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
+
+CHECK = """\
+# Is this the engine that the lab was written for?
+from importlib.metadata import PackageNotFoundError, version
+
+NEEDED = {needed!r}
+for package, needed in NEEDED.items():
+    try:
+        found = version(package)
+    except PackageNotFoundError:
+        found = "not installed"
+    if found != needed:
+        raise RuntimeError(
+            f"This notebook needs {{package}} {{needed}}; it is {{found}} here. Install it where\\n"
+            "{wheel} lies, then restart the kernel:\\n"
+            "    {install}\\n"
+            "To try another version on purpose, change NEEDED in this cell."
+        )
+print(*(f"{{package}} {{number}}" for package, number in NEEDED.items()), sep="\\n")"""
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a notebook comes from: its lab, the versions it needs, and the run on the site."""
+
+    title: str
+    system: str
+    engine: str
+    package: str
+    wheel: str
+    commands: Sequence[str]
+    run: str
+    measured: str
+
+    @property
+    def install(self) -> str:
+        """The command that installs package and engine."""
+        return next(line for line in self.commands if " install " in line)
+
+
+def student_notebook(page: Page, origin: Origin, writer: Writer) -> NotebookNode:
+    """Return the lab to work in: no outputs, no solutions, and a first check of the versions.
+
+    Where a work sheet lies beside the page, its parts are cells to fill in: what is asked before
+    the run stands after the lab's first words, the rest at the end.
+
+    Args:
+        page: the lab.
+        origin: said in the first lines.
+        writer: of its prose; no measured value may come from it.
+    """
+    needed = {ENGINE: origin.engine, COURSE: origin.package}
+    check = CHECK.format(needed=needed, wheel=origin.wheel, install=origin.install)
+    cells = [_header(origin, "student notebook"), new_code_cell(check)]
+    for cell in page.notebook.cells:
+        if not {SOLUTION, SITE_ONLY} & set(cell.metadata.get("tags", [])):
+            cells += _prose(cell, writer) if cell.cell_type == "markdown" else _code(cell, writer)
+    before, after = _work_sheet(page)
+    return _notebook([*cells[:3], *before, *cells[3:], *after])
+
+
+def executed_notebook(
+    page: Page, executed: NotebookNode, origin: Origin, writer: Writer
+) -> NotebookNode:
+    """Return the lab as it ran for the site, with its outputs.
+
+    Args:
+        page: the lab.
+        executed: the same code cells with outputs.
+        origin: said in the first lines.
+        writer: of its prose; measured values are those of this run.
+    """
+    ran = (cell for cell in executed.cells if cell.cell_type == "code")
+    cells = [_header(origin, "executed notebook")]
+    for cell in page.notebook.cells:
+        if cell.cell_type == "code":
+            cells += _code(cell, writer, next(ran))
+        elif SITE_ONLY not in cell.metadata.get("tags", []):
+            cells += _prose(cell, writer)
+    return _notebook(cells)
+
+
+def _header(origin: Origin, kind: str) -> NotebookNode:
+    commands = "\n".join(origin.commands)
+    return new_markdown_cell(
+        f"> RoboGenesis, *{origin.title}*: {kind}. Written for Genesis {origin.engine}; the site "
+        f"shows run {origin.run} of {origin.measured}.\n"
+        "> © The RoboGenesis team. Code: MIT licence. Text and figures: CC BY 4.0.\n\n"
+        f"To run it on {origin.system}, put `{origin.wheel}` from the lab's page beside it, and in "
+        "that folder:\n\n"
+        f"```console\n{commands}\n```"
+    )
+
+
+def _prose(cell: NotebookNode, writer: Writer) -> list[NotebookNode]:
+    """Return a cell for each section."""
+    return _sections(plain(cell.source, writer))
+
+
+def _sections(text: str) -> list[NotebookNode]:
+    """Return a cell for what stands before the first heading of level two, and for each of them."""
+    headings = (t for t in MarkdownIt().parse(text) if t.type == "heading_open" and not t.level)
+    starts = [heading.map[0] for heading in headings if heading.map and heading.tag == "h2"]
+    lines = text.splitlines()
+    parts = ("\n".join(lines[a:b]).strip() for a, b in pairwise([0, *starts, len(lines)]))
+    return [new_markdown_cell(part) for part in parts if part]
+
+
+def _work_sheet(page: Page) -> tuple[list[NotebookNode], list[NotebookNode]]:
+    """Return what of the page's work sheet is filled in before the run, and what after it."""
+    sheet = page.path.with_name(WORK_SHEET)
+    cells = _sections(sheet.read_text("utf8")) if sheet.is_file() else []
+    asked_first = [cell for cell in cells if BEFORE in cell.source.splitlines()[0]]
+    if cells and not asked_first:
+        raise ProseError(
+            f"{sheet} has no part to fill in {BEFORE}: end the heading of its predictions with "
+            "these words."
+        )
+    return asked_first, [cell for cell in cells if cell not in asked_first]
+
+
+def _code(
+    cell: NotebookNode, writer: Writer, ran: NotebookNode | None = None
+) -> list[NotebookNode]:
+    """Return a code cell, and its caption below it where it draws a figure."""
+    tags = list(cell.metadata.get("tags", []))
+    code = new_code_cell(cell.source, metadata={"tags": tags} if tags else {})
+    if ran is not None:
+        code.outputs = [output for raw in ran.outputs if (output := _output(raw))]
+        code.execution_count = ran.execution_count
+    caption = cell.metadata.get("mystnb", {}).get("figure", {}).get("caption")
+    return [code, *([new_markdown_cell(f"*{plain(caption, writer)}*")] if caption else [])]
+
+
+def _output(output: NotebookNode) -> NotebookNode | None:
+    """Return an output, or None where it holds nothing but notes of the process that ran the cell.
+
+    Of an expected error it is the exception alone: its stack names private paths.
+    """
+    if output.output_type == "stream" and output.name == "stderr":
+        text = OWN_NOTE.sub("", output.text)
+        return NotebookNode(output | {"text": text}) if text else None
+    if output.output_type != "error":
+        return output
+    return NotebookNode(output | {"traceback": [ANSI.sub("", t) for t in output.traceback[-1:]]})
+
+
+def _notebook(cells: list[NotebookNode]) -> NotebookNode:
+    """Return a valid notebook whose bytes depend on its content alone."""
+    for number, cell in enumerate(cells):
+        cell["id"] = f"cell-{number}"
+    notebook = new_notebook(cells=cells, metadata={"kernelspec": KERNEL})
+    nbformat.validate(notebook)
+    return notebook

@@ -1,0 +1,62 @@
+"""npm's packages come whole, by lock, or not at all."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.build import npm
+from robo_genesis.core.project import CACHE, ROOT, ProjectError
+
+
+@pytest.fixture
+def checkout(tmp_path) -> Path:
+    root = tmp_path / "checkout"
+    root.mkdir()
+    for name in (*npm.LOCK, npm.SETTINGS):
+        shutil.copy(ROOT / name, root)
+    return root
+
+
+def test_the_locked_versions_are_installed():
+    folder = npm.packages(ROOT, CACHE)
+    lock = json.loads((ROOT / "package-lock.json").read_text("utf8"))["packages"]
+    found = {
+        name: json.loads((folder.parent / name / "package.json").read_text("utf8"))["version"]
+        for name in lock
+        if name and (folder.parent / name).is_dir()
+    }
+    assert len(found) > 3
+    assert found == {name: lock[name]["version"] for name in found}
+
+
+def test_what_is_there_is_not_fetched_again(checkout, tmp_path, monkeypatch):
+    calls = []
+    monkeypatch.setattr(npm, "_install", calls.append)
+    first = npm.packages(checkout, tmp_path)
+    assert npm.packages(checkout, tmp_path) == first
+    assert len(calls) == 1
+
+
+def test_another_lock_has_a_folder_of_its_own(checkout, tmp_path, monkeypatch):
+    monkeypatch.setattr(npm, "_install", lambda folder: None)
+    before = npm.packages(checkout, tmp_path)
+    for name in (*npm.LOCK, npm.SETTINGS):
+        (checkout / name).write_text("{}")
+        after = npm.packages(checkout, tmp_path)
+        assert after != before
+        before = after
+
+
+def test_a_lock_that_does_not_fit_is_refused_and_leaves_nothing(checkout, tmp_path):
+    declared = json.loads((checkout / "package.json").read_text("utf8"))
+    declared["dependencies"]["left-out-of-the-lock"] = "1.0.0"
+    (checkout / "package.json").write_text(json.dumps(declared))
+    with pytest.raises(ProjectError, match="npm ci failed with status"):
+        npm.packages(checkout, tmp_path / "cache")
+    assert list((tmp_path / "cache" / "npm").iterdir()) == []
+
+
+def test_the_lock_names_no_registry():
+    assert "resolved" not in (ROOT / "package-lock.json").read_text("utf8")

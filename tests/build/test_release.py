@@ -1,0 +1,135 @@
+"""A release is one commit with all required evidence; everything else is named and refused."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from spoilers import part, seal
+from test_status import spoil_stale
+
+from robo_genesis.build.release import lacking
+from robo_genesis.core.git import unclean
+from robo_genesis.evidence.status import recorded_folders, recorded_status
+from robo_genesis.lessons.l04 import spec as l04
+
+
+def git(folder: Path, *arguments: str) -> str:
+    identity = ["-c", "user.name=A", "-c", "user.email=a@example.org"]
+    command = ["git", "-C", str(folder), *identity, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
+@pytest.fixture
+def checkout(tmp_path) -> Path:
+    root = tmp_path / "checkout"
+    root.mkdir()
+    (root / "page.md").write_text("A page.\n")
+    git(root, "init", "-q")
+    git(root, "add", ".")
+    git(root, "commit", "-qm", "first")
+    return root
+
+
+@pytest.fixture
+def built(folder, checkout) -> dict[str, Path]:
+    """A bundle that this commit's build left."""
+    recorded_at(folder, git(checkout, "rev-parse", "HEAD"))
+    return {"l04": folder}
+
+
+def recorded_at(folder: Path, commit: str | None, dirty: bool = False) -> None:
+    """Let a bundle say at which state of the checkout it was recorded."""
+    manifest = json.loads((folder / "manifest.json").read_text())
+    manifest["predicate"]["git"] = commit and {"commit": commit, "dirty": dirty}
+    (folder / "manifest.json").write_text(json.dumps(manifest))
+    seal(folder)
+
+
+@pytest.fixture
+def book(tmp_path, courses_pages) -> Path:
+    return tmp_path / "book"
+
+
+def test_a_clean_commit_with_its_own_evidence_lacks_nothing(checkout, built, book):
+    assert unclean(checkout) == []
+    assert lacking(book, built, checkout) == []
+
+
+@pytest.mark.parametrize("name", ["page.md", "new.md"])
+def test_a_changed_or_new_file_is_named(checkout, name):
+    (checkout / name).write_text("Changed.\n")
+    [line] = unclean(checkout)
+    assert "1 changed or new files" in line
+    assert name in line
+    assert "commit or stash" in line
+
+
+def test_a_new_file_is_seen_whatever_the_user_s_git_shows(checkout):
+    git(checkout, "config", "status.showUntrackedFiles", "no")
+    (checkout / "new.md").write_text("New.\n")
+    assert "new.md" in unclean(checkout)[0]
+
+
+def test_a_lesson_without_a_lab_is_named(checkout, book):
+    [line] = lacking(book, {"l04": None}, checkout)
+    assert line.startswith("l04 has no lab in the table of contents")
+
+
+def test_a_copy_without_git_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
+    [line] = unclean(tmp_path)
+    assert "is no git checkout" in line
+
+
+def test_stale_evidence_of_the_minimum_hardware_is_named(checkout, built, book):
+    spoil_stale(built["l04"])
+    [line] = lacking(book, built, checkout)
+    assert line.startswith("l04 requires evidence of its minimum hardware, cpu, which is stale: ")
+
+
+def test_hardware_that_this_build_has_not_must_be_recorded(checkout, built, book, monkeypatch):
+    monkeypatch.setattr(l04, "MINIMUM_HARDWARE", "amdgpu")
+    [line] = lacking(book, built, checkout)
+    assert "its minimum hardware, amdgpu, which is missing" in line
+
+
+@pytest.mark.parametrize(
+    ("commit", "dirty", "said"),
+    [
+        ("1" * 40, False, "recorded at commit 1111"),
+        ("1" * 40, True, "recorded from a changed tree (1111"),
+        (None, False, "recorded outside a git checkout"),
+    ],
+)
+def test_evidence_of_another_state_of_the_tree_is_named(checkout, built, book, commit, dirty, said):
+    recorded_at(built["l04"], commit, dirty)
+    [line] = lacking(book, built, checkout)
+    assert line.startswith("l04 on cpu, this build: ")
+    assert said in line
+
+
+def test_a_shown_recording_of_a_changed_tree_is_named_and_an_older_commit_is_not(
+    checkout, built, book
+):
+    recorded = shutil.copytree(built["l04"], book / "evidence" / "l04" / "cpu")
+    recorded_at(recorded, "1" * 40)
+    assert lacking(book, built, checkout) == []
+    recorded_at(recorded, "1" * 40, dirty=True)
+    [line] = lacking(book, built, checkout)
+    assert line.startswith("evidence/l04/cpu: recorded from a changed tree")
+
+
+def test_a_stale_recording_beyond_what_is_required_stops_no_release(checkout, built, book):
+    recorded = shutil.copytree(built["l04"], book / "evidence" / "l04" / "cpu")
+    part("engine", quadrants_version="1.2.9")(recorded)
+    seal(recorded)
+    assert lacking(book, built, checkout) == []
+
+
+def test_a_signature_beside_a_bundle_is_no_bundle_and_spoils_none(checkout, built, book):
+    recorded = shutil.copytree(built["l04"], book / "evidence" / "l04" / "cpu")
+    recorded.with_name("cpu.sigstore.json").write_text("{}")
+    assert recorded_folders(book) == [recorded]
+    assert recorded_status(book, "l04", "cpu").state == "verified"

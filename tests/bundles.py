@@ -1,0 +1,106 @@
+"""A bundle of the synthetic run, written by a recorder whose engine is not real."""
+
+import shutil
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.core import project
+from robo_genesis.evidence import evidence_key
+from robo_genesis.evidence import recorder as record
+from robo_genesis.evidence.evidence_key import page_digest
+from robo_genesis.evidence.recorder import Measured, Recorder
+from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.lessons.l04.checks import run_checks
+from robo_genesis.lessons.l04.metrics import metric_records
+from robo_genesis.sim import session
+
+QUADRANTS = evidence_key.locked_version("quadrants", project.ROOT)
+RUN_ID = "0123456789abcdef" * 2
+LOG = (
+    ("INFO", "Running on [a CPU] with backend gs.cpu. Device memory: 23.54 GB."),
+    ("INFO", f"🚀 Genesis initialized. 🔖 version: {project.engine_pin()}, 🌱 seed: 0, "
+             "📏 precision: 32, 💬 verbose: INFO"),
+    ("WARNING", "Approximating tendon."),
+    ("INFO", "Software rendering context detected. Shadows not supported."),
+)  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def backend():
+    return session.Backend("cpu", "cpu", "x64", "cpu", "2.13.0+cpu", None, None, "a CPU")
+
+
+@pytest.fixture(scope="session")
+def engine(backend):
+    log = session.EngineLog()
+    log.lines += LOG
+    return session.Engine(project.engine_pin(), QUADRANTS, "32", 0, backend, log)
+
+
+@pytest.fixture(scope="session")
+def measured(experiment):
+    return Measured(
+        joints=experiment.joints,
+        links=("link0", "link4", "hand"),
+        traces=experiment.traces,
+        metrics=metric_records(experiment.metrics, experiment.model),
+        checks=run_checks(experiment),
+        frames=experiment.frames,
+        parameters=l04.parameters(),
+        renderer=session.Renderer("Mesa", "llvmpipe"),
+    )
+
+
+@contextmanager
+def without_engine(backend):
+    """Keep the recorder from asking an engine that is not there, and from hashing its wheel."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(session, "probe", lambda requested: backend)
+        patch.setattr(record, "files_match_wheel", lambda *names: True)
+        for name in ("RUN_ID", "COMMAND", "PAGE_SHA256"):
+            patch.delenv(f"ROBO_GENESIS_{name}", raising=False)
+        yield patch
+
+
+@pytest.fixture
+def quiet(backend):
+    with without_engine(backend) as patch:
+        yield patch
+
+
+@pytest.fixture
+def recorder(quiet, tmp_path, engine, monkeypatch):
+    monkeypatch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
+    monkeypatch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lab", project.BOOK))
+    contract = session.Contract("cpu", True, tmp_path / "outputs")
+    return Recorder("l04", "lab", contract, engine)
+
+
+def written(engine, outputs: Path, lesson: str, page: str, measured: Measured) -> Path:
+    """Write a page's bundle below a folder without a real engine, and return where it stands."""
+    with without_engine(engine.backend) as patch:
+        patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
+        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest(lesson, page, project.BOOK))
+        contract = session.Contract("cpu", True, outputs)
+        return Recorder(lesson, page, contract, engine).write(measured)
+
+
+@pytest.fixture(scope="session")
+def pristine(tmp_path_factory, engine, measured) -> Path:
+    return written(engine, tmp_path_factory.mktemp("pristine"), "l04", "lab", measured)
+
+
+@pytest.fixture
+def folder(pristine, tmp_path) -> Path:
+    """A bundle of one's own, to spoil."""
+    return Path(shutil.copytree(pristine, tmp_path / "l04" / "lab" / "cpu"))
+
+
+@pytest.fixture
+def courses_pages(monkeypatch):
+    """Let a made-up book be verified against the course's own pages."""
+    monkeypatch.setattr(
+        evidence_key, "page_digest", lambda le, p, book: page_digest(le, p, project.BOOK)
+    )

@@ -1,0 +1,92 @@
+"""What follows from its inputs is made once for the same ones, and anew for any other."""
+
+import os
+import time
+
+import pytest
+
+from robo_genesis.core import content_cache as module
+from robo_genesis.core.content_cache import KEPT, derived
+
+
+@pytest.fixture
+def made(tmp_path):
+    """Ask for what follows from inputs; `made.calls` lists what was made."""
+
+    def ask(*inputs: bytes, kind: str = "a") -> bytes:
+        def make() -> bytes:
+            ask.calls.append(inputs)
+            return b"+".join(inputs)
+
+        return derived(kind, inputs, make, tmp_path)
+
+    ask.calls = []
+    return ask
+
+
+def test_the_same_inputs_are_made_once(made):
+    assert made(b"one", b"two") == made(b"one", b"two") == b"one+two"
+    assert len(made.calls) == 1
+
+
+@pytest.mark.parametrize(
+    "other", [(b"one",), (b"onetwo",), (b"two", b"one"), (b"one", b"two", b"")]
+)
+def test_any_other_inputs_are_made_anew(made, other):
+    made(b"one", b"two")
+    assert made(*other) == b"+".join(other)
+    assert len(made.calls) == 2
+
+
+def test_another_lock_and_another_kind_are_made_anew(made, monkeypatch):
+    made(b"one")
+    made(b"one", kind="b")
+    monkeypatch.setattr(module, "lock_digest", lambda: "another")
+    made(b"one")
+    assert len(made.calls) == 3
+
+
+def test_a_failure_leaves_nothing_and_the_next_one_makes_it(tmp_path, made):
+    def fail() -> bytes:
+        raise ValueError("no")
+
+    with pytest.raises(ValueError, match="no"):
+        derived("a", [b"one"], fail, tmp_path)
+    assert made(b"one") == b"one"
+
+
+def test_a_cache_that_cannot_be_written_costs_time_alone(no_file):
+    assert derived("a", [b"one"], lambda: b"made", no_file) == b"made"
+
+
+def test_what_nobody_asked_for_in_a_month_goes_and_the_rest_stays(tmp_path, made):
+    for number in range(20):
+        made(str(number).encode())
+    long_ago = time.time() - KEPT - 60
+    for file in (tmp_path / "derived" / "a").iterdir():
+        os.utime(file, (long_ago, long_ago))
+    made(b"0")  # in use again
+    made(b"one more")
+    assert len(list((tmp_path / "derived" / "a").iterdir())) == 2
+    made.calls.clear()
+    made(b"0")
+    assert made.calls == []
+
+
+@pytest.mark.parametrize("spoil", [lambda b: b"", lambda b: b[:-1], lambda b: b[:-1] + b"?"])
+def test_a_file_that_is_not_whole_is_made_anew(tmp_path, made, spoil):
+    made(b"whole")
+    (file,) = (tmp_path / "derived" / "a").iterdir()
+    file.write_bytes(spoil(file.read_bytes()))
+    made.calls.clear()
+    assert made(b"whole") == b"whole"
+    assert made.calls == [(b"whole",)]
+    assert made(b"whole") == b"whole"
+    assert len(made.calls) == 1
+
+
+def test_another_environment_makes_anew(made, monkeypatch):
+    made(b"same")
+    monkeypatch.setattr(module, "_installed", lambda: [("place", "trimesh-0.dist-info", 0)])
+    made(b"same")
+    assert len(made.calls) == 2

@@ -1,0 +1,143 @@
+import os
+import pwd
+from importlib.metadata import distributions
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.core import project
+
+PYPROJECT = '[project]\nname = "x"\nversion = "0"\ndependencies = [{}]\n'
+
+
+def checkout(folder: Path, *dependencies: str) -> Path:
+    listed = ", ".join(f'"{name}"' for name in dependencies)
+    (folder / "pyproject.toml").write_text(PYPROJECT.format(listed))
+    (folder / "requirements.lock").write_text("numpy==2.0\n")
+    return folder
+
+
+def test_the_pin_is_read_from_pyproject(tmp_path):
+    assert project.engine_pin(checkout(tmp_path, "numpy>=2", "genesis-world==9.8.7")) == "9.8.7"
+
+
+@pytest.mark.parametrize(
+    "dependency", ["numpy", "genesis-world", "genesis-world>=1.3", "genesis-world==1.*"]
+)
+def test_anything_but_one_exact_pin_is_refused(tmp_path, dependency):
+    with pytest.raises(project.ProjectError, match="genesis-world==X"):
+        project.engine_pin(checkout(tmp_path, dependency))
+
+
+@pytest.mark.parametrize("line", ["numpy >< 2", "genesis-world=1.3"])
+def test_an_invalid_requirement_is_refused_with_file_and_line(tmp_path, line):
+    with pytest.raises(project.ProjectError, match=r"pyproject\.toml cannot be read") as caught:
+        project.engine_pin(checkout(tmp_path, line))
+    assert line in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["[project", "[project]\n", ""])
+def test_a_pyproject_without_dependencies_is_refused(tmp_path, text):
+    (tmp_path / "pyproject.toml").write_text(text)
+    with pytest.raises(project.ProjectError, match=r"pyproject\.toml cannot be read"):
+        project.engine_pin(tmp_path)
+
+
+def test_what_pip_leaves_in_a_checkout_is_no_installed_package(tmp_path, monkeypatch):
+    before = project.installed_packages()
+    left = tmp_path / "robo_genesis.egg-info"
+    left.mkdir()
+    (left / "PKG-INFO").write_text("Name: robo-genesis\nVersion: 0.1.0\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert "robo-genesis" in {package.name for package in distributions()}
+    assert project.installed_packages() == before
+
+
+def test_all_installed_packages_are_named_with_their_versions():
+    installed = project.installed_packages()
+    assert installed == sorted(installed)
+    for name in ("genesis-world", "mujoco", "numba"):
+        assert f"{name}=={project.installed_version(name)}" in installed
+
+
+def test_another_installed_engine_is_refused_with_both_versions(tmp_path):
+    root = checkout(tmp_path, "genesis-world==0.0.1")
+    installed = project.installed_version("genesis-world")
+    with pytest.raises(project.ProjectError) as caught:
+        project.require_pinned_engine(root)
+    assert "0.0.1" in str(caught.value)
+    assert str(installed) in str(caught.value)
+
+
+def test_this_environment_has_the_pinned_engine():
+    assert project.require_pinned_engine() == project.installed_version("genesis-world")
+
+
+def test_a_missing_lock_is_refused_with_the_command_that_writes_it(tmp_path):
+    with pytest.raises(project.ProjectError, match="make lock"):
+        project.lock_digest(tmp_path)
+
+
+def test_engine_caches_are_named_by_engine_and_lock(tmp_path):
+    root = checkout(tmp_path, "genesis-world==9.8.7")
+    environment = project.engine_cache_environment(root)
+    kernels = Path(environment["QD_OFFLINE_CACHE_FILE_PATH"])
+    assert kernels == root / ".cache/engine" / kernels.parent.name / "kernels"
+    assert kernels.parent.name == f"9.8.7-{project.lock_digest(root)[:12]}"
+    assert environment["QD_OFFLINE_CACHE_MAX_SIZE_OF_FILES"] == "2000000000"
+    for name in ("NUMBA_CACHE_DIR", "MESA_SHADER_CACHE_DIR", "MPLCONFIGDIR"):
+        assert Path(environment[name]).is_dir()
+    (root / "requirements.lock").write_text("numpy==2.1\n")
+    assert project.engine_cache_folder(root) != kernels.parent
+
+
+def test_stale_kernel_locks_go_and_kernels_stay(tmp_path):
+    kernels = tmp_path / "engine" / "1-a" / "kernels" / "llvm"
+    kernels.mkdir(parents=True)
+    (kernels / "qdcache.lock").touch()
+    (kernels / "kernel.ll").touch()
+    assert project.remove_stale_kernel_lock(tmp_path) == [kernels / "qdcache.lock"]
+    assert [path.name for path in kernels.iterdir()] == ["kernel.ll"]
+
+
+def test_page_caches_that_were_not_built_for_long_go(tmp_path):
+    folders = [tmp_path / name for name in "abcde"]
+    for age, folder in enumerate(folders):
+        folder.mkdir()
+        os.utime(folder, (1000 - age, 1000 - age))
+    project.forget_old_pages(folders[4], keep=3)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b", "e"]
+
+
+def test_the_environment_contract_fills_in_defaults():
+    assert project.environment_contract({"ROBO_GENESIS_RENDER": "0", "HOME": "/"}) == {
+        "ROBO_GENESIS_BACKEND": "cpu",
+        "ROBO_GENESIS_RENDER": "0",
+    }
+
+
+ADMINISTRATOR = pwd.getpwuid(0).pw_dir
+
+
+@pytest.mark.parametrize(
+    ("text", "kept"),
+    [
+        ("/usr/lib:/srv/me/mesa", "/usr/lib:~/mesa"),
+        ("/srv/me", "~"),
+        ("/srv/men/x", "/srv/men/x"),
+        ("/home/other/x:/Users/other", "~/x:~"),
+        (f"{ADMINISTRATOR}/.cache,/srv{ADMINISTRATOR}/x", f"~/.cache,/srv{ADMINISTRATOR}/x"),
+        ("0,1", "0,1"),
+    ],
+)
+def test_a_home_folder_is_not_named(text, kept, monkeypatch):
+    monkeypatch.setenv("HOME", "/srv/me")
+    assert project.without_home(text) == kept
+    assert not project.HOME_FOLDER.search(project.without_home(text))
+
+
+def test_the_environment_contract_holds_the_engines_switches_and_not_its_cache_folders(tmp_path):
+    switches = {f"{prefix}X": "1" for prefix in project.ENGINE_PREFIXES}
+    folders = project.engine_cache_environment(checkout(tmp_path, "genesis-world==9.8.7"))
+    contract = project.environment_contract({**switches, **folders})
+    assert contract.keys() - {"ROBO_GENESIS_BACKEND", "ROBO_GENESIS_RENDER"} == switches.keys()

@@ -1,0 +1,37 @@
+import pytest
+
+from robo_genesis.core import tables
+from robo_genesis.core.checks import Check
+from robo_genesis.core.quantities import NOT_OBSERVED
+from robo_genesis.lessons.l04.metrics import step_metrics
+
+
+def test_numbers_stand_to_the_right_and_words_to_the_left():
+    lines = tables.markdown([{"name": "joint4", "upper": -0.0698, "dof": 3}]).splitlines()
+    assert lines[1] == "| :--- | ---: | ---: |"
+    assert lines[2] == "| joint4 | −0.0698 | 3 |"
+
+
+@pytest.mark.parametrize(("value", "text"), [(0.04, "0.04"), (-0.0, "0"), (87.0, "87"), (7, "7")])
+def test_floats_are_written_short(value, text):
+    assert tables.markdown([{"x": value}]).splitlines()[2] == f"| {text} |"
+
+
+@pytest.mark.parametrize("rows", [[], [{"a": 1}, {"b": 1}]])
+def test_rows_that_form_no_table_are_refused(rows):
+    with pytest.raises(ValueError, match="at least one row"):
+        tables.markdown(rows)
+
+
+def test_metric_table_has_units_and_says_what_was_not_observed(make_trace):
+    trace = make_trace([0.0, 0.125, 0.25, 0.25], 1.0)
+    metrics = step_metrics(trace, 0)
+    text = tables.metric_table({"G1": metrics})
+    assert f"| rise time | {NOT_OBSERVED} |" in text
+    assert "| final error | 0.7500 rad |" in text
+
+
+def test_check_table_shouts_a_failure():
+    text = tables.check_table([Check("stamps", True, "held"), Check("mapping", False, "found 8")])
+    assert "| `stamps` | passed | held |" in text
+    assert "| `mapping` | **FAILED** | found 8 |" in text

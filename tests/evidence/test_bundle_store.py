@@ -1,0 +1,79 @@
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.evidence import bundle_store
+
+
+def old_log(folder: Path) -> Path:
+    """Put an older bundle in place and return one of its files."""
+    log = folder / "kept" / "l04" / "cuda" / "log.txt"
+    log.parent.mkdir(parents=True)
+    (log.parent / "manifest.json").write_text("{}")
+    log.write_text("old")
+    (log.parent / "of the old one.txt").touch()
+    return log
+
+
+DIES = """
+import os, sys
+from pathlib import Path
+from robo_genesis.core import files
+from robo_genesis.evidence import bundle_store
+rename, done = os.rename, []
+def dying(*paths):
+    if len(done) == {renames}:
+        os._exit(9)
+    done.append(rename(*paths))
+os.rename = dying
+remove = files.shutil.rmtree
+files.shutil.rmtree = lambda path: os._exit(9) if {renames} == 2 else remove(path)
+bundle_store.put(Path(sys.argv[1]), Path(sys.argv[2]))
+"""
+
+
+@pytest.mark.parametrize(("renames", "stands"), [(0, "old"), (1, "old"), (2, "new")])
+def test_a_kill_at_any_rename_leaves_the_old_or_the_new_bundle(tmp_path, renames, stands):
+    old, new = old_log(tmp_path), tmp_path / "run" / "cuda"
+    new.mkdir(parents=True)
+    (new / "manifest.json").write_text("{}")
+    (new / "log.txt").write_text("new")
+    command = [sys.executable, "-c", DIES.format(renames=renames), str(new), str(old.parents[1])]
+    assert subprocess.run(command, check=False, cwd=ROOT).returncode == 9
+    assert len(list(old.parents[1].iterdir())) == 2  # one stands aside, or is not yet whole
+    bundle_store.recover(tmp_path / "kept")
+    assert [path.name for path in old.parents[1].iterdir()] == ["cuda"]
+    assert old.read_text() == stands
+    assert (old.parent / "of the old one.txt").exists() == (stands == "old")
+
+
+def test_a_copy_that_fails_changes_nothing(tmp_path, monkeypatch):
+    old = old_log(tmp_path)
+
+    def full(source, target):
+        target.mkdir()
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(bundle_store.shutil, "copytree", full)
+    with pytest.raises(OSError, match="No space left"):
+        bundle_store.put(tmp_path / "run" / "cuda", old.parents[1])
+    assert old.read_text() == "old"
+    assert [path.name for path in old.parents[1].iterdir()] == ["cuda"]
+
+
+@pytest.mark.parametrize("link", [False, True])
+def test_what_is_no_bundle_is_never_replaced(tmp_path, link):
+    mine, lesson = tmp_path / "mine", tmp_path / "kept" / "l04"
+    lesson.mkdir(parents=True)
+    mine.mkdir()
+    (mine / ("manifest.json" if link else "my own.txt")).touch()
+    if link:
+        (lesson / "cuda").symlink_to(mine)
+    else:
+        mine.rename(lesson / "cuda")
+    with pytest.raises(ProjectError, match=r"has no manifest\.json, or is a link\. .* TO=folder"):
+        bundle_store.put(tmp_path / "run" / "cuda", lesson)
+    assert len(list((lesson / "cuda").iterdir())) == 1

@@ -1,0 +1,165 @@
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from robo_genesis.core.scene import JOINT_NAMES
+from robo_genesis.core.trace import Trace
+from robo_genesis.evidence.bundle import BundleRefused, read_arrays
+from robo_genesis.evidence.trace_files import (
+    FIELDS,
+    dof_units,
+    joint_records,
+    read_joints,
+    read_trace,
+    write_traces,
+)
+
+LINKS = ["link0", "link4", "hand"]
+
+
+@pytest.fixture
+def written(tmp_path, traces, joints):
+    return tmp_path, write_traces(tmp_path, {"G1": traces["G1"]}, joints, LINKS)
+
+
+@pytest.fixture
+def spoil(written):
+    """Write the file anew with some arrays changed; None takes one away."""
+    folder, arrays = written
+
+    def change(**values):
+        with np.load(folder / "arrays" / "G1.npz") as archive:
+            kept = {**archive, **values}
+        kept = {name: array for name, array in kept.items() if array is not None}
+        np.savez_compressed(folder / "arrays" / "G1.npz", **kept)
+        return folder, arrays
+
+    return change
+
+
+def test_every_field_of_a_trace_is_written():
+    assert list(FIELDS) == [field.name for field in fields(Trace)]
+
+
+@pytest.mark.parametrize("field", FIELDS)
+def test_arrays_come_back_bit_for_bit(written, traces, field):
+    before, after = getattr(traces["G1"], field), getattr(read_trace(*written, "G1"), field)
+    assert (after.dtype, after.shape) == (before.dtype, before.shape)
+    assert after.tobytes() == before.tobytes()
+
+
+def test_the_description_comes_back(pristine, traces, joints, tmp_path):
+    assert read_arrays(pristine) == write_traces(tmp_path, traces, joints, LINKS)
+
+
+def test_dimensions_have_the_lengths_that_are_described(written):
+    _, arrays = written
+    assert arrays.coords == {"dof": list(JOINT_NAMES), "link": LINKS}
+    lengths = {"state": 121, "step": 120, "dof": 9, "link": 3, "axis": 3, "wxyz": 4}
+    for variable in arrays.cases["G1"].variables.values():
+        assert variable.shape == [lengths[dim] for dim in variable.dims]
+
+
+def test_joints_come_back_as_they_were(written, joints):
+    found = read_joints(written[1])
+    assert (found.names, found.types) == (joints.names, joints.types)
+    for name in ("dofs_idx_local", "qs_idx_local", "lower", "upper"):
+        assert getattr(found, name).tolist() == getattr(joints, name).tolist()
+
+
+def test_a_joint_without_a_limit_has_null(written, joints):
+    lower, upper = np.array(joints.lower), np.array(joints.upper)
+    lower[2], upper[5] = -np.inf, np.inf
+    free = replace(joints, lower=lower, upper=upper)
+    records = joint_records(free)
+    assert [r.name for r in records if r.lower is None] == ["joint3"]
+    found = read_joints(written[1].model_copy(update={"joints": records}))
+    assert (found.lower.tolist(), found.upper.tolist()) == (lower.tolist(), upper.tolist())
+
+
+def test_a_limit_that_is_no_number_is_not_written(joints):
+    lower = np.array(joints.lower)
+    lower[0] = np.nan
+    with pytest.raises(ValueError, match="lower"):
+        joint_records(replace(joints, lower=lower))
+
+
+@pytest.mark.parametrize(
+    ("name", "arm", "finger"),
+    [
+        ("q_rad_or_m", "rad", "m"),
+        ("target_rad_or_m", "rad", "m"),
+        ("qd_rad_s_or_m_s", "rad/s", "m/s"),
+        ("start_qd_rad_s_or_m_s", "rad/s", "m/s"),
+        ("control_force_Nm_or_N", "N·m", "N"),
+        ("internal_force_Nm_or_N", "N·m", "N"),
+        ("start_control_force_Nm_or_N", "N·m", "N"),
+        ("effort_limit_Nm_or_N", "N·m", "N"),
+    ],
+)
+def test_each_dof_has_its_own_unit(joints, written, name, arm, finger):
+    assert dof_units(name, joints.types) == [arm] * 7 + [finger] * 2
+    assert written[1].cases["G1"].variables[name].unit == [arm] * 7 + [finger] * 2
+
+
+def test_an_array_that_is_not_described_is_refused(spoil):
+    with pytest.raises(BundleRefused, match=r"^bad-array: .*list of arrays"):
+        read_trace(*spoil(extra=np.zeros(1)), "G1")
+
+
+def test_a_described_array_that_is_absent_is_refused(spoil):
+    with pytest.raises(BundleRefused, match=r"^bad-array: .*list of arrays"):
+        read_trace(*spoil(q_rad_or_m=None), "G1")
+
+
+@pytest.mark.parametrize(
+    "array", [np.zeros((121, 9)), np.zeros((120, 9), np.float32), np.zeros((121, 9), np.float16)]
+)
+def test_another_shape_or_type_than_described_is_refused(spoil, array):
+    with pytest.raises(BundleRefused, match=r"^bad-array: .*q_rad_or_m.* is .*"):
+        read_trace(*spoil(q_rad_or_m=array), "G1")
+
+
+def test_arrays_that_form_no_run_are_refused(spoil, traces):
+    q = np.array(traces["G1"].q)
+    q[3, 3] = np.nan
+    with pytest.raises(BundleRefused, match=r"^bad-trace: arrays/G1.npz: q is not finite"):
+        read_trace(*spoil(q_rad_or_m=q), "G1")
+
+
+def test_pickled_objects_are_refused(spoil):
+    pickled = np.full((121, 9), None)
+    with pytest.raises(BundleRefused, match=r"^bad-array: "):
+        read_trace(*spoil(q_rad_or_m=pickled), "G1")
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        lambda data: b"",
+        lambda data: data[: len(data) // 2],
+        lambda data: b"no archive",
+        lambda data: data[:200] + bytes(200) + data[400:],
+        lambda data: data.replace(b"\x1f", b"\x2f"),
+    ],
+    ids=["empty", "cut", "text", "zeros", "swapped bytes"],
+)
+def test_a_file_that_cannot_be_read_is_refused(written, broken):
+    path = written[0] / "arrays" / "G1.npz"
+    path.write_bytes(broken(path.read_bytes()))
+    with pytest.raises(BundleRefused, match=r"^bad-array: "):
+        read_trace(*written, "G1")
+
+
+def test_a_missing_file_is_refused(written):
+    (written[0] / "arrays" / "G1.npz").unlink()
+    with pytest.raises(BundleRefused, match=r"^bad-array: "):
+        read_trace(*written, "G1")
+
+
+def test_a_single_array_is_no_archive(written):
+    with (written[0] / "arrays" / "G1.npz").open("wb") as file:
+        np.save(file, np.zeros(3))
+    with pytest.raises(BundleRefused, match=r"^bad-array: "):
+        read_trace(*written, "G1")

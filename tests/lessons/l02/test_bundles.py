@@ -1,0 +1,191 @@
+"""Bundles of dropped boxes, which have no joints: accepted, compared, handed on, refused."""
+
+import csv
+import shutil
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bundles import written
+from spoilers import edit, predicate, seal
+
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.compare import compare, specification
+from robo_genesis.evidence.recorder import Measured
+from robo_genesis.evidence.trace_files import read_any_trace, read_body_trace, read_trace
+from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.lessons.l02 import checks, life_cycle, spec, study
+from robo_genesis.lessons.l02.metrics import measure, metric_records
+from robo_genesis.sim import session
+from robo_genesis.site.takeaways.files import csv_text
+
+CASES = spec.CASES | spec.SUBSTEP_CASES
+WENT = {
+    f"{call} {side}": int(side == belongs)
+    for call, belongs in life_cycle.BELONGS.items()
+    for side in (life_cycle.BEFORE, life_cycle.AFTER)
+}
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory, engine, frames, make_drop) -> Path:
+    """The lecture's bundle."""
+    traces = {name: make_drop(case) for name, case in CASES.items()}
+    metrics = measure(traces, CASES)
+    run = checks.DropExperiment(spec.EXPECTED_MODEL, 0.5, CASES, traces, metrics, "camera", frames)
+    measured = Measured(
+        joints=None,
+        links=(spec.LINK,),
+        traces=traces,
+        metrics=metric_records(metrics, spec.EXPECTED_MODEL, 0.5) | life_cycle.records(WENT),
+        checks=[
+            *checks.run_checks(run),
+            *study.run_checks(metrics, CASES),
+            life_cycle.check(WENT, rendered=True),
+        ],
+        frames=frames,
+        parameters=spec.study_parameters(),
+        renderer=session.Renderer("Mesa", "llvmpipe"),
+    )
+    return written(engine, tmp_path_factory.mktemp("dropped"), "l02", "lecture", measured)
+
+
+@pytest.fixture
+def dropped(sound, tmp_path) -> Path:
+    """A bundle of one's own, to spoil."""
+    return Path(shutil.copytree(sound, tmp_path / "l02" / "lecture" / "cpu"))
+
+
+def refused(folder) -> str:
+    seal(folder)
+    with pytest.raises(BundleRefused) as caught:
+        verify_bundle(folder)
+    return str(caught.value)
+
+
+def test_a_sound_one_is_accepted_and_has_no_joints(dropped):
+    accepted = verify_bundle(dropped)
+    assert [check.name for check in accepted.predicate.checks][-1] == "sides_of_build"
+    arrays = bundle.read_arrays(dropped)
+    assert (arrays.joints, arrays.coords) == ([], {"link": [spec.LINK]})
+    units = {n: v.unit for n, v in arrays.cases["baseline"].variables.items()}
+    assert units["link_vel_m_s"] == "m/s"
+
+
+def test_its_runs_come_back_as_they_were(dropped, make_drop):
+    arrays = bundle.read_arrays(dropped)
+    found = read_any_trace(dropped, arrays, "baseline")
+    assert np.array_equal(found.link_pos, make_drop(spec.BASELINE).link_pos)
+    with pytest.raises(BundleRefused, match="labels"):
+        read_trace(dropped, arrays, "baseline")
+
+
+def test_runs_of_joints_are_no_runs_of_bodies(folder):
+    arrays = bundle.read_arrays(folder)
+    with pytest.raises(BundleRefused, match=r"number of joints of free bodies"):
+        read_body_trace(folder, arrays, "G1")
+
+
+def test_it_compares_with_itself(dropped):
+    found = compare(dropped, dropped, specification("l02"))
+    assert found.state == "equal"
+    titles = {section.title: section for section in found.sections}
+    assert titles["Relations"].findings == ()
+    assert {f.what for f in titles["Exact counts"].findings} >= {
+        "life_cycle.scene.step after build"
+    }
+    assert any("link_vel_m_s" in f.what for f in titles["Arrays"].findings)
+
+
+def test_it_becomes_a_table_with_units(dropped):
+    arrays = bundle.read_arrays(dropped)
+    trace = read_any_trace(dropped, arrays, "baseline")
+    rows = list(csv.DictReader(csv_text(trace, arrays, "baseline").splitlines()))
+    assert len(rows) == 21
+    assert float(rows[0]["link_pos box_baselink z [m]"]) == 0.5
+    assert float(rows[-1]["link_vel box_baselink z [m/s]"]) == pytest.approx(-9.81 * 0.2)
+
+
+def missing_run(folder):
+    (folder / "arrays" / "substeps_10.npz").unlink()
+    edit(folder, "arrays.json", lambda arrays: arrays["cases"].pop("substeps_10"))
+
+
+def other_position(folder):
+    path = folder / "arrays" / "baseline.npz"
+    with np.load(path) as stored:
+        values = {name: np.array(stored[name]) for name in stored}
+    values["link_pos_m"][5, 0, 2] += 1e-3
+    np.savez_compressed(path, **values)
+
+
+def honest_failure(folder):
+    """Another rule of stepping, with metrics and checks made what the arrays now give."""
+    path = folder / "arrays" / "baseline.npz"
+    with np.load(path) as stored:
+        values = {name: np.array(stored[name]) for name in stored}
+    values["link_pos_m"][1:, 0, 2] += 1e-5
+    np.savez_compressed(path, **values)
+    arrays = bundle.read_arrays(folder)
+    traces = {name: read_body_trace(folder, arrays, name) for name in CASES}
+    metrics = measure(traces, CASES)
+    records = metric_records(metrics, spec.EXPECTED_MODEL, 0.5) | life_cycle.records(WENT)
+    edit(folder, "metrics.json", lambda found: found.update(records))
+    frames = {name: np.zeros(0) for name in ("initial", "final")}
+    run = checks.DropExperiment(spec.EXPECTED_MODEL, 0.5, CASES, traces, metrics, "camera", frames)
+    outcomes = [asdict(check) for check in checks.run_checks(run)]
+
+    def change(m):
+        recorded = m["predicate"]["checks"]
+        m["predicate"]["checks"] = [*outcomes[:-1], *recorded[len(outcomes) - 1 :]]
+
+    edit(folder, "manifest.json", change)
+
+
+def metric(group, name, value):
+    def change(folder):
+        edit(folder, "metrics.json", lambda m: m[group][name].update(value=value))
+
+    return change
+
+
+def invented_contacts(folder):
+    path = folder / "arrays" / "baseline.npz"
+    with np.load(path) as stored:
+        values = {name: np.array(stored[name]) for name in stored}
+    values["contacts"] = np.zeros((21, 1), np.int32)
+    np.savez_compressed(path, **values)
+    described = {"dims": ["state", "link"], "shape": [21, 1], "dtype": "int32", "unit": "1"}
+    edit(folder, "arrays.json", lambda a: a["cases"]["baseline"]["variables"].update(
+        contacts=described | {"long_name": "contact points"}))  # fmt: skip
+
+
+SPOILED = {
+    "contacts that nobody checks": ("labels", invented_contacts),
+    "a run of the study is missing": ("cases", missing_run),
+    "a position was moved": ("metrics", other_position),
+    "another rule of stepping": ("failed", honest_failure),
+    "a metric was written": ("metrics", metric("baseline", "drop", 0.1962)),
+    "another mass": ("checks", metric("body", "mass", 0.6)),
+    "no mass": ("metrics", metric("body", "mass", None)),
+    "a call that went through on the wrong side": (
+        "checks", metric("life_cycle", "scene.step before build", 1)),
+    "a call that was never tried": (
+        "metrics", lambda f: edit(f, "metrics.json", lambda m: m["life_cycle"].popitem())),
+    "one more link": ("labels", lambda f: edit(f, "arrays.json", lambda a: a["coords"].update(
+        link=[spec.LINK, "lid"]))),
+    "an axis of DOFs": ("labels", lambda f: edit(f, "arrays.json", lambda a: a["coords"].update(
+        dof=["joint"]))),
+    "a check that is left out": (
+        "checks", lambda f: edit(f, "manifest.json", lambda m: m["predicate"]["checks"].pop())),
+    "the lab's parameters": ("stale", predicate(parameters=spec.parameters())),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SPOILED)
+def test_a_spoiled_one_is_refused_by_its_code(dropped, name):
+    code, spoil = SPOILED[name]
+    spoil(dropped)
+    assert refused(dropped).startswith(code), name

@@ -1,0 +1,176 @@
+"""The grid's specification, the explorer's data and the checks: without an engine."""
+
+import gzip
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from robo_genesis.core.quantities import format_value
+from robo_genesis.core.scene import JOINT_NAMES
+from robo_genesis.lessons.l04 import batch, explorer, grid_checks, grid_spec, spec, study_plots
+from robo_genesis.lessons.l04.grid_spec import POINTS, GridPoint
+
+K = JOINT_NAMES.index(spec.STEPPED_JOINT)
+G2 = grid_spec.CASE_POINTS["G2"]
+SHIPPED = 60_000
+"""Most bytes that the explorer's markup may take, compressed as a server sends it."""
+
+
+@pytest.fixture(scope="module")
+def found(make_run, joints) -> batch.Sweep:
+    """A sweep of synthetic runs, each scaled by its step and another at each point."""
+    runs = []
+    for number, point in enumerate(POINTS):
+        run = make_run("G2", 20.0 + number / 10, 0.4 + point.kv / 300)
+        scale = point.step / spec.STEP
+        q = spec.START_OF_STEP + (run.q[:, K] - spec.START_OF_STEP) * scale
+        moved, target = np.array(run.q), np.array(run.target)
+        moved[:, K], target[:, K] = q, spec.START_OF_STEP + point.step
+        runs.append(replace(run, q=moved, target=target))
+    return batch.collect(POINTS, [point.case for point in POINTS], runs, joints)
+
+
+@pytest.fixture(scope="module")
+def grid(traces, joints) -> grid_checks.Grid:
+    """A sweep of G1 to G3 alone, which says what the single runs say."""
+    names = list(grid_spec.CASE_POINTS)
+    runs = [traces[name] for name in names]
+    alone = batch.collect(
+        list(grid_spec.CASE_POINTS.values()), [spec.CASES[name] for name in names], runs, joints
+    )
+    return grid_checks.Grid(alone, {name: traces[name] for name in names}, joints)
+
+
+def failed(grid):
+    return {check.name: check.detail for check in grid_checks.run_checks(grid) if not check.passed}
+
+
+def test_the_grid_holds_the_lesson_s_cases_exactly():
+    assert len(set(POINTS)) == len(POINTS) == 100
+    for name, point in grid_spec.CASE_POINTS.items():
+        assert point in POINTS
+        case, same = spec.CASES[name], point.case
+        assert all((getattr(case, f) == getattr(same, f)).all() for f in ("kp", "kv", "q_target"))
+
+
+def test_points_and_cases_lead_to_each_other():
+    assert [grid_spec.point_of(point.case) for point in POINTS] == list(POINTS)
+
+
+def test_a_sweep_cannot_be_changed(found):
+    assert found.q.shape == (100, spec.STEPS + 1)
+    assert found.control_force.shape == (100, spec.STEPS)
+    for array in (found.t, found.q, found.control_force, found.effort_limit):
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0
+
+
+def test_packed_data_unpacks_within_half_a_unit(found):
+    data = json.loads(json.dumps(explorer.pack(found)))
+    q, force = explorer.unpack(data)
+    # The arrays are float32: their own last bit comes on top of the half unit.
+    assert np.abs(q - found.q).max() <= 0.5 * explorer.RESOLUTION["q"] + 1e-6
+    assert np.abs(force - found.control_force).max() <= 0.5 * explorer.RESOLUTION["force"] + 1e-5
+    assert np.ptp(found.q) > 1000 * explorer.RESOLUTION["q"]
+
+
+def test_packed_metrics_are_those_of_the_full_arrays(found):
+    data, number = explorer.pack(found), found.at(G2)
+    overshoot = data["points"][number]["metrics"][data["labels"].index("overshoot")]
+    assert overshoot == format_value(found.metrics[number].overshoot, "rad")
+    assert [len(point["metrics"]) for point in data["points"]] == [len(data["labels"])] * 100
+
+
+def test_the_axes_number_the_points(found):
+    """As the page's script counts: the last axis fastest."""
+    axes = explorer.pack(found)["axes"]
+    for number, point in enumerate(found.points):
+        indices = [axis["values"].index(getattr(point, axis["name"])) for axis in axes]
+        counted = 0
+        for index, axis in zip(indices, axes, strict=True):
+            counted = counted * len(axis["values"]) + index
+        assert counted == number
+
+
+def test_the_sentence_says_what_was_measured(found):
+    measured = found.metrics[0]
+    wild = replace(measured, overshoot=0.05, saturation_samples=7)
+    calm = replace(measured, overshoot=0.0, saturation_samples=0)
+    assert explorer.sentence(G2, wild, 120) == (
+        "KP 7000, KV 100, step 0.25 rad (the case G2). Overshoot: 20.0 % of the step. "
+        "Saturated: 7 of 120 samples at the force limit."
+    )
+    assert explorer.sentence(GridPoint(0.1, 4375.0, 150.0), calm, 120) == (
+        "KP 4375, KV 150, step 0.1 rad. Overshoot: none. "
+        "Not saturated: no sample at the force limit."
+    )
+
+
+def test_the_markup_is_small_and_its_data_can_be_read(found):
+    markup = explorer.markup(found)
+    assert 1000 < len(gzip.compress(markup.encode(), mtime=0)) < SHIPPED
+    (text,) = re.findall(r'<script type="application/json">(.*?)</script>', markup)
+    assert json.loads(text) == json.loads(json.dumps(explorer.pack(found)))
+
+
+def test_the_table_has_a_row_for_each_point(found):
+    rows = explorer.rows(found)
+    assert len(rows) == 100
+    assert [row["case"] for row in rows if row["case"]] == ["G1", "G2", "G3"]
+    assert rows[found.at(G2)]["case"] == "G2"
+
+
+def test_a_map_writes_each_number_into_its_cell():
+    steps, kp, kv = (0.1, 0.2), (1.0, 2.0, 3.0), (10.0, 20.0)
+    values = np.arange(12.0)
+    axes = Figure().subplots(1, 2)
+    study_plots.grid_maps(axes, values, [f"{v:g}" for v in values], steps, kp, kv)
+    for ax, first in zip(axes, (0, 6), strict=True):
+        cells = {text.get_position(): text.get_text() for text in ax.texts}
+        assert cells[0.5, 0.5] == f"{first}"
+        assert cells[1.5, 2.5] == f"{first + 5}"
+        assert len(cells) == 6
+
+
+def test_runs_that_agree_pass(grid):
+    assert failed(grid) == {}
+
+
+def test_a_position_off_by_a_little_is_named(grid):
+    q = np.array(grid.found.q)
+    q[1, 60] += 5 * grid_spec.AGREEMENT["rad"]
+    problems = failed(replace(grid, found=replace(grid.found, q=q)))
+    assert problems == {"grid_matches_cases": "G2: position differs by more than 1e-06 rad"}
+
+
+def test_a_metric_that_differs_or_is_missing_is_named(grid):
+    first, *others = grid.found.metrics
+    for spoiled in (replace(first, saturation_samples=99), replace(first, rise_time=None)):
+        problems = failed(replace(grid, found=replace(grid.found, metrics=(spoiled, *others))))
+        assert list(problems) == ["grid_matches_cases"]
+        assert problems["grid_matches_cases"].startswith("G1: ")
+
+
+@pytest.mark.parametrize(
+    ("point", "says"),
+    [
+        (GridPoint(0.25, 7001.0, 100.0), r"kp = 7001 is outside \[3500, 7000\]"),
+        (GridPoint(0.25, 7000.0, 99.0), r"kv = 99 is outside \[100, 300\]"),
+        (GridPoint(0.26, 7000.0, 100.0), r"step = 0.26 is outside \[0, 0.25\]"),
+    ],
+)
+def test_a_more_violent_point_is_named(grid, point, says):
+    cases = (*grid.found.cases[:2], point.case)
+    problems = failed(replace(grid, found=replace(grid.found, cases=cases)))
+    assert re.fullmatch(says, problems["grid_within_gains"])
+
+
+def test_a_case_that_varies_something_else_is_named(grid):
+    other = replace(grid.found.cases[0], effort_limit=2 * spec.G1.effort_limit)
+    cases = (other, *grid.found.cases[1:])
+    problems = failed(replace(grid, found=replace(grid.found, cases=cases)))
+    assert "effort_limit[joint4]" in problems["grid_within_gains"]

@@ -1,0 +1,262 @@
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from robo_genesis.core import checks, project
+from robo_genesis.core.scene import DT, JOINT_NAMES, SUBSTEPS
+from robo_genesis.core.trace import Trace
+from robo_genesis.evidence.bundle import read_arrays
+from robo_genesis.evidence.evidence_key import page_digest
+from robo_genesis.evidence.recorder import Measured, Recorder
+from robo_genesis.evidence.trace_files import read_trace
+from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.lessons.l04 import checks as step_checks
+from robo_genesis.lessons.l04 import spec
+from robo_genesis.lessons.l04.metrics import measure, metric_records
+from robo_genesis.sim import session
+from robo_genesis.sim.joint_control import CaseError, differences, reset, run_case
+from robo_genesis.sim.joints import JointError, one_dof_joint, resolve_joints, to_numpy
+
+pytestmark = pytest.mark.engine
+
+BALL = """<mujoco><worldbody><body name="arm" pos="0 0 1">
+<joint name="ball" type="ball"/><geom type="sphere" size="0.1"/>
+</body></worldbody></mujoco>"""
+
+
+@pytest.fixture(scope="module")
+def run(lab):
+    """Control cases on the lab's robot."""
+    return lambda case: run_case(lab.scene, lab.franka, lab.joints, case)
+
+
+@pytest.fixture(scope="module")
+def measured_run(lab, run):
+    """The lab as its page does it: first frame, four cases, last frame of the baseline."""
+    reset(lab.scene, lab.franka, lab.joints, spec.BASELINE)
+    frames = {"initial": session.capture(lab.camera)}
+    traces = {"baseline": run(spec.BASELINE)}
+    frames["final"] = session.capture(lab.camera)
+    traces |= {name: run(spec.CASES[name]) for name in ("G1", "G2", "G3")}
+    robot = lab.franka
+    counts = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
+    return step_checks.StepExperiment(
+        joints=lab.joints,
+        model=dict(zip(spec.EXPECTED_MODEL, counts, strict=True)),
+        cases=spec.CASES,
+        traces=traces,
+        metrics=measure(traces, spec.CASES, lab.joints.entry(spec.STEPPED_JOINT)),
+        posture="camera",
+        frames=frames,
+    )
+
+
+@pytest.fixture(scope="module")
+def bundle_folder(lab, measured_run):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("ROBO_GENESIS_RUN_ID", raising=False)
+        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lab", project.BOOK))
+        recorder = Recorder("l04", "lab", lab.contract, lab.engine)
+        return recorder.write(
+            Measured(
+                joints=lab.joints,
+                links=[link.name for link in lab.franka.links],
+                traces=measured_run.traces,
+                metrics=metric_records(measured_run.metrics, measured_run.model),
+                checks=step_checks.run_checks(measured_run),
+                frames=measured_run.frames,
+                parameters=spec.parameters(),
+                renderer=session.read_renderer(lab.scene),
+            )
+        )
+
+
+@pytest.fixture(scope="module")
+def small_scene(lab, tmp_path_factory):
+    """A ball joint and a free box."""
+    path = tmp_path_factory.mktemp("models") / "ball.xml"
+    path.write_text(BALL)
+    gs = lab.gs
+    scene = gs.Scene(show_viewer=False)
+    ball = scene.add_entity(gs.morphs.MJCF(file=str(path)))
+    box = scene.add_entity(gs.morphs.Box(size=(0.1, 0.1, 0.1), pos=(1, 0, 0.5)))
+    scene.build()
+    return {"SPHERICAL": ball, "FREE": box}
+
+
+def same(one, other):
+    return all(
+        getattr(one, field.name).tobytes() == getattr(other, field.name).tobytes()
+        for field in fields(Trace)
+    )
+
+
+def test_the_inventory_is_the_expected_one(measured_run):
+    assert measured_run.model == {"links": 11, "joints": 9, "dofs": 9, "qpos": 9}
+
+
+def test_types_and_limits_are_the_models(lab, joints):
+    assert lab.joints.types == joints.types
+    assert lab.joints.lower == pytest.approx(joints.lower, abs=1e-6)
+    assert lab.joints.upper == pytest.approx(joints.upper, abs=1e-6)
+
+
+def test_dofs_and_qpos_are_nine_each(lab):
+    assert sorted(lab.joints.dofs_idx_local.tolist()) == list(range(9))
+    assert sorted(lab.joints.qs_idx_local.tolist()) == list(range(9))
+
+
+def test_the_map_is_what_each_joint_owns(lab):
+    for k, name in enumerate(JOINT_NAMES):
+        joint = lab.franka.get_joint(name)
+        assert list(joint.dofs_idx_local) == [lab.joints.dofs_idx_local[k]]
+        assert list(joint.qs_idx_local) == [lab.joints.qs_idx_local[k]]
+
+
+@pytest.mark.parametrize(("kind", "counts"), [("SPHERICAL", (3, 4)), ("FREE", (6, 7))])
+def test_dofs_and_qpos_differ_for_spherical_and_free_joints(small_scene, kind, counts):
+    (joint,) = small_scene[kind].joints
+    assert joint.type.name == kind
+    assert (joint.n_dofs, joint.n_qs) == counts
+    with pytest.raises(JointError, match=f"has {counts[0]} DOFs and {counts[1]} qpos"):
+        one_dof_joint(small_scene[kind], joint.name)
+
+
+def test_an_unknown_joint_lists_the_robots_names(lab):
+    with pytest.raises(JointError, match=f"'elbw'.*{', '.join(JOINT_NAMES)}"):
+        resolve_joints(lab.franka, ("joint1", "elbw"))
+
+
+def test_a_missing_model_file_is_an_error(lab):
+    with pytest.raises(lab.gs.GenesisException, match=r"xml/no_such_robot\.xml"):
+        lab.gs.morphs.MJCF(file="xml/no_such_robot.xml")
+
+
+def test_the_engine_is_started_once(lab):
+    with pytest.raises(session.EngineError, match=r"already initialised.*restart the kernel"):
+        session.start(lab.contract)
+
+
+def test_a_scene_before_build_takes_no_case(lab):
+    scene = lab.gs.Scene(
+        sim_options=lab.gs.options.SimOptions(dt=DT, substeps=SUBSTEPS), show_viewer=False
+    )
+    with pytest.raises(CaseError, match="not built"):
+        run_case(scene, lab.franka, lab.joints, spec.G1)
+
+
+def test_the_backend_is_the_one_asked_for(lab):
+    assert lab.engine.backend.actual == "cpu"
+    assert session.probe("cpu") == lab.engine.backend
+
+
+def test_importer_warnings_are_kept(lab):
+    assert any("tendon" in warning for warning in lab.engine.log.warnings)
+    assert not any("~<" in text for _, text in lab.engine.log.lines)
+
+
+def test_force_ranges_read_back_as_set(measured_run):
+    for name, case in spec.CASES.items():
+        assert measured_run.traces[name].effort_limit == pytest.approx(case.effort_limit)
+
+
+def test_every_check_of_the_lesson_passes(measured_run):
+    assert checks.require("l04", step_checks.run_checks(measured_run)) == "L04 CHECK: PASSED"
+
+
+@pytest.mark.parametrize("pair", list(spec.ONE_FACTOR))
+def test_compared_cases_differ_in_one_entry_of_the_robot(lab, pair):
+    one, other = (spec.CASES[name] for name in pair)
+    assert differences(one, other, lab.joints) == spec.ONE_FACTOR[pair]
+
+
+@pytest.mark.parametrize("order", [("G1", "G2", "G3"), ("G3", "G1", "G2")])
+def test_cases_repeat_bit_for_bit_in_any_order(measured_run, run, order):
+    for name in order:
+        assert same(run(spec.CASES[name]), measured_run.traces[name]), name
+
+
+def test_a_case_forgets_whatever_ran_before(lab, measured_run, run):
+    dofs = lab.joints.dofs_idx_local.tolist()
+    lab.franka.set_dofs_kp(spec.BASELINE.kp * 3, dofs)
+    lab.franka.set_dofs_kv(spec.BASELINE.kv / 10, dofs)
+    lab.franka.set_dofs_force_range(np.full(9, -50.0), np.full(9, 60.0), dofs)
+    lab.franka.control_dofs_position(spec.BASELINE.q_start + 0.02, dofs)
+    for _ in range(10):
+        lab.scene.step()
+    lab.franka.control_dofs_velocity(np.full(7, 0.5), dofs[:7])
+    for _ in range(10):
+        lab.scene.step()
+    assert np.abs(to_numpy(lab.franka.get_dofs_velocity(dofs))).max() > 0.1
+    assert same(run(spec.G2), measured_run.traces["G2"])
+
+
+def test_a_command_moves_nothing_until_a_step(measured_run):
+    for trace in measured_run.traces.values():
+        assert trace.q[0] == pytest.approx(spec.BASELINE.q_start, abs=1e-6)
+        assert (trace.start_qd == 0).all()
+        assert (trace.q[0] != trace.q[1]).any()
+
+
+def pd_effort(case, q, qd):
+    demand = case.kp * (case.q_target - q) - case.kv * qd
+    return np.clip(demand, -case.effort_limit, case.effort_limit)
+
+
+@pytest.mark.parametrize("name", spec.CASES)
+def test_control_force_belongs_to_the_state_at_its_stamp(measured_run, name):
+    case, trace = spec.CASES[name], measured_run.traces[name]
+    at_stamp = pd_effort(case, trace.q[1:], trace.qd)
+    before = pd_effort(case, trace.q[:-1], np.vstack([trace.start_qd, trace.qd[:-1]]))
+    assert np.abs(trace.control_force - at_stamp).max() < 1e-3
+    assert np.abs(trace.control_force - before)[:, measured_run.entry].max() > 10
+
+
+@pytest.mark.parametrize("name", spec.CASES)
+def test_the_demand_before_the_first_step_is_clipped_to_the_limit(measured_run, name):
+    trace, k = measured_run.traces[name], measured_run.entry
+    assert trace.start_control_force[k] == trace.effort_limit[k]
+    assert np.delete(trace.start_control_force, k) == pytest.approx(np.zeros(8), abs=1e-3)
+
+
+def test_the_two_force_getters_differ(measured_run):
+    trace, k = measured_run.traces["G1"], measured_run.entry
+    assert np.abs(trace.control_force - trace.internal_force)[:, k].max() > 10
+    assert abs(trace.internal_force[-1, k]) < 1 < abs(trace.control_force[-1, k])
+
+
+def test_a_camera_frame_is_a_usable_picture(lab):
+    frame = session.capture(lab.camera)
+    session.require_frame(frame)
+    assert frame.dtype == np.uint8
+
+
+def test_the_renderer_names_itself(lab):
+    renderer = session.read_renderer(lab.scene)
+    assert renderer.vendor
+    assert renderer.name
+
+
+def test_a_recorded_run_is_accepted(bundle_folder, lab):
+    predicate = verify_bundle(bundle_folder).predicate
+    assert predicate.source.page == page_digest("l04", "lab", project.BOOK)
+    assert predicate.engine.files_match_wheel
+    assert predicate.render.mode == "camera"
+    assert predicate.warnings == lab.engine.log.warnings
+
+
+@pytest.mark.parametrize("name", spec.CASES)
+def test_the_bundle_holds_the_arrays_bit_for_bit(bundle_folder, measured_run, name):
+    stored = read_trace(bundle_folder, read_arrays(bundle_folder), name)
+    assert same(stored, measured_run.traces[name])
+
+
+def test_figures_redrawn_from_the_bundle_are_the_same_bytes(
+    bundle_folder, measured_run, lab, draw_svg
+):
+    arrays = read_arrays(bundle_folder)
+    names = ("G1", "G2", "G3")
+    stored = {name: read_trace(bundle_folder, arrays, name) for name in names}
+    shown = {name: measured_run.traces[name] for name in names}
+    assert draw_svg(stored, lab.joints) == draw_svg(shown, lab.joints)

@@ -1,0 +1,277 @@
+from dataclasses import replace
+
+import control
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robo_genesis.core.quantities import NOT_OBSERVED, format_value
+from robo_genesis.core.trace import first_time, settled_from
+from robo_genesis.evidence.trace_files import FIELDS
+from robo_genesis.lessons.l04 import spec
+from robo_genesis.lessons.l04.metrics import StepMetrics, measure, metric_records, step_metrics
+
+STEP = 0.25
+UNITS, SOURCES = StepMetrics.about("unit"), StepMetrics.about("sources")
+DAMPING = pytest.mark.parametrize("zeta", [0.2, 0.5, 0.8, 1, 1.5, 3])
+
+
+@pytest.fixture(scope="session")
+def respond(second_order, make_trace):
+    def build(zeta, omega=20.0, start=-2.0, steps=120):
+        t = np.arange(steps + 1) * 0.01
+        y, yd = second_order(t, omega, zeta)
+        return make_trace(start + STEP * y, start + STEP, qd=STEP * yd[1:])
+
+    return build
+
+
+@DAMPING
+def test_rise_settling_and_overshoot_agree_with_python_control(respond, zeta):
+    trace = respond(zeta)
+    m = step_metrics(trace, 0)
+    info = control.step_info(
+        trace.q[:, 0] - trace.q[0, 0],
+        trace.t,
+        final_output=STEP,
+        SettlingTimeThreshold=0.01 / STEP,
+        RiseTimeLimits=(0, 0.9),
+    )
+    assert m.rise_time == pytest.approx(info["RiseTime"], abs=1e-12)
+    assert m.settling_time == pytest.approx(info["SettlingTime"], abs=1e-12)
+    assert m.overshoot == pytest.approx(STEP * info["Overshoot"] / 100, abs=1e-12)
+
+
+@pytest.mark.parametrize("zeta", [0.2, 0.5, 0.7])
+def test_underdamped_overshoot_is_the_analytic_one(respond, zeta):
+    expected = STEP * np.exp(-np.pi * zeta / np.sqrt(1 - zeta**2))
+    assert step_metrics(respond(zeta, omega=5.0), 0).overshoot == pytest.approx(expected, rel=1e-2)
+
+
+@pytest.mark.parametrize("zeta", [1, 1.5, 3])
+def test_no_overshoot_without_oscillation(respond, zeta):
+    assert step_metrics(respond(zeta), 0).overshoot == 0
+
+
+def test_more_damping_rises_later(respond):
+    times = [step_metrics(respond(zeta), 0).rise_time for zeta in (0.2, 0.8, 1, 1.5, 3)]
+    assert times == sorted(set(times))
+
+
+def test_every_number_of_a_small_run(make_trace):
+    trace = make_trace(
+        [0.0, 0.5, 1.125, 1.0],
+        1.0,
+        dt=0.5,
+        qd=[1.0, -2.0, 0.25],
+        control_force=[8.0, -4.0, 2.0],
+        effort_limit=8.0,
+    )
+    assert step_metrics(trace, 0) == StepMetrics(
+        initial_error=1.0,
+        rise_time=1.0,
+        overshoot=0.125,
+        settling_time=1.5,
+        final_error=0.0,
+        final_velocity=0.25,
+        peak_speed=2.0,
+        peak_control=8.0,
+        saturation_samples=1,
+        saturation_duration=0.5,
+    )
+
+
+def test_the_end_keeps_the_sign_of_velocity_but_not_of_error(make_trace):
+    m = step_metrics(make_trace([0.0, 1.0, 1.5], 1.0, qd=[2.0, -0.5]), 0)
+    assert (m.final_error, m.final_velocity) == (0.5, -0.5)
+
+
+def test_what_the_window_does_not_reach_is_none_and_not_its_end(make_trace):
+    m = step_metrics(make_trace(np.linspace(0, 0.2, 21), STEP), 0)
+    assert (m.rise_time, m.settling_time) == (None, None)
+
+
+def test_leaving_the_band_again_starts_settling_anew(make_trace):
+    q = [0, 0.25, 0.25, 0.28, 0.25, 0.25]
+    assert step_metrics(make_trace(q, STEP), 0).settling_time == pytest.approx(0.04)
+
+
+def test_leaving_the_band_at_the_last_sample_is_not_settled(make_trace):
+    assert step_metrics(make_trace([0, 0.25, 0.25, 0.28], STEP), 0).settling_time is None
+
+
+def test_a_step_within_the_band_is_settled_from_the_start(make_trace):
+    assert step_metrics(make_trace([0, 0.002, 0.004], 0.005), 0).settling_time == 0
+
+
+@pytest.mark.parametrize(
+    ("value", "rise"), [(0.9 * STEP, 0.01), (np.nextafter(0.9 * STEP, 0), None)]
+)
+def test_rise_counts_a_sample_exactly_on_the_threshold(make_trace, value, rise):
+    assert step_metrics(make_trace([0, value], STEP), 0).rise_time == rise
+
+
+@pytest.mark.parametrize(
+    ("q", "settled"),
+    [(-0.01, 0.01), (0.01, 0.01), (np.nextafter(-0.01, -1), None), (np.nextafter(0.01, 1), None)],
+)
+def test_the_band_includes_its_edges(make_trace, q, settled):
+    assert step_metrics(make_trace([-STEP, q], 0), 0).settling_time == settled
+
+
+@pytest.mark.parametrize(
+    ("force", "samples"),
+    [(99.0, 1), (-99.0, 1), (np.nextafter(99.0, 0), 0), (-100.0, 1), (0.0, 0)],
+)
+def test_saturation_counts_either_sign_from_the_threshold_on(make_trace, force, samples):
+    trace = make_trace([0, 0, 0], STEP, control_force=[0.0, force], effort_limit=100.0)
+    m = step_metrics(trace, 0)
+    assert (m.saturation_samples, m.saturated) == (samples, samples > 0)
+    assert m.saturation_duration == samples * trace.dt
+    assert m.peak_control == abs(force)
+
+
+def test_demand_before_the_first_step_is_not_counted(make_trace):
+    trace = replace(make_trace([0, 0], STEP), start_control_force=np.array([87.0]))
+    assert step_metrics(trace, 0).saturation_samples == 0
+
+
+def test_float32_positions_are_measured_in_double(make_trace):
+    q = np.array([-2.0, -1.7561798], dtype=np.float32)
+    assert step_metrics(make_trace(q, -1.75), 0).final_error == abs(-1.75 - float(q[-1]))
+
+
+@pytest.mark.parametrize("target", [0.0, -0.25])
+def test_a_step_that_is_not_positive_is_refused(make_trace, target):
+    with pytest.raises(ValueError, match="positive step"):
+        step_metrics(make_trace([0, 0], target), 0)
+
+
+def test_a_target_that_changes_is_refused(make_trace):
+    with pytest.raises(ValueError, match="target changes"):
+        step_metrics(make_trace([0, 0, 0], [0.25, 0.3]), 0)
+
+
+@pytest.mark.parametrize("entry", [-1, 1])
+def test_an_entry_that_is_no_column_is_refused(make_trace, entry):
+    with pytest.raises(ValueError, match=f"entry {entry} .* joints 0 to 0"):
+        step_metrics(make_trace([0, 0], STEP), entry)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (None, "s", NOT_OBSERVED),
+        (0.12, "s", "0.12 s"),
+        (0.04472, "rad", "0.0447 rad"),
+        (0.0071, "m", "0.0071 m"),
+        (3.2344, "rad/s", "3.234 rad/s"),
+        (87, "N·m", "87.00 N·m"),
+        (100, "N", "100.00 N"),
+        (0, "1", "0 samples"),
+        (1, "1", "1 sample"),
+        (19, "1", "19 samples"),
+        (-0.00001, "rad", "0.0000 rad"),
+        (-0.0, "s", "0.00 s"),
+        (-0.5, "rad/s", "-0.500 rad/s"),
+    ],
+)
+def test_values_are_written_with_their_unit(value, unit, text):
+    assert format_value(value, unit) == text
+
+
+def test_every_metric_has_a_unit_that_can_be_written():
+    assert all(format_value(1, unit) for unit in UNITS.values())
+
+
+def test_items_give_name_value_and_unit_in_order(respond):
+    m = step_metrics(respond(0.5), 0)
+    assert m.items() == [(name, getattr(m, name), UNITS[name]) for name in UNITS]
+
+
+# Multiples of 2⁻⁸ add and subtract without rounding.
+DYADIC = st.integers(-1024, 1024).map(lambda k: k / 256)
+POSITIONS = st.lists(DYADIC, min_size=2, max_size=30)
+HEIGHT = st.integers(1, 512).map(lambda k: k / 256)
+
+
+@given(q=POSITIONS, height=HEIGHT, shift=DYADIC)
+def test_shifting_position_and_target_changes_nothing(make_trace, q, height, shift):
+    q = np.array(q)
+    target = q[0] + height
+    moved = step_metrics(make_trace(q + shift, target + shift), 0)
+    assert moved == step_metrics(make_trace(q, target), 0)
+
+
+@given(q=POSITIONS, more=POSITIONS, height=HEIGHT)
+def test_a_longer_window_keeps_what_was_seen(make_trace, q, more, height):
+    target = q[0] + height
+    short = step_metrics(make_trace(q, target), 0)
+    longer = step_metrics(make_trace(q + more, target), 0)
+    assert short.rise_time in (None, longer.rise_time)
+    assert longer.overshoot >= short.overshoot
+
+
+@given(forces=st.lists(st.floats(-200, 200), min_size=1, max_size=30))
+def test_saturated_samples_are_samples(make_trace, forces):
+    trace = make_trace(np.zeros(len(forces) + 1), STEP, control_force=forces)
+    m = step_metrics(trace, 0)
+    assert 0 <= m.saturation_samples <= trace.steps
+    assert m.saturation_duration <= trace.t[-1] * (1 + 1e-12)
+
+
+@given(q=POSITIONS, height=HEIGHT)
+def test_not_observed_is_what_the_samples_say(make_trace, q, height):
+    trace = make_trace(q, q[0] + height)
+    m = step_metrics(trace, 0)
+    assert (m.rise_time is None) == (max(q) - q[0] < 0.9 * height)
+    assert (m.settling_time is None) == (abs(q[-1] - q[0] - height) > 0.01)
+    assert {m.rise_time, m.settling_time} <= {None, *trace.t}
+
+
+@given(reached=st.lists(st.booleans(), min_size=1))
+def test_first_time_is_the_first(reached):
+    t = np.arange(len(reached)) * 0.5
+    expected = reached.index(True) * 0.5 if True in reached else None
+    assert first_time(t, np.array(reached)) == expected
+
+
+@given(inside=st.lists(st.booleans(), min_size=1))
+def test_settled_from_is_the_start_of_the_last_run_inside(inside):
+    tail = len(inside) - (inside[::-1].index(False) if False in inside else len(inside))
+    expected = tail * 0.5 if inside[-1] else None
+    assert settled_from(np.arange(len(inside)) * 0.5, np.array(inside)) == expected
+
+
+@pytest.fixture(scope="module")
+def records(experiment):
+    return metric_records(experiment.metrics, experiment.model)
+
+
+def test_records_are_the_metrics(records, experiment):
+    assert list(records) == ["model", *spec.CASES]
+    for case, m in experiment.metrics.items():
+        assert {n: (r["value"], r["unit"]) for n, r in records[case].items()} == {
+            name: (value, unit) for name, value, unit in m.items()
+        }
+    assert {n: r["value"] for n, r in records["model"].items()} == spec.EXPECTED_MODEL
+
+
+def test_counts_are_exact_and_measurements_are_values(records):
+    classes = {r["class"] for r in records["model"].values()}
+    assert classes == {"exact"}
+    assert {name for name, r in records["G1"].items() if r["class"] == "exact"} == {
+        "saturation_samples"
+    }
+
+
+def test_every_metric_names_its_source_arrays():
+    assert {name for names in SOURCES.values() for name in names} <= {
+        n for n, *_ in FIELDS.values()
+    }
+
+
+def test_measure_needs_every_case(traces):
+    with pytest.raises(KeyError, match="G3"):
+        measure({name: traces[name] for name in ("baseline", "G1", "G2")}, spec.CASES, 3)

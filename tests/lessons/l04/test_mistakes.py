@@ -1,0 +1,205 @@
+"""Each failure shows its symptom on the real engine, and is not found where nothing is wrong."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robo_genesis.core import checks
+from robo_genesis.core.mistakes import Failure
+from robo_genesis.core.scene import DT, FRANKA_MJCF, JOINT_NAMES, SUBSTEPS
+from robo_genesis.lessons.l04 import spec
+from robo_genesis.lessons.l04.backend_mistake import absent_backend, judge
+from robo_genesis.lessons.l04.mistakes import (
+    fingers_without_gains,
+    lengths_differ,
+    past_a_limit,
+    wrong_index,
+)
+from robo_genesis.lessons.l04.reading_mistakes import time_shift, wrong_getter
+from robo_genesis.lessons.l04.reset_mistakes import (
+    assigned_each_step,
+    gains_without_reset,
+    stale_target,
+)
+from robo_genesis.sim.joints import resolve_joints
+
+JOINT = spec.STEPPED_JOINT
+STAY = replace(spec.BASELINE, q_target=spec.BASELINE.q_start)
+BALL = """<mujoco><worldbody><body name="bob">
+<joint name="ball" type="ball"/><geom type="sphere" size="0.05" pos="0 0 -0.3"/>
+</body></worldbody></mujoco>"""
+
+
+@pytest.fixture(scope="module")
+def crowded(lab, tmp_path_factory):
+    """A scene in which a pendulum's three DOFs come before the robot's."""
+    path = tmp_path_factory.mktemp("models") / "ball.xml"
+    path.write_text(BALL)
+    gs = lab.gs
+    scene = gs.Scene(
+        sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS),
+        rigid_options=gs.options.RigidOptions(enable_collision=False),
+        show_viewer=False,
+    )
+    scene.add_entity(gs.morphs.MJCF(file=str(path), pos=(0, 2, 1)))
+    franka = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
+    scene.build()
+    return scene, franka, resolve_joints(franka, JOINT_NAMES)
+
+
+@pytest.fixture(scope="module")
+def fingers(crowded):
+    """What the fingers of a robot do that nobody has set gains for."""
+    return fingers_without_gains(*crowded, spec.BASELINE, opening=0.02)
+
+
+@pytest.fixture
+def robot(lab):
+    return lab.scene, lab.franka, lab.joints
+
+
+def end(failure: Failure, label: str) -> float:
+    return float(failure.curves[label][1][-1])
+
+
+@pytest.mark.engine
+def test_fingers_close_whatever_is_commanded_until_gains_are_set(fingers):
+    assert fingers.shown
+    assert end(fingers, "before gains are set") == pytest.approx(0, abs=1e-4)
+    assert end(fingers, "with gains set") == pytest.approx(0.02, abs=1e-4)
+    assert "ended at 0.0000 m before gains were set and at 0.0200 m" in fingers.evidence
+
+
+@pytest.mark.engine
+def test_fingers_with_gains_show_no_symptom(crowded, fingers):
+    again = fingers_without_gains(*crowded, spec.BASELINE, opening=0.02)
+    assert not again.shown
+    assert "ended at 0.0200 m before" in again.evidence
+
+
+@pytest.mark.engine
+def test_a_solver_level_index_moves_another_joint(crowded, fingers):
+    found = wrong_index(*crowded, spec.BASELINE, JOINT)
+    assert found.shown
+    assert "entity-local DOF 3 and the solver-level DOF 6" in found.evidence
+    assert "`joint7` moved most" in found.evidence
+    assert abs(np.ptp(found.curves["joint7, moved most"][1])) > 1
+    assert abs(np.ptp(found.curves["joint4, meant"][1])) < 0.1
+
+
+@pytest.mark.engine
+def test_the_same_mistake_goes_unseen_where_the_indices_agree(robot):
+    found = wrong_index(*robot, spec.BASELINE, JOINT)
+    assert not found.shown
+    assert f"`{JOINT}` moved most" in found.evidence
+
+
+@pytest.mark.engine
+def test_a_state_that_is_assigned_arrives_at_once(robot):
+    found = assigned_each_step(*robot, spec.BASELINE, JOINT)
+    assert found.shown
+    assert "would have needed 24.8" in found.evidence
+    assert not assigned_each_step(*robot, STAY, JOINT).shown
+
+
+@pytest.mark.engine
+def test_a_target_outlives_a_position_that_is_put_back(robot):
+    found = stale_target(*robot, spec.BASELINE, JOINT)
+    assert found.shown
+    stale, held = (np.ptp(q) for _, q in found.curves.values())
+    assert stale > 0.2 > 0.01 > held
+    assert not stale_target(*robot, STAY, JOINT).shown
+
+
+@pytest.mark.engine
+def test_new_gains_without_a_reset_measure_no_step(robot):
+    found = gains_without_reset(*robot, (spec.G2, spec.G3), JOINT)
+    assert found.shown
+    assert "instead of 0.2500 rad" in found.evidence
+    stayed = replace(spec.G2, q_target=spec.G2.q_start)
+    assert not gains_without_reset(*robot, (stayed, spec.G3), JOINT).shown
+
+
+@pytest.mark.engine
+def test_a_target_past_its_limit_is_taken_by_the_engine_and_refused_by_the_course(robot):
+    found = past_a_limit(*robot, spec.BASELINE, JOINT, beyond=0.5)
+    assert found.shown
+    assert "CaseError`: q_target[joint4]" in found.evidence
+    assert "none is clipped" in found.evidence
+    inside = past_a_limit(*robot, spec.BASELINE, JOINT, beyond=-1.0)
+    assert not inside.shown
+    assert "No exception was raised." in inside.evidence
+
+
+@pytest.mark.engine
+def test_seven_values_are_refused_and_a_single_one_goes_to_all_joints(robot):
+    found = lengths_differ(*robot, spec.BASELINE, JOINT)
+    assert found.shown
+    assert "`GenesisException`: Invalid input shape: (7,)" in found.evidence
+    assert "One value for nine joints: No exception was raised." in found.evidence
+    assert "`joint1`" in found.evidence
+    assert "CaseError`: q_target has shape (1,)" in found.evidence
+
+
+@pytest.mark.engine
+def test_an_absent_backend_raises_by_name_and_falls_back_in_general(lab):
+    found = absent_backend(lab.engine.backend.hip_version)
+    assert found.shown
+    assert "`GenesisException`: Backend <gs.amdgpu> not available" in found.evidence
+    assert "warnings (1): Backend <gs.gpu> not available" in found.evidence
+
+
+GONE = ["GenesisException", "Backend ~~<gs.cuda>~~ not available on this machine."]
+FALLS = ["WARNING", "Backend ~~<gs.gpu>~~ not available on this machine. Falling back to CPU."]
+
+
+@pytest.mark.parametrize(
+    ("answer", "shown", "words"),
+    [
+        ((GONE, "cpu", [FALLS]), True, "Backend <gs.cuda> not available"),
+        ((GONE, "amdgpu", []), True, "started on `amdgpu`; its warnings (0): nothing"),
+        ((GONE, "cpu", []), False, "its warnings (0): nothing"),
+        ((GONE, "cpu", [FALLS, FALLS]), False, "its warnings (2)"),
+        ((["ValueError", "not available"], "cpu", [FALLS]), False, "`ValueError`"),
+        ((None, None, []), False, "`gs.init(backend=gs.cuda)` raised nothing."),
+    ],
+)
+def test_the_answers_for_an_absent_backend_are_judged(answer, shown, words):
+    found = judge("cuda", *answer)
+    assert found.shown is shown
+    assert words in found.evidence
+    assert "~" not in found.evidence
+
+
+def test_the_net_force_at_rest_is_no_motor_torque(joints, traces):
+    still = traces["G1"]
+    net = np.zeros_like(still.internal_force)
+    control = np.full_like(still.control_force, -22.5)
+    found = wrong_getter(replace(still, internal_force=net, control_force=control), joints, JOINT)
+    assert found.shown
+    assert "`get_dofs_force` is 0.00 N·m" in found.evidence
+    assert "`get_dofs_control_force` is -22.50 N·m" in found.evidence
+    moving = replace(still, internal_force=control, control_force=control)
+    assert not wrong_getter(moving, joints, JOINT).shown
+
+
+def test_a_shift_by_one_sample_shifts_both_times_by_dt(joints, traces):
+    found = time_shift(traces["G1"], joints, JOINT)
+    assert found.shown
+    assert "rise time 0." in found.evidence
+    assert "instead of 0." in found.evidence
+
+
+def test_times_that_were_not_observed_show_no_shift(joints, traces):
+    still = traces["G1"]
+    q = np.tile(still.q[0], (len(still.t), 1))
+    found = time_shift(replace(still, q=q), joints, JOINT)
+    assert not found.shown
+    assert "rise time not observed instead of not observed" in found.evidence
+
+
+def test_a_symptom_that_did_not_appear_fails_by_name():
+    outcome = Failure("time_shift", False, "Both are equal.").check
+    with pytest.raises(checks.CheckFailed, match=r"\[gallery_time_shift\] Both are equal\."):
+        checks.require("l04 gallery", [outcome])

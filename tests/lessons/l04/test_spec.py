@@ -1,0 +1,164 @@
+import ast
+import json
+import re
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robo_genesis.core import project
+from robo_genesis.core.scene import EFFORT_LIMIT, JOINT_NAMES, Q_START, per_joint
+from robo_genesis.lessons.l04 import MODULES, spec
+from robo_genesis.lessons.l04.metrics import StepMetrics
+from robo_genesis.sim.joint_control import ControlCase, differences, validate
+
+PACKAGE = Path(spec.__file__).parents[2]
+UNITS = StepMetrics.about("unit")
+PAIRS = list(spec.ONE_FACTOR)
+ENTRY = JOINT_NAMES.index("joint4")
+
+
+def test_the_lessons_values():
+    assert Q_START.tolist() == [0, -0.3, 0, -2.0, 0, 1.7, 0.79, 0.04, 0.04]
+    assert spec.BASELINE.kp.tolist() == [4500, 4500, 3500, 3500, 2000, 2000, 2000, 100, 100]
+    assert spec.BASELINE.kv.tolist() == [450, 450, 350, 350, 200, 200, 200, 10, 10]
+    assert EFFORT_LIMIT.tolist() == [87, 87, 87, 87, 12, 12, 12, 100, 100]
+    assert (spec.STEPS, spec.BASELINE.dt, spec.BASELINE.substeps, spec.BASELINE.seed) == (
+        120, 0.01, 2, 0,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "kp", "kv"), [("G1", 3500, 100), ("G2", 7000, 100), ("G3", 7000, 300)]
+)
+def test_the_gains_of_each_case(name, kp, kv):
+    assert (spec.CASES[name].kp[ENTRY], spec.CASES[name].kv[ENTRY]) == (kp, kv)
+
+
+@pytest.mark.parametrize("name", spec.CASES)
+def test_the_step_is_on_one_joint_alone(name):
+    step = spec.CASES[name].q_target - spec.CASES[name].q_start
+    assert np.flatnonzero(step).tolist() == [ENTRY]
+    assert step[ENTRY] == spec.STEP == 0.25
+
+
+@pytest.mark.parametrize("name", spec.CASES)
+def test_every_case_is_valid(name, joints):
+    validate(spec.CASES[name], joints)
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+def test_compared_cases_differ_in_one_entry(pair, joints):
+    found = differences(spec.CASES[pair[0]], spec.CASES[pair[1]], joints)
+    assert found == spec.ONE_FACTOR[pair]
+    assert len(found) == 1
+
+
+def test_configured_arrays_are_read_only():
+    for case in spec.CASES.values():
+        for field in fields(ControlCase):
+            value = getattr(case, field.name)
+            assert not isinstance(value, np.ndarray) or not value.flags.writeable, field.name
+
+
+def test_one_value_for_each_joint_is_required():
+    with pytest.raises(ValueError, match="8 values given, one for each of 9 joints"):
+        per_joint(*range(8))
+
+
+def test_predictions_cover_the_compared_pairs_and_known_metrics():
+    assert list(spec.PREDICTIONS) == PAIRS
+    for predictions in spec.PREDICTIONS.values():
+        for metric, order in predictions:
+            assert metric in UNITS
+            assert order in ("no later", "later", "higher", "lower")
+
+
+def test_every_compared_unit_has_a_resolution():
+    assert set(UNITS.values()) <= set(spec.RESOLUTION)
+    assert all(value > 0 for value in spec.RESOLUTION.values())
+
+
+def test_one_sample_more_is_a_difference():
+    assert spec.RESOLUTION["s"] < spec.BASELINE.dt
+    assert spec.RESOLUTION["1"] < 1
+
+
+def test_parameters_are_json_and_complete():
+    parameters = spec.parameters()
+    assert json.loads(json.dumps(parameters, allow_nan=False)) == parameters
+    assert set(parameters["cases"]) == set(spec.CASES)
+    for name, case in spec.CASES.items():
+        stored = parameters["cases"][name]
+        assert stored == {
+            field.name: np.asarray(getattr(case, field.name)).tolist() for field in fields(case)
+        }
+
+
+OTHER = {
+    "STEPPED_JOINT": "joint2",
+    "EXPECTED_MODEL": {**spec.EXPECTED_MODEL, "links": 12},
+    "EXPECTED_TYPES": ("PRISMATIC",) * 9,
+    "ONE_FACTOR": {("G1", "G3"): ["kp[joint4]"]},
+    "FRANKA_MJCF": "another.xml",
+    "JOINT_NAMES": JOINT_NAMES[::-1],
+    "RISE_FRACTION": 0.8,
+    "SETTLING_BAND": 0.02,
+    "SATURATION_THRESHOLD": 0.9,
+}
+
+
+@pytest.mark.parametrize("name", OTHER)
+def test_what_decides_a_run_is_a_parameter(name, monkeypatch):
+    before = spec.parameters()
+    monkeypatch.setattr(spec, name, OTHER[name])
+    assert spec.parameters() != before
+
+
+@pytest.mark.parametrize("field", [field.name for field in fields(ControlCase)])
+def test_every_field_of_a_case_is_a_parameter(field, monkeypatch):
+    before, value = spec.parameters(), getattr(spec.G1, field)
+    monkeypatch.setitem(spec.CASES, "G1", replace(spec.G1, **{field: value + 1}))
+    assert spec.parameters() != before
+
+
+@pytest.mark.parametrize(
+    "name", ["PREDICTIONS", "MARGINS", "RELATIONS", "TOLERANCES", "RESOLUTION"]
+)
+def test_what_results_are_held_against_is_none(name, monkeypatch):
+    before = spec.parameters()
+    monkeypatch.setattr(spec, name, {})
+    assert spec.parameters() == before
+
+
+def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():
+    files = [PACKAGE.joinpath(*name.split(".")).with_suffix(".py") for name in MODULES]
+    trees = [ast.parse(file.read_text("utf8")) for file in files]
+    read = {
+        node.attr
+        for tree in trees
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and getattr(node.value, "id", None) == "spec"
+    }
+    assert read
+    assert read <= {*OTHER, "CASES"}
+    assert "lessons.l04.spec" not in MODULES
+
+
+def test_the_lab_runs_with_parameters_and_words_its_result_with_the_rest():
+    (lab,) = (project.BOOK / "lessons").glob("l04-*/lab.md")
+    read = set(re.findall(r"(?<!lessons\.)\bl04\.([A-Za-z]\w*)", lab.read_text("utf8")))
+    assert read - {*OTHER, "CASES"} == {"BASELINE", "PREDICTIONS", "RESOLUTION", "parameters"}
+    assert spec.CASES["baseline"] is spec.BASELINE
+
+
+def test_the_lesson_is_data():
+    tree = ast.parse(Path(spec.__file__).read_text("utf8"))
+    functions = [node.name for node in tree.body if isinstance(node, ast.FunctionDef)]
+    assert functions == ["with_entry", "parameters"]
+
+
+def test_the_pin_is_not_repeated():
+    sources = [*PACKAGE.rglob("*.py"), *(project.BOOK / "lessons").rglob("*.md")]
+    assert [path for path in sources if project.engine_pin() in path.read_text("utf8")] == []

@@ -1,0 +1,134 @@
+"""The ideal joint against another implementation and known answers; where a run leaves it."""
+
+import control
+import numpy as np
+import pytest
+
+from robo_genesis.lessons.l04.theory import IdealJoint, overshoot_share, parting, step_share
+
+T = np.linspace(0, 1.2, 241)
+REGIMES = {"under": 100.0, "nearly": 122.7, "over": 300.0, "undamped": 0.0}
+
+
+def joint(damping):
+    return IdealJoint(inertia=1.077, damping=damping, kp=3500.0)
+
+
+@pytest.mark.parametrize("damping", REGIMES.values(), ids=REGIMES)
+def test_the_response_is_that_of_the_transfer_function(damping):
+    plant = control.tf([3500.0], [1.077, damping, 3500.0])
+    oracle = control.step_response(plant, T).outputs
+    assert joint(damping).response(T) == pytest.approx(oracle, abs=1e-6)
+
+
+@pytest.mark.parametrize("damping", [20.0, 60.0, 100.0])
+def test_the_overshoot_is_that_of_step_info(damping):
+    plant = control.tf([3500.0], [1.077, damping, 3500.0])
+    fine = np.linspace(0, 1.2, 24001)
+    info = control.step_info(plant, T=fine)
+    assert 100 * joint(damping).overshoot == pytest.approx(info["Overshoot"], abs=1e-3)
+
+
+@pytest.mark.parametrize("damping", [5.0, 60.0, 100.0])
+def test_damping_ratio_and_frequency_are_the_poles(damping):
+    plant = control.tf([3500.0], [1.077, damping, 3500.0])
+    omegas, zetas, _ = control.damp(plant, doprint=False)
+    assert omegas == pytest.approx([joint(damping).omega] * 2)
+    assert zetas == pytest.approx([joint(damping).zeta] * 2)
+
+
+def test_critical_damping_has_its_closed_form():
+    critical = IdealJoint(inertia=1.0, damping=20.0, kp=100.0)
+    assert critical.zeta == 1
+    assert critical.overshoot == 0
+    assert critical.response(np.array([0.1])) == pytest.approx([1 - 2 / np.e])
+
+
+@pytest.mark.parametrize("off", [1e-12, -1e-12, 1e-7, -1e-7])
+def test_the_regimes_meet_at_critical_damping(off):
+    near = IdealJoint(inertia=1.0, damping=20.0 * (1 + off), kp=100.0)
+    critical = IdealJoint(inertia=1.0, damping=20.0, kp=100.0)
+    assert near.response(T) == pytest.approx(critical.response(T), abs=1e-6)
+
+
+def test_a_strongly_overdamped_joint_neither_overflows_nor_overshoots():
+    slow = IdealJoint(inertia=0.01, damping=5000.0, kp=100.0)
+    y = slow.response(np.array([0.0, 50.0, 1e6]))
+    assert y == pytest.approx([0, 1 - np.exp(-1), 1], abs=1e-5)
+    assert slow.overshoot == 0
+
+
+@pytest.mark.parametrize(
+    "spoiled", [{"inertia": 0.0}, {"inertia": -1.0}, {"kp": 0.0}, {"damping": -1.0}]
+)
+def test_a_joint_that_cannot_be_is_refused(spoiled):
+    with pytest.raises(ValueError, match="must be positive"):
+        IdealJoint(**({"inertia": 1.0, "damping": 1.0, "kp": 1.0} | spoiled))
+
+
+@pytest.fixture
+def run(make_trace):
+    """Five samples; the effort is clipped at the start and at the first two stamps."""
+
+    def build(q, efforts=(87.0, 87.0, 20.0, 10.0), target=1.0):
+        return make_trace(q, target, control_force=efforts)
+
+    return build
+
+
+IDEAL = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
+
+
+def test_parting_is_the_first_sample_beyond_the_threshold(run):
+    trace = run([0.0, 0.15, 0.3, 0.8, 1.0])
+    found = parting(trace, trace.q[:, 0], IDEAL, 0, 0.1)
+    assert found.time == pytest.approx(0.02)
+    assert found.apart == pytest.approx(0.2)
+    # State 2 follows from the efforts at t[0], not clipped in this trace, and t[1].
+    assert (found.clipped, found.efforts) == (1, 2)
+
+
+def test_an_effort_at_or_after_the_parting_does_not_count(run):
+    trace = run([0.0, 0.2, 0.3, 0.8, 1.0], efforts=(0.0, 87.0, 87.0, 87.0))
+    found = parting(trace, trace.q[:, 0], IDEAL, 0, 0.1)
+    assert (found.clipped, found.efforts) == (0, 2)
+
+
+def test_a_response_that_stays_near_does_not_part(run):
+    trace = run(IDEAL + 0.05)
+    found = parting(trace, trace.q[:, 0], IDEAL, 0, 0.1)
+    assert found.time is None
+    assert found.apart == pytest.approx(0.05)
+    assert (found.clipped, found.efforts) == (2, 4)
+
+
+@pytest.mark.parametrize("short", ["measured", "ideal"])
+def test_responses_of_another_length_are_refused(run, short):
+    trace = run(IDEAL)
+    given = {"measured": IDEAL, "ideal": IDEAL} | {short: IDEAL[1:]}
+    with pytest.raises(ValueError, match="one value for each state"):
+        parting(trace, given["measured"], given["ideal"], 0, 0.1)
+
+
+def test_what_acts_on_both_runs_is_gone_from_the_share(run):
+    sag = -0.02 * np.arange(5)
+    share = step_share(run(0.5 * IDEAL + sag, target=0.5), run(sag, target=0.0), 0)
+    assert share == pytest.approx(IDEAL)
+
+
+@pytest.mark.parametrize(
+    ("step", "hold", "says"),
+    [
+        (([0.0, 1.0], 1.0), ([0.0, 0.0, 0.0], 0.0), "time stamps"),
+        (([0.1, 1.0], 1.0), ([0.0, 0.0], 0.0), "start elsewhere"),
+        (([0.0, 1.0], 1.0), ([0.0, 0.0], 1.0), "step is 0"),
+    ],
+)
+def test_runs_that_do_not_belong_together_give_no_share(make_trace, step, hold, says):
+    with pytest.raises(ValueError, match=says):
+        step_share(make_trace(*step), make_trace(*hold), 0)
+
+
+@pytest.mark.parametrize(("peak", "share"), [(1.12, 0.12), (0.9, 0.0)])
+def test_overshoot_is_counted_from_one(peak, share):
+    assert overshoot_share(np.array([0.0, peak, 0.8])) == pytest.approx(share)

@@ -1,0 +1,44 @@
+"""The list of lessons: each entry is complete, and its pages are the book's."""
+
+import pytest
+
+from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.lessons import registry
+from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.lessons.registry import LESSONS, find_lesson, find_page
+
+
+def test_the_pages_that_measure_are_those_of_the_book():
+    declared = {(page.lesson, page.page) for page in find_pages(BOOK) if page.declares_bundle}
+    assert declared == {(name, page) for name, of in LESSONS.items() for page in of.pages}
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_what_a_lesson_names_is_there(name):
+    lesson = LESSONS[name]
+    for page in lesson.pages.values():
+        assert all(
+            (ROOT / "robo_genesis" / f"{module.replace('.', '/')}.py").is_file()
+            for module in page.modules
+        )
+        assert page.parameters()
+    drawn = [lesson.compared, *lesson.further.values()]
+    assert all(of is None or {*of.cases} <= {*lesson.spec.CASES} for of in drawn)
+    assert lesson.metrics.keys() == lesson.spec.CASES.keys()
+    for (first, second), metric, order, margin in lesson.spec.RELATIONS:
+        assert {first, second} <= {*lesson.spec.CASES}
+        assert all(metric in lesson.metrics[case].about("unit") for case in (first, second))
+        assert order in ("higher", "lower", "later", "no later")
+        assert margin > 0
+
+
+def test_unknown_names_are_answered_with_those_there_are():
+    with pytest.raises(LookupError, match=r"Lesson 'l99' does not exist\. Choices: l02, l03, l04"):
+        find_lesson("l99")
+    with pytest.raises(LookupError, match=r"l04/exam does not measure anything\. Choices: l04/lab"):
+        find_page("l04", "exam")
+
+
+def test_cases_are_written_as_words():
+    assert registry.Compared(("A", "B", "C"), "joint", 0.01).names == "A, B and C"
+    assert registry.Moving(("A",), link="box", thing="box").names == "A"

@@ -1,0 +1,102 @@
+"""The real change of the pin, there and back, in a clone: `make test-repin`, never `make test`."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.core import project
+from robo_genesis.core.git import git
+from robo_genesis.core.project import ROOT
+from robo_genesis.evidence import report as pages
+from robo_genesis.evidence.compare import compare, specification
+from robo_genesis.evidence.findings import EQUAL, WITHIN
+
+pytestmark = pytest.mark.repin
+
+PIN = project.engine_pin()
+OTHER = "1.4.5" if PIN != "1.4.5" else "1.3.3"
+OUTER = ("PYTHON", "MAKEFLAGS", "MFLAGS", "MAKELEVEL", "GENESIS", "PYTHONPATH")
+
+
+@pytest.fixture(scope="module")
+def clone(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("repin") / "course"
+    subprocess.run(["git", "clone", "--quiet", str(ROOT), str(folder)], check=True)
+    return folder
+
+
+def make(clone: Path, *words: str, fails: bool = False) -> str:
+    """Run make in the clone, with its own environment unless words name another."""
+    environment = {name: value for name, value in os.environ.items() if name not in OUTER}
+    command = ["make", *words, f"BASE_PYTHON={sys.executable}"]
+    done = subprocess.run(
+        command, cwd=clone, env=environment, check=False, capture_output=True, text=True
+    )
+    assert (done.returncode != 0) == fails, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+def texts(clone: Path) -> dict[str, bytes]:
+    return {name: (clone / name).read_bytes() for name in ("pyproject.toml", "requirements.lock")}
+
+
+def changed(clone: Path) -> list[str]:
+    return git(clone, "status", "--porcelain").split()
+
+
+def built(clone: Path) -> Path:
+    return clone / "book" / "_build" / "evidence" / "l04" / "cpu"
+
+
+def predicate(bundle: Path) -> dict:
+    return json.loads((bundle / "manifest.json").read_text())["predicate"]
+
+
+def keep(clone: Path, name: str) -> Path:
+    """Copy the built bundle to where no later build removes it; its folder names the backend."""
+    kept = clone.parent / name
+    kept.mkdir()
+    subprocess.run(["cp", "-r", str(built(clone)), str(kept)], check=True)
+    return kept / "cpu"
+
+
+def test_there_and_back(clone):
+    before = texts(clone)
+    refused = make(clone, "repin", "GENESIS=9.9.9", f"PYTHON={sys.executable}", fails=True)
+    assert "there is no genesis-world 9.9.9" in refused
+    assert changed(clone) == []
+
+    make(clone, "book", f"PYTHON={sys.executable}")
+    first = keep(clone, "first")
+    make(clone, "repin", f"GENESIS={OTHER}", f"PYTHON={sys.executable}")
+    assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
+    assert project.engine_pin(clone) == OTHER
+    report = (clone / ".cache/reports" / f"repin-{PIN}-{OTHER}" / "report.md").read_text()
+    assert "## L04 lab: engine version" in report
+    assert "| differs |" not in report
+
+    make(clone, "book")  # in the environment of the new lock
+    second = keep(clone, "second")
+    found = compare(first, second, specification("l04"))
+    assert found.state in (EQUAL, WITHIN), pages.summary(found)
+    assert predicate(second)["engine"]["version"] == OTHER
+    assert predicate(second)["evidence_key"] != predicate(first)["evidence_key"]
+    for page in (clone / "book/_build/html").rglob("*.html"):
+        html = page.read_text("utf8")
+        assert f"Genesis {PIN}" not in html, page
+        assert f"/v{PIN}" not in html, page
+        assert predicate(first)["run_id"][:8] not in html, page
+
+    identity = ("-c", "user.name=A", "-c", "user.email=a@example.org")
+    git(clone, *identity, "commit", "--quiet", "--all", "--message", f"Genesis {OTHER}")
+    make(clone, "repin", f"GENESIS={PIN}")
+    assert texts(clone) == before
+    assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
+    make(clone, "book")
+    third = keep(clone, "third")
+    assert predicate(third)["evidence_key"] == predicate(first)["evidence_key"]
+    assert compare(first, third, specification("l04")).state == EQUAL

@@ -1,0 +1,311 @@
+import itertools
+import logging
+import os
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from robo_genesis.core import project
+from robo_genesis.core.scene import FRAME_SHAPE
+from robo_genesis.sim import session
+from robo_genesis.sim.session import (
+    Backend,
+    Contract,
+    ContractError,
+    EngineError,
+    EngineLog,
+    FrameError,
+    Renderer,
+    capture,
+    import_engine,
+    read_contract,
+    require_agreement,
+    require_frame,
+    require_libraries,
+    start,
+)
+
+
+def found(actual="cpu", arch="x64", torch_device="cpu", hip=None, cuda=None, requested="auto"):
+    return Backend(requested, actual, arch, torch_device, "2.13.0", hip, cuda, "device")
+
+
+def test_the_contract_is_read_from_the_environment(tmp_path):
+    environ = {
+        "ROBO_GENESIS_BACKEND": "auto",
+        "ROBO_GENESIS_RENDER": "0",
+        "ROBO_GENESIS_OUTPUTS_DIR": str(tmp_path / "deep" / "outputs"),
+    }
+    assert read_contract(environ) == Contract("auto", False, tmp_path / "deep" / "outputs")
+    assert list((tmp_path / "deep" / "outputs").iterdir()) == []
+
+
+def test_the_contract_has_defaults(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert read_contract({}) == Contract("cpu", True, tmp_path / "outputs")
+
+
+def test_the_process_environment_is_the_default(tmp_path, monkeypatch):
+    monkeypatch.setenv("ROBO_GENESIS_OUTPUTS_DIR", str(tmp_path))
+    monkeypatch.setenv("ROBO_GENESIS_RENDER", "0")
+    assert read_contract() == Contract("cpu", False, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "choices"),
+    [("ROBO_GENESIS_BACKEND", value, "auto, cpu") for value in ("gpu", "amdgpu", "CPU", " cpu", "")]
+    + [("ROBO_GENESIS_RENDER", value, "0, 1") for value in ("true", "2", "01", "")],
+)
+def test_any_other_value_names_variable_value_and_choices(tmp_path, variable, value, choices):
+    with pytest.raises(ContractError) as caught:
+        read_contract({"ROBO_GENESIS_OUTPUTS_DIR": str(tmp_path), variable: value})
+    assert str(caught.value) == f"{variable}={value!r} is not valid. Choose one of: {choices}."
+
+
+def test_an_outputs_folder_that_cannot_be_made_is_refused(no_file):
+    with pytest.raises(ContractError, match=f"ROBO_GENESIS_OUTPUTS_DIR='{no_file}' cannot be"):
+        read_contract({"ROBO_GENESIS_OUTPUTS_DIR": str(no_file)})
+
+
+def test_a_file_is_no_outputs_folder(no_file):
+    with pytest.raises(ContractError, match="cannot be written"):
+        read_contract({"ROBO_GENESIS_OUTPUTS_DIR": str(no_file.parent)})
+
+
+def test_an_outputs_folder_that_cannot_be_written_is_refused(tmp_path, monkeypatch):
+    def refuse(dir):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(session.tempfile, "TemporaryFile", refuse)
+    with pytest.raises(ContractError, match="Permission denied"):
+        read_contract({"ROBO_GENESIS_OUTPUTS_DIR": str(tmp_path)})
+
+
+def test_a_missing_library_names_the_command_that_installs_it():
+    with pytest.raises(EngineError, match=r"libdoesnotexist\.so\.1 .*apt install libegl1 libgl1"):
+        require_libraries("libdoesnotexist.so.1")
+
+
+def test_a_start_without_egl_names_the_command_that_installs_it(tmp_path, monkeypatch):
+    def load(name):
+        if name == "libEGL.so.1":
+            raise OSError(f"{name}: cannot open shared object file")
+
+    monkeypatch.setattr(session.ctypes, "CDLL", load)
+    monkeypatch.setitem(sys.modules, "genesis", None)  # as if: its import must not be reached
+    with pytest.raises(EngineError, match=r"libEGL\.so\.1 .*apt install libegl1 libgl1"):
+        start(Contract("cpu", True, tmp_path))
+
+
+def test_a_missing_engine_names_the_lock(monkeypatch):
+    monkeypatch.setitem(sys.modules, "genesis", None)
+    monkeypatch.setattr(session, "require_libraries", lambda *names: None)
+    with pytest.raises(EngineError, match=r"requirements.lock"):
+        import_engine()
+
+
+def test_a_started_engine_is_not_started_again(tmp_path, monkeypatch):
+    started = SimpleNamespace(_initialized=True, backend=SimpleNamespace(name="cuda"))
+    monkeypatch.setattr(session, "import_engine", lambda: started)
+    with pytest.raises(EngineError, match=r"backend cuda.*restart the kernel"):
+        start(Contract("cpu", True, tmp_path))
+
+
+def test_the_switches_are_those_of_before_the_engine(tmp_path, monkeypatch):
+    """The engine sets some itself while it is imported, and again when it starts."""
+    for name in [name for name in os.environ if name.startswith(project.ENGINE_PREFIXES)]:
+        monkeypatch.delenv(name)
+    monkeypatch.setenv("GS_ENABLE_ZEROCOPY", "0")
+    engine = SimpleNamespace(cpu="cpu", __version__="1", init=lambda **options: None)
+
+    def imported():
+        monkeypatch.setenv("QD_ENABLE_PYBUF", "1")
+        return engine
+
+    monkeypatch.setattr(session, "import_engine", imported)
+    monkeypatch.setitem(sys.modules, "quadrants", SimpleNamespace(__version__=(1, 2)))
+    monkeypatch.setattr(session, "probe", lambda requested: None)
+    monkeypatch.setitem(sys.modules, "genesis.styles", SimpleNamespace())
+    for kept in ("handlers", "filters"):
+        monkeypatch.setattr(logging.getLogger("genesis"), kept, [])
+    assert start(Contract("cpu", True, tmp_path)).switches == {"GS_ENABLE_ZEROCOPY": "0"}
+
+
+AGREEING = [
+    found("cpu", "x64", "cpu"),
+    found("cpu", "arm64", "cpu"),
+    found("cpu", "x64", "cpu", cuda="12.8"),
+    found("cpu", "x64", "cpu", hip="6.4"),
+    found("cpu", "arm64", "cpu", cuda="12.8"),
+    found("cpu", "arm64", "cpu", hip="6.4"),
+    found("cuda", "cuda", "cuda", cuda="12.8"),
+    found("amdgpu", "amdgpu", "cuda", hip="6.4"),
+    *(found("metal", "metal", "mps", hip, cuda)
+      for hip, cuda in ((None, None), ("6.4", None), (None, "12.8"))),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("backend", AGREEING, ids=lambda b: f"{b.actual}-{b.arch}")
+def test_one_backend_throughout_is_accepted(backend):
+    require_agreement(backend)
+
+
+def test_every_other_combination_is_refused():
+    accepted = []
+    for actual, arch, device, (hip, cuda) in itertools.product(
+        ("cpu", "cuda", "amdgpu", "metal"),
+        ("x64", "arm64", "cuda", "amdgpu", "metal", "vulkan"),
+        ("cpu", "cuda", "mps"),
+        ((None, None), ("6.4", None), (None, "12.8")),
+    ):
+        backend = found(actual, arch, device, hip, cuda)
+        try:
+            require_agreement(backend)
+        except EngineError:
+            continue
+        accepted.append(backend)
+    assert {*accepted} == {*AGREEING}
+
+
+@pytest.mark.parametrize("backend", AGREEING, ids=lambda b: f"{b.actual}-{b.arch}")
+def test_a_cpu_that_was_asked_for_is_nothing_else(backend):
+    asked = found(
+        backend.actual,
+        backend.arch,
+        backend.torch_device,
+        backend.hip_version,
+        backend.cuda_version,
+        requested="cpu",
+    )
+    if backend.actual == "cpu":
+        require_agreement(asked)
+    else:
+        with pytest.raises(EngineError, match="not one thing"):
+            require_agreement(asked)
+
+
+def test_cuda_with_a_rocm_torch_is_refused():
+    with pytest.raises(EngineError, match="QD_ARCH"):
+        require_agreement(found("cuda", "cuda", "cuda", hip="6.4", cuda="12.8"))
+
+
+def test_an_unknown_backend_lists_the_known():
+    with pytest.raises(EngineError, match=r"'vulkan' is unknown. Known: cpu, cuda, amdgpu, metal"):
+        require_agreement(found("vulkan"))
+
+
+@pytest.mark.parametrize(
+    ("name", "software"),
+    [
+        ("llvmpipe (LLVM 15.0.6, 256 bits)", True),
+        ("softpipe", True),
+        ("Mesa DRI swrast", True),
+        ("AMD Instinct MI300X", False),
+    ],
+)
+def test_software_renderers_are_known_by_name(name, software):
+    assert Renderer("vendor", name).software is software
+
+
+@pytest.fixture
+def picture(frames):
+    return frames["initial"]
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.float32])
+def test_a_usable_frame_passes(picture, dtype):
+    require_frame(picture.astype(dtype))
+
+
+@pytest.mark.parametrize(
+    "shape", [(), (0,), FRAME_SHAPE[:2], (540, 720, 4), (720, 540, 3), (1, *FRAME_SHAPE)], ids=str
+)
+def test_a_frame_of_another_shape_is_refused(shape):
+    with pytest.raises(FrameError, match=r"expected \(540, 720, 3\)"):
+        require_frame(np.zeros(shape, np.uint8))
+
+
+def test_no_frame_is_refused():
+    with pytest.raises(FrameError, match="shape"):
+        require_frame(None)
+
+
+@pytest.mark.parametrize("value", [0, 255])
+def test_a_constant_picture_is_refused(value):
+    with pytest.raises(
+        FrameError, match=rf"empty picture: every pixel is \[{value}, {value}, {value}\]"
+    ):
+        require_frame(np.full(FRAME_SHAPE, value, np.uint8))
+
+
+def test_a_picture_of_the_background_alone_is_empty_whatever_its_colour():
+    sky = np.broadcast_to(np.array([10, 20, 31], np.uint8), FRAME_SHAPE)
+    with pytest.raises(FrameError, match=r"every pixel is \[10, 20, 31\]"):
+        require_frame(sky)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_frame_that_is_not_finite_is_refused(picture, value):
+    spoiled = picture.astype(np.float32)
+    spoiled[3, 4, 1] = value
+    with pytest.raises(FrameError, match="not finite"):
+        require_frame(spoiled)
+
+
+def test_capture_returns_its_own_copy_of_the_colours(picture):
+    buffer = picture.copy()
+    frame = capture(SimpleNamespace(render=lambda: (buffer, None, None, None)))
+    buffer[:] = 0
+    assert (frame == picture).all()
+
+
+def test_capture_of_nothing_is_an_error():
+    with pytest.raises(FrameError, match="shape"):
+        capture(SimpleNamespace(render=lambda: (None, None, None, None)))
+
+
+@pytest.fixture
+def log():
+    logger, log = logging.getLogger("engine under test"), EngineLog()
+    logger.setLevel(logging.DEBUG)
+    logger.addHandler(log)
+    yield SimpleNamespace(logger=logger, kept=log)
+    logger.removeHandler(log)
+
+
+def test_the_log_drops_marks_and_keeps_everything_else(log):
+    log.logger.info("Adding ~<RigidEntity>~ for ~~~<panda.xml>~~~, ~~~~<%s>~~~~ ~ 2 > 1", "twice")
+    assert log.kept.text() == "INFO Adding RigidEntity for panda.xml, twice ~ 2 > 1\n"
+
+
+def test_warnings_are_kept_in_order(log):
+    for level, text in (("info", "a"), ("warning", "b"), ("debug", "c"), ("error", "d")):
+        getattr(log.logger, level)(text)
+    assert log.kept.warnings == ["b", "d"]
+    assert log.kept.text() == "INFO a\nWARNING b\nDEBUG c\nERROR d\n"
+
+
+def test_outputs_are_absolute(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    contract = read_contract({"ROBO_GENESIS_OUTPUTS_DIR": "here"})
+    assert contract.outputs == Path(tmp_path, "here")
+
+
+def test_the_log_names_neither_the_environment_nor_the_user(monkeypatch, tmp_path):
+    engine = SimpleNamespace(__file__=str(tmp_path / "packages" / "genesis" / "__init__.py"))
+    monkeypatch.setitem(sys.modules, "genesis", engine)
+    monkeypatch.setenv("HOME", str(tmp_path / "someone"))
+    text = f"Read {tmp_path}/packages/genesis/a.xml, wrote ~<{tmp_path}/someone/.cache/b.gsd>~."
+    record = logging.LogRecord("genesis", logging.INFO, "", 0, text, None, None)
+    assert session.WithoutPrivatePaths().filter(record)
+    assert record.getMessage() == "Read site-packages/genesis/a.xml, wrote ~<~/.cache/b.gsd>~."
+
+
+@pytest.mark.parametrize(("newer", "name"), [(True, "raw"), (False, "dumb")])
+def test_the_theme_without_colours_has_the_name_that_the_engine_gives_it(monkeypatch, newer, name):
+    styles = SimpleNamespace(**({"THEME": object} if newer else {}))
+    monkeypatch.setitem(sys.modules, "genesis.styles", styles)
+    assert session.plain_theme() == name

@@ -1,0 +1,214 @@
+"""Free bodies are drawn and played from a bundle without joints, up to a page in the browser."""
+
+import json
+import shutil
+from collections.abc import Iterator
+from types import SimpleNamespace
+from unittest.mock import Mock
+
+import numpy as np
+import pygltflib
+import pytest
+import trimesh
+from browsers import chromium
+from docutils import nodes
+from docutils.core import publish_from_doctree
+from docutils.parsers.rst import DirectiveError
+from docutils.utils import new_document
+from playwright.sync_api import Page, sync_playwright
+from without_sphinx import Panel
+
+from robo_genesis.build.npm import packages
+from robo_genesis.core.project import BOOK
+from robo_genesis.core.trace import BodyTrace
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.evidence.trace_files import read_body_trace, write_traces
+from robo_genesis.lessons import registry
+from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, Moving
+from robo_genesis.sim import visual_shape
+from robo_genesis.site import palette_css
+from robo_genesis.site.evidence import glance as sphinx_glance
+from robo_genesis.site.evidence.ledger import scroll_box
+from robo_genesis.site.evidence.panel import response
+from robo_genesis.site.replay import viewer
+from robo_genesis.site.replay.directive import replay_block
+
+LESSON, KEY = "l99", "l99/lecture/cpu"
+NAME = "replay-l99-lecture-cpu"
+DROPPED = Moving(("high", "low"), link="box", thing="box")
+STEPS, DT, G = 40, 0.01, 10.0
+SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+"""WebGL without a graphics card."""
+
+
+def falling(height: float) -> BodyTrace:
+    """A box that falls from a height [m] and turns about x while it does."""
+    t = np.arange(STEPS + 1) * DT
+    pos, vel, spin = np.zeros((3, STEPS + 1, 1, 3), np.float32)
+    pos[:, 0, 2], vel[:, 0, 2], spin[..., 0] = height - G * t**2 / 2, -G * t, 1.0
+    quat = np.zeros((STEPS + 1, 1, 4), np.float32)
+    quat[:, 0, 0], quat[:, 0, 1] = np.cos(t / 2), np.sin(t / 2)
+    return BodyTrace(t=t, link_pos=pos, link_quat=quat, link_vel=vel, link_ang=spin)
+
+
+@pytest.fixture
+def dropped(folder, monkeypatch, tmp_path):
+    """A bundle of two falls, of a lesson that declares them and handed its shape on."""
+    shutil.rmtree(folder / "arrays")
+    traces = {"high": falling(2.0), "low": falling(1.0)}
+    arrays = write_traces(folder, traces, None, ["box"])
+    (folder / "arrays.json").write_text(arrays.model_dump_json(by_alias=True))
+    spec = registry.LESSONS["l04"].spec
+    monkeypatch.setitem(
+        registry.LESSONS, LESSON, Lesson(spec, {}, {}, Mock(), Filmed("the box"), DROPPED)
+    )
+    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
+    box = trimesh.creation.box((0.2, 0.2, 0.2))
+    part = visual_shape.Part("box", (200, 80, 0), box.vertices.astype(np.float32), box.faces)
+    visual_shape.write_shape(tmp_path / LESSON / "lecture", [part, visual_shape.floor(1.0)])
+    return folder
+
+
+@pytest.fixture
+def block(dropped, tmp_path) -> nodes.Node:
+    return replay_block(Panel(tmp_path / "book"), KEY, dropped)
+
+
+def test_runs_are_read_as_the_lesson_declares_them(dropped):
+    runs = read_runs(dropped, DROPPED)
+    recorded = read_body_trace(dropped, bundle.read_arrays(dropped), "low")
+    assert np.array_equal(runs.channels[0].values["low"], recorded.link_pos[:, 0, 2])
+    assert runs.channels[1].values["low"][-1] == pytest.approx(-G * STEPS * DT)
+
+
+def test_runs_of_joints_are_not_read_as_bodies_nor_the_other_way(dropped, pristine):
+    with pytest.raises(bundle.BundleRefused, match="joints of free bodies"):
+        read_runs(pristine, Moving(("G1",), link="hand", thing="hand"))
+    with pytest.raises(bundle.BundleRefused):
+        read_runs(dropped, Compared(("high", "low"), "joint4", 0.01))
+
+
+def test_pictures_draw_what_the_bundle_holds(dropped):
+    glance, panel = sphinx_glance.response(dropped, DROPPED), response(dropped, DROPPED, "cpu")
+    assert glance.alt == "Height of the box over time: high and low."
+    assert glance.caption == "Height of the box, from get_links_pos."
+    assert panel.alt == (
+        "Height and vertical velocity of the box over time on cpu, with the cases high and low "
+        "drawn over each other."
+    )
+    other = Moving(("low", "high"), link="box", thing="box")
+    assert sphinx_glance.response(dropped, other).content != glance.content
+
+
+def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, tmp_path):
+    assert block["evidence_runs"] == (KEY,)
+    assert len(list(block.findall(nodes.row))) == 1 + STEPS + 1
+    text = block.astext()
+    assert "the box starts at a height of 2.0000 m" in text
+    written = tmp_path / "book" / "_build" / "html" / "replay"
+    model = pygltflib.GLTF2.load_binary(written / f"{NAME}.glb")
+    assert [animation.name for animation in model.animations] == ["high", "low"]
+    recorded = read_body_trace(dropped, bundle.read_arrays(dropped), "low")
+    assert recorded.link_pos[:, 0].tobytes() in model.binary_blob()
+    assert model.asset.copyright is None
+    assert "Franka" not in text
+    assert ">licence</a>" in text  # the viewer's
+
+
+def test_a_lesson_that_handed_on_no_shape_is_told_of_its_own_thing(dropped, tmp_path):
+    (tmp_path / LESSON / "lecture" / visual_shape.FILE).unlink()
+    with pytest.raises(DirectiveError) as caught:
+        replay_block(Panel(tmp_path / "book"), KEY, dropped)
+    assert "l99 handed on no shape of its box" in caught.value.msg
+    assert "robot_shape.read_shape(box)) after the box is built" in caught.value.msg
+
+
+@pytest.fixture
+def page(block, tmp_path) -> Iterator[Page]:
+    """A page that holds the replay alone, opened from disk."""
+    document = new_document("page")
+    document += block.deepcopy()
+    for box in list(document.findall(scroll_box)):  # whose writer is Sphinx's
+        box.replace_self(nodes.container("", *box.children))
+    html = publish_from_doctree(document, writer_name="html5").decode()
+    site = tmp_path / "book" / "_build" / "html"
+    (site / "lessons").mkdir(exist_ok=True)
+    (site / "palette.css").write_text(palette_css.css())
+    viewer.write_viewer(SimpleNamespace(outdir=site), None)
+    for name in ("plot.js", "replay.js", "plot.css", "replay.css"):
+        shutil.copy(BOOK / "_static" / name, site)
+    head = "".join(
+        [
+            *(f'<link rel="stylesheet" href="../{n}.css">' for n in ("palette", "plot", "replay")),
+            *(f'<script defer src="../{n}.js"></script>' for n in ("plot", "replay")),
+        ]
+    )
+    file = site / "lessons" / "page.html"
+    file.write_text(html.replace("</head>", f"{head}</head>"))
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium(), args=SOFTWARE)
+        page = browser.new_page(viewport={"width": 480, "height": 700})
+        problems: list[str] = []
+        page.on("pageerror", lambda error: problems.append(str(error)))
+        page.goto(file.as_uri())
+        yield page
+        assert problems == []
+        browser.close()
+
+
+@pytest.mark.browser
+def test_keys_read_the_record_out_and_the_plots_draw_it(page):
+    slider = page.locator("input[type=range]")
+    page.locator("input[value=low]").check()
+    slider.fill("20")
+    terms, values = (page.locator(f".replay {tag}").all_inner_texts() for tag in ("dt", "dd"))
+    assert dict(zip(terms, values, strict=True)) == {
+        "time": "0.20 s", "height": "0.8000 m", "vertical velocity": "−2.0000 m/s",
+    }  # fmt: skip
+    spoken = "low: time 0.20 s; height 0.8000 m; vertical velocity −2.0000 m/s"
+    assert slider.get_attribute("aria-valuetext") == spoken
+    labels = page.locator(".replay svg").evaluate_all("all => all.map(e => e.ariaLabel)")
+    assert labels == [
+        "Height [m] of the box over time; low is drawn bold.",
+        "Vertical velocity [m/s] of the box over time; low is drawn bold.",
+    ]
+    chosen = page.locator(".replay svg").first.locator(".chosen").get_attribute("points")
+    heights = [float(pair.split(",")[1]) for pair in chosen.split()]
+    fallen = (np.array(heights) - heights[0]) / (heights[-1] - heights[0])
+    assert fallen == pytest.approx(np.linspace(0, 1, STEPS + 1) ** 2, abs=0.01)
+    assert page.locator(".replay .dot.case-g2").count() == 2
+
+
+@pytest.mark.browser
+def test_the_box_falls_in_3d_and_hides_again(page):
+    button = page.locator("button.show")
+    assert button.inner_text() == "Show the box in 3D"
+    button.click()
+    page.get_by_text("Loaded.").wait_for(timeout=120_000)
+    assert button.inner_text() == "Hide the box"
+    model = page.locator("model-viewer")
+    assert model.get_attribute("alt").startswith("The box in 3D, where it is")
+    page.locator("input[value=high]").check()
+    page.locator("input[type=range]").fill("30")
+    page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.29")
+    height = page.evaluate(
+        """() => {
+      const viewer = document.querySelector("model-viewer");
+      const symbols = Object.getOwnPropertySymbols(viewer);
+      const scene = viewer[symbols.find(symbol => symbol.description === "scene")];
+      let box;
+      scene.traverse(node => { if (node.name === "box") box ??= node; });
+      return box.position.z;
+    }"""
+    )
+    assert height == pytest.approx(2.0 - G * 0.3**2 / 2, abs=1e-5)
+
+
+@pytest.mark.browser
+def test_axe_finds_nothing_with_the_box_shown(page):
+    page.locator("button.show").click()
+    page.get_by_text("Loaded.").wait_for(timeout=120_000)
+    page.add_script_tag(path=packages() / "axe-core" / "axe.min.js")
+    found = page.evaluate("block => axe.run(block).then(r => r.violations)", ".replay")
+    assert found == [], json.dumps(found)[:500]

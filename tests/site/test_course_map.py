@@ -1,0 +1,78 @@
+"""The course map is one file: what is planned is called so, what is published has its badges."""
+
+import pytest
+import yaml
+from bs4 import BeautifulSoup
+from tiny_book import make_book
+
+from robo_genesis.build.render import RenderError, render
+from robo_genesis.core.project import BOOK
+from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.site.course_map import FILE, CourseMapError, Lesson, read_map
+
+MAP = [
+    {"id": "L01", "title": "One"},
+    {"id": "L02", "title": "Two", "needs": []},
+    {"id": "L04", "title": "Four", "needs": ["L01", "L02"], "page": "page"},
+]
+
+
+def write(book, rows):
+    (book / FILE).write_text(yaml.safe_dump(rows))
+
+
+def test_the_course_s_map_names_the_lessons_that_are_published():
+    published = {lesson.id: lesson.page for lesson in read_map(BOOK) if lesson.page}
+    lectures = {p.lesson.upper(): p.docname for p in find_pages(BOOK) if p.page == "lecture"}
+    assert published == lectures
+
+
+def test_a_map_is_read_in_its_order(tmp_path):
+    write(tmp_path, MAP)
+    assert read_map(tmp_path) == [
+        Lesson("L01", "One"),
+        Lesson("L02", "Two", ()),
+        Lesson("L04", "Four", ("L01", "L02"), "page"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ([{"id": "L01"}], "a lesson has id, title"),
+        ([{"id": "L01", "title": "One", "state": "verified"}], "a lesson has id, title"),
+        (["L01"], "a lesson has id, title"),
+        ([MAP[0], MAP[0]], "names L01 twice"),
+        ([MAP[0], MAP[2]], "L04 needs L02; before it come L01"),
+        ([{"id": "L01", "title": "One", "needs": ["L01"]}], "L01 needs L01; before it come none"),
+    ],
+)
+def test_a_map_that_cannot_be_right_is_refused(tmp_path, rows, said):
+    write(tmp_path, rows)
+    with pytest.raises(CourseMapError, match=said):
+        read_map(tmp_path)
+
+
+def build(folder, rows):
+    book = make_book(folder, page="# Page\n\nText.\n", text="# Map\n\n```{course-map}\n```\n")
+    write(book, rows)
+    return render(book, folder / "staging", folder / "cache", folder / "render.log")
+
+
+def test_a_card_a_lesson_with_prerequisites_and_state(tmp_path):
+    page = BeautifulSoup((build(tmp_path, MAP) / "text.html").read_text(), "html.parser")
+    cards = page.select("ul.course-map > li")
+    lines = [[p.get_text() for p in card.select("p")] for card in cards]
+    assert lines == [
+        ["L01 One", "planned"],
+        ["L02 Two", "Builds on nothing before it.", "planned"],
+        ["L04 Four", "Builds on L01 and L02.", "cpu-missing amdgpu-missing"],
+    ]
+    assert [card["class"] for card in cards] == [["planned"], ["planned"], ["published"]]
+    assert [a["href"] for a in cards[2].select("a")] == ["page.html", "#lesson-l01", "#lesson-l02"]
+    assert {a["href"][1:] for a in cards[2].select(".needs a")} < {card["id"] for card in cards}
+
+
+def test_a_page_that_is_not_there_fails_the_build(tmp_path):
+    with pytest.raises(RenderError, match="the book has no page nowhere"):
+        build(tmp_path, [MAP[0] | {"page": "nowhere"}])

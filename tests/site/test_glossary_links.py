@@ -1,0 +1,112 @@
+"""Terms of the glossary are links at their first use on a page, and nowhere else."""
+
+import pytest
+from bs4 import BeautifulSoup
+from tiny_book import make_book
+
+from robo_genesis.build.render import RenderError, render
+from robo_genesis.site import glossary
+
+GLOSSARY = """\
+# Glossary
+
+```{glossary}
+DOF
+degree of freedom
+  One axis of motion. It may turn or slide.
+
+overshoot
+  How far it passes, counted along its DOF.
+
+PD control
+  A law with two gains.
+```
+"""
+PAGE = """\
+# Overshoot and DOF
+
+The `DOF` of [an overshoot](glossary.md) is $DOF$.
+
+| DOF |
+| :--- |
+| overshoot |
+
+Overshoots count as overshoot; a
+degree
+of freedom is a DOF, two are DOFs. A non-DOF, an *overshoot* more.
+"""
+
+
+FORMS = "forms: {DOF: [DOFs], overshoot: [overshoots]}\nunlinked: []\n"
+
+
+@pytest.fixture(scope="module")
+def html(tmp_path_factory):
+    return build(tmp_path_factory.mktemp("terms"), PAGE)
+
+
+def build(folder, page, forms=FORMS):
+    book = make_book(folder, glossary=GLOSSARY, page=page)
+    (book / glossary.FORMS).write_text(forms)
+    return render(book, folder / "staging", folder / "cache", folder / "render.log")
+
+
+def links(html, name):
+    page = BeautifulSoup((html / f"{name}.html").read_text(), "html.parser")
+    return page, page.select("a.term-link")
+
+
+def test_first_uses_are_linked_in_running_text_alone(html):
+    page, found = links(html, "page")
+    assert [link.get_text() for link in found] == ["Overshoots", "degree\nof freedom", "DOF"]
+    assert all(link.find_parent("p") for link in found)
+    assert not page.select("h1 a.term-link, table a.term-link, code a.term-link")
+
+
+def test_a_link_carries_the_first_sentence_of_the_definition(html):
+    _, found = links(html, "page")
+    assert found[0]["title"] == "How far it passes, counted along its DOF."
+    assert found[1]["title"] == found[2]["title"] == "One axis of motion."
+
+
+def test_a_link_leads_to_the_entry(html):
+    page, _ = links(html, "glossary")
+    _, found = links(html, "page")
+    for link in found:
+        file, _, anchor = link["href"].partition("#")
+        assert file == "glossary.html"
+        assert page.find(id=anchor).name == "dt"
+
+
+def test_a_definition_links_other_terms_but_not_itself(html):
+    _, found = links(html, "glossary")
+    assert [link.get_text() for link in found] == ["DOF"]
+    assert found[0]["href"].startswith("#")
+    assert found[0].find_parent("dd").find_previous("dt").get_text().startswith("overshoot")
+
+
+def test_words_are_whole_and_the_longest_term_wins():
+    term = glossary.Term("x", "glossary", "x", "")
+    words = glossary.pattern(dict.fromkeys(["PD", "PD control", "DOF"], term))
+    assert words.findall("PD  control, PDs, sub-DOF, DOF.") == ["PD  control", "DOF"]
+    assert words.findall("PD\ncontrol") == ["PD\ncontrol"]
+
+
+def test_a_book_without_glossary_has_no_links(tmp_path):
+    book = make_book(tmp_path, page="# Page\n\nAn overshoot.\n")
+    html = render(book, tmp_path / "staging", tmp_path / "cache", tmp_path / "render.log")
+    assert links(html, "page")[1] == []
+
+
+SPOILED = ("forms: {gain: [gains]}\nunlinked: []", "forms: {}\nunlinked: [gain]")
+
+
+@pytest.mark.parametrize("forms", SPOILED)
+def test_a_declared_name_that_is_no_term_fails_the_build(tmp_path, forms):
+    with pytest.raises(RenderError, match=r"glossary_forms.yml names 'gain', which is no term"):
+        build(tmp_path, PAGE, forms)
+
+
+def test_a_term_can_be_left_unlinked(tmp_path):
+    html = build(tmp_path, PAGE, "forms: {}\nunlinked: [DOF, degree of freedom]\n")
+    assert [link.get_text() for link in links(html, "page")[1]] == ["overshoot"]

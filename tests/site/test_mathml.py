@@ -1,0 +1,36 @@
+import pytest
+
+from robo_genesis.site.mathml import MathError, to_mathml
+
+
+@pytest.mark.parametrize(
+    "latex",
+    [
+        r"\tau = k_p (q^* - q) - k_v \dot{q}",
+        r"\zeta = \frac{k_v + 1}{2 \sqrt{k_p I}} \approx 0.8\,\mathrm{N\,m}",
+        r"\begin{aligned} a &= b \\ c &= d \end{aligned}",
+        r"\begin{align} a &= b \\ c &= d \end{align}",
+        r"\operatorname{clip}(x) = \begin{cases} 1 & x > 0 \\ 0 & \text{else} \end{cases}",
+        r"\left\| \boldsymbol{q} \right\| \le \hat{\mathbf{M}} \ddot{q}",
+    ],
+)
+def test_the_course_s_kind_of_math_is_converted_whole(latex):
+    markup = to_mathml(latex, "block")
+    assert markup.startswith("<math ")
+    assert "\\" not in markup
+
+
+@pytest.mark.parametrize(
+    ("latex", "said"),
+    [(r"\foo{x}", r"uses \\foo"), (r"\frac{a}{", "not valid"), (r"a & b", "not valid")],
+)
+def test_bad_math_is_refused_with_the_formula(latex, said):
+    with pytest.raises(MathError, match=said):
+        to_mathml(latex, "inline")
+
+
+def test_alignment_and_bold_use_what_browsers_implement():
+    assert 'style="text-align: right"' in to_mathml(r"\begin{split} a &= b \end{split}", "block")
+    bold = to_mathml(r"\boldsymbol{q}", "inline")
+    assert "mathvariant" not in bold
+    assert 'style="font-weight: bold"' in bold

@@ -1,0 +1,38 @@
+"""Numbers that pages insert come from the bundle, and an unknown one stops the build."""
+
+import pytest
+
+from robo_genesis.core import project
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.site.evidence.measured import measured as insert
+
+
+@pytest.fixture
+def outputs(recorder, measured, monkeypatch):
+    recorder.write(measured)
+    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(recorder.contract.outputs))
+
+
+def test_a_metric_comes_with_unit_and_origin(outputs, experiment):
+    text, origin = insert("l04/lab", "G2.overshoot")
+    assert text == f"{experiment.metrics['G2'].overshoot:.4f} rad"
+    assert origin.startswith(f"Measured by l04/lab on cpu, Genesis {project.engine_pin()}, run ")
+    assert origin.endswith("from q_rad_or_m, target_rad_or_m")
+
+
+@pytest.mark.parametrize(
+    ("name", "text"), [("model.links", "11"), ("engine", project.engine_pin())]
+)
+def test_counts_and_the_engine_version_are_plain(outputs, name, text):
+    assert insert("l04/lab", name)[0] == text
+
+
+@pytest.mark.parametrize("name", ["G2.overshot", "G9.overshoot", "overshoot"])
+def test_an_unknown_metric_names_those_there_are(outputs, name):
+    with pytest.raises(LookupError, match=rf"no metric '{name}'. Known: .*G2\.overshoot"):
+        insert("l04/lab", name)
+
+
+def test_a_page_without_bundle_is_refused(outputs):
+    with pytest.raises(BundleRefused, match=r"manifest\.json is not in"):
+        insert("l04/lecture", "G2.overshoot")

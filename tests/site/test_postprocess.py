@@ -1,0 +1,141 @@
+"""What is mended on a page after the theme wrote it, on small pages."""
+
+import pytest
+from bs4 import BeautifulSoup
+from PIL import Image
+
+from robo_genesis.site import page_weight
+from robo_genesis.site.postprocess import finished
+
+HEAD = """\
+<script data-cfasync="false">document.documentElement.dataset.mode = "auto";</script>
+<script src="documentation_options.js?v=1"></script>
+<script>var option = 1;</script>
+<script>DOCUMENTATION_OPTIONS.pagename = "page";</script>
+<script src="scripts/fontawesome.js" defer></script>
+<script src="explorer.js"></script>
+<script src="other.js" type="module"></script>"""
+
+
+def page(tmp_path, body: str, head: str = "") -> BeautifulSoup:
+    html = f"<!DOCTYPE html><html><head>{head}</head><body>{body}</body></html>"
+    return BeautifulSoup(finished(html, tmp_path), "html.parser")
+
+
+def test_script_files_wait_and_what_needs_them_waits_behind_them(tmp_path):
+    scripts = page(tmp_path, "<p>Text</p>", HEAD).select("script")
+    how = [(s.get("src"), s.has_attr("defer"), s.get("type")) for s in scripts]
+    assert how == [
+        (None, False, None),
+        ("documentation_options.js?v=1", True, None),
+        (None, False, None),
+        (None, False, "module"),
+        ("other.js", False, "module"),
+    ]
+
+
+def test_light_or_dark_is_decided_by_the_script_in_the_head(tmp_path):
+    theme = '<script>document.documentElement.dataset.theme = "auto";</script>'
+    html = f'<html data-theme="auto"><head>{theme}</head><body><script>1</script></body></html>'
+    found = BeautifulSoup(finished(html, tmp_path), "html.parser")
+    assert found.html["data-theme"] == "light"  # for a reader without scripts
+    first, second = (script.get_text() for script in found.select("script"))
+    assert first.startswith('document.documentElement.dataset.theme = "auto";')
+    assert "matchMedia" in first
+    assert second == "1"
+
+
+@pytest.mark.parametrize(("given", "anchor"), [("", "page-title"), ('id="index"', "index")])
+def test_a_page_is_first_shown_with_its_title(tmp_path, given, anchor):
+    found = page(tmp_path, f"<article><h1 {given}>Title</h1></article>")
+    (expected,) = found.select("head > link[rel=expect][blocking=render]")
+    assert expected["href"] == f"#{anchor}"
+    assert found.h1["id"] == anchor
+
+
+def test_a_page_without_title_waits_for_none(tmp_path):
+    assert page(tmp_path, "<article><p>Text</p></article>").select("link") == []
+
+
+def test_a_script_stays_where_it_has_work(tmp_path):
+    found = page(tmp_path, '<div class="explorer"></div>', HEAD)
+    assert found.select_one("script[src='explorer.js'][defer]")
+
+
+def test_scripts_of_data_are_left_alone(tmp_path):
+    data = '<script type="application/json">{"a": "DOCUMENTATION_OPTIONS < b"}</script>'
+    assert str(page(tmp_path, data).select_one("script")) == data
+
+
+def test_images_get_their_size_and_all_but_the_first_wait(tmp_path):
+    Image.new("RGB", (30, 20)).save(tmp_path / "a b.png")
+    (tmp_path / "plot.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90pt" height="60pt" viewBox="0 0 9 6"/>'
+    )
+    body = '<article><img src="a%20b.png"/><img src="plot.svg"/><img src="plot.svg" width="9"/>'
+    first, second, third = page(tmp_path, body).select("img")
+    assert (first["width"], first["height"], first.get("loading")) == ("30", "20", None)
+    assert (second["width"], second["height"], second["loading"]) == ("120", "80", "lazy")
+    assert (third["width"], third.get("height")) == ("9", None)
+
+
+@pytest.mark.parametrize(
+    ("attributes", "size"),
+    [
+        ('width="96px" height="48"', (96, 48)),
+        ('width="1in" height="25.4mm"', (96, 96)),
+        ('width="100%" viewBox="0 0 66 56"', (66, 56)),
+        ('viewBox="0 0 10.6 5"', (11, 5)),
+    ],
+)
+def test_the_size_of_a_drawing_is_read(tmp_path, attributes, size):
+    file = tmp_path / "x.svg"
+    file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}><g/></svg>')
+    assert page_weight.image_size(file) == size
+
+
+def test_a_drawing_without_size_is_refused(tmp_path):
+    file = tmp_path / "x.svg"
+    file.write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
+    with pytest.raises(
+        ValueError, match=r"x\.svg states no size\. Give its root element a viewBox"
+    ):
+        page_weight.image_size(file)
+
+
+def test_controls_are_named_by_what_they_show(tmp_path):
+    found = page(
+        tmp_path,
+        '<button class="search-button-field" aria-label="Search">Search <kbd>K</kbd></button>'
+        '<details class="hide"><summary aria-label="Toggle hidden content">Show source</summary>'
+        '</details><button class="other" aria-label="Color mode"><i class="fa-solid fa-sun"></i>',
+    )
+    labels = [tag.get("aria-label") for tag in found.select("button, summary")]
+    assert labels == [None, None, "Color mode"]
+    assert found.select_one("i")["aria-hidden"] == "true"
+
+
+def test_folds_of_the_menu_are_named_after_their_page_and_the_sidebar_is_a_landmark(tmp_path):
+    found = page(
+        tmp_path,
+        '<div id="pst-primary-sidebar"><nav class="bd-docs-nav"><ul><li><a href="#">L04: joints</a>'
+        "<details><summary><i class='fa-solid fa-chevron-down'></i></summary></details></li></ul>",
+    )
+    assert found.select_one("summary")["aria-label"] == "Pages below L04: joints"
+    assert found.select_one("[role=complementary]")["aria-label"] == "Course"
+
+
+def test_markup_outside_of_what_is_mended_comes_through(tmp_path):
+    body = "<pre>\n  two\n\n lines &lt; three</pre><math><mi>x</mi></math><p>a<br/>b — c</p>"
+    assert body in finished(f"<!DOCTYPE html><html><body>{body}</body></html>", tmp_path)
+
+
+def test_unused_files_of_the_theme_go_and_others_stay(tmp_path):
+    gone = ["_static/scripts/a.js.map", "_static/scripts/fontawesome.js", "_static/locales/de/x.mo"]
+    kept = ["_static/scripts/a.js", "index.html", "_static/course.css"]
+    for name in gone + kept:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    page_weight.drop_unused_files(tmp_path)
+    assert [name for name in gone if (tmp_path / name).exists()] == []
+    assert [name for name in kept if not (tmp_path / name).exists()] == []

@@ -1,0 +1,183 @@
+"""What a page shows has its line and its row; what it makes up stops the build."""
+
+import pytest
+from bs4 import BeautifulSoup
+from docutils import nodes
+from docutils.core import publish_doctree
+from myst_nb.ext.glue.utils import PendingGlueReference
+from myst_parser.parsers.docutils_ import Parser
+from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
+
+from robo_genesis.build.execute import execute_pages
+from robo_genesis.build.render import RenderError, render
+from robo_genesis.evidence.status import Status
+from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.site.evidence.measured import badge_node
+from robo_genesis.site.evidence.refusals import problems
+
+IMPORTS = """\
+from IPython.display import HTML, SVG, Markdown
+from myst_nb import glue
+def drawn(name):
+    size = "xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'"
+    return SVG(f"<svg {size}><title>{name}</title></svg>")
+def table(name):
+    return Markdown(f"| {name} |\\n| --- |\\n| 7 |")
+"""
+GLUE = """\
+glue("captioned", drawn("captioned"), display=False)
+glue("bare", drawn("bare"), display=False)
+glue("inline", drawn("inline"), display=False)
+glue("any table", table("any"), display=False)
+glue("md table", table("md"), display=False)"""
+GLUED = """
+
+```{glue:figure} captioned
+:alt: A glued picture.
+
+Its caption.
+```
+
+```{glue} bare
+```
+
+Here it stands in a sentence, {glue}`inline`.
+
+```{glue} any table
+```
+
+```{glue:md} md table
+:format: gfm
+```
+
+| typed |
+| --- |
+| 7 |
+"""
+OF_RUN = "No accepted evidence: cpu-refused. ledger"
+CHOSEN = "Chosen, not measured. ledger"
+
+
+def book_of(folder, *cells, text="", front=LAB_FRONT, **pages):
+    """Execute a book of one lab and a ledger."""
+    (folder / "book" / "evidence").mkdir(parents=True)
+    lab = notebook(cell(WRITE_BUNDLE), cell(IMPORTS), *cells, front=front) + text
+    ledger = "# Ledger\n\n```{ledger} items\n```\n"
+    book = make_book(folder, lab=lab, **pages, **{"evidence/ledger": ledger})
+    results = execute_pages(find_pages(book), folder / "cache")
+    assert [result.status for result in results] == ["executed"]
+    return folder
+
+
+def build(folder):
+    return render(folder / "book", folder / "staging", folder / "cache", folder / "render.log")
+
+
+def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(tmp_path):
+    inputs = ":tags: [inputs]\n"
+    shown = (cell("table('chosen')", inputs), cell("table('read')"), cell("drawn('alone')"))
+    html = build(book_of(tmp_path, cell(GLUE, ":tags: [remove-cell]\n"), *shown, text=GLUED))
+    page = BeautifulSoup((html / "lab.html").read_text(), "html.parser")
+    lines = [line.get_text() for line in page.select("article .provenance")]
+    assert lines == [CHOSEN] + [OF_RUN] * 7
+    assert "Its caption." in page.select_one("figcaption:has(.provenance)").get_text()
+
+    ledger = BeautifulSoup((html / "evidence/ledger.html").read_text(), "html.parser")
+    rows = ledger.select("#ledger tbody tr")
+    kinds = ["settings", "table", *["figure"] * 4, "table", "table"]
+    assert [row.select("td")[1].get_text() for row in rows] == kinds
+    assert [row.select("td")[3].get_text() for row in rows] == ["no run"] + ["–"] * 7
+    anchors = [row.a["href"].split("#")[1] for row in rows]
+    assert [page.find(id=anchor).name for anchor in anchors] == [
+        "table", "table", "img", "figure", "img", "img", "table", "table",
+    ]  # fmt: skip
+
+
+def test_what_has_no_line_or_follows_from_no_run_stops_the_build(tmp_path):
+    html = """display(HTML("<table><tr><td>7</td></tr></table>"))"""
+    wrong = (
+        cell(html),
+        cell("Markdown('<img src=\"x.png\">')"),
+        cell("drawn('chosen')", ":tags: [inputs]\n"),
+    )
+    text = (
+        "\n[amdgpu-verified]{.evidence-badge .state-verified}\n"
+        "\n```{figure} ../book/evidence/l04/amdgpu/frames/final.svg\n:alt: x\n\nFree words.\n```\n"
+        "\n```{figure} innocent.svg\n:alt: x\n\nFree words.\n```\n"
+    )
+    folder = book_of(tmp_path, *wrong, text=text, text_page="# Text\n\n{glue}`lab.md::bare`\n")
+    frames = folder / "book/evidence/l04/amdgpu/frames"
+    frames.mkdir(parents=True)
+    (frames / "final.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
+    (folder / "book/innocent.svg").symlink_to(frames / "final.svg")
+    with pytest.raises(RenderError) as caught:
+        build(folder)
+    said = [line for line in str(caught.value).splitlines() if "WARNING" in line]
+    for part in (
+        "a cell puts out <table> as raw HTML, which would have no line in the ledger. "
+        "Display Markdown (robo_genesis.core.tables) or a figure.",
+        "a cell puts out <img> as raw HTML",
+        "a cell tagged inputs shows a picture",
+        "a page may not set the class evidence-badge",
+        "evidence/l04/amdgpu/frames/final.svg lies below evidence/",
+        "the picture innocent.svg lies below evidence/",
+        "bare is glued from the page lab, and nothing would say so.",
+    ):
+        assert [line for line in said if part in line], f"{part!r} is not in {said}"
+
+
+def test_a_cell_s_table_needs_a_bundle_unless_it_was_chosen(tmp_path):
+    shown = (cell("table('chosen')", ":tags: [inputs]\n"), cell("table('read')"))
+    with pytest.raises(
+        RenderError, match="a cell shows a table, but the page declares no"
+    ) as caught:
+        build(book_of(tmp_path, *shown, front=""))
+    assert str(caught.value).count("declares no bundle") == 1
+
+
+def read(text):
+    settings = {"myst_enable_extensions": ["attrs_inline", "attrs_block"]}
+    return publish_doctree(text, parser=Parser(), settings_overrides=settings)
+
+
+def said(document, book):
+    return [problem for _, problem in problems(document, book)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'A <span class="evidence-badge state-verified">amdgpu-verified</span>.',
+        "<div\n  class='x evidence&#45;badge'>cpu-verified</div>",
+        "[amdgpu-verified]{.evidence-badge}",
+        "{.evidence-badge}\namdgpu-verified",
+        "```{container} evidence-badge\namdgpu-verified\n```",
+        "```{raw} html\n<b class='evidence-badge'>x</b>\n```",
+    ],
+)
+def test_an_imitated_badge_is_told_apart_however_it_is_written(text, tmp_path):
+    (problem,) = said(read(text), tmp_path)
+    assert problem.startswith("a page may not set the class evidence-badge")
+
+
+@pytest.mark.parametrize("name", ["measured", "provenance"])
+def test_nor_may_a_page_write_what_marks_a_number_as_measured(name, tmp_path):
+    (problem,) = said(read(f"[7 rad]{{.{name}}}"), tmp_path)
+    assert problem.startswith(f"a page may not set the class {name}")
+
+
+def test_the_site_s_own_badges_and_harmless_html_pass(tmp_path):
+    document = read("Two<br>lines, `evidence-badge` in code, <b class='x'>bold</b>.")
+    document += nodes.paragraph("", "", badge_node(Status("verified", "cpu", "", None)))
+    assert said(document, tmp_path) == []
+
+
+def test_pictures_past_the_directives_are_told(tmp_path):
+    (problem,) = said(read('<img src="a.svg">'), tmp_path)
+    assert problem.startswith("the page holds <img> as raw HTML")
+    document = read("![x](lessons/../evidence/l04/cpu/frames/final.png) ![y](lessons/chain.svg)")
+    (problem,) = said(document, tmp_path)
+    assert "Use the {evidence} directive" in problem
+    document = read("")
+    document += PendingGlueReference(refdoc="lab", key="x")
+    assert said(document, tmp_path)[0].startswith("x is glued from the page lab")

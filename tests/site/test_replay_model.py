@@ -1,0 +1,227 @@
+"""The GLB of a run: its keys are the record, its shape the model's, and it is valid."""
+
+import json
+import subprocess
+from types import SimpleNamespace
+
+import numpy as np
+import pygltflib
+import pytest
+import trimesh
+
+from robo_genesis.build import npm
+from robo_genesis.sim import joint_channels, visual_shape
+from robo_genesis.sim.visual_shape import Part
+from robo_genesis.site.replay import model as replay_model
+
+LINKS = ("link0", "link4", "hand")  # of the synthetic traces
+
+VALIDATE = """
+const [, validator, file] = process.argv;
+require(validator).validateBytes(new Uint8Array(require("fs").readFileSync(file)))
+  .then(report => console.log(JSON.stringify(report)));
+"""
+
+
+@pytest.fixture(scope="module")
+def shape() -> list[Part]:
+    """A ball of many triangles and a box of few on the first link, a box on each other."""
+    ball, box = trimesh.creation.icosphere(subdivisions=4), trimesh.creation.box((0.1, 0.2, 0.3))
+    return [
+        Part("link0", (255, 255, 255), ball.vertices.astype(np.float32), ball.faces),
+        Part("link0", (64, 0, 0), box.vertices.astype(np.float32), box.faces),
+        *(Part(k, (64, 0, 0), box.vertices.astype(np.float32), box.faces) for k in LINKS[1:]),
+    ]
+
+
+@pytest.fixture(scope="module")
+def turning(traces):
+    """The synthetic cases with links that turn, one through a sign flip of its quaternion."""
+    angle = np.linspace(0, 2, 121)
+    quat = np.zeros((121, len(LINKS), 4), np.float32)
+    quat[..., 0], quat[..., 3] = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    quat[60:, 1] *= -1
+    fields = {name: getattr(traces["G1"], name) for name in traces["G1"].__dataclass_fields__}
+    first = type(traces["G1"])(**fields | {"link_quat": quat})
+    return {"G1": first, "G2": traces["G2"], "G3": traces["G3"]}
+
+
+@pytest.fixture(scope="module")
+def glb(shape, turning) -> bytes:
+    return replay_model.glb(shape, LINKS, turning, joint_channels.CREDIT)
+
+
+@pytest.fixture(scope="module")
+def model(glb) -> pygltflib.GLTF2:
+    return pygltflib.GLTF2.load_from_bytes(glb)
+
+
+def values(model, accessor):
+    """Read an accessor of floats as (n, k)."""
+    found = model.accessors[accessor]
+    view = model.bufferViews[found.bufferView]
+    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[found.type]
+    data = model.binary_blob()[view.byteOffset : view.byteOffset + view.byteLength]
+    return np.frombuffer(data, np.float32).reshape(-1, width)
+
+
+def keys(model, case, link, path):
+    """Return (times, values) of one channel of the animation of a case."""
+    animation = next(a for a in model.animations if a.name == case)
+    channel = next(
+        c for c in animation.channels
+        if model.nodes[c.target.node].name == link and c.target.path == path
+    )  # fmt: skip
+    sampler = animation.samplers[channel.sampler]
+    assert sampler.interpolation == "LINEAR"
+    return values(model, sampler.input)[:, 0], values(model, sampler.output)
+
+
+def report(glb, tmp_path):
+    file, program = tmp_path / "model.glb", tmp_path / "validate.js"
+    file.write_bytes(glb)
+    program.write_text(VALIDATE.replace("[, validator", "[, , validator"))
+    command = [npm.node(), program, npm.packages() / "gltf-validator", file]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def test_the_validator_finds_nothing(glb, tmp_path):
+    found = report(glb, tmp_path)
+    assert found["issues"]["messages"] == []
+    assert found["info"]["animationCount"] == 3
+    assert found["info"]["totalTriangleCount"] > 0
+
+
+def test_the_validator_would_find_something(glb, tmp_path):
+    assert report(glb.replace(b'"VEC3"', b'"VEC2"'), tmp_path)["issues"]["numErrors"] > 0
+
+
+@pytest.mark.parametrize("case", ["G1", "G2", "G3"])
+def test_every_key_is_a_sample_of_the_record(model, turning, case):
+    trace = turning[case]
+    for k, link in enumerate(LINKS):
+        times, places = keys(model, case, link, "translation")
+        assert np.array_equal(times, trace.t.astype(np.float32))
+        assert np.array_equal(places, trace.link_pos[:, k])
+        _, turns = keys(model, case, link, "rotation")
+        xyzw = trace.link_quat[:, k][:, [1, 2, 3, 0]]
+        assert np.abs((turns * xyzw).sum(axis=1)) == pytest.approx(1, abs=1e-6)
+
+
+def test_the_first_key_is_the_state_before_the_first_step(model, turning):
+    times, places = keys(model, "G1", "hand", "translation")
+    assert times[0] == 0
+    assert np.array_equal(places[0], turning["G1"].link_pos[0, LINKS.index("hand")])
+    assert not np.array_equal(places[0], places[5])
+    hand = next(node for node in model.nodes if node.name == "hand")
+    assert np.array_equal(np.float32(hand.translation), places[0])
+
+
+def test_a_sign_flip_of_the_record_turns_nothing_the_long_way(model, turning):
+    recorded = turning["G1"].link_quat[:, 1]
+    assert (recorded[1:] * recorded[:-1]).sum(axis=1).min() < 0
+    _, turns = keys(model, "G1", "link4", "rotation")
+    assert (turns[1:] * turns[:-1]).sum(axis=1).min() > 0.99
+
+
+def test_links_stand_below_a_node_that_turns_z_up(model):
+    root = model.nodes[model.scenes[0].nodes[0]]
+    assert root.name == replay_model.WORLD
+    assert [model.nodes[k].name for k in root.children] == list(LINKS)
+    x, y, z, w = root.rotation
+    up = visual_shape.rotate(np.array([w, x, y, z]), np.array([[0.0, 0.0, 1.0]]))
+    assert up[0] == pytest.approx([0, 1, 0], abs=1e-12)
+
+
+def test_many_triangles_become_few_and_few_stay(shape):
+    assert len(replay_model.light(shape[0]).faces) < 0.1 * len(shape[0].faces)
+    assert len(replay_model.light(shape[1]).faces) == len(shape[1].faces)
+
+
+def test_what_is_left_of_a_ball_is_near_it(shape):
+    radius = np.linalg.norm(replay_model.light(shape[0]).vertices, axis=1)
+    assert radius == pytest.approx(1, abs=0.02)
+
+
+def test_colours_are_those_of_the_model_in_linear_light(model):
+    factors = {m.name: m.pbrMetallicRoughness.baseColorFactor for m in model.materials}
+    assert list(factors) == ["[255, 255, 255]", "[64, 0, 0]"]
+    assert factors["[255, 255, 255]"] == [1, 1, 1, 1]
+    assert factors["[64, 0, 0]"] == pytest.approx([0.0513, 0, 0, 1], abs=1e-4)
+
+
+def test_the_model_names_its_origin(model):
+    assert "© Franka Robotics GmbH" in model.asset.copyright
+    assert "decimated and converted" in model.asset.copyright
+
+
+def test_a_shape_of_another_robot_is_refused(shape, turning):
+    with pytest.raises(ValueError, match="parts of hand; the record knows link0, link4"):
+        replay_model.glb(shape, LINKS[:2], {"G1": turning["G1"]})
+
+
+def test_a_shape_comes_back_from_its_file(shape, tmp_path):
+    file = visual_shape.write_shape(tmp_path / "new", shape)
+    for part, back in zip(shape, visual_shape.load_shape(file), strict=True):
+        assert (back.link, back.rgb) == (part.link, part.rgb)
+        assert np.array_equal(back.vertices, part.vertices)
+        assert np.array_equal(back.faces, part.faces)
+
+
+def test_meshes_are_placed_in_their_link_and_joined_by_colour():
+    def geom(rgb, pos, quat):
+        mesh = trimesh.Trimesh([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2]], vertex_colors=rgb)
+        return SimpleNamespace(
+            get_trimesh=lambda: mesh, init_pos=np.array(pos), init_quat=np.array(quat)
+        )
+
+    half = 0.5**0.5
+    red, blue = [255, 0, 0, 255], [0, 0, 255, 255]
+    geoms = [geom(red, [0, 0, 0], [1, 0, 0, 0]), geom(blue, [0, 0, 0], [1, 0, 0, 0])]
+    geoms.append(geom(red, [0, 0, 5], [half, 0, 0, half]))  # a quarter turn about z
+    robot = SimpleNamespace(links=[SimpleNamespace(name="arm", vgeoms=geoms)])
+    first, second = visual_shape.read_shape(robot)
+    assert (first.rgb, second.rgb) == ((255, 0, 0), (0, 0, 255))
+    assert first.faces.tolist() == [[0, 1, 2], [3, 4, 5]]
+    assert first.vertices[3:] == pytest.approx(np.array([[0, 1, 5], [-1, 0, 5], [0, 0, 6]]))
+
+
+def test_links_of_a_body_go_by_names_of_their_own():
+    mesh = trimesh.creation.box((1, 1, 1))
+    geom = SimpleNamespace(
+        get_trimesh=lambda: mesh, init_pos=np.zeros(3), init_quat=np.array([1.0, 0, 0, 0])
+    )
+    box = SimpleNamespace(links=[SimpleNamespace(name="box_baselink", vgeoms=[geom])])
+    (part,) = visual_shape.read_shape(box)
+    assert (part.link, len(part.faces)) == ("box_baselink", 12)
+    assert visual_shape.read_shape(box, ["left"])[0].link == "left"
+    with pytest.raises(ValueError, match="2 names given for 1 links: box_baselink"):
+        visual_shape.read_shape(box, ["left", "right"])
+
+
+def test_what_belongs_to_no_link_stands_still(shape, turning, tmp_path):
+    content = replay_model.glb([*shape, visual_shape.floor(2.0)], LINKS, turning)
+    assert report(content, tmp_path)["issues"]["messages"] == []
+    still = pygltflib.GLTF2.load_from_bytes(content)
+    number = next(k for k, node in enumerate(still.nodes) if node.name == replay_model.STILL)
+    assert number in still.nodes[0].children
+    moved = {c.target.node for a in still.animations for c in a.channels}
+    assert moved == {1, 2, 3}
+    assert number not in moved
+    primitive = still.meshes[still.nodes[number].mesh].primitives[0]
+    corners = values(still, primitive.attributes.POSITION)
+    assert np.ptp(corners, axis=0).tolist() == [2, 2, 0]
+    up = values(still, primitive.attributes.NORMAL)
+    assert up == pytest.approx(np.tile([0, 0, 1], (len(corners), 1)))
+
+
+def test_a_model_of_the_scene_s_own_shapes_claims_no_one_s(shape, turning):
+    content = replay_model.glb(shape, LINKS, turning)
+    assert pygltflib.GLTF2.load_from_bytes(content).asset.copyright is None
+
+
+@pytest.mark.parametrize("links", [("box", "box"), ("box", "world")])
+def test_two_links_of_one_name_are_refused(links, turning):
+    with pytest.raises(ValueError, match=rf"of the world: {links[1]}\. Give each a name"):
+        replay_model.glb([], links, {"G1": turning["G1"]})

@@ -1,0 +1,116 @@
+import csv
+import io
+import zipfile
+from email import message_from_bytes
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from robo_genesis.core import project
+from robo_genesis.evidence.trace_files import write_traces
+from robo_genesis.site.takeaways import wheel
+from robo_genesis.site.takeaways.files import csv_text, package_facts, run_commands, without_places
+from robo_genesis.site.takeaways.wheel import build_wheel
+
+LINKS = ["link0", "link4", "hand"]
+
+
+@pytest.fixture
+def table(tmp_path, traces, joints):
+    described = write_traces(tmp_path, {"G2": traces["G2"]}, joints, LINKS)
+    return list(csv.DictReader(io.StringIO(csv_text(traces["G2"], described, "G2"))))
+
+
+def column(table, name: str) -> np.ndarray:
+    return np.array([row[name] for row in table], dtype=np.float32)
+
+
+def test_each_number_of_a_run_is_in_its_table_with_its_unit(table, traces):
+    run = traces["G2"]
+    assert len(table) == len(run.t)
+    assert np.array_equal([float(row["t [s]"]) for row in table], run.t)
+    assert np.array_equal(column(table, "q joint4 [rad]"), run.q[:, 3])
+    assert np.array_equal(column(table, "q finger_joint2 [m]"), run.q[:, 8])
+    assert np.array_equal(column(table, "link_pos hand x [m]"), run.link_pos[:, 2, 0])
+    assert np.array_equal(column(table, "link_quat hand w [1]"), run.link_quat[:, 2, 0])
+    for field, unit in (("qd", "rad/s"), ("control_force", "N·m")):
+        name = f"{field} joint4 [{unit}]"
+        assert np.array_equal(column(table, name)[1:], getattr(run, field)[:, 3])
+        assert np.float32(table[0][name]) == getattr(run, f"start_{field}")[3]
+    assert {row["effort_limit joint4 [N·m]"] for row in table} == {str(run.effort_limit[3])}
+
+
+def test_every_column_names_a_unit_and_nothing_is_made_up_before_the_first_step(table):
+    assert [name for name in table[0] if not name.endswith("]")] == []
+    empty = {name.split()[0] for name, value in table[0].items() if value == ""}
+    assert empty == {"target", "internal_force"}
+    assert [name for name, value in table[1].items() if value == ""] == []
+
+
+def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    first, second = (build_wheel(tmp_path / name) for name in "ab")
+    assert first.name == f"robo_genesis-{package_facts()['version']}-py3-none-any.whl"
+    assert first.read_bytes() == second.read_bytes()
+    with zipfile.ZipFile(first) as wheel:
+        names = wheel.namelist()
+        (found,) = (name for name in names if name.endswith("/METADATA"))
+        needed = message_from_bytes(wheel.read(found)).get_all("Requires-Dist")
+    assert f"genesis-world=={project.engine_pin()}" in needed
+    files = {p.relative_to(project.ROOT).as_posix() for p in package_files()}
+    assert {name for name in names if not name.startswith("robo_genesis-")} == files
+
+
+def test_a_wheel_is_built_anew_only_where_its_sources_changed(tmp_path, monkeypatch):
+    root, cache, built = tmp_path / "root", tmp_path / "cache", []
+    for name in (*wheel.SOURCES, "robo_genesis/__init__.py"):
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(name)
+
+    def build(folder, root):
+        built.append(folder)
+        (folder / "robo.whl").write_bytes(b"PK\nwheel")
+        return folder / "robo.whl"
+
+    monkeypatch.setattr(wheel, "build_wheel", build)
+    for number, change in enumerate(("", "robo_genesis/__init__.py", "README.md", ""), 1):
+        if change:
+            (root / change).write_text("changed")
+        found = wheel.stored_wheel(tmp_path, root, cache)
+        assert (found.name, found.read_bytes()) == ("robo.whl", b"PK\nwheel")
+        assert len(built) == min(number, 3)
+    (root / "robo_genesis" / "new.py").touch()
+    wheel.stored_wheel(tmp_path, root, cache)
+    assert len(built) == 4
+
+
+def package_files():
+    found = (project.ROOT / "robo_genesis").rglob("*")
+    return [path for path in found if path.is_file() and path.suffix != ".pyc"]
+
+
+def test_a_package_that_cannot_be_built_says_why(tmp_path):
+    for name in ("README.md", "LICENSE"):
+        (tmp_path / name).write_text("")
+    (tmp_path / "robo_genesis").mkdir()
+    (tmp_path / "pyproject.toml").write_text("[project]\nname = 3\n")
+    with pytest.raises(project.ProjectError, match="must contain"):
+        build_wheel(tmp_path, tmp_path)
+
+
+def test_the_commands_put_wheel_and_notebook_to_work():
+    make, install, start = run_commands("robo.whl", "lab.ipynb")
+    assert make.startswith("python3 -m venv ")
+    folder = make.split()[-1]
+    assert install == f"{folder}/bin/pip install ./robo.whl jupyterlab"
+    assert start == f"{folder}/bin/jupyter lab lab.ipynb"
+
+
+def test_a_notebook_names_no_folder_of_the_builder():
+    text = "/srv/site/robo_genesis/page.py, /srv/site, /srv/site-2/a, x/srv/site, /home/me/b"
+    assert without_places(text, Path("/srv/site")) == (
+        "robo-genesis/robo_genesis/page.py, robo-genesis, /srv/site-2/a, x/srv/site, ~/b"
+    )
+    assert without_places(f"{project.ROOT}/a") == "robo-genesis/a"
