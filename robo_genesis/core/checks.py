@@ -6,7 +6,7 @@ from typing import Protocol, TypeVar
 
 import numpy as np
 
-from robo_genesis.core.trace import Stamped
+from robo_genesis.core.trace import TimeSeries
 
 Subject = TypeVar("Subject")
 
@@ -49,7 +49,7 @@ def evaluate(named: Sequence[Callable[[Subject], list[str]]], run: Subject) -> t
     return tuple(outcomes)
 
 
-def wrong_stamps(cases: Mapping[str, Asked], traces: Mapping[str, Stamped]) -> list[str]:
+def wrong_stamps(cases: Mapping[str, Asked], traces: Mapping[str, TimeSeries]) -> list[str]:
     """Return which runs have not a state for t = 0 and one for each outer step, stamped k · dt.
 
     Args:

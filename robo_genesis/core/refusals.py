@@ -23,7 +23,7 @@ def shown(value: object) -> str:
 
 
 def expect(
-    code: str, file: str, what: str, found: object, expected: object, mend: str = AGAIN
+    code: str, file: str, what: str, found: object, expected: object, remedy: str = AGAIN
 ) -> None:
     """Raise BundleRefused with `code` unless `found` equals `expected`.
 
@@ -33,9 +33,9 @@ def expect(
         what: the value's name.
         found: the bundle's.
         expected: the right one.
-        mend: what to do about it.
+        remedy: what to do about it.
     """
     if found != expected:
         raise BundleRefused(
-            code, f"{file}: {what} is {shown(found)}, expected {shown(expected)}. {mend}"
+            code, f"{file}: {what} is {shown(found)}, expected {shown(expected)}. {remedy}"
         )

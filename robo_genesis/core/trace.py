@@ -12,7 +12,7 @@ class TraceError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Stamped:
+class TimeSeries:
     """The states of one run at t[k] = k · dt; t[0] is the state before the first step.
 
     What `scene.step()` produces is stamped with the time that it ends at. `t` has shape (n+1,) [s].
@@ -73,7 +73,7 @@ class Stamped:
 
 
 @dataclass(frozen=True, slots=True)
-class Trace(Stamped):
+class Trace(TimeSeries):
     """One run of n steps on d DOFs and l links.
 
     State at t[0] is the state before the first step. What `scene.step()` produces is stamped with
@@ -120,7 +120,7 @@ class Trace(Stamped):
 
 
 @dataclass(frozen=True, slots=True)
-class BodyTrace(Stamped):
+class BodyTrace(TimeSeries):
     """One run of n steps of free bodies with l links in all: nothing commands them.
 
     | field | shape | meaning |

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from robo_genesis.core.orderings import Relation
-from robo_genesis.core.trace import Stamped
+from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence.bundle import Arrays, Manifest, Metric
 
 EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
@@ -36,7 +36,7 @@ class Side:
     manifest: Manifest
     metrics: Mapping[str, Mapping[str, Metric]]
     arrays: Arrays
-    traces: Mapping[str, Stamped]
+    traces: Mapping[str, TimeSeries]
 
     @property
     def numbers(self) -> dict[str, Metric]:

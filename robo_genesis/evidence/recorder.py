@@ -22,7 +22,7 @@ from PIL.PngImagePlugin import PngInfo
 from robo_genesis.core import project
 from robo_genesis.core.checks import Check
 from robo_genesis.core.git import git_or_none
-from robo_genesis.core.trace import Stamped
+from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.lessons.registry import find_page
@@ -44,7 +44,7 @@ class Measured:
 
     joints: JointMap | None
     links: Sequence[str]
-    traces: Mapping[str, Stamped]
+    traces: Mapping[str, TimeSeries]
     metrics: Mapping[str, Mapping[str, Mapping[str, Any]]]
     checks: Sequence[Check]
     frames: Mapping[str, np.ndarray]

@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 
 from robo_genesis.core.refusals import AGAIN, expect
-from robo_genesis.core.trace import BodyTrace, ContactTrace, Stamped, Trace, TraceError
+from robo_genesis.core.trace import BodyTrace, ContactTrace, TimeSeries, Trace, TraceError
 from robo_genesis.evidence.bundle import (
     Arrays,
     BundleRefused,
@@ -57,14 +57,14 @@ CONTACT_FIELDS: dict[str, Field] = BODY_FIELDS | {
     "penetration": ("penetration_m", ["state", "link"], "m", "depth of the deepest of them"),
 }  # fmt: skip
 
-KINDS: dict[type[Stamped], dict[str, Field]] = {
+KINDS: dict[type[TimeSeries], dict[str, Field]] = {
     Trace: FIELDS,
     BodyTrace: BODY_FIELDS,
     ContactTrace: CONTACT_FIELDS,
 }
 
 
-def fields_of(trace: Stamped) -> dict[str, Field]:
+def fields_of(trace: TimeSeries) -> dict[str, Field]:
     """Return name in the file, dimensions, unit and long name of each array of a run."""
     return KINDS[type(trace)]
 
@@ -85,7 +85,7 @@ def dof_units(name: str, types: Sequence[str]) -> list[str]:
 
 def write_traces(
     folder: Path,
-    traces: Mapping[str, Stamped],
+    traces: Mapping[str, TimeSeries],
     joints: JointMap | None,
     links: list[str],
     notes: Mapping[str, str] | None = None,
@@ -231,7 +231,7 @@ def read_bodies(
     return {case: read(folder, arrays, case) for case in expected}
 
 
-Kind = TypeVar("Kind", bound=Stamped)
+Kind = TypeVar("Kind", bound=TimeSeries)
 
 
 def _read(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:

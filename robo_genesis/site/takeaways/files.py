@@ -14,7 +14,7 @@ import numpy as np
 from nbformat import NotebookNode
 
 from robo_genesis.core import project
-from robo_genesis.core.trace import Stamped
+from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Variable
 from robo_genesis.evidence.trace_files import fields_of, read_any_trace
@@ -141,7 +141,7 @@ def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
         yield case, table, archive
 
 
-def csv_text(trace: Stamped, described: Arrays, case: str) -> str:
+def csv_text(trace: TimeSeries, described: Arrays, case: str) -> str:
     """Return a run as a table: one row a state, one column a number, its unit in the head.
 
     The first row is the state before any step, so what is read after a step is empty there unless
@@ -165,7 +165,7 @@ def csv_text(trace: Stamped, described: Arrays, case: str) -> str:
     return stream.getvalue()
 
 
-def _by_state(trace: Stamped, field: str, dims: list[str], states: int) -> list[list[np.generic]]:
+def _by_state(trace: TimeSeries, field: str, dims: list[str], states: int) -> list[list[np.generic]]:
     """Return the columns of a field, each with one entry a state, None where nothing was read."""
     values = np.asarray(getattr(trace, field))
     rows = values.reshape(len(values), -1) if dims[0] in ("state", "step") else values[None]
