@@ -211,8 +211,7 @@ def test_the_source_record_digests_each_computing_module_of_its_page(page, names
         return f"{name.replace('.', '/')}.py"
 
     assert source_record("l04", page)["modules"] == {
-        name: hashlib.sha256((PACKAGE / path_of(name)).read_bytes()).hexdigest()
-        for name in names
+        name: hashlib.sha256((PACKAGE / path_of(name)).read_bytes()).hexdigest() for name in names
     }
 
 

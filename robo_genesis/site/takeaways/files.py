@@ -165,8 +165,10 @@ def csv_text(trace: TimeSeries, described: Arrays, case: str) -> str:
     return stream.getvalue()
 
 
-def _by_state(trace: TimeSeries, field: str, dims: list[str], states: int) -> list[list[np.generic]]:
-    """Return the columns of a field, each with one entry a state, None where nothing was read."""
+def _by_state(
+    trace: TimeSeries, field: str, dims: list[str], states: int
+) -> list[list[np.generic]]:
+    """Return the columns of a field, one entry a state, None where nothing was read."""
     values = np.asarray(getattr(trace, field))
     rows = values.reshape(len(values), -1) if dims[0] in ("state", "step") else values[None]
     listed = [list(row) for row in rows]
