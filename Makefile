@@ -62,6 +62,11 @@ verify: $(ENVIRONMENT) ## verify recorded and built evidence (BUNDLE=path: one f
 test: $(ENVIRONMENT) ## run all tests (needs Debian's chromium)
 	@"$(PY)" -m pytest
 
+# codespell looks up what its expression finds: here the entries of our list, phrases included. It
+# leaves out names of files and attributes, "there is no", "is no longer" and "stand still".
+WORDS = (?<![./-])(?<!here )(?:$$(sed 's/->.*//; s/^[a-z]/\\b[&\U&]/' .words.txt | sort -r | paste -sd '|'))\b(?! longer| more| still|[.]\w)
+PROSE := robo_genesis build_scripts README.md CONTRIBUTING.md CHANGELOG.md book/_decisions
+
 .PHONY: lint
 lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell and the schema of workflows
 	@"$(PY)" -m ruff check .
@@ -69,6 +74,7 @@ lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell and the schema o
 	@"$(PY)" -m mypy
 	@"$(PY)" -c 'from importlinter.cli import lint_imports_command; lint_imports_command()' --no-logo --no-cache
 	@"$(PY)" -m codespell_lib
+	@"$(PY)" -m codespell_lib --dictionary .words.txt --regex "$(WORDS)" $(PROSE)
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-actions .github/actions/*/action.yml
 
