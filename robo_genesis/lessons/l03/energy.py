@@ -23,7 +23,7 @@ def total_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
     return motion / 2 + case.mass * case.gravity * (z - case.rest_height)
 
 
-def kept_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
+def conserved_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
     """Return E − m g h v_z / 2 at each state, (n+1,) [J], which semi-implicit Euler conserves.
 
     In one free solver step v_z changes by −g h and z by h times the new v_z, so both the total

@@ -15,7 +15,7 @@ from robo_genesis.core.metrics import (
 )
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace, first_time, settled_from
-from robo_genesis.lessons.l03.energy import clearance, flights, kept_energy, total_energy
+from robo_genesis.lessons.l03.energy import clearance, conserved_energy, flights, total_energy
 from robo_genesis.sim.contacts import BOUNCE, LANDING, SLIDE, ContactCase
 
 CLEAR = 1e-4
@@ -156,7 +156,7 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
 
     lent  largest change of the total energy within one flight; it is zero again when v_z is
     """
-    kept, total = kept_energy(trace, case), total_energy(trace, case)
+    kept, total = conserved_energy(trace, case), total_energy(trace, case)
     in_air = list(flights(trace, case))
     levels = [float(np.median(kept[flight])) for flight in in_air]
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from robo_genesis.core.plotting import look
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import spec
-from robo_genesis.lessons.l03.energy import clearance, kept_energy, total_energy
+from robo_genesis.lessons.l03.energy import clearance, conserved_energy, total_energy
 from robo_genesis.lessons.l03.metrics import CLEAR
 from robo_genesis.lessons.l03.study import Studies, solver_step
 from robo_genesis.sim import mujoco_contacts
@@ -125,7 +125,7 @@ def energies(axes: Sequence[Axes], traces: Traces, cases: Cases) -> None:
     for (name, case), mark in zip(cases.items(), ("G2", "other", "G3"), strict=False):
         trace = traces[name]
         start, clear = total_energy(trace, case)[0], clearance(trace, case) > 0
-        for ax, energy in zip(axes, (total_energy, kept_energy), strict=True):
+        for ax, energy in zip(axes, (total_energy, conserved_energy), strict=True):
             share = np.where(clear, 100 * energy(trace, case) / start, np.nan)
             label = f"h = {1000 * case.h:g} ms"
             ax.plot(trace.t, share, label=label, **look(mark, linewidth=1.5))

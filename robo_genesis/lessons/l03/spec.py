@@ -86,11 +86,10 @@ LANDED_AGAIN = {name: case for group in STEP_CASES.values() for name, case in gr
 AS_BASELINE = "h_5000us_10000"
 """The landing with the baseline's height and solver step, with each solver step recorded."""
 
-CLEAN_SLIDES = {
-    f"{name}_elliptic": replace(case, cone="elliptic") for name, case in SLIDES.items()
-} | {
-    f"{name}_elliptic_sub10": replace(SLIDES[name], cone="elliptic", substeps=10)
-    for name in ("low_on_050", "high_on_050")
+ROUND = {f"{name}_elliptic": replace(case, cone="elliptic") for name, case in SLIDES.items()}
+CLEAN_SLIDES = ROUND | {
+    f"{name}_sub10": replace(ROUND[name], substeps=10)
+    for name in ("low_on_050_elliptic", "high_on_050_elliptic")
 }
 """The slides with the engine's other friction model, two of them also with finer steps."""
 
@@ -170,19 +169,10 @@ RESOLUTION = {
 """By unit, the difference below which two values count as equal."""
 
 TOLERANCES = {
-    "m": (2e-5, 0.0),
-    "m/s": (1e-3, 0.0),
-    "s": (0.0, 0.0),
-    "kg": (1e-6, 0.0),
-    "J": (5e-6, 0.0),
-    "%": (0.2, 0.0),
-    "stop_distance": (0.01, 0.0),
-    "final_distance": (0.01, 0.0),
-    "stop_time": (0.08, 0.0),
-    "airborne": (0.05, 0.0),
-    "hop": (0.005, 0.0),
-    "rad/s": (12.0, 0.0),
-}
+    "m": (2e-5, 0.0), "m/s": (1e-3, 0.0), "s": (0.0, 0.0), "kg": (1e-6, 0.0), "J": (5e-6, 0.0),
+    "%": (0.2, 0.0), "stop_distance": (0.01, 0.0), "final_distance": (0.01, 0.0),
+    "stop_time": (0.08, 0.0), "airborne": (0.05, 0.0), "hop": (0.005, 0.0), "rad/s": (12.0, 0.0),
+}  # fmt: skip
 """By unit or metric, (atol, rtol) of one metric between engine versions or backends.
 
 After a hop, the contact points at the landing decide the further motion, and no engine is right.

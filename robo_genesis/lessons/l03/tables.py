@@ -85,7 +85,7 @@ def engine_rows(studies: Studies) -> Rows:
             since = f"{studies.traces[pair[1]].t[excess[0]]:.2f} s"
             counts = [str(studies.traces[name].contacts[excess[0], 0]) for name in pair]
         heights = [f"{1000 * rise(studies.metrics[name]):.2f}" for name in pair]
-        mm = 1000 * distance.max()
+        mm = 1000 * float(distance.max())
         rows.append(
             {
                 "Genesis": pair[0],

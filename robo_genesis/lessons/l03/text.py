@@ -46,10 +46,8 @@ def landing_sentence(name: str, found: LandingMetrics) -> str:
         f"`{name}` first touches the surface at {found.touchdown:.2f} s; maximum penetration "
         f"{mm(found.penetration)}. It "
     )
-    if found.rebound > CLEAR:
-        landing += f"rebounds by {mm(found.rebound)}, for {1000 * found.separated:.0f} ms"
-    else:
-        landing += "does not rebound"
+    rebounds = f"rebounds by {mm(found.rebound)}, for {1000 * found.separated:.0f} ms"
+    landing += rebounds if found.rebound > CLEAR else "does not rebound"
     if found.resting_time is None:
         return f"{landing}. At the end it is still {mm(abs(found.resting_offset))} off its place."
     side = "too low" if found.resting_offset < 0 else "too high"
@@ -210,9 +208,8 @@ def step_study(found: Mapping[float, Sequence[LandingMetrics]]) -> tuple[str, ..
     if not rebounding:
         return (*sentences, "No cube rebounds at any step.")
     steps = listed([f"{1000 * h:g} ms" for h in rebounding])
-    if min(rebounding) > min(found):
-        conclusion = "and at no smaller step: coarse steps cause the rebound, not the cube"
-    else:
+    conclusion = "and at no smaller step: coarse steps cause the rebound, not the cube"
+    if min(rebounding) == min(found):
         conclusion = "the smallest step included"
     return (*sentences, f"Cubes rebound at {steps}, {conclusion}.")
 

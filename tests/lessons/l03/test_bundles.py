@@ -12,7 +12,6 @@ from spoilers import predicate
 from robo_genesis.core.metrics import reading_records
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare, specification
 from robo_genesis.evidence.recorder import Measured
 from robo_genesis.evidence.trace_files import read_any_trace
@@ -161,8 +160,3 @@ def test_a_spoiled_lecture_is_refused_by_its_code(studied, name):
     code, spoil = LECTURE[name]
     spoil(studied)
     assert refused(studied).startswith(code), name
-
-
-def test_another_page_or_lesson_has_no_specification():
-    with pytest.raises(BundleRefused, match=r"l03/exam does not measure anything"):
-        specification("l03", "exam")
