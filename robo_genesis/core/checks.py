@@ -10,6 +10,9 @@ from robo_genesis.core.trace import TimeSeries
 
 Subject = TypeVar("Subject")
 
+MASS_SHARE = 1e-5
+"""Relative tolerance of an engine's mass against density times volume: float32."""
+
 
 class Asked(Protocol):
     """What a case says of its time."""
@@ -65,6 +68,26 @@ def wrong_stamps(cases: Mapping[str, Asked], traces: Mapping[str, TimeSeries]) -
                 f"{case.dt:g} s"
             )
     return problems
+
+
+def wrong_counts(found: Mapping[str, int], expected: Mapping[str, int]) -> list[str]:
+    """Return a message if the engine's counts of a model differ from the expected ones."""
+    return [] if dict(found) == expected else [f"the model has {dict(found)}, expected {expected}"]
+
+
+def wrong_masses(found: Mapping[str, float], expected: Mapping[str, float]) -> list[str]:
+    """Return the bodies whose mass is not density times volume, or was not read.
+
+    Args:
+        found: the engine's mass of each body [kg].
+        expected: density times volume of each body [kg].
+    """
+    return [
+        f"the engine's mass of the {body} is {found.get(body, np.nan):g} kg, density times volume "
+        f"is {mass:g} kg"
+        for body, mass in expected.items()
+        if not abs(found.get(body, np.nan) - mass) <= MASS_SHARE * mass
+    ]
 
 
 def require(lesson: str, outcomes: Sequence[Check]) -> str:

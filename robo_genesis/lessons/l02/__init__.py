@@ -1,4 +1,4 @@
-"""L02, scenes, entities, and the simulation life cycle."""
+"""L02: scenes, entities, and the simulation life cycle."""
 
 from robo_genesis.lessons.declaration import COMMON_MODULES, Filmed, Lesson, MeasuringPage, Moving
 from robo_genesis.lessons.l02 import recompute, spec

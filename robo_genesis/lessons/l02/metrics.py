@@ -1,14 +1,14 @@
-"""Metrics of a dropped box, from its trace alone, and their form in `metrics.json`."""
+"""Metrics of a dropped box, computed from its trace, and their form in `metrics.json`."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.free_fall import continuous_drop, summed_drop
 from robo_genesis.core.metrics import (
     CaseMetrics,
+    Record,
     case_records,
     count_records,
     metric,
@@ -21,7 +21,7 @@ from robo_genesis.sim.rigid_bodies import Drop
 
 @dataclass(frozen=True, slots=True)
 class DropMetrics(CaseMetrics):
-    """What one dropped box did, down is positive."""
+    """Metrics of one dropped box; down is positive."""
 
     duration: float = metric("s", "duration", "t_s")
     drop: float = metric("m", "distance fallen", "link_pos_m")
@@ -42,23 +42,23 @@ def fallen(trace: BodyTrace) -> FloatArray:
 
 
 def predicted(trace: BodyTrace, case: Drop) -> FloatArray:
-    """Return what semi-implicit Euler drops by at each sample, (n+1,) [m]."""
+    """Return the distance that semi-implicit Euler falls until each sample, (n+1,) [m]."""
     solver_steps = case.substeps * np.arange(len(trace.t))
     return summed_drop(case.h, solver_steps, case.gravity)
 
 
 def drop_metrics(trace: BodyTrace, case: Drop) -> DropMetrics:
-    """Measure one drop; the case gives gravity and solver step to the formulas alone."""
-    below = fallen(trace)
-    aside = trace.link_pos[:, 0, :2].astype(np.float64)
+    """Measure one drop; gravity and solver step of the case enter the formulas alone."""
+    drop = fallen(trace)
+    xy = trace.link_pos[:, 0, :2].astype(np.float64)
     return DropMetrics(
         duration=float(trace.t[-1]),
-        drop=float(below[-1]),
-        lowest=float(below.max()),
+        drop=float(drop[-1]),
+        lowest=float(drop.max()),
         final_speed=float(-trace.link_vel[-1, 0, 2]),
-        formula_error=float(np.abs(below - predicted(trace, case)).max()),
-        continuous_gap=float(below[-1] - continuous_drop(trace.t[-1:], case.gravity)[0]),
-        sideways=float(np.linalg.norm(aside - aside[0], axis=1).max()),
+        formula_error=float(np.abs(drop - predicted(trace, case)).max()),
+        continuous_gap=float(drop[-1] - continuous_drop(trace.t[-1:], case.gravity)[0]),
+        sideways=float(np.linalg.norm(xy - xy[0], axis=1).max()),
         turning=float(np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1).max()),
     )
 
@@ -74,7 +74,7 @@ def measure(traces: Mapping[str, BodyTrace], cases: Mapping[str, Drop]) -> dict[
 
 def metric_records(
     metrics: Mapping[str, DropMetrics], model: Mapping[str, int], mass: float
-) -> dict[str, dict[str, dict[str, Any]]]:
-    """Return `metrics.json`: the model's counts, the mass, and each case's metrics."""
+) -> dict[str, dict[str, Record]]:
+    """Return `metrics.json`: counts of the model, mass, and metrics of each case."""
     of_engine = {"model": count_records(model), "body": reading_records({"mass": mass}, "kg")}
     return of_engine | case_records(metrics)

@@ -1,6 +1,6 @@
-"""Failures of scenes, made on purpose: wrong side of build, bodies that do not fall as meant.
+"""Mistakes made on purpose with scenes: calls on the wrong side of build, bodies that do not fall.
 
-Every function makes one mistake and measures what follows. None is a way to do anything.
+Every function makes one mistake and measures its symptom. None of them is an example to follow.
 """
 
 from typing import Any
@@ -14,29 +14,29 @@ from robo_genesis.sim.rigid_bodies import Drop, read_body
 from robo_genesis.sim.session import FrameError, require_frame
 
 LEAP = 0.5
-"""How far a box must rise to count as leaping, as a share of its edge."""
+"""Rise from which a box counts as leaping, as a share of its edge."""
 
 
 def second_init(gs: Any) -> Failure:
-    """Initialise the engine, which runs already, once more."""
+    """Initialise the engine a second time."""
     error = refused(lambda: gs.init(backend=gs.cpu))
     return Failure(
         "second_init",
         shown=type(error).__name__ == "GenesisException",
-        evidence=f"The second call of `gs.init` in this page's process: {quoted(error)}",
+        evidence=f"The second call of `gs.init` in the process of this page: {quoted(error)}",
     )
 
 
 def late_entity(scene: Any, morph: Any) -> Failure:
-    """Add an entity to a scene that was built."""
+    """Add an entity to a built scene."""
     before = len(scene.entities)
     error = refused(lambda: scene.add_entity(morph))
     return Failure(
         "late_entity",
         shown=type(error).__name__ == "GenesisException" and len(scene.entities) == before,
         evidence=(
-            f"Added after `build`: {quoted(error)} The scene had {before} entities before, and has "
-            f"{len(scene.entities)} now."
+            f"The call after `build`: {quoted(error)} The scene had {before} entities before the "
+            f"call and has {len(scene.entities)} now."
         ),
     )
 
@@ -53,7 +53,7 @@ def heights(scene: Any, bodies: dict[str, Any], steps: int) -> dict[str, FloatAr
 
 
 def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
-    """Drop a box whose morph was made with `fixed=True`, beside one that is free."""
+    """Drop a free box and a box whose morph has `fixed=True`."""
     found = heights(scene, {"fixed": fixed, "free": free}, case.steps)
     t = np.arange(case.steps + 1) * case.dt
     moved = {name: float(z[0] - z[-1]) for name, z in found.items()}
@@ -65,8 +65,8 @@ def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
             and (fixed.n_dofs, free.n_dofs) == (0, 6)
         ),
         evidence=(
-            f"In {t[-1]:g} s the free box fell {moved['free']:.4f} m, the fixed one "
-            f"{moved['fixed']:.4f} m. The free one has {free.n_dofs} DOFs, the fixed one "
+            f"In {t[-1]:g} s the free box fell {moved['free']:.4f} m and the fixed box "
+            f"{moved['fixed']:.4f} m. The free box has {free.n_dofs} DOFs, the fixed box "
             f"{fixed.n_dofs}."
         ),
         curves={"fixed=True": (t, found["fixed"]), "free": (t, found["free"])},
@@ -74,7 +74,7 @@ def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
 
 
 def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
-    """Put a box 'on' the ground by giving the height of its centre as zero."""
+    """Place a box 'on' the ground with a height of its centre of zero."""
     z = heights(scene, {"sunken": sunken}, case.steps)["sunken"]
     t = np.arange(case.steps + 1) * case.dt
     speed, below = float(np.diff(z).max() / case.dt), 1000 * (case.size / 2 - float(z[0]))
@@ -82,16 +82,16 @@ def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
         "centre_for_underside",
         shown=bool(z[0] < case.size / 2 and z.max() > z[0] + LEAP * case.size),
         evidence=(
-            f"Its centre began at {z[0]:.3f} m and its underside {below:.0f} mm below the ground. "
-            f"The centre was at most {z.max():.3f} m high; the fastest motion upwards between two "
-            f"samples was {speed:.2f} m/s."
+            f"Its centre started at {z[0]:.3f} m, its underside {below:.0f} mm below the ground. "
+            f"The centre rose to {z.max():.3f} m; the largest upward speed between two samples was "
+            f"{speed:.2f} m/s."
         ),
         curves={"pos=(…, 0)": (t, z)},
     )
 
 
 def picture_of_nothing(camera: Any) -> Failure:
-    """Turn the camera away from everything that is in the scene, and render."""
+    """Turn the camera away from all bodies of the scene, and render."""
     pose = np.array(camera.transform)
     x, y, z = (float(value) for value in np.asarray(camera.pos).reshape(-1)[:3])
     camera.set_pose(pos=(x, y, z), lookat=(2 * x, 2 * y, z + 2.0))
@@ -103,13 +103,13 @@ def picture_of_nothing(camera: Any) -> Failure:
         shown=isinstance(error, FrameError) and "empty picture" in str(error),
         evidence=(
             f"`camera.render()` returned an array of shape {np.shape(rgb)}, dtype "
-            f"{np.asarray(rgb).dtype}, without a complaint. The course's own test: {quoted(error)}"
+            f"{np.asarray(rgb).dtype}, and raised nothing. The course's test of it: {quoted(error)}"
         ),
     )
 
 
 def kept_reading(scene: Any, box: Any, case: Drop) -> Failure:
-    """Read once before the loop and call that the state ever after."""
+    """Read the state once before the loop and use that value afterwards."""
     scene.reset()
     kept = box.get_pos()
     for _ in range(case.steps):
@@ -119,7 +119,7 @@ def kept_reading(scene: Any, box: Any, case: Drop) -> Failure:
         "kept_reading",
         shown=old != new,
         evidence=(
-            f"`z = box.get_pos()[2]`, read before the loop, is {old:.4f} m after "
-            f"{case.steps} steps; read again, it is {new:.4f} m."
+            f"`z = box.get_pos()[2]` from before the loop is still {old:.4f} m after {case.steps} "
+            f"steps; a new reading is {new:.4f} m."
         ),
     )

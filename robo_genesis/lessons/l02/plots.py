@@ -1,4 +1,4 @@
-"""Figures of a dropped box: axes in, axes out; no numerics, no show()."""
+"""Figures of a dropped box. Each function draws on given axes and returns them."""
 
 from matplotlib.axes import Axes
 
@@ -7,18 +7,17 @@ from robo_genesis.core.plotting import look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02.metrics import fallen
-from robo_genesis.lessons.l02.study import Study
+from robo_genesis.lessons.l02.study import StepStudy
 from robo_genesis.sim.rigid_bodies import Drop
 
 
 def height(ax: Axes, trace: BodyTrace, case: Drop) -> Axes:
-    """Draw the height of the box's centre at every sample, and where it would touch the ground."""
+    """Draw the height of the box's centre at every sample, and its height on the ground."""
     ax.plot(trace.t, trace.link_pos[:, 0, 2], marker=".", label="measured, get_links_pos",
             **look("baseline"))  # fmt: skip
     ax.axhline(case.size / 2, label="centre of a box that stands on the ground", **look("limit"))
     ax.set_ylim(bottom=0)
-    ax.set_xlabel("time [s]")
-    ax.set_ylabel("height z [m]")
+    ax.set(xlabel="time [s]", ylabel="height z [m]")
     ax.set_title("Height of the box", loc="left")
     ax.legend(fontsize="small", loc="center left")
     return ax
@@ -29,8 +28,7 @@ def speed(ax: Axes, trace: BodyTrace, case: Drop) -> Axes:
     ax.plot(trace.t, -trace.link_vel[:, 0, 2], marker=".", label="measured, get_links_vel",
             **look("baseline"))  # fmt: skip
     ax.plot(trace.t, case.gravity * trace.t, label="g t", **look("target"))
-    ax.set_xlabel("time [s]")
-    ax.set_ylabel("speed downwards [m/s]")
+    ax.set(xlabel="time [s]", ylabel="speed downwards [m/s]")
     ax.set_title("Speed of the box", loc="left")
     ax.legend(fontsize="small", loc="upper left")
     return ax
@@ -39,13 +37,13 @@ def speed(ax: Axes, trace: BodyTrace, case: Drop) -> Axes:
 def three_drops(ax: Axes, trace: BodyTrace, case: Drop, formula: FloatArray) -> Axes:
     """Draw how much farther than g t² / 2 the box is, measured and by the stepped formula.
 
-    The difference is a small part of the fall: drawn as heights, the three would be one line.
+    The differences are a small part of the fall, so three curves of height would coincide.
 
     Args:
         ax: where to draw.
         trace: the run.
-        case: whose gravity is taken.
-        formula: the stepped formula's drop at each sample, (n+1,) [m].
+        case: its gravity enters g t² / 2.
+        formula: drop by the stepped formula at each sample, (n+1,) [m].
     """
     continuous = continuous_drop(trace.t, case.gravity)
     ax.axhline(0, label="continuous: g t² / 2", **look("target"))
@@ -53,22 +51,21 @@ def three_drops(ax: Axes, trace: BodyTrace, case: Drop, formula: FloatArray) -> 
             **look("other"))  # fmt: skip
     ax.plot(trace.t, 1000 * (fallen(trace) - continuous), "o", markersize=4.5, label="measured",
             color=look("baseline")["color"])  # fmt: skip
-    ax.set_xlabel("time [s]")
-    ax.set_ylabel("farther down [mm]")
+    ax.set(xlabel="time [s]", ylabel="farther down [mm]")
     ax.set_title("Against continuous free fall", loc="left")
     ax.legend(fontsize="small", loc="upper left")
     return ax
 
 
-def gaps(ax: Axes, found: Study) -> Axes:
-    """Draw what is left of the difference at the end of the run as the solver's step shrinks."""
-    ax.loglog(1000 * found.h, 1000 * found.expected, label="g h t / 2", **look("other"))
-    ax.loglog(1000 * found.h, 1000 * found.gaps, "o", markersize=6, label="measured",
+def gaps(ax: Axes, study: StepStudy) -> Axes:
+    """Draw the distance ahead of continuous free fall at the end of the run by solver step."""
+    h = 1000 * study.h
+    ax.loglog(h, 1000 * study.expected, label="g h t / 2", **look("other"))
+    ax.loglog(h, 1000 * study.gaps, "o", markersize=6, label="measured",
               color=look("baseline")["color"])  # fmt: skip
-    ax.set_xlabel("solver step h [ms]")
-    ax.set_ylabel("farther down at the end [mm]")
+    ax.set(xlabel="solver step h [ms]", ylabel="farther down at the end [mm]")
     ax.set_title("Difference at the end, by solver step", loc="left")
-    ax.set_xticks(1000 * found.h, [f"{1000 * h:g}" for h in found.h])
+    ax.set_xticks(h, [f"{step:g}" for step in h])
     ax.set_yticks([0.5, 1, 2, 5, 10], ["0.5", "1", "2", "5", "10"])
     ax.minorticks_off()
     ax.legend(fontsize="small", loc="upper left")
@@ -76,13 +73,13 @@ def gaps(ax: Axes, found: Study) -> Axes:
 
 
 def schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) -> Axes:
-    """Draw the box at both ends of a run as a square seen from the side, x against z [m].
+    """Draw the box in its first and last state as a square seen from the side, x against z [m].
 
     Args:
         ax: where to draw.
         trace: the run.
         size: edge of the box [m].
-        floor: height of what it falls on [m].
+        floor: height of the surface below it [m].
     """
     for label, when, name in (("start", 0, "other"), ("end", -1, "baseline")):
         x, _, z = trace.link_pos[when, 0]
@@ -91,8 +88,7 @@ def schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) -> Ax
                 **look(name))  # fmt: skip
     ax.axhline(floor, color="#7a7a7a")
     ax.set_aspect("equal")
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("z [m]")
+    ax.set(xlabel="x [m]", ylabel="z [m]")
     ax.set_title("Schematic of measured positions: this is not a camera frame")
     ax.legend()
     return ax

@@ -1,6 +1,6 @@
-"""Specification of lesson L02: the dropped box, and what its runs are compared by.
+"""Specification of lesson L02: the dropped box, its expected values and its tolerances.
 
-It is data and computes nothing: what of it decides a measured value or a check is in
+The module is data and computes nothing. The values that decide a metric or a check are in
 `parameters()`, and only a change there makes evidence stale.
 """
 
@@ -10,50 +10,45 @@ from typing import Any
 from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
 from robo_genesis.sim.rigid_bodies import Drop
 
-LESSON = "l02"
 MINIMUM_HARDWARE = "cpu"
 STUDY_PAGE = "lecture"
 """The page of the lesson that runs the study of substeps."""
 
 BASELINE = Drop(size=0.10, density=500.0, height=0.5, steps=20)
 CASES = {"baseline": BASELINE}
-"""The lab's one run."""
+"""The run of the lab."""
 
 SUBSTEPS_STUDIED = (1, 2, 4, 10, 20)
 SUBSTEP_CASES = {
     f"substeps_{n}": replace(BASELINE, substeps=n) for n in SUBSTEPS_STUDIED if n != SUBSTEPS
 }
-"""The solver's step is the one factor: each of these takes a scene of its own."""
+"""These cases differ from the baseline in the solver step alone; each needs its own scene."""
 
 LINK = "box_baselink"
-"""The box's one link, as the engine names it."""
+"""The engine's name of the box's only link."""
 
 EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
-"""Of the scene (entities, the ground among them) and of the box."""
+"""`entities` counts those of the scene with the ground, the others belong to the box."""
 
 FORMULA_TOLERANCE = 1e-6
-"""What position in float32 may differ from the exact sum by, at half a metre [m]."""
+"""Tolerance of a float32 position of half a metre against the exact sum [m]."""
 
 AT_REST = 1e-6
-"""Sideways motion [m] and turning [rad/s] below this are none."""
+"""Sideways motion [m] and angular speed [rad/s] up to this value count as zero."""
 
 VIEW = CAMERA | {"pos": (0.8, -0.8, 0.5), "lookat": (0.0, 0.0, 0.3), "fov": 40}
-"""The lesson's camera: nearer than the robot's, with ground and box in the picture."""
+"""The lesson's camera: closer than the robot's, with ground and box in the picture."""
 
 RESOLUTION = {"m": 1e-6, "m/s": 1e-5, "rad/s": 1e-6, "s": DT / 2, "kg": 1e-6, "1": 0.5}
-"""Differences below these are called equal, by unit."""
+"""By unit, the difference below which two values count as equal."""
 
 TOLERANCES = {
-    "m": (2e-6, 0.0),
-    "m/s": (2e-5, 0.0),
-    "rad/s": (1e-6, 0.0),
-    "s": (0.0, 0.0),
-    "kg": (1e-6, 0.0),
-}
-"""By unit, (atol, rtol) that one metric may differ by between engine versions or backends."""
+    "m": (2e-6, 0.0), "m/s": (2e-5, 0.0), "rad/s": (1e-6, 0.0), "s": (0.0, 0.0), "kg": (1e-6, 0.0),
+}  # fmt: skip
+"""By unit, (atol, rtol) of one metric between engine versions or backends."""
 
 RELATIONS = ()
-"""One run claims no ordering."""
+"""A single run claims no ordering."""
 
 
 def parameters() -> dict[str, Any]:
@@ -68,5 +63,5 @@ def parameters() -> dict[str, Any]:
 
 
 def study_parameters() -> dict[str, Any]:
-    """Return those of the lecture, whose runs are more."""
+    """Return the inputs of the lecture, which has more runs."""
     return parameters() | {"studies": {n: asdict(case) for n, case in SUBSTEP_CASES.items()}}

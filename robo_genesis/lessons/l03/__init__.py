@@ -1,4 +1,4 @@
-"""L03, rigid-body physics and stable simulation."""
+"""L03: rigid-body physics and stable simulation."""
 
 from robo_genesis.lessons.declaration import COMMON_MODULES, Filmed, Lesson, MeasuringPage, Moving
 from robo_genesis.lessons.l03 import recompute, spec

@@ -1,6 +1,6 @@
-"""Mechanical energy of a body above the surface, and the part of its error that steps only lend.
+"""Mechanical energy of a body above the surface, and the energy that semi-implicit Euler conserves.
 
-Zero is the energy of a body that lies on the surface at rest.
+Zero is the energy of a body at rest on the surface.
 """
 
 from collections.abc import Iterator
@@ -12,7 +12,7 @@ from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.contacts import TOP, ContactCase
 
 SHORTEST = 3
-"""States in the air, from which on they count as a flight."""
+"""Smallest number of consecutive states in the air that count as a flight."""
 
 
 def total_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
@@ -23,21 +23,21 @@ def total_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
     return motion / 2 + case.mass * case.gravity * (z - case.rest_height)
 
 
-def kept_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
-    """Return the energy less m g h v_z / 2 at each state, (n+1,) [J]: semi-implicit Euler keeps it.
+def conserved_energy(trace: BodyTrace, case: ContactCase) -> FloatArray:
+    """Return E − m g h v_z / 2 at each state, (n+1,) [J], which semi-implicit Euler conserves.
 
-    In one free solver step v_z changes by −g h and z by h times the new v_z, so the total energy
-    changes by −m g² h² / 2, which is what m g h v_z / 2 changes by. At the top of a flight, where
-    v_z is zero, both energies are the same.
+    In one free solver step v_z changes by −g h and z by h times the new v_z, so both the total
+    energy E and m g h v_z / 2 change by −m g² h² / 2. At the top of a flight v_z is zero and both
+    energies are equal.
     """
-    lent = case.mass * case.gravity * case.h * trace.link_vel[:, 0, 2].astype(np.float64) / 2
-    return total_energy(trace, case) - lent
+    error = case.mass * case.gravity * case.h * trace.link_vel[:, 0, 2].astype(np.float64) / 2
+    return total_energy(trace, case) - error
 
 
 def clearance(trace: BodyTrace, case: ContactCase) -> FloatArray:
-    """Return how far the lowest point of the body is above the surface, (n+1,) [m].
+    """Return the height of the body's lowest point above the surface, (n+1,) [m].
 
-    A cube's lowest corner follows from its orientation.
+    The lowest corner of a cube follows from its orientation.
     """
     z = trace.link_pos[:, 0, 2].astype(np.float64)
     if case.shape == "ball":
@@ -48,7 +48,7 @@ def clearance(trace: BodyTrace, case: ContactCase) -> FloatArray:
 
 
 def flights(trace: BodyTrace, case: ContactCase) -> Iterator[slice]:
-    """Yield the stretches of states in which the body is clear of the surface, in order."""
+    """Yield the intervals of states in which the body is clear of the surface, in order."""
     clear = np.concatenate([[False], clearance(trace, case) > 0, [False]])
     edges = np.flatnonzero(clear[1:] != clear[:-1])
     for first, after in zip(edges[::2], edges[1::2], strict=True):
@@ -57,9 +57,9 @@ def flights(trace: BodyTrace, case: ContactCase) -> Iterator[slice]:
 
 
 def kept_at_bounces(damping_ratio: float) -> float:
-    """Return the share of its energy that a linear spring with a damping ratio ζ gives back.
+    """Return the share of the energy that a linear spring with damping ratio ζ returns.
 
     Half a period of x″ + 2 ζ ω x′ + ω² x = 0 multiplies the velocity by e^(−π ζ / √(1 − ζ²)), and
-    the energy by the square of it. Gravity is left out, and that a contact only pushes.
+    the energy by its square. The formula neglects gravity and lets the spring pull.
     """
     return float(np.exp(-2 * np.pi * damping_ratio / np.sqrt(1 - damping_ratio**2)))

@@ -1,4 +1,4 @@
-"""Metrics of bodies that land, slide or bounce, from their traces alone, and their definitions."""
+"""Metrics of bodies that land, slide or bounce, computed from their traces."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from robo_genesis.core.metrics import (
 )
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace, first_time, settled_from
-from robo_genesis.lessons.l03.energy import clearance, flights, kept_energy, total_energy
+from robo_genesis.lessons.l03.energy import clearance, conserved_energy, flights, total_energy
 from robo_genesis.sim.contacts import BOUNCE, LANDING, SLIDE, ContactCase
 
 CLEAR = 1e-4
@@ -25,30 +25,28 @@ RESTING_BAND = 5e-4
 """Half width of the band around the resting height in which a body has settled [m]."""
 
 STOP_SPEED, STOP_HOLD = 0.01, 0.10
-"""A body has stopped at the first sample from which it is slower [m/s] for this long [s]."""
+"""A body has stopped at the first sample from which it is slower [m/s] for this time [s]."""
 
 BOUNCES_COUNTED = 4
-"""After so many bounces the energy that is left is asked for."""
+"""Number of bounces after which the remaining energy is measured."""
+
+
+POSE = ("link_pos_m", "link_quat_wxyz")
+FLIGHT = ("contacts", *POSE, "t_s")
+ENERGY = ("link_pos_m", "link_vel_m_s", "link_ang_rad_s")
+"""Arrays of a bundle that several metrics are computed from."""
 
 
 @dataclass(frozen=True, slots=True)
 class LandingMetrics(CaseMetrics):
-    """How a dropped body came to lie; `resting_offset` is negative where it has sunk in."""
+    """How a dropped body lands and rests; `resting_offset` is negative where it sinks in."""
 
-    touchdown: float | None = metric(
-        "s", "first sample at the surface", "link_pos_m", "link_quat_wxyz", "t_s"
-    )
-    penetration: float = metric("m", "penetration proxy", "link_pos_m", "link_quat_wxyz")
-    rebound: float = metric("m", "rebound", "link_pos_m", "link_quat_wxyz")
-    separated: float = metric(
-        "s", "time separated after touchdown", "contacts", "link_pos_m", "link_quat_wxyz", "t_s"
-    )
+    touchdown: float | None = metric("s", "first sample at the surface", *POSE, "t_s")
+    penetration: float = metric("m", "penetration proxy", *POSE)
+    rebound: float = metric("m", "rebound", *POSE)
+    separated: float = metric("s", "time separated after touchdown", *FLIGHT)
     upward_speed: float = metric(
-        "m/s",
-        "largest upward speed after touchdown",
-        "link_pos_m",
-        "link_quat_wxyz",
-        "link_vel_m_s",
+        "m/s", "largest upward speed after touchdown", *POSE, "link_vel_m_s"
     )
     resting_time: float | None = metric("s", "settled at", "link_pos_m", "t_s")
     resting_offset: float = metric("m", "height at the end against the ideal one", "link_pos_m")
@@ -56,7 +54,7 @@ class LandingMetrics(CaseMetrics):
 
 @dataclass(frozen=True, slots=True)
 class SlideMetrics(CaseMetrics):
-    """How far a pushed body came, and how."""
+    """How a pushed body slides and stops."""
 
     stop_time: float | None = metric("s", "stop time", "link_vel_m_s", "t_s")
     stop_distance: float | None = metric(
@@ -64,86 +62,59 @@ class SlideMetrics(CaseMetrics):
     )
     final_distance: float = metric("m", "distance at the end", "link_pos_m")
     first_speed: float = metric("m/s", "speed after one outer step", "link_vel_m_s")
-    hop: float = metric("m", "hop", "link_pos_m", "link_quat_wxyz")
-    airborne: float = metric(
-        "s", "time in the air", "contacts", "link_pos_m", "link_quat_wxyz", "t_s"
-    )
+    hop: float = metric("m", "hop", *POSE)
+    airborne: float = metric("s", "time in the air", *FLIGHT)
     spin: float = metric("rad/s", "largest angular speed", "link_ang_rad_s")
 
 
 @dataclass(frozen=True, slots=True)
 class BounceMetrics(CaseMetrics):
-    """What a bouncing body kept of its energy."""
+    """How much energy a bouncing body keeps."""
 
-    start_energy: float = metric(
-        "J", "energy at the start", "link_pos_m", "link_vel_m_s", "link_ang_rad_s"
-    )
-    first_kept: float | None = metric(
-        "%", "energy kept at the first bounce", "link_pos_m", "link_vel_m_s", "link_ang_rad_s"
-    )
-    later_kept: float | None = metric(
-        "%",
-        f"energy left after {BOUNCES_COUNTED} bounces",
-        "link_pos_m",
-        "link_vel_m_s",
-        "link_ang_rad_s",
-    )
+    start_energy: float = metric("J", "energy at the start", *ENERGY)
+    first_kept: float | None = metric("%", "energy kept at the first bounce", *ENERGY)
+    later_kept: float | None = metric("%", f"energy left after {BOUNCES_COUNTED} bounces", *ENERGY)
     flight_drift: float | None = metric(
-        "J",
-        "largest change of the kept energy in a flight",
-        "link_pos_m",
-        "link_vel_m_s",
-        "link_ang_rad_s",
+        "J", "largest change of the kept energy in a flight", *ENERGY
     )
-    lent: float | None = metric(
-        "J",
-        "largest change of the total energy in a flight",
-        "link_pos_m",
-        "link_vel_m_s",
-        "link_ang_rad_s",
-    )
+    lent: float | None = metric("J", "largest change of the total energy in a flight", *ENERGY)
 
 
 def metrics_class(case: ContactCase) -> type[CaseMetrics]:
-    """Return the class of a case's metrics, by the kind of the experiment."""
+    """Return the class of a case's metrics, by the kind of its experiment."""
     return {LANDING: LandingMetrics, SLIDE: SlideMetrics, BOUNCE: BounceMetrics}[case.kind]
-
-
-def case_metrics(trace: ContactTrace, case: ContactCase) -> CaseMetrics:
-    """Measure one run by what is asked of it; the case gives its body, gravity and solver step."""
-    by_kind = {LANDING: landing_metrics, SLIDE: slide_metrics, BOUNCE: bounce_metrics}
-    return by_kind[case.kind](trace, case)
 
 
 def measure(
     traces: Mapping[str, ContactTrace], cases: Mapping[str, ContactCase]
 ) -> dict[str, CaseMetrics]:
-    """Return the metrics of each case.
+    """Measure each run by the kind of its case, which gives body, gravity and solver step.
 
     Raises:
         KeyError: a case has no trace.
     """
-    return {name: case_metrics(traces[name], case) for name, case in cases.items()}
+    by_kind = {LANDING: landing_metrics, SLIDE: slide_metrics, BOUNCE: bounce_metrics}
+    return {name: by_kind[case.kind](traces[name], case) for name, case in cases.items()}
 
 
 def landing_metrics(trace: ContactTrace, case: ContactCase) -> LandingMetrics:
     """Measure how a dropped body lands.
 
     touchdown    first sample at or below the surface
-    penetration  max(0, −min clearance): a proxy, since it sees samples only
+    penetration  max(0, −min clearance): a proxy, since only samples are known
     separated    samples after touchdown without contact points and with clearance, times dt
     """
     clear = clearance(trace, case)
     landed = np.maximum.accumulate(clear <= 0)
     after = landed & (np.arange(len(clear)) > 0)
-    apart = after & (clear > CLEAR) & (trace.contacts[:, 0] == 0)
+    separated = after & (clear > CLEAR) & (trace.contacts[:, 0] == 0)
     offset = trace.link_pos[:, 0, 2].astype(np.float64) - case.rest_height
     upward = np.where(after, trace.link_vel[:, 0, 2], 0.0)
     return LandingMetrics(
         touchdown=first_time(trace.t, clear <= 0),
         penetration=float(max(0.0, -clear.min())),
         rebound=float(np.where(after, clear, 0.0).max(initial=0.0)),
-        separated=float(apart.sum() * trace.dt),
+        separated=float(separated.sum() * trace.dt),
         upward_speed=float(upward.max(initial=0.0)),
         resting_time=settled_from(trace.t, np.abs(offset) <= RESTING_BAND),
         resting_offset=float(offset[-1]),
@@ -151,11 +122,11 @@ def landing_metrics(trace: ContactTrace, case: ContactCase) -> LandingMetrics:
 
 
 def stopped_at(speed: FloatArray, dt: float) -> int | None:
-    """Return the first sample from which |speed| < STOP_SPEED for STOP_HOLD, None if there is none.
+    """Return the first sample from which |speed| < STOP_SPEED for STOP_HOLD, None without one.
 
     Args:
         speed: at each state, (n+1,) [m/s].
-        dt: outer step [s]; a hold of k steps takes k + 1 samples.
+        dt: outer step [s]; a hold of k steps has k + 1 samples.
     """
     hold = round(STOP_HOLD / dt)
     slow = np.abs(speed) < STOP_SPEED
@@ -163,31 +134,31 @@ def stopped_at(speed: FloatArray, dt: float) -> int | None:
 
 
 def slide_metrics(trace: ContactTrace, case: ContactCase) -> SlideMetrics:
-    """Measure how a pushed body slides; distance and speed are those along x, of its centre."""
+    """Measure how a pushed body slides; distance and speed are those of its centre along x."""
     x = trace.link_pos[:, 0, 0].astype(np.float64)
     speed = trace.link_vel[:, 0, 0].astype(np.float64)
     clear, stop = clearance(trace, case), stopped_at(speed, trace.dt)
-    apart = (clear > CLEAR) & (trace.contacts[:, 0] == 0)
-    turning = np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1)
+    airborne = (clear > CLEAR) & (trace.contacts[:, 0] == 0)
+    spin = np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1)
     return SlideMetrics(
         stop_time=None if stop is None else float(trace.t[stop]),
         stop_distance=None if stop is None else float(x[stop] - x[0]),
         final_distance=float(x[-1] - x[0]),
         first_speed=float(speed[1]),
         hop=float(max(0.0, clear.max())),
-        airborne=float(apart.sum() * trace.dt),
-        spin=float(turning.max()),
+        airborne=float(airborne.sum() * trace.dt),
+        spin=float(spin.max()),
     )
 
 
 def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
-    """Measure what a bouncing body keeps: energies of its flights, by the energy that steps keep.
+    """Measure the energy of each flight, by the energy that semi-implicit Euler conserves.
 
-    lent  largest change of the total energy within one flight, which comes back with the velocity
+    lent  largest change of the total energy within one flight; it is zero again when v_z is
     """
-    kept, total = kept_energy(trace, case), total_energy(trace, case)
-    found = list(flights(trace, case))
-    levels = [float(np.median(kept[flight])) for flight in found]
+    kept, total = conserved_energy(trace, case), total_energy(trace, case)
+    in_air = list(flights(trace, case))
+    levels = [float(np.median(kept[flight])) for flight in in_air]
 
     def share(bounces: int) -> float | None:
         return 100 * levels[bounces] / levels[0] if len(levels) > bounces else None
@@ -196,8 +167,8 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
         start_energy=float(total[0]),
         first_kept=share(1),
         later_kept=share(BOUNCES_COUNTED),
-        flight_drift=max((float(np.ptp(kept[flight])) for flight in found), default=None),
-        lent=max((float(np.ptp(total[flight])) for flight in found), default=None),
+        flight_drift=max((float(np.ptp(kept[flight])) for flight in in_air), default=None),
+        lent=max((float(np.ptp(total[flight])) for flight in in_air), default=None),
     )
 
 
@@ -207,7 +178,7 @@ def metric_records(
     masses: Mapping[str, float],
     settings: Mapping[str, Mapping[str, float]],
 ) -> dict[str, dict[str, Record]]:
-    """Return `metrics.json`: what the engine says of the model, and each case's metrics."""
+    """Return `metrics.json`: the engine's values of the model, and the metrics of each case."""
     of_engine = {"model": count_records(model), "mass": reading_records(masses, "kg")}
     of_engine |= {name: reading_records(found, "1") for name, found in settings.items()}
     return of_engine | case_records(metrics)

@@ -1,4 +1,4 @@
-"""Landings, slides and bounces of a bundle, as their page measured them, from its files."""
+"""Metrics and checks of landings, slides and bounces, from the files of a bundle."""
 
 from robo_genesis.core.metrics import reading_records
 from robo_genesis.core.refusals import AGAIN, BundleRefused
@@ -9,7 +9,7 @@ from robo_genesis.sim.contacts import SETTINGS
 
 
 def recompute(files: BundleReader) -> Recomputed:
-    """Return what the runs of a bundle give: of the lab, or of the lecture's studies.
+    """Return metrics and checks of a bundle's runs, of the lab or of the lecture's studies.
 
     Raises:
         BundleRefused: `cases`, `labels`, `metrics`, `bad-trace`, `frames`, or as
@@ -27,13 +27,13 @@ def recompute(files: BundleReader) -> Recomputed:
         raise BundleRefused("bad-trace", f"arrays: {error} {AGAIN}") from error
     by_setting = spec.BY_GENESIS if lecture else cases
     settings = {name: files.readings(name, by_setting) for name in SETTINGS}
-    found = metric_records(metrics, counts, masses, settings)
+    records = metric_records(metrics, counts, masses, settings)
     run = checks.ContactExperiment(
         counts, masses, settings, cases, traces, metrics, files.end_state, frames
     )
     if not lecture:
-        return Recomputed(found, checks.run_checks(run))
+        return Recomputed(records, checks.run_checks(run))
     seconds = files.readings(study.GROUP, spec.STEPS_STUDIED)
-    found |= {study.GROUP: reading_records(seconds, "s")}
+    records |= {study.GROUP: reading_records(seconds, "s")}
     studies = study.Studies(traces, metrics, seconds)
-    return Recomputed(found, checks.run_study_checks(run) + study.run_checks(studies))
+    return Recomputed(records, checks.run_study_checks(run) + study.run_checks(studies))

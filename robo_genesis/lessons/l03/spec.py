@@ -1,6 +1,6 @@
-"""Specification of lesson L03: bodies that land, slide and bounce, and what is claimed of them.
+"""Specification of lesson L03: bodies that land, slide and bounce, tolerances and claims.
 
-It is data and computes nothing: what of it decides a measured value or a check is in
+The module is data and computes nothing. The values that decide a metric or a check are in
 `parameters()` and `study_parameters()`, and only a change there makes evidence stale.
 
 Source of the parameters of landing and sliding: the public course robo-genesis-101, lesson L03
@@ -13,13 +13,12 @@ from typing import Any
 from robo_genesis.core.scene import CAMERA
 from robo_genesis.sim.contacts import SURFACE_SIZE, TOP, ContactCase
 
-LESSON = "l03"
 MINIMUM_HARDWARE = "cpu"
 STUDY_PAGE = "lecture"
 """The page of the lesson that runs the studies."""
 
 LINK = "body"
-"""What the one link of each run is called in the record; the engine's name goes with the shape."""
+"""The record's name of the only link of each run; the engine's name depends on the shape."""
 
 BASELINE = ContactCase(start=(0.0, 0.0, 1.0), duration=1.5)
 LANDINGS = {
@@ -28,7 +27,7 @@ LANDINGS = {
     "dt20_sub2": replace(BASELINE, dt=0.02, substeps=2),
     "dt20_sub1": replace(BASELINE, dt=0.02, substeps=1),
 }
-"""One cube, dropped; dt in milliseconds and substeps are the names, 10 and 2 are the baseline's."""
+"""One dropped cube, named by dt in milliseconds and substeps; the baseline has 10 and 2."""
 
 PUSHED = ContactCase(
     start=(-0.6, -0.15, TOP + 0.04),
@@ -45,16 +44,16 @@ SLIDES = {
     "low_on_030": replace(PUSHED, surface_friction=0.30),
     "high_on_030": replace(BESIDE, surface_friction=0.30),
 }
-"""Two cubes of low and high friction of their own, side by side on two surfaces."""
+"""Two cubes of low and high own friction, side by side on two surfaces."""
 
 DROPPED_BALL = ContactCase(
     start=(0.0, 0.0, TOP + 0.04 + 0.10), duration=2.0, shape="ball", spring=(1.0, 0.01)
 )
 BOUNCES = {f"bounce_sub{n}": replace(DROPPED_BALL, substeps=n) for n in (1, 2, 4, 10, 20, 100)}
-"""One ball on a nearly undamped contact; the number of substeps is the name."""
+"""One ball on a nearly undamped contact, named by its number of substeps."""
 
 CASES = LANDINGS | SLIDES | BOUNCES
-"""The lab's runs."""
+"""The runs of the lab."""
 
 STEPS_STUDIED = {
     "h_20000us": (0.02, 1),
@@ -65,10 +64,10 @@ STEPS_STUDIED = {
     "h_625us": (0.00125, 2),
     "h_125us": (0.00125, 10),
 }
-"""Outer step [s] and substeps; the solver's step in microseconds is the name."""
+"""Outer step [s] and substeps, named by the solver step in microseconds."""
 
 HEIGHTS_STUDIED = tuple(round(1.0 + 0.0066 * k, 4) for k in range(-4, 5))
-"""Heights to fall from [m]: a step's distance at landing is met by them at many phases."""
+"""Initial heights [m]: with them the cubes meet the surface at many phases of a step."""
 
 STEP_CASES = {
     name: {
@@ -79,39 +78,38 @@ STEP_CASES = {
     }
     for name, (dt, n) in STEPS_STUDIED.items()
 }
-"""By solver step, the landing from each height, side by side; the height in 0.1 mm is the name."""
+"""By solver step, the landing from each height side by side, named by the height in 0.1 mm."""
 
 LANDED_AGAIN = {name: case for group in STEP_CASES.values() for name, case in group.items()}
-"""All of these runs."""
+"""All landings of `STEP_CASES`."""
 
 AS_BASELINE = "h_5000us_10000"
-"""The one of them that falls and is stepped as the baseline is, with each solver step recorded."""
+"""The landing with the baseline's height and solver step, with each solver step recorded."""
 
-CLEAN_SLIDES = {
-    f"{name}_elliptic": replace(case, cone="elliptic") for name, case in SLIDES.items()
-} | {
-    f"{name}_elliptic_sub10": replace(SLIDES[name], cone="elliptic", substeps=10)
-    for name in ("low_on_050", "high_on_050")
+ROUND = {f"{name}_elliptic": replace(case, cone="elliptic") for name, case in SLIDES.items()}
+CLEAN_SLIDES = ROUND | {
+    f"{name}_sub10": replace(ROUND[name], substeps=10)
+    for name in ("low_on_050_elliptic", "high_on_050_elliptic")
 }
-"""The slides with the engine's other model of friction, two of them with finer steps."""
+"""The slides with the engine's other friction model, two of them also with finer steps."""
 
 CONVEX_SLIDES = {
     f"{name}_convex": replace(SLIDES[name], cone="elliptic", resolution="convex", impratio=1.0)
     for name in ("low_on_050", "high_on_050")
 }
-"""The round cone alone, with all else as it is by default with the pyramid."""
+"""The round cone alone; all other settings are the defaults of the pyramid."""
 
 CONE_CASES = CLEAN_SLIDES | CONVEX_SLIDES
 
 REPEATED = {name: CASES[name] for name in ("baseline", "low_on_050", "high_on_050")}
-"""Cases of the lab that the lecture runs, too."""
+"""Cases of the lab that the lecture also runs."""
 
 OTHER_ENGINE = {
     f"mujoco_{name}": case
     for name, case in (LANDINGS | SLIDES | CONVEX_SLIDES).items()
     if name != "dt20_sub2" and not name.endswith("_030")
 }
-"""Cases that are run in MuJoCo with equal settings."""
+"""Cases that also run in MuJoCo with equal settings."""
 
 ENGINE_PAIRS = {
     "baseline": "mujoco_baseline",
@@ -122,78 +120,70 @@ ENGINE_PAIRS = {
     "low_on_050_convex": "mujoco_low_on_050_convex",
     "high_on_050_convex": "mujoco_high_on_050_convex",
 }
-"""Runs of the lecture that both engines make with equal settings."""
+"""Runs of the lecture in Genesis and in MuJoCo with equal settings."""
 
 OWN_DEFAULTS = "mujoco_own_baseline"
-"""The baseline in MuJoCo with MuJoCo's own contact."""
+"""The baseline in MuJoCo with MuJoCo's default contact."""
 
 BY_GENESIS = REPEATED | LANDED_AGAIN | CONE_CASES
-"""Those of the lecture's runs that the course's engine makes."""
+"""The runs of the lecture in Genesis."""
 
 STUDY_CASES = BY_GENESIS | OTHER_ENGINE | {OWN_DEFAULTS: BASELINE}
-"""All runs of the lecture."""
+"""All runs of the lecture, in both engines."""
 
 FINER = (("dt10_sub1", "baseline"), ("dt20_sub1", "dt20_sub2"))
 """Pairs that differ in substeps alone, the coarser one first."""
 
 EQUAL_STEP = ("dt10_sub1", "dt20_sub2")
-"""A pair of equal solver step and other outer steps."""
+"""A pair with equal solver steps and different outer steps."""
 
 EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
-"""Of the baseline's scene (entities, the surface among them) and of its cube."""
+"""`entities` counts those of the scene with the surface, the others belong to the cube."""
 
 SAME_STATE = 1e-6
-"""What states at shared times may differ by where the solver's steps are the same [m]."""
+"""Tolerance of states at shared times where the solver steps are equal [m]."""
 
 SAME_SLIDE = 1e-4
-"""What a stopping distance may change by where the pair's friction did not [m]."""
+"""Tolerance of a stopping distance where the friction of the pair did not change [m]."""
 
 COULOMB_SHARE = 0.20
-"""What a stopping distance may differ from Coulomb's by, as a share of it: these cubes hop."""
+"""Relative tolerance of a stopping distance against Coulomb's: these cubes hop."""
 
 LEVEL_SHARE = 1e-4
-"""What the kept energy may change by in a flight, as a share of that at the start: float32 rounds
-in each of up to some thousand solver steps. The lent part is ten times as large at least."""
+"""Tolerance of the conserved energy in a flight, as a share of the energy at the start: float32
+rounds in each of up to some thousand solver steps. The bounded error of the total energy is at
+least ten times as large."""
 
 FINE_SHARE = 0.3
-"""What the finest step may keep at the first bounce beside what a linear spring does [%]."""
+"""Tolerance of the share kept at the first bounce with the finest step, against a spring [%]."""
 
 ENGINES_APART = 5e-5
-"""What landings and the first hop may differ by between two engines of equal settings [m]."""
+"""Tolerance of landings between two engines with equal settings [m]."""
 
 VIEW = CAMERA | {"pos": (1.3, -1.5, 1.25), "lookat": (0.0, 0.0, 0.82), "fov": 34}
-"""The lesson's camera, with the surface and the cube's whole way in the picture."""
+"""The lesson's camera, with the surface and the whole path of the cube in the picture."""
 
 RESOLUTION = {
     "m": 1e-5, "m/s": 1e-3, "rad/s": 0.05, "s": 0.005, "kg": 1e-6, "1": 0.5, "J": 1e-6, "%": 0.1,
 }  # fmt: skip
-"""Differences below these are called equal, by unit."""
+"""By unit, the difference below which two values count as equal."""
 
 TOLERANCES = {
-    "m": (2e-5, 0.0),
-    "m/s": (1e-3, 0.0),
-    "s": (0.0, 0.0),
-    "kg": (1e-6, 0.0),
-    "J": (5e-6, 0.0),
-    "%": (0.2, 0.0),
-    "stop_distance": (0.01, 0.0),
-    "final_distance": (0.01, 0.0),
-    "stop_time": (0.08, 0.0),
-    "airborne": (0.05, 0.0),
-    "hop": (0.005, 0.0),
-    "rad/s": (12.0, 0.0),
-}
-"""By unit or metric, (atol, rtol) that one may differ by between engine versions or backends.
+    "m": (2e-5, 0.0), "m/s": (1e-3, 0.0), "s": (0.0, 0.0), "kg": (1e-6, 0.0), "J": (5e-6, 0.0),
+    "%": (0.2, 0.0), "stop_distance": (0.01, 0.0), "final_distance": (0.01, 0.0),
+    "stop_time": (0.08, 0.0), "airborne": (0.05, 0.0), "hop": (0.005, 0.0), "rad/s": (12.0, 0.0),
+}  # fmt: skip
+"""By unit or metric, (atol, rtol) of one metric between engine versions or backends.
 
-Where a cube has hopped, the contact points that are found at its landing decide how it goes on, and
-no engine is right: what comes after has wide ones, those of times and spin little more than the
-order of magnitude. Genesis and MuJoCo with equal settings differ by as much."""
+After a hop, the contact points at the landing decide the further motion, and no engine is right.
+The metrics of that motion have wide tolerances; those of times and spin compare little more than
+the order of magnitude. Genesis and MuJoCo with equal settings differ by as much."""
 
 RELATIONS = (
     (("low_on_050", "high_on_050"), "stop_distance", "lower", 0.05),
     (("low_on_050", "low_on_030"), "stop_distance", "higher", 0.05),
 )
-"""Orderings that the lesson claims: ((first, second), metric, second against first, margin)."""
+"""Claimed orderings: ((first, second), metric, order of the second to the first, margin)."""
 
 
 def parameters() -> dict[str, Any]:
@@ -214,7 +204,10 @@ def parameters() -> dict[str, Any]:
 
 
 def study_parameters() -> dict[str, Any]:
-    """Return those of the lecture, whose runs are others."""
-    own = {"cases": {name: asdict(case) for name, case in STUDY_CASES.items()}}
-    elsewhere = {"in_mujoco": sorted(OTHER_ENGINE), "with_its_own_contact": OWN_DEFAULTS}
-    return parameters() | own | elsewhere | {"engines_apart_m": ENGINES_APART}
+    """Return the configured inputs of the lecture, which has other runs."""
+    return parameters() | {
+        "cases": {name: asdict(case) for name, case in STUDY_CASES.items()},
+        "in_mujoco": sorted(OTHER_ENGINE),
+        "with_its_own_contact": OWN_DEFAULTS,
+        "engines_apart_m": ENGINES_APART,
+    }

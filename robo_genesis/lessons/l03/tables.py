@@ -1,57 +1,72 @@
-"""Tables of the studies of landings, slides and engines, as rows for a page to display."""
+"""Tables of landings, slides and engines, as rows for a page to display."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from robo_genesis.lessons.l03 import friction as sliding
-from robo_genesis.lessons.l03 import spec
+from robo_genesis.lessons.l03 import friction, spec
 from robo_genesis.lessons.l03.metrics import CLEAR, CaseMetrics, LandingMetrics
 from robo_genesis.lessons.l03.study import Studies, distance_between, solver_step
+from robo_genesis.sim.contacts import ContactCase
+
+Rows = Sequence[dict[str, str]]
 
 
-def step_rows(run: Studies) -> Sequence[dict[str, str]]:
-    """Return one row a solver step, for a table on a page."""
+def landing_rows(cases: Mapping[str, ContactCase]) -> Rows:
+    """Return one row per case: its steps and the resulting numbers of states and solver steps."""
+    return [
+        {
+            "case": f"`{name}`",
+            "dt [ms]": f"{1000 * case.dt:g}",
+            "substeps": str(case.substeps),
+            "h [ms]": f"{1000 * case.h:g}",
+            "states": str(case.steps + 1),
+            "solver steps": str(case.steps * case.substeps),
+        }
+        for name, case in cases.items()
+    ]
+
+
+def step_rows(studies: Studies) -> Rows:
+    """Return one row per solver step."""
     rows = []
     for name in spec.STEPS_STUDIED:
-        found = run.landings(name)
+        found = studies.landings(name)
         depths = [1000 * of.penetration for of in found]
-        high = [1000 * of.rebound for of in found]
         rows.append(
             {
                 "solver step h [ms]": f"{1000 * solver_step(name):g}",
-                "time constant [ms]": f"{1000 * run.time_constants[name]:g}",
+                "time constant [ms]": f"{1000 * studies.time_constants[name]:g}",
                 "penetration proxy, least to most [mm]": f"{min(depths):.2f} to {max(depths):.2f}",
                 "cubes that rebound": f"{sum(of.rebound > CLEAR for of in found)} of {len(found)}",
-                "highest rebound [mm]": f"{max(high):.2f}",
+                "highest rebound [mm]": f"{max(1000 * of.rebound for of in found):.2f}",
             }
         )
     return rows
 
 
-def slide_rows(
-    run: Studies, names: Sequence[str], stepped: bool = False
-) -> Sequence[dict[str, str]]:
-    """Return one row a slide, with Coulomb's distance beside it.
+def slide_rows(studies: Studies, names: Sequence[str], stepped: bool = False) -> Rows:
+    """Return one row per slide, with Coulomb's distance.
 
     Args:
-        run: the studies.
-        names: of the slides.
-        stepped: whether to give the formula's value in solver steps.
+        studies: the runs of the lecture.
+        names: the slides to show.
+        stepped: whether to give the value of the formula in solver steps.
     """
     rows = []
+    formula = "v² / (2 μ g)" + (" − v h / 2" if stepped else "")
     for name in names:
-        case, found = spec.STUDY_CASES[name], run.slide(name)
-        friction = max(case.friction, case.surface_friction)
-        formula = sliding.coulomb_distance(case.speed, friction, case.gravity)
-        less = case.speed * case.h / 2 if stepped else 0.0
-        stop, head = found.stop_distance, "v² / (2 μ g)" + (" − v h / 2" if stepped else "")
+        case, found = spec.STUDY_CASES[name], studies.slide(name)
+        mu = friction.pair_friction(case)
+        distance = friction.coulomb_distance(case.speed, mu, case.gravity)
+        distance -= case.speed * case.h / 2 if stepped else 0.0
+        stop = found.stop_distance
         rows.append(
             {
                 "run": name,
-                "μ of the pair": f"{friction:g}",
+                "μ of the pair": f"{mu:g}",
                 "stopping distance [m]": "not observed" if stop is None else f"{stop:.5f}",
-                f"{head} [m]": f"{formula - less:.5f}",
+                f"{formula} [m]": f"{distance:.5f}",
                 "hop [mm]": f"{1000 * found.hop:.2f}",
                 "largest angular speed [rad/s]": f"{found.spin:.2f}",
             }
@@ -59,32 +74,31 @@ def slide_rows(
     return rows
 
 
-def engine_rows(run: Studies) -> Sequence[dict[str, str]]:
-    """Return one row a pair of runs: how far apart the engines are, from when on, with contacts."""
+def engine_rows(studies: Studies) -> Rows:
+    """Return one row per pair of runs: the distance between the engines, and its first excess."""
     rows = []
-    for name, other in (*spec.ENGINE_PAIRS.items(), ("baseline", spec.OWN_DEFAULTS)):
-        far = distance_between(run, name, other)
-        over = np.flatnonzero(far > spec.ENGINES_APART)
-        parts = f"{run.traces[other].t[over[0]]:.2f} s" if len(over) else "never"
-        both = (run.traces[of].contacts[:, 0] for of in (name, other))
-        found = (counts[over[0]] if len(over) else "–" for counts in both)
-        high = (f"{1000 * rise(run.metrics[of]):.2f}" for of in (name, other))
-        largest = far.max()
+    for pair in (*spec.ENGINE_PAIRS.items(), ("baseline", spec.OWN_DEFAULTS)):
+        distance = distance_between(studies, *pair)
+        excess = np.flatnonzero(distance > spec.ENGINES_APART)
+        since, counts = "never", ["–", "–"]
+        if len(excess):
+            since = f"{studies.traces[pair[1]].t[excess[0]]:.2f} s"
+            counts = [str(studies.traces[name].contacts[excess[0], 0]) for name in pair]
+        heights = [f"{1000 * rise(studies.metrics[name]):.2f}" for name in pair]
+        mm = 1000 * float(distance.max())
         rows.append(
             {
-                "Genesis": name,
-                "MuJoCo": other,
-                "rebound or hop [mm]": " and ".join(high),
-                "farthest apart": f"{1e6 * largest:.2g} µm"
-                if largest < 1e-3
-                else f"{1000 * largest:.2f} mm",
-                "over 0.05 mm from": parts,
-                "contacts there": " and ".join(map(str, found)),
+                "Genesis": pair[0],
+                "MuJoCo": pair[1],
+                "rebound or hop [mm]": " and ".join(heights),
+                "farthest apart": f"{1000 * mm:.2g} µm" if mm < 1 else f"{mm:.2f} mm",
+                "over 0.05 mm from": since,
+                "contacts there": " and ".join(counts),
             }
         )
     return rows
 
 
 def rise(found: CaseMetrics) -> float:
-    """Return how high a body comes above the surface after it touched it [m]."""
+    """Return the largest height of a body above the surface after the first contact [m]."""
     return found.rebound if isinstance(found, LandingMetrics) else getattr(found, "hop", 0.0)

@@ -1,14 +1,13 @@
-"""Bundles of dropped boxes, which have no joints: accepted, compared, handed on, refused."""
+"""Bundles of dropped boxes, which have no joints: accepted, compared, tabulated, refused."""
 
-import csv
 import shutil
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 import pytest
 from bundles import written
-from spoilers import edit, predicate, seal
+from lessons.body_bundles import in_archive, in_json, metric, pop, recomputed, refused, table
+from spoilers import predicate
 
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
@@ -19,14 +18,9 @@ from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.l02 import checks, life_cycle, spec, study
 from robo_genesis.lessons.l02.metrics import measure, metric_records
 from robo_genesis.sim import session
-from robo_genesis.site.takeaways.files import csv_text
 
 CASES = spec.CASES | spec.SUBSTEP_CASES
-WENT = {
-    f"{call} {side}": int(side == belongs)
-    for call, belongs in life_cycle.BELONGS.items()
-    for side in (life_cycle.BEFORE, life_cycle.AFTER)
-}
+COUNTED = {name: int(accepted) for name, accepted in life_cycle.expected(rendered=True).items()}
 
 
 @pytest.fixture(scope="module")
@@ -39,11 +33,11 @@ def sound(tmp_path_factory, engine, frames, make_drop) -> Path:
         joints=None,
         links=(spec.LINK,),
         traces=traces,
-        metrics=metric_records(metrics, spec.EXPECTED_MODEL, 0.5) | life_cycle.records(WENT),
+        metrics=metric_records(metrics, spec.EXPECTED_MODEL, 0.5) | life_cycle.records(COUNTED),
         checks=[
             *checks.run_checks(run),
             *study.run_checks(metrics, CASES),
-            life_cycle.check(WENT, rendered=True),
+            life_cycle.check(COUNTED, rendered=True),
         ],
         frames=frames,
         parameters=spec.study_parameters(),
@@ -54,15 +48,8 @@ def sound(tmp_path_factory, engine, frames, make_drop) -> Path:
 
 @pytest.fixture
 def dropped(sound, tmp_path) -> Path:
-    """A bundle of one's own, to spoil."""
+    """A copy of the bundle, to spoil."""
     return Path(shutil.copytree(sound, tmp_path / "l02" / "lecture" / "cpu"))
-
-
-def refused(folder) -> str:
-    seal(folder)
-    with pytest.raises(BundleRefused) as caught:
-        verify_bundle(folder)
-    return str(caught.value)
 
 
 def test_a_sound_one_is_accepted_and_has_no_joints(dropped):
@@ -74,7 +61,7 @@ def test_a_sound_one_is_accepted_and_has_no_joints(dropped):
     assert units["link_vel_m_s"] == "m/s"
 
 
-def test_its_runs_come_back_as_they_were(dropped, make_drop):
+def test_its_runs_are_read_as_they_were_recorded(dropped, make_drop):
     arrays = bundle.read_arrays(dropped)
     found = read_any_trace(dropped, arrays, "baseline")
     assert np.array_equal(found.link_pos, make_drop(spec.BASELINE).link_pos)
@@ -100,9 +87,7 @@ def test_it_compares_with_itself(dropped):
 
 
 def test_it_becomes_a_table_with_units(dropped):
-    arrays = bundle.read_arrays(dropped)
-    trace = read_any_trace(dropped, arrays, "baseline")
-    rows = list(csv.DictReader(csv_text(trace, arrays, "baseline").splitlines()))
+    rows = table(dropped, "baseline")
     assert len(rows) == 21
     assert float(rows[0]["link_pos box_baselink z [m]"]) == 0.5
     assert float(rows[-1]["link_vel box_baselink z [m/s]"]) == pytest.approx(-9.81 * 0.2)
@@ -110,76 +95,38 @@ def test_it_becomes_a_table_with_units(dropped):
 
 def missing_run(folder):
     (folder / "arrays" / "substeps_10.npz").unlink()
-    edit(folder, "arrays.json", lambda arrays: arrays["cases"].pop("substeps_10"))
+    pop("arrays.json", "cases", "substeps_10")(folder)
 
 
-def other_position(folder):
-    path = folder / "arrays" / "baseline.npz"
-    with np.load(path) as stored:
-        values = {name: np.array(stored[name]) for name in stored}
-    values["link_pos_m"][5, 0, 2] += 1e-3
-    np.savez_compressed(path, **values)
-
-
-def honest_failure(folder):
-    """Another rule of stepping, with metrics and checks made what the arrays now give."""
-    path = folder / "arrays" / "baseline.npz"
-    with np.load(path) as stored:
-        values = {name: np.array(stored[name]) for name in stored}
-    values["link_pos_m"][1:, 0, 2] += 1e-5
-    np.savez_compressed(path, **values)
-    arrays = bundle.read_arrays(folder)
-    traces = {name: read_body_trace(folder, arrays, name) for name in CASES}
-    metrics = measure(traces, CASES)
-    records = metric_records(metrics, spec.EXPECTED_MODEL, 0.5) | life_cycle.records(WENT)
-    edit(folder, "metrics.json", lambda found: found.update(records))
-    frames = {name: np.zeros(0) for name in ("initial", "final")}
-    run = checks.DropExperiment(spec.EXPECTED_MODEL, 0.5, CASES, traces, metrics, "camera", frames)
-    outcomes = [asdict(check) for check in checks.run_checks(run)]
-
-    def change(m):
-        recorded = m["predicate"]["checks"]
-        m["predicate"]["checks"] = [*outcomes[:-1], *recorded[len(outcomes) - 1 :]]
-
-    edit(folder, "manifest.json", change)
-
-
-def metric(group, name, value):
-    def change(folder):
-        edit(folder, "metrics.json", lambda m: m[group][name].update(value=value))
-
-    return change
+def moved(where, by):
+    return in_archive("baseline", lambda a: a["link_pos_m"][where, 0, 2].__iadd__(by))
 
 
 def invented_contacts(folder):
-    path = folder / "arrays" / "baseline.npz"
-    with np.load(path) as stored:
-        values = {name: np.array(stored[name]) for name in stored}
-    values["contacts"] = np.zeros((21, 1), np.int32)
-    np.savez_compressed(path, **values)
+    contacts = np.zeros((21, 1), np.int32)
+    in_archive("baseline", lambda arrays: arrays.update(contacts=contacts))(folder)
     described = {"dims": ["state", "link"], "shape": [21, 1], "dtype": "int32", "unit": "1"}
-    edit(folder, "arrays.json", lambda a: a["cases"]["baseline"]["variables"].update(
-        contacts=described | {"long_name": "contact points"}))  # fmt: skip
+    in_json("arrays.json", lambda a: a["cases"]["baseline"]["variables"].update(
+        contacts=described | {"long_name": "contact points"}))(folder)  # fmt: skip
 
 
 SPOILED = {
     "contacts that nobody checks": ("labels", invented_contacts),
     "a run of the study is missing": ("cases", missing_run),
-    "a position was moved": ("metrics", other_position),
-    "another rule of stepping": ("failed", honest_failure),
+    "a position was moved": ("metrics", moved(slice(5, 6), 1e-3)),
+    "another rule of stepping": ("failed", recomputed(moved(slice(1, None), 1e-5))),
     "a metric was written": ("metrics", metric("baseline", "drop", 0.1962)),
     "another mass": ("checks", metric("body", "mass", 0.6)),
     "no mass": ("metrics", metric("body", "mass", None)),
     "a call that went through on the wrong side": (
         "checks", metric("life_cycle", "scene.step before build", 1)),
     "a call that was never tried": (
-        "metrics", lambda f: edit(f, "metrics.json", lambda m: m["life_cycle"].popitem())),
-    "one more link": ("labels", lambda f: edit(f, "arrays.json", lambda a: a["coords"].update(
-        link=[spec.LINK, "lid"]))),
-    "an axis of DOFs": ("labels", lambda f: edit(f, "arrays.json", lambda a: a["coords"].update(
-        dof=["joint"]))),
-    "a check that is left out": (
-        "checks", lambda f: edit(f, "manifest.json", lambda m: m["predicate"]["checks"].pop())),
+        "metrics", pop("metrics.json", "life_cycle", "camera.render after build")),
+    "one more link": ("labels", in_json(
+        "arrays.json", lambda a: a["coords"].update(link=[spec.LINK, "lid"]))),
+    "an axis of DOFs": ("labels", in_json(
+        "arrays.json", lambda a: a["coords"].update(dof=["joint"]))),
+    "a check that is left out": ("checks", pop("manifest.json", "predicate", "checks", -1)),
     "the lab's parameters": ("stale", predicate(parameters=spec.parameters())),
 }  # fmt: skip
 

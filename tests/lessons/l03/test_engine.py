@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.core import checks
-from robo_genesis.lessons.l03 import checks as contact_checks
+from robo_genesis.lessons.l03 import checks as l03_checks
 from robo_genesis.lessons.l03 import spec, study
 from robo_genesis.lessons.l03.metrics import measure
 from robo_genesis.sim import contacts, mujoco_contacts, rigid_bodies, session, visual_shape
@@ -29,14 +29,14 @@ def ran(real_engine):
         pair = {name: case for name, case in spec.SLIDES.items() if name.endswith(surface)}
         contacts.record_world(contacts.build_world(gs, pair), traces, settings)
     model = rigid_bodies.read_model(baseline.scene, baseline.bodies["baseline"])
-    return contact_checks.ContactExperiment(
+    return l03_checks.ContactExperiment(
         model, masses, settings, spec.CASES, traces, measure(traces, spec.CASES), "camera", frames
     ), baseline
 
 
 def test_the_lab_passes_its_checks(ran):
     experiment, _ = ran
-    assert checks.require("l03", contact_checks.run_checks(experiment)) == "L03 CHECK: PASSED"
+    assert checks.require("l03", l03_checks.run_checks(experiment)) == "L03 CHECK: PASSED"
 
 
 def test_a_second_run_of_one_scene_is_the_same_to_the_last_bit(ran):
@@ -49,12 +49,9 @@ def test_a_second_run_of_one_scene_is_the_same_to_the_last_bit(ran):
 
 def test_the_ball_bounces_alike_in_mujoco(ran):
     experiment, _ = ran
-    here, there = (
-        experiment.traces["bounce_sub20"],
-        mujoco_contacts.run_case(spec.BOUNCES["bounce_sub20"]),
-    )
-    first = slice(0, 40)  # drop, first bounce and half of the second flight
-    assert np.abs(here.link_pos[first] - there.link_pos[first]).max() < 1e-4
+    other = mujoco_contacts.run_case(spec.BOUNCES["bounce_sub20"])
+    difference = np.abs(experiment.traces["bounce_sub20"].link_pos - other.link_pos)
+    assert difference[:40].max() < 1e-4  # drop, first bounce and half of the second flight
 
 
 def test_the_drawn_table_is_the_engine_s(ran):

@@ -1,0 +1,77 @@
+"""Spoilers and writers of bundles of free bodies, shared by the tests of L02 and L03."""
+
+import csv
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+from spoilers import edit, predicate, seal
+
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.recompute import Reader
+from robo_genesis.evidence.trace_files import read_any_trace
+from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.lessons.registry import find_lesson
+from robo_genesis.site.takeaways.files import csv_text
+
+
+def in_json(name, change):
+    return lambda folder: edit(folder, name, change)
+
+
+def metric(group, name, value):
+    return in_json("metrics.json", lambda found: found[group][name].update(value=value))
+
+
+def pop(file, *path):
+    """Remove one entry of a JSON file by its path."""
+
+    def change(content):
+        for key in path[:-1]:
+            content = content[key]
+        content.pop(path[-1])
+
+    return in_json(file, change)
+
+
+def in_archive(case, change):
+    """Change the arrays of one case in place, by their names."""
+
+    def spoil(folder):
+        path = folder / "arrays" / f"{case}.npz"
+        with np.load(path) as stored:
+            values = {name: np.array(stored[name]) for name in stored}
+        change(values)
+        np.savez_compressed(path, **values)
+
+    return spoil
+
+
+def recomputed(*spoilers):
+    """Spoil a bundle, then write the metrics and the checks that its arrays now give."""
+
+    def spoil(folder):
+        for one in spoilers:
+            one(folder)
+        manifest = bundle.read_manifest(folder)
+        found = find_lesson(manifest.predicate.lesson).recompute(Reader(folder, manifest))
+        edit(folder, "metrics.json", lambda records: records.update(found.metrics))
+        predicate(checks=[asdict(check) for check in found.outcomes])(folder)
+
+    return spoil
+
+
+def refused(folder) -> str:
+    """Return the refusal of a spoiled bundle with correct digests and key."""
+    seal(folder)
+    with pytest.raises(BundleRefused) as caught:
+        verify_bundle(folder)
+    return str(caught.value)
+
+
+def table(folder, case) -> list[dict[str, str]]:
+    """Return the rows of a run's CSV file."""
+    arrays = bundle.read_arrays(folder)
+    text = csv_text(read_any_trace(folder, arrays, case), arrays, case)
+    return list(csv.DictReader(text.splitlines()))
