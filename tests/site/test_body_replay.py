@@ -120,8 +120,8 @@ def test_a_lesson_that_handed_on_no_shape_is_told_of_its_own_thing(dropped, tmp_
     (tmp_path / LESSON / "lecture" / visual_shape.FILE).unlink()
     with pytest.raises(DirectiveError) as caught:
         replay_block(Panel(tmp_path / "book"), KEY, dropped)
-    assert "l99 handed on no shape of its box" in caught.value.msg
-    assert "robot_shape.read_shape(box)) after the box is built" in caught.value.msg
+    assert "l99 wrote no shape of its box" in caught.value.msg
+    assert "visual_shape.read_shape(box)) after the box is built" in caught.value.msg
 
 
 @pytest.fixture

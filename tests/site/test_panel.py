@@ -107,7 +107,7 @@ def of_metric(text, case, name):
 
 def test_equal_runs_stand_side_by_side(folder, there):
     text = sphinx_panel.metrics_text("l04", folder, there)
-    assert text.startswith("**Against this build's run on cpu: equal.**")
+    assert text.startswith("**Compared with this build's run on cpu: equal.**")
     record = bundle.read_metrics(folder)["G2"]["overshoot"]
     value = format_value(record.value, record.unit)
     assert of_metric(text, "G2", "overshoot")[:3] == [value, value, "0 rad"]
@@ -171,7 +171,7 @@ def test_a_difference_outside_the_tables_is_named(folder, there):
     edit(there, "arrays.json", lambda a: a["joints"][3].update(dof_idx_local=0))
     seal(there)
     text = sphinx_panel.metrics_text("l04", folder, there)
-    assert ": differs.** They differ in coverage, too: see `make compare`." in text
+    assert ": differs.** They also differ in coverage: see `make compare`." in text
 
 
 def test_runs_that_cannot_be_compared_say_why(folder, there):
@@ -262,8 +262,8 @@ def panel_of(folder, tmp_path, monkeypatch, lesson="l04"):
 def test_a_lesson_that_handed_on_no_shape_is_told_what_to_do(folder, tmp_path, monkeypatch):
     with pytest.raises(DirectiveError) as caught:
         panel_of(folder, tmp_path, monkeypatch)
-    assert "l04 handed on no shape of its robot" in caught.value.msg
-    assert "robot_shape.write_shape(contract.outputs / 'l04' / 'lecture'" in caught.value.msg
+    assert "l04 wrote no shape of its robot" in caught.value.msg
+    assert "visual_shape.write_shape(contract.outputs / 'l04' / 'lecture'" in caught.value.msg
 
 
 def test_another_robot_s_shape_is_an_error_of_the_page(folder, tmp_path, monkeypatch):

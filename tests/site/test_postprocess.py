@@ -5,7 +5,7 @@ from bs4 import BeautifulSoup
 from PIL import Image
 
 from robo_genesis.site import page_weight
-from robo_genesis.site.postprocess import finished
+from robo_genesis.site.postprocess import finish_page
 
 HEAD = """\
 <script data-cfasync="false">document.documentElement.dataset.mode = "auto";</script>
@@ -19,7 +19,7 @@ HEAD = """\
 
 def page(tmp_path, body: str, head: str = "") -> BeautifulSoup:
     html = f"<!DOCTYPE html><html><head>{head}</head><body>{body}</body></html>"
-    return BeautifulSoup(finished(html, tmp_path), "html.parser")
+    return BeautifulSoup(finish_page(html, tmp_path), "html.parser")
 
 
 def test_script_files_wait_and_what_needs_them_waits_behind_them(tmp_path):
@@ -37,7 +37,7 @@ def test_script_files_wait_and_what_needs_them_waits_behind_them(tmp_path):
 def test_light_or_dark_is_decided_by_the_script_in_the_head(tmp_path):
     theme = '<script>document.documentElement.dataset.theme = "auto";</script>'
     html = f'<html data-theme="auto"><head>{theme}</head><body><script>1</script></body></html>'
-    found = BeautifulSoup(finished(html, tmp_path), "html.parser")
+    found = BeautifulSoup(finish_page(html, tmp_path), "html.parser")
     assert found.html["data-theme"] == "light"  # for a reader without scripts
     first, second = (script.get_text() for script in found.select("script"))
     assert first.startswith('document.documentElement.dataset.theme = "auto";')
@@ -127,7 +127,7 @@ def test_folds_of_the_menu_are_named_after_their_page_and_the_sidebar_is_a_landm
 
 def test_markup_outside_of_what_is_mended_comes_through(tmp_path):
     body = "<pre>\n  two\n\n lines &lt; three</pre><math><mi>x</mi></math><p>a<br/>b — c</p>"
-    assert body in finished(f"<!DOCTYPE html><html><body>{body}</body></html>", tmp_path)
+    assert body in finish_page(f"<!DOCTYPE html><html><body>{body}</body></html>", tmp_path)
 
 
 def test_unused_files_of_the_theme_go_and_others_stay(tmp_path):

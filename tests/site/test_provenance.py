@@ -114,14 +114,14 @@ def test_what_has_no_line_or_follows_from_no_run_stops_the_build(tmp_path):
         build(folder)
     said = [line for line in str(caught.value).splitlines() if "WARNING" in line]
     for part in (
-        "a cell puts out <table> as raw HTML, which would have no line in the ledger. "
+        "a cell outputs <table> as raw HTML, which would have no line in the ledger. "
         "Display Markdown (robo_genesis.core.tables) or a figure.",
-        "a cell puts out <img> as raw HTML",
+        "a cell outputs <img> as raw HTML",
         "a cell tagged inputs shows a picture",
         "a page may not set the class evidence-badge",
         "evidence/l04/amdgpu/frames/final.svg lies below evidence/",
         "the picture innocent.svg lies below evidence/",
-        "bare is glued from the page lab, and nothing would say so.",
+        "bare is glued from the page lab, and its origin would not be shown.",
     ):
         assert [line for line in said if part in line], f"{part!r} is not in {said}"
 

@@ -135,12 +135,12 @@ def test_links_stand_below_a_node_that_turns_z_up(model):
 
 
 def test_many_triangles_become_few_and_few_stay(shape):
-    assert len(replay_model.light(shape[0]).faces) < 0.1 * len(shape[0].faces)
-    assert len(replay_model.light(shape[1]).faces) == len(shape[1].faces)
+    assert len(replay_model.simplified(shape[0]).faces) < 0.1 * len(shape[0].faces)
+    assert len(replay_model.simplified(shape[1]).faces) == len(shape[1].faces)
 
 
 def test_what_is_left_of_a_ball_is_near_it(shape):
-    radius = np.linalg.norm(replay_model.light(shape[0]).vertices, axis=1)
+    radius = np.linalg.norm(replay_model.simplified(shape[0]).vertices, axis=1)
     assert radius == pytest.approx(1, abs=0.02)
 
 
