@@ -35,13 +35,10 @@ WAYS_ON = {
 def configure(app: Sphinx, config: Config) -> None:
     """Give the site's address to Sphinx and the extensions."""
     config.notfound_urls_prefix = site_root()
-    address = site_address()
-    if address is None:
-        return
-    config.html_baseurl = config.ogp_site_url = address
-    config.sitemap_url_scheme = "{link}"
-    config.sitemap_locales = [None]
-    config.sitemap_excludes = ["404.html", "search.html", "genindex.html"]
+    if address := site_address():
+        config.html_baseurl = config.ogp_site_url = address
+        config.sitemap_url_scheme, config.sitemap_locales = "{link}", [None]
+        config.sitemap_excludes = ["404.html", "search.html", "genindex.html"]
 
 
 def write_not_found(app: Sphinx) -> list[Any]:

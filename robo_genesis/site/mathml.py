@@ -58,8 +58,8 @@ def checked(node: nodes.Element, display: str) -> str:
 
 def visit_inline(self: Any, node: nodes.Element) -> None:
     """Write an inline formula."""
-    self.body.append(self.starttag(node, "span", "", CLASS="math notranslate nohighlight"))
-    self.body.append(checked(node, "inline") + "</span>")
+    opening = self.starttag(node, "span", "", CLASS="math notranslate nohighlight")
+    self.body.append(f"{opening}{checked(node, 'inline')}</span>")
     raise nodes.SkipNode
 
 

@@ -27,13 +27,9 @@ from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.status import RECORDED_PAGE, Status
 from robo_genesis.lessons.declaration import Compared, Filmed, Moving
 from robo_genesis.lessons.registry import compared_cases, filmed, find_lesson
+from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import Run
-from robo_genesis.site.evidence.measured import (
-    BACKEND,
-    lesson_backends,
-    outputs_folder,
-    recorded_state,
-)
+from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.replay.directive import replay_block
 
 
@@ -59,8 +55,10 @@ class Evidence(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Return one panel per backend; the reference backend has one even without a run."""
         lesson, book = self.arguments[0], Path(self.env.srcdir)
-        backends = lesson_backends(book, lesson)
-        return [self.panel(lesson, recorded_state(book, lesson, name)) for name in backends]
+        backends = measured.lesson_backends(book, lesson)
+        return [
+            self.panel(lesson, measured.recorded_state(book, lesson, name)) for name in backends
+        ]
 
     def panel(self, lesson: str, status: Status) -> nodes.Node:
         """Return the panel of one backend."""
@@ -69,7 +67,7 @@ class Evidence(SphinxDirective):
             panel += self.parse_text_to_nodes(missing_text(lesson, status))
             return panel
         folder = Path(self.env.srcdir) / "evidence" / lesson / status.backend
-        here = outputs_folder() / lesson / RECORDED_PAGE / BACKEND
+        here = measured.outputs_folder() / lesson / RECORDED_PAGE / BACKEND
         panel += self.parse_text_to_nodes(backend_text(status))
         recorded = Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True).key
         panel["evidence_runs"] = (recorded,)

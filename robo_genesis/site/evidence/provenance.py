@@ -18,16 +18,9 @@ from sphinx.util import logging
 
 from robo_genesis.evidence.status import RECORDED_PAGE
 from robo_genesis.lessons.book_pages import find_pages
-from robo_genesis.site.evidence import ledger_data, refusals
+from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
 from robo_genesis.site.evidence.ledger_data import Item, Run
-from robo_genesis.site.evidence.measured import (
-    BACKEND,
-    lesson_backends,
-    outputs_folder,
-    page_state,
-    recorded_state,
-)
 from robo_genesis.site.evidence.origin import INPUTS, above, origin
 
 TITLE = 80
@@ -45,19 +38,16 @@ def measured_pages(book: Path) -> dict[str, str]:
 @lru_cache(maxsize=4)
 def all_runs(book: Path) -> dict[str, Run]:
     """Return the runs of this build and the recorded ones by key, missing runs included."""
-    here = outputs_folder()
-    declared = [page.split("/") for page in measured_pages(book).values()]
-    runs = [
-        Run(f"{lesson}/{page}", here / lesson / page / BACKEND,
-            page_state(here, lesson, page, book))
-        for lesson, page in declared
-    ]  # fmt: skip
-    for lesson in dict.fromkeys(lesson for lesson, _ in declared):
-        for backend in lesson_backends(book, lesson):
+    outputs, runs, recorded = measured.outputs_folder(), [], []
+    for name in measured_pages(book).values():
+        lesson, page = name.split("/")
+        status = measured.page_state(outputs, lesson, page, book)
+        runs.append(Run(name, outputs / name / measured.BACKEND, status))
+        for backend in measured.lesson_backends(book, lesson):
             folder = book / "evidence" / lesson / backend
-            status = recorded_state(book, lesson, backend)
-            runs.append(Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True))
-    return {run.key: run for run in runs}
+            status = measured.recorded_state(book, lesson, backend)
+            recorded.append(Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True))
+    return {run.key: run for run in runs + recorded}
 
 
 def read_page(app: Sphinx, doctree: nodes.document) -> None:

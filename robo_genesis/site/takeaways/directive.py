@@ -5,7 +5,8 @@ into the site when it is complete.
 """
 
 import shutil
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 
 from docutils import nodes
@@ -21,6 +22,8 @@ from robo_genesis.site.takeaways.files import Takeaways, system, write_takeaways
 from robo_genesis.site.takeaways.plain_markdown import ProseError
 
 FOLDER = "takeaways"
+Link = Callable[..., list[nodes.Node]]
+"""Returns the link to a file with an optional text, and its size."""
 
 
 class TakeawaysBox(SphinxDirective):
@@ -39,7 +42,7 @@ class TakeawaysBox(SphinxDirective):
             )  # fmt: skip
         except (LookupError, ProseError, bundle.BundleRefused) as error:
             raise self.error(f"takeaways: {error}") from error
-        links = Links(relative_uri(f"{self.env.docname}.html", FOLDER), files)
+        links = partial(link, relative_uri(f"{self.env.docname}.html", FOLDER), files)
         return [self.box(found, links), *self.downloads(found, links)]
 
     def page(self, name: str) -> Page:
@@ -50,7 +53,7 @@ class TakeawaysBox(SphinxDirective):
             raise self.error(f"takeaways: there is no page {name!r}. Choices: {known}.")
         return pages[name]
 
-    def box(self, found: Takeaways, links: "Links") -> nodes.Node:
+    def box(self, found: Takeaways, links: Link) -> nodes.Node:
         """Return what to download and the commands that run the lab."""
         commands = "\n".join(found.commands)
         box = nodes.admonition("", nodes.title("", "Run it yourself"), classes=["run-it-yourself"])
@@ -68,14 +71,12 @@ class TakeawaysBox(SphinxDirective):
         )
         return box
 
-    def downloads(self, found: Takeaways, links: "Links") -> Iterable[nodes.Node]:
+    def downloads(self, found: Takeaways, links: Link) -> Iterable[nodes.Node]:
         """Return the list of the files of this run."""
         yield from self.prose("Results of the run on this page, for your own tools:")
-        tables = [
-            part
-            for case, table, archive in found.arrays
-            for part in (f"{case} ", links(table, "CSV"), " and ", links(archive, "npz"), "; ")
-        ]
+        tables: list[str | list[nodes.Node]] = []
+        for case, table, archive in found.arrays:
+            tables += [f"{case} ", links(table, "CSV"), " and ", links(archive, "npz"), "; "]
         figures = [part for path in found.figures for part in (links(path), ", ")]
         yield bullets(
             (links(found.executed), ", the notebook as it ran"),
@@ -89,24 +90,20 @@ class TakeawaysBox(SphinxDirective):
         return list(self.parse_text_to_nodes(text))
 
 
-class Links:
-    """Makes a link to a downloadable file, with its size.
+def link(base: str, files: Path, file: Path, text: str = "") -> list[nodes.Node]:
+    """Return a link to a downloadable file, and its size.
 
     Args:
-        base: relative address of the files on the site.
-        staging: the folder that holds the files now.
+        base: address of the files on the site, relative to the page.
+        files: the folder that holds the files now.
+        file: one of them.
+        text: of the link, by default the file's name.
     """
-
-    def __init__(self, base: str, staging: Path):
-        self.base, self.staging = base, staging
-
-    def __call__(self, file: Path, text: str = "") -> list[nodes.Node]:
-        """Return the link, named by the file unless `text` is given, and the size."""
-        address = f"{self.base}/{file.relative_to(self.staging).as_posix()}"
-        link = nodes.reference(
-            "", text or file.name, internal=True, refuri=address, classes=["takeaway"]
-        )
-        return [link, nodes.Text(f" ({max(1, round(file.stat().st_size / 1000))} kB)")]
+    address = f"{base}/{file.relative_to(files).as_posix()}"
+    reference = nodes.reference(
+        "", text or file.name, internal=True, refuri=address, classes=["takeaway"]
+    )
+    return [reference, nodes.Text(f" ({max(1, round(file.stat().st_size / 1000))} kB)")]
 
 
 def bullets(*items: Iterable[str | list[nodes.Node]]) -> nodes.Node:
