@@ -90,4 +90,5 @@ def setup(app: Sphinx) -> None:
     # Jupyter Book always sets this value, also where sphinx_comments is not an extension.
     app.add_config_value("comments_config", None, "html")
     app.connect("html-page-context", drop_third_parties, priority=900)
-    mathml.register(app)
+    inline, block = (mathml.visit_inline, None), (mathml.visit_block, None)
+    app.add_html_math_renderer("mathml", inline, block)  # html_math_renderer chooses it

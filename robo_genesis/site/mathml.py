@@ -6,7 +6,6 @@ from typing import Any
 
 from docutils import nodes
 from latex2mathml.converter import convert
-from sphinx.application import Sphinx
 from sphinx.util import logging
 from sphinx.util.math import get_node_equation_number
 
@@ -73,8 +72,3 @@ def visit_block(self: Any, node: nodes.Element) -> None:
         self.body.append("</span>")
     self.body.append(checked(node, "block") + "</div>\n")
     raise nodes.SkipNode
-
-
-def register(app: Sphinx) -> None:
-    """Make this the site's math renderer; `html_math_renderer: mathml` chooses it."""
-    app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))

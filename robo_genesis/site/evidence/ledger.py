@@ -203,26 +203,16 @@ def visit_scroll_box(self: Any, node: scroll_box) -> None:
     self.body.append(self.starttag(node, "div", CLASS="scroll-box", **given))
 
 
-def depart_scroll_box(self: Any, node: scroll_box) -> None:
-    """Close the box."""
-    self.body.append("</div>\n")
-
-
 def visit_digest(self: Any, node: digest_text) -> None:
     """Open a digest, which becomes wider when it has the focus."""
     self.body.append(self.starttag(node, "code", "", tabindex="0"))
-
-
-def depart_digest(self: Any, node: digest_text) -> None:
-    """Close the digest."""
-    self.body.append("</code>")
 
 
 def setup(app: Sphinx) -> None:
     """Register the directive, its nodes and the two later steps."""
     app.add_directive("ledger", Ledger)
     app.add_node(ledger_part)
-    app.add_node(scroll_box, html=(visit_scroll_box, depart_scroll_box))
-    app.add_node(digest_text, html=(visit_digest, depart_digest))
+    app.add_node(scroll_box, html=(visit_scroll_box, lambda self, _: self.body.append("</div>\n")))
+    app.add_node(digest_text, html=(visit_digest, lambda self, _: self.body.append("</code>")))
     app.connect("doctree-resolved", fill_in)
     app.connect("build-finished", write_downloads)

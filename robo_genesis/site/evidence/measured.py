@@ -186,11 +186,6 @@ def visit_measured(self: Any, node: measured_value) -> None:
     self.body.append(self.starttag(node, "span", "", tabindex="0", role="note", **provenance))
 
 
-def depart_measured(self: Any, node: measured_value) -> None:
-    """Close the element."""
-    self.body.append("</span>")
-
-
 def setup(app: Sphinx) -> None:
     """Register roles, directive and writer."""
     app.add_role("measured", Measured())
@@ -198,4 +193,4 @@ def setup(app: Sphinx) -> None:
     app.add_role("engine-source", EngineSource())
     app.add_role("engine-release", EngineRelease())
     app.add_directive("lesson-status", LessonStatus)
-    app.add_node(measured_value, html=(visit_measured, depart_measured))
+    app.add_node(measured_value, html=(visit_measured, lambda self, _: self.body.append("</span>")))

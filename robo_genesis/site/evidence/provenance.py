@@ -145,9 +145,8 @@ def add_line(holder: nodes.Element, text: str, row: str) -> None:
 
 def all_items(env: BuildEnvironment) -> dict[str, list[Item]]:
     """Return the items of all pages read so far, by page."""
-    if not hasattr(env, "robo_genesis_items"):
-        env.robo_genesis_items = {}  # type: ignore[attr-defined]
-    return env.robo_genesis_items  # type: ignore[attr-defined]
+    items: dict[str, list[Item]] = vars(env).setdefault("robo_genesis_items", {})
+    return items
 
 
 def forget_page(app: Sphinx, env: BuildEnvironment, docname: str) -> None:
@@ -158,6 +157,6 @@ def forget_page(app: Sphinx, env: BuildEnvironment, docname: str) -> None:
 def setup(app: Sphinx) -> None:
     """Register the passes over each page that was read."""
     sphinx_origin.register(app)
-    refusals.register(app)
+    app.connect("doctree-read", refusals.refuse, priority=890)  # before the lines are added
     app.connect("env-purge-doc", forget_page)
     app.connect("doctree-read", read_page, priority=900)  # pictures are collected before

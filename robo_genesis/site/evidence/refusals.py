@@ -89,8 +89,3 @@ def _is_evidence(uri: str, book: Path) -> bool:
     path, folder = book / uri, book / "evidence"
     normal = Path(os.path.normpath(path))
     return normal.is_relative_to(folder) or path.resolve().is_relative_to(folder.resolve())
-
-
-def register(app: Sphinx) -> None:
-    """Register the pass, before lines of provenance are added."""
-    app.connect("doctree-read", refuse, priority=890)
