@@ -1,7 +1,7 @@
-/* Shows one run of the lecture's grid at a time: everything it shows stands in the page as JSON. */
+/* Shows one run of the lecture's grid at a time; the page contains all runs as JSON. */
 "use strict";
 
-/* plot.js is there by then, in whichever order the page names the scripts. */
+/* plot.js has loaded by then, in whatever order the page lists the scripts. */
 document.addEventListener("DOMContentLoaded", () => {
   const { add, draw, write } = globalThis.timePlot;
   const HEIGHT = 210;
@@ -17,7 +17,7 @@ document.addEventListener("DOMContentLoaded", () => {
     );
     const positions = (point) => point.q.map((q) => data.start + q * data.resolution.q);
 
-    /* The run that the inputs name; the last axis changes fastest. */
+    /* The run of the chosen inputs; the last axis changes fastest. */
     function chosen() {
       const number = inputs.reduce(
         (sum, input, k) => sum * data.axes[k].values.length + Number(input.value), 0,
@@ -85,7 +85,7 @@ document.addEventListener("DOMContentLoaded", () => {
     }
 
     root.hidden = false;
-    root.nextElementSibling.remove(); // it says that a script is needed
+    root.nextElementSibling.remove(); // the sentence that a script is needed
     for (const input of inputs) input.addEventListener("input", show);
     new ResizeObserver(drawRun).observe(plots);
     show();

@@ -13,10 +13,10 @@ globalThis.timePlot = (() => {
     return element;
   }
 
-  /* A number as text, with a minus sign that is one. */
+  /* A number as text, with a typographic minus sign. */
   const write = (value, digits) => value.toFixed(digits).replace("-", "−");
 
-  /* Draws anew; all lengths are CSS pixels.
+  /* Draws a plot from the start; all lengths are CSS pixels.
      curves: [{times, values, mark, chosen}], `mark` a class of palette.css; levels: [{value, mark}];
      ticks: [{value, label}]; low, high: ends of the value axis; end: of time [s], which begins at 0.
      Returns x and y, from time and value to pixels, and share, from pixels to a share of the time. */

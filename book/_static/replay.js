@@ -1,14 +1,14 @@
-/* Replays recorded runs: curves, readout and, on request, what moves in 3D. The samples are those of
-   the table in the same block, and attributes of the markup say what they are: this script knows
-   channels, and neither joints nor bodies. */
+/* Replays recorded runs: curves, readout and, on request, a 3D model. The samples are those of the
+   table in the same block, and attributes of the markup describe them: this script handles channels,
+   neither joints nor bodies. */
 "use strict";
 
-/* plot.js is there by then, in whichever order the page names the scripts. */
+/* plot.js has loaded by then, in whatever order the page lists the scripts. */
 document.addEventListener("DOMContentLoaded", () => {
   const { add, write } = globalThis.timePlot;
   const HEIGHT = 150;
-  const STRIDE = 5; // samples that one press advances where motion is not wanted
-  const ROOM = 0.1; // share of an axis below which two labels would meet
+  const STRIDE = 5; // samples that one press advances where reduced motion is preferred
+  const ROOM = 0.1; // share of an axis below which two labels would overlap
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
   const number = (text) => Number(text.trim().replace("−", "-"));
@@ -30,22 +30,22 @@ document.addEventListener("DOMContentLoaded", () => {
 
   const capital = (words) => words[0].toUpperCase() + words.slice(1);
 
-  /* Values to name at the axis: both ends, and zero between them where it leaves them room. */
+  /* Tick values: both ends, and zero between them where the labels do not overlap. */
   function tickValues(least, most) {
     const ends = [...new Set([least, most])];
     if (least >= 0 || most <= 0) return ends;
     return [...ends.filter((end) => Math.abs(end) > ROOM * (most - least)), 0];
   }
 
-  /* One plot of all cases; returns what moves its cursor. */
+  /* Draws one plot of all cases; returns the function that moves its cursor. */
   function draw(svg, { curves, chosen, levels, title }) {
-    const held = levels.flatMap(({ mark, values }) => values.map((value) => ({ value, mark })));
-    const all = [...Object.values(curves).flatMap((c) => c.values), ...held.map((l) => l.value)];
+    const drawn = levels.flatMap(({ mark, values }) => values.map((value) => ({ value, mark })));
+    const all = [...Object.values(curves).flatMap((c) => c.values), ...drawn.map((l) => l.value)];
     const [least, most] = [Math.min(...all), Math.max(...all)];
-    const margin = 0.08 * (most - least || 1); // what stands still is a line, too
+    const margin = 0.08 * (most - least || 1); // a constant value also needs a range
     const { times, values, mark } = curves[chosen];
     const { x, y, floor, top, share } = globalThis.timePlot.draw(svg, {
-      title, levels: held, height: HEIGHT, low: least - margin, high: most + margin,
+      title, levels: drawn, height: HEIGHT, low: least - margin, high: most + margin,
       end: times.at(-1),
       curves: Object.entries(curves).map(([name, curve]) => ({ ...curve, chosen: name === chosen })),
       ticks: tickValues(least, most).map((value) => ({
@@ -67,27 +67,27 @@ document.addEventListener("DOMContentLoaded", () => {
     };
   }
 
-  /* Adds a script once, however many replays of the page ask for it; one that failed, anew. */
-  const asked = new Map();
+  /* Adds a script once for all replays of the page; a script that failed is added again. */
+  const requested = new Map();
   function script(source) {
     const adding = () => new Promise((resolve, reject) => {
       const element = document.createElement("script");
       element.src = source;
       element.onload = resolve;
       element.onerror = () => {
-        asked.delete(source);
+        requested.delete(source);
         reject(new Error(source));
       };
       document.head.append(element);
     });
-    if (!asked.has(source)) asked.set(source, adding());
-    return asked.get(source);
+    if (!requested.has(source)) requested.set(source, adding());
+    return requested.get(source);
   }
 
-  /* What the viewer draws with: without it, it would say that it loaded, and show nothing. */
+  /* The viewer needs WebGL 2: without it, the viewer would report success and show nothing. */
   const draws3D = () => document.createElement("canvas").getContext("webgl2") !== null;
 
-  /* What moves, in 3D, in step with the replay. A classic script and a data: address work from disk. */
+  /* The 3D model, in step with the replay. A classic script and a data: address work from disk. */
   class Scene {
     constructor(root) {
       this.root = root;
@@ -125,7 +125,7 @@ document.addEventListener("DOMContentLoaded", () => {
         viewer.animationName = name;
         await viewer.updateComplete;
       }
-      viewer.currentTime = Math.min(time, viewer.duration - 1e-7); // at its end it would start anew
+      viewer.currentTime = Math.min(time, viewer.duration - 1e-7); // at its end it would start again
     }
   }
 
@@ -161,7 +161,7 @@ document.addEventListener("DOMContentLoaded", () => {
       ];
     }
 
-    /* A screen reader says time and channels at the slider. */
+    /* A screen reader reads time and channels at the slider. */
     function showSample(time = run().time[sample()]) {
       const lines = readout();
       const spoken = lines.slice(0, 1 + channels.length)
@@ -172,7 +172,7 @@ document.addEventListener("DOMContentLoaded", () => {
       scene.pose(chosen(), time);
     }
 
-    /* Beside what moves, whose run it is: the picker may be out of sight. */
+    /* Shows the case at the 3D model: the picker may be out of sight. */
     function nameCase() {
       const shown = root.querySelector(".shown");
       shown.textContent = chosen();
@@ -189,8 +189,8 @@ document.addEventListener("DOMContentLoaded", () => {
         const title = `${capital(name)} [${unit}]`;
         const about = `${title} of ${subject} over time; ${chosen()} is drawn bold.`;
         svgs[k].setAttribute("aria-label", about);
-        const held = levels.filter(({ channel }) => channel === name);
-        return draw(svgs[k], { curves, chosen: chosen(), levels: held, title });
+        const drawn = levels.filter(({ channel }) => channel === name);
+        return draw(svgs[k], { curves, chosen: chosen(), levels: drawn, title });
       });
       showSample();
     }

@@ -1,4 +1,4 @@
-/* A box that scrolls sideways can be reached and scrolled by keyboard, and says what it is. */
+/* A box that scrolls sideways can be reached and scrolled by keyboard, and has a name. */
 "use strict";
 
 (() => {
@@ -8,7 +8,7 @@
     pre: "Code",
     ".pst-scrollable-table-container": "Table",
     ".cell_output > .output": "Output",
-    figure: null, // it is named by its caption
+    figure: null, // its caption is its name
   };
   const BOXES = Object.keys(NAMES).map((kind) => `main :is(${kind})`).join(", ");
 
@@ -42,7 +42,7 @@
     for (const element of [box, ...box.children]) observer.observe(element);
   }
 
-  /* What gets the focus inside such a box is shown whole, not the edge of it that happened to show. */
+  /* An element that gets the focus inside such a box is scrolled into full view. */
   document.addEventListener("focusin", ({ target }) => {
     if (target.closest(`main .scroll-box, ${BOXES}`)) {
       target.scrollIntoView({ block: "nearest", inline: "nearest" });

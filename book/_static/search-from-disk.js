@@ -1,4 +1,4 @@
-/* Browsers let a page from disk read no other file, so results show there without their excerpts. */
+/* A page from disk cannot read other files, so search results have no excerpts there. */
 "use strict";
 
 if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;

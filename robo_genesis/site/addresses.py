@@ -1,7 +1,7 @@
-"""What depends on where the site will stand: canonical links, sitemap, social cards, the 404 page.
+"""Parts that depend on the site's address: canonical links, sitemap, social cards, the 404 page.
 
-Without an address (see `address`) nothing claims one: no canonical link, no sitemap, no card. The
-404 page is always there; a server shows it at any depth, so its links begin at the site's root.
+A site without an address has no canonical link, no sitemap and no card. The 404 page is always
+written; a server shows it at any depth, so its links begin at the site's root.
 """
 
 from html import escape
@@ -15,8 +15,8 @@ from robo_genesis.build.site_address import AddressError, site_address, site_roo
 
 NOT_FOUND = """\
 <h1>There is no such page</h1>
-<p>The address may be mistyped, or what stood here has moved. Search, or start from one of the
-pages below.</p>
+<p>The address may be mistyped, or the page has moved. Search, or start from one of the pages
+below.</p>
 <form class="lost" role="search" action="{root}search.html" method="get">
 <label for="lost-words">Search all pages</label>
 <input id="lost-words" type="search" name="q" autocomplete="off"/>
@@ -29,23 +29,20 @@ WAYS_ON = {
     "glossary": "the words of the field",
     "evidence/ledger": "every figure, table and run",
 }
-"""Pages that the 404 page leads to, where a book has them."""
+"""Pages that the 404 page links to, where a book has them."""
 
 
 def configure(app: Sphinx, config: Config) -> None:
-    """Tell Sphinx and the extensions where the site will stand."""
+    """Give the site's address to Sphinx and the extensions."""
     config.notfound_urls_prefix = site_root()
-    address = site_address()
-    if address is None:
-        return
-    config.html_baseurl = config.ogp_site_url = address
-    config.sitemap_url_scheme = "{link}"
-    config.sitemap_locales = [None]
-    config.sitemap_excludes = ["404.html", "search.html", "genindex.html"]
+    if address := site_address():
+        config.html_baseurl = config.ogp_site_url = address
+        config.sitemap_url_scheme, config.sitemap_locales = "{link}", [None]
+        config.sitemap_excludes = ["404.html", "search.html", "genindex.html"]
 
 
 def write_not_found(app: Sphinx) -> list[Any]:
-    """Write the 404 page's text, once it is known which pages the book has."""
+    """Write the text of the 404 page when the pages of the book are known."""
     root, titles = site_root(), app.env.titles
     links = "".join(
         f'<li><a href="{root}{page}.html">{escape(titles[page].astext())}</a>: {what}</li>'
@@ -57,11 +54,11 @@ def write_not_found(app: Sphinx) -> list[Any]:
     return []
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
-    """Register the 404 page, and with an address what needs one.
+def setup(app: Sphinx) -> None:
+    """Register the 404 page, and the extensions that need an address if there is one.
 
     Raises:
-        ConfigError: the address is none.
+        ConfigError: the given address is not valid.
     """
     app.setup_extension("notfound.extension")
     try:
@@ -73,4 +70,3 @@ def setup(app: Sphinx) -> dict[str, Any]:
         app.setup_extension("sphinxext.opengraph")
     app.connect("config-inited", configure, priority=400)  # notfound checks the prefix at 500
     app.connect("html-collect-pages", write_not_found, priority=400)  # and collects its page at 500
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

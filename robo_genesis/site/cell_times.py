@@ -1,22 +1,19 @@
-"""How long each page's code cells took: ```` ```{cell-times} ````.
+"""The time that each page's code cells took: ```` ```{cell-times} ````.
 
-The store of executed pages keeps the seconds of each cell; the build names the pages that it ran.
+The store of executed pages holds the seconds of each cell. The build names the pages that it ran.
 """
 
 import os
 from pathlib import Path
-from typing import Any
 
 from docutils import nodes
-from jupyter_cache.base import JupyterCacheAbstract
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.page_cache import PageCache
 from robo_genesis.build.render import EXECUTED
 from robo_genesis.core import tables
 from robo_genesis.lessons.book_pages import Page, find_pages
-from robo_genesis.site.executed_pages import PAGE_CACHE
+from robo_genesis.site.executed_pages import executed_notebook
 
 
 class CellTimes(SphinxDirective):
@@ -24,30 +21,25 @@ class CellTimes(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Return the table; a page without recorded times is an error of the build."""
-        cache = PageCache(os.environ[PAGE_CACHE])
         executed = os.environ.get(EXECUTED, "").splitlines()
         rows = []
         for page in find_pages(Path(self.env.srcdir)):
             try:
-                seconds = cell_seconds(page, cache)
+                seconds = cell_seconds(page)
             except LookupError as error:
                 raise self.error(f"cell-times: {error}") from error
             rows.append(row(page.docname, seconds, page.docname in executed))
         return self.parse_text_to_nodes(tables.markdown(rows))
 
 
-def cell_seconds(page: Page, cache: JupyterCacheAbstract) -> list[float]:
+def cell_seconds(page: Page) -> list[float]:
     """Return the elapsed seconds of each code cell, from the run whose outputs the page shows.
-
-    Args:
-        page: a page whose code cells are executed.
-        cache: the store of executed pages.
 
     Raises:
         LookupError: the store lacks the page, or the time of one of its cells.
     """
     try:
-        executed = cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
+        executed = executed_notebook(page.notebook)
     except KeyError:
         raise LookupError(f"{page.docname} is not executed. Build with `make book`.") from None
     seconds = list(executed.metadata.get("robo_genesis", {}).get("cell_seconds", []))
@@ -73,7 +65,6 @@ def row(docname: str, seconds: list[float], executed: bool) -> dict[str, str | i
     }
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
+def setup(app: Sphinx) -> None:
     """Register the directive."""
     app.add_directive("cell-times", CellTimes)
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

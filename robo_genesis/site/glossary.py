@@ -1,7 +1,7 @@
-"""Links each term of the glossary at its first use on a page, its definition as the link's title.
+"""Links each term of the glossary at its first use on a page; the link's title is its definition.
 
-Linked are words of running text. Headings, code, formulas, tables, captions and other links stay
-as they are, and a definition does not link to itself.
+Only words of running text become links. Headings, code, formulas, tables, captions and other links
+stay unchanged, and a definition does not link to itself.
 """
 
 import re
@@ -21,7 +21,7 @@ from robo_genesis.site.evidence.origin import above
 
 GLOSSARY = "glossary"
 FORMS = "glossary_forms.yml"
-"""Beside the glossary: in which further forms its terms are written, and which are not linked."""
+"""File in the glossary's folder: further forms of its terms, and terms that are not linked."""
 
 KEPT = (
     addnodes.pending_xref, nodes.caption, nodes.literal, nodes.literal_block, nodes.math,
@@ -34,10 +34,8 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A term as the glossary writes it, the page and anchor of its entry, and what it says."""
+    """The anchor of a term's entry in the glossary, and the first sentence of its definition."""
 
-    name: str
-    docname: str
     anchor: str
     definition: str
 
@@ -49,14 +47,9 @@ class Forms:
     forms: dict[str, list[str]]
     unlinked: list[str]
 
-    @property
-    def named(self) -> set[str]:
-        """The terms that are named."""
-        return {*self.forms, *self.unlinked}
-
 
 def read_forms(book: Path) -> Forms:
-    """Return what a book declares of its terms, nothing where it declares nothing."""
+    """Return the forms that a book declares, empty where it declares none."""
     file = book / FORMS
     return Forms(**yaml.safe_load(file.read_text("utf8"))) if file.is_file() else Forms({}, [])
 
@@ -69,15 +62,15 @@ def glossary_terms(env: BuildEnvironment) -> dict[str, Term]:
     for entry in env.get_doctree(GLOSSARY).findall(nodes.definition_list_item):
         definition = entry.next_node(nodes.definition)
         first = definition.next_node(nodes.paragraph) if definition is not None else None
-        said = re.split(r"(?<=\.)\s", first.astext().replace("\n", " "))[0] if first else ""
+        text = re.split(r"(?<=\.)\s", first.astext().replace("\n", " "))[0] if first else ""
         for term in entry.findall(nodes.term):
             if term["ids"]:
-                found[term.astext()] = Term(term.astext(), GLOSSARY, term["ids"][0], said)
+                found[term.astext()] = Term(term["ids"][0], text)
     return found
 
 
 def written_forms(terms: dict[str, Term], declared: Forms) -> dict[str, Term]:
-    """Return each form in which a term is to be linked, with the term."""
+    """Return each form that becomes a link, with its term."""
     forms = {name: term for name, term in terms.items() if name not in declared.unlinked}
     for name in declared.forms.keys() & terms.keys():  # check_forms names the others
         others = declared.forms[name]
@@ -90,7 +83,7 @@ def written_forms(terms: dict[str, Term], declared: Forms) -> dict[str, Term]:
 
 
 def pattern(forms: dict[str, Term]) -> re.Pattern[str]:
-    """Return what finds the forms as whole words, longer ones before their parts."""
+    """Return a pattern that finds the forms as whole words, longer ones before their parts."""
     longest = sorted(forms, key=lambda form: (-len(form), form))
     words = "|".join(re.escape(form).replace(r"\ ", r"\s+") for form in longest)
     return re.compile(rf"(?<![\w-])(?:{words})(?![\w-])")
@@ -102,16 +95,14 @@ class LinkTerms(SphinxPostTransform):
     default_priority = 410  # outputs of cells have been chosen, references are resolved
 
     def run(self, **kwargs: Any) -> None:
-        """Replace the text that holds a first use by text and links."""
+        """Replace each text that contains a first use by text and links."""
         terms = glossary_terms(self.env)
         if not terms:
             return
         forms = written_forms(terms, read_forms(Path(self.env.srcdir)))
         join_texts(self.document)
         words, seen = pattern(forms), set()
-        for text in list(self.document.findall(nodes.Text)):
-            if not is_prose(text):
-                continue
+        for text in filter(is_prose, list(self.document.findall(nodes.Text))):
             parts: list[nodes.Node] = []
             at, string = 0, text.astext()
             for match in words.finditer(string):
@@ -126,19 +117,19 @@ class LinkTerms(SphinxPostTransform):
 
     def link(self, term: Term, words: str) -> nodes.reference:
         """Return the link from this page to a term's entry."""
-        builder = self.app.builder
-        page = builder.get_relative_uri(self.env.docname, term.docname)
-        uri = {"refuri": f"{page}#{term.anchor}"}
-        if self.env.docname == term.docname:
-            uri = {"refid": term.anchor}
+        if self.env.docname == GLOSSARY:
+            target = {"refid": term.anchor}
+        else:
+            page = self.app.builder.get_relative_uri(self.env.docname, GLOSSARY)
+            target = {"refuri": f"{page}#{term.anchor}"}
         return nodes.reference(
             "", "", nodes.inline("", words), internal=True, classes=["term-link"],
-            reftitle=term.definition, **uri,
+            reftitle=term.definition, **target,
         )  # fmt: skip
 
 
 def join_texts(document: nodes.document) -> None:
-    """Join neighbouring texts: the parser ends one at each line, and a term may begin before it."""
+    """Join adjacent texts: the parser splits them at line ends, but a term may span two lines."""
     for text in list(document.findall(nodes.Text)):
         parent = text.parent
         at = parent.index(text)
@@ -148,27 +139,28 @@ def join_texts(document: nodes.document) -> None:
 
 
 def is_prose(text: nodes.Text) -> bool:
-    """Return whether a text stands in a paragraph, and in nothing that is kept as it is."""
+    """Return whether a text is in a paragraph, and in no element that stays unchanged."""
     return any(above(text, nodes.paragraph)) and not any(
         isinstance(node, KEPT) or KEPT_CLASSES & set(node["classes"]) for node in above(text)
     )
 
 
 def _own_anchors(text: nodes.Text) -> set[str]:
-    """Return the anchors of the glossary's entry that a text stands in."""
+    """Return the anchors of the glossary entry that contains a text."""
     entry = next(above(text, nodes.definition_list_item), None)
     terms = entry.findall(nodes.term) if entry else ()
     return {anchor for term in terms for anchor in term["ids"]}
 
 
 def check_forms(app: Sphinx, env: BuildEnvironment) -> None:
-    """Warn of declared names that the glossary does not have; a warning fails the build."""
-    for name in sorted(read_forms(Path(env.srcdir)).named - glossary_terms(env).keys()):
-        logger.warning(f"{FORMS} names {name!r}, which is no term.", location=GLOSSARY)
+    """Warn about declared names that are not in the glossary; a warning fails the build."""
+    declared = read_forms(Path(env.srcdir))
+    for name in sorted({*declared.forms, *declared.unlinked} - glossary_terms(env).keys()):
+        message = f"{FORMS} names {name!r}, which is not in the glossary. Add or correct it."
+        logger.warning(message, location=GLOSSARY)
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
+def setup(app: Sphinx) -> None:
     """Register the links."""
     app.add_post_transform(LinkTerms)
     app.connect("env-check-consistency", check_forms)
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

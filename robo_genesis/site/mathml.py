@@ -1,4 +1,4 @@
-"""LaTeX math becomes MathML while the site is built, so that reading needs no script."""
+"""Converts LaTeX math to MathML while the site is built, so that pages need no script for it."""
 
 import re
 import xml.etree.ElementTree as ElementTree
@@ -6,7 +6,6 @@ from typing import Any
 
 from docutils import nodes
 from latex2mathml.converter import convert
-from sphinx.application import Sphinx
 from sphinx.util import logging
 from sphinx.util.math import get_node_equation_number
 
@@ -15,15 +14,11 @@ LOGGER = logging.getLogger(__name__)
 # latex2mathml knows `split` and `align*`, which align the same way; the numbers are Sphinx's own.
 ENVIRONMENTS = {"aligned": "split", "align": "align*", "equation": "equation*"}
 
-# What browsers implement (MathML Core) has neither `columnalign` nor bold variants.
+# MathML Core, which browsers implement, has neither `columnalign` nor bold variants.
 FOR_BROWSERS = {
     r'columnalign="(left|right|center)"': r'style="text-align: \1"',
     r'mathvariant="bold(?:-italic)?"': 'style="font-weight: bold"',
 }
-
-
-class MathError(ValueError):
-    """A formula cannot be converted whole."""
 
 
 def to_mathml(latex: str, display: str) -> str:
@@ -34,7 +29,7 @@ def to_mathml(latex: str, display: str) -> str:
         display: `block` or `inline`.
 
     Raises:
-        MathError: the formula is not balanced or uses a command that is not known.
+        ValueError: the formula is not balanced or uses an unknown command.
     """
     for name, known in ENVIRONMENTS.items():
         latex = re.sub(rf"\\(begin|end)\{{{name}\}}", rf"\\\1{{{known}}}", latex)
@@ -42,33 +37,33 @@ def to_mathml(latex: str, display: str) -> str:
         markup = convert(latex, display=display)
         ElementTree.fromstring(markup)
     except Exception as error:  # the converter's parser leaks KeyError, IndexError and its own
-        raise MathError(f"{latex!r} is not valid: {type(error).__name__} {error}") from error
+        raise ValueError(f"{latex!r} is not valid: {type(error).__name__} {error}") from error
     unknown = re.search(r"\\[A-Za-z]*", markup)
     if unknown:
-        raise MathError(f"{latex!r} uses {unknown[0]}, which latex2mathml does not know.")
+        raise ValueError(f"{latex!r} uses {unknown[0]}, which latex2mathml does not know.")
     for pattern, replacement in FOR_BROWSERS.items():
         markup = re.sub(pattern, replacement, markup)
     return markup
 
 
 def checked(node: nodes.Element, display: str) -> str:
-    """Return a node's formula as MathML; a bad one is a warning, which fails the build (-W)."""
+    """Return a node's formula as MathML; a warning for an invalid one fails the build (-W)."""
     try:
         return to_mathml(node.astext(), display)
-    except MathError as error:
+    except ValueError as error:
         LOGGER.warning("math: %s", error, location=node, type="math")
         return ""
 
 
 def visit_inline(self: Any, node: nodes.Element) -> None:
     """Write an inline formula."""
-    self.body.append(self.starttag(node, "span", "", CLASS="math notranslate nohighlight"))
-    self.body.append(checked(node, "inline") + "</span>")
+    opening = self.starttag(node, "span", "", CLASS="math notranslate nohighlight")
+    self.body.append(f"{opening}{checked(node, 'inline')}</span>")
     raise nodes.SkipNode
 
 
 def visit_block(self: Any, node: nodes.Element) -> None:
-    """Write a displayed formula with the number and anchor that references point to."""
+    """Write a displayed formula with the number and anchor of its references."""
     self.body.append(self.starttag(node, "div", CLASS="math notranslate nohighlight"))
     if node["number"]:
         number = get_node_equation_number(self, node)
@@ -77,8 +72,3 @@ def visit_block(self: Any, node: nodes.Element) -> None:
         self.body.append("</span>")
     self.body.append(checked(node, "block") + "</div>\n")
     raise nodes.SkipNode
-
-
-def register(app: Sphinx) -> None:
-    """Make this the site's math renderer; `html_math_renderer: mathml` chooses it."""
-    app.add_html_math_renderer("mathml", (visit_inline, None), (visit_block, None))

@@ -1,7 +1,7 @@
-"""Multiple choice whose right answer is what was measured.
+"""Multiple choice whose right answer was measured.
 
-A page asks how one metric of a case compares with that of another; which option is right is read
-from the accepted bundle when the page is rendered, so it cannot go stale:
+A page asks how one metric of a case compares with that of another. The right option is read from
+the accepted bundle when the page is rendered, so it cannot become stale:
 
     ```{choice} l04/lecture rise_time G1 G2
     When does G2 reach 90 % of its step?
@@ -23,11 +23,11 @@ from robo_genesis.site.evidence.measured import BACKEND, measured, outputs_folde
 EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same, within the lesson's resolution", "higher": "more"}
 UNDECIDED = "this window cannot tell"
-"""What the second case does against the first, as a reader would say it."""
+"""The relation of the second case to the first, in a reader's words."""
 
 
 class choice(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes in lower case
-    """A question; `options` are (text, right) pairs, `answer` and `origin` what was measured."""
+    """A question; `options` are (text, right), `answer` and `origin` describe the measurement."""
 
 
 class Choice(SphinxDirective):
@@ -44,15 +44,9 @@ class Choice(SphinxDirective):
         except (LookupError, bundle.BundleRefused) as error:
             raise self.error(f"choice: {error}") from error
         question, messages = self.parse_inline(" ".join(self.content), lineno=self.lineno)
-        node = choice(
-            "",
-            *question,
-            number=self.env.new_serialno("choice"),
-            options=options(unit, order),
-            answer=answer,
-            origin=origin,
-        )
-        return [node, *messages]
+        number = self.env.new_serialno("choice")
+        shown = {"number": number, "options": options(unit, order), "answer": answer}
+        return [choice("", *question, **shown, origin=origin), *messages]
 
 
 def measured_order(
@@ -61,7 +55,7 @@ def measured_order(
     """Return (order of the second case relative to the first, unit, sentence, provenance).
 
     Raises:
-        LookupError: the metric or a case is not in the bundle; the message lists what is.
+        LookupError: the metric or a case is not in the bundle; the message lists the known ones.
         BundleRefused: the bundle cannot be read.
     """
     _, origin = (measured(lesson_page, f"{case}.{metric}")[1] for case in cases)
@@ -74,7 +68,7 @@ def measured_order(
 
 
 def options(unit: str, order: str | None) -> list[tuple[str, bool]]:
-    """Return each option with whether it is the measured one; exactly one is."""
+    """Return each option and whether it was measured; exactly one is true."""
     words = EARLIER if unit == "s" else LOWER
     return [*((text, order == name) for name, text in words.items()), (UNDECIDED, order is None)]
 
@@ -85,16 +79,15 @@ def visit_choice(self: Any, node: choice) -> None:
 
 
 def depart_choice(self: Any, node: choice) -> None:
-    """Write options, each with what choosing it tells, and the answer in a fold; no script."""
+    """Write the options, each with its feedback, and the answer in a fold; no script is needed."""
     name, answer = f"choice-{node['number']}", escape(node["answer"])
-    rows = []
-    for k, (text, right) in enumerate(node["options"]):
-        verdict = "Yes." if right else "No."
-        rows.append(
-            f'<div><input type="radio" name="{name}" id="{name}-{k}"/>'
-            f'<label for="{name}-{k}">{escape(text)}</label>'
-            f'<p class="feedback {"right" if right else "wrong"}">{verdict} {answer}</p></div>'
-        )
+    rows = [
+        f'<div><input type="radio" name="{name}" id="{name}-{k}"/>'
+        f'<label for="{name}-{k}">{escape(text)}</label>'
+        f'<p class="feedback {"right" if right else "wrong"}">{"Yes" if right else "No"}. {answer}'
+        "</p></div>"
+        for k, (text, right) in enumerate(node["options"])
+    ]
     right = next(text for text, is_right in node["options"] if is_right)
     self.body.append(
         f"</legend>{''.join(rows)}<details><summary>Answer</summary>"
@@ -103,8 +96,7 @@ def depart_choice(self: Any, node: choice) -> None:
     )
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
+def setup(app: Sphinx) -> None:
     """Register the directive."""
     app.add_directive("choice", Choice)
     app.add_node(choice, html=(visit_choice, depart_choice))
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,10 +1,9 @@
-"""A page's reading time below its title, its history from git at its end, and its description."""
+"""A page's reading time below its title, its Git history at its end, and its description."""
 
-import shutil
 import textwrap
-from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -15,28 +14,16 @@ from robo_genesis.core.git import git_or_none
 from robo_genesis.site.evidence.origin import above
 
 WORDS_A_MINUTE = 200
-"""Slow reading, as technical prose asks for; code, tables and formulas are not counted."""
+"""A slow pace, for technical prose; code, tables and formulas are not counted."""
 COMMITS = 6
-"""How many of the latest commits of a page are listed."""
+"""Number of the latest commits of a page that are listed."""
 DESCRIPTION = 200
-"""Letters of a description at most: about what is shown of one elsewhere."""
+"""Longest description, in characters: search engines show about as many."""
 UNCOUNTED = (nodes.literal_block, nodes.table, nodes.math, nodes.math_block, nodes.raw)
 
 
-@dataclass(frozen=True, slots=True)
-class History:
-    """Latest commits of a file as (date, subject), the newest first.
-
-    `unknown` says why nothing is known; `changed` whether the file has changes since.
-    """
-
-    commits: tuple[tuple[str, str], ...] = ()
-    unknown: str = ""
-    changed: bool = False
-
-
 def count_words(document: nodes.document) -> int:
-    """Return the words of a page's running text, headings and captions included."""
+    """Return the number of words in a page's running text, headings and captions included."""
     return sum(
         len(text.astext().split())
         for text in document.findall(nodes.Text)
@@ -45,89 +32,71 @@ def count_words(document: nodes.document) -> int:
 
 
 def reading_time(words: int) -> str:
-    """Return the words as a time, in whole minutes, with what it was computed from."""
+    """Return the time to read some words in whole minutes, with the numbers behind it."""
     minutes = max(1, round(words / WORDS_A_MINUTE))
     return f"About {minutes} min to read: {words:,} words of text at {WORDS_A_MINUTE} a minute."
 
 
 @lru_cache(maxsize=8)
 def _why_unknown(folder: Path) -> str:
-    """Return why a folder's history cannot be read, nothing where it can."""
-    if shutil.which("git") is None:
-        return "Git is not installed where this site was built."
+    """Return why a folder's history cannot be read, an empty text where it can."""
     shallow = git_or_none(folder, "rev-parse", "--is-shallow-repository")
     if shallow is None:
-        return "Git knows no history of this page where this site was built."
+        return "There was no Git, or no Git history of this page, where this site was built."
     if shallow.strip() == "true":
-        return "This site was built from a shallow clone, which holds no history."
+        return "This site was built from a shallow clone, which has no history."
     return ""
 
 
-def history(file: Path) -> History:
-    """Return the latest commits that touched a file."""
-    unknown = _why_unknown(file.parent)
-    if unknown:
-        return History(unknown=unknown)
-    form = ("log", f"-n{COMMITS}", "--format=%cs%x09%s", "--", file.name)
-    lines = (git_or_none(file.parent, *form) or "").splitlines()
-    commits = tuple((day, said) for day, _, said in (line.partition("\t") for line in lines))
-    if not commits:
-        return History(unknown="The page is in no commit yet.")
-    return History(
-        commits, changed=bool(git_or_none(file.parent, "status", "--porcelain", "--", file.name))
-    )
-
-
-def history_html(found: History) -> str:
-    """Return a history as a fold."""
-    rows = "".join(
-        f'<li><time datetime="{day}">{day}</time> {escape(said)}</li>'
-        for day, said in found.commits
-    )
-    changed = "<p>And changes that are in no commit yet.</p>" if found.changed else ""
-    said = f"<p>Not known. {escape(found.unknown)}</p>" if found.unknown else f"<ul>{rows}</ul>"
-    return (
-        '<details class="page-history"><summary>History of this page</summary>'
-        f"{said}{changed}</details>"
-    )
+def history_html(file: Path) -> str:
+    """Return the latest commits that touched a file as a fold, or why they are not known."""
+    folder, name = file.parent, file.name
+    unknown = _why_unknown(folder)
+    log = ("log", f"-n{COMMITS}", "--format=%cs%x09%s", "--", name)
+    commits = [] if unknown else (git_or_none(folder, *log) or "").splitlines()
+    if commits:
+        rows = (
+            f'<li><time datetime="{day}">{day}</time> {escape(subject)}</li>'
+            for day, _, subject in (line.partition("\t") for line in commits)
+        )
+        body = f"<ul>{''.join(rows)}</ul>"
+        if git_or_none(folder, "status", "--porcelain", "--", name):
+            body += "<p>The page has changes that are in no commit yet.</p>"
+    else:
+        body = f"<p>Not known. {unknown or 'The page is in no commit yet.'}</p>"
+    return f'<details class="page-history"><summary>History of this page</summary>{body}</details>'
 
 
 def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
-    """Put the time below the title, but of the home page, and the history at the end."""
+    """Insert the time below the title, except on the home page, and the history at the end."""
     section = document.next_node(nodes.section)
     if section is None:
         return
     if docname != app.config.root_doc:
         time = reading_time(count_words(document))
         section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))
-    fold = history_html(history(Path(app.env.doc2path(docname))))
-    section += nodes.raw("", fold, format="html")
+    section += nodes.raw("", history_html(Path(app.env.doc2path(docname))), format="html")
 
 
 def keep_description(app: Sphinx, document: nodes.document) -> None:
-    """Keep the beginning of a page's first paragraph for search engines and links elsewhere."""
+    """Keep the beginning of a page's first paragraph for search engines and link previews."""
     section = document.next_node(nodes.section)
-    if section is None:
-        return
-    for node in section.children:
-        if isinstance(node, nodes.paragraph):
-            text = textwrap.shorten(node.astext(), DESCRIPTION, placeholder=" …")
-            app.env.metadata[app.env.docname]["og:description"] = text
-            return
+    paragraphs = (n for n in section or () if isinstance(n, nodes.paragraph))
+    for node in islice(paragraphs, 1):
+        text = textwrap.shorten(node.astext(), DESCRIPTION, placeholder=" …")
+        app.env.metadata[app.env.docname]["og:description"] = text
 
 
 def write_description(
     app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
 ) -> None:
-    """Put the description into the page's head."""
-    text = app.env.metadata.get(page, {}).get("og:description")
-    if text:
+    """Write the description into the page's head."""
+    if text := app.env.metadata.get(page, {}).get("og:description"):
         context["metatags"] += f'<meta name="description" content="{escape(text)}" />'
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
+def setup(app: Sphinx) -> None:
     """Register the additions."""
     app.connect("doctree-read", keep_description)
     app.connect("html-page-context", write_description, priority=400)  # read by others at 500
     app.connect("doctree-resolved", add_facts)
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,4 +1,4 @@
-"""What makes a page light: no script blocks it, nothing loads unused, nothing moves or flashes."""
+"""Reduces a page's weight: no script blocks it, no file loads unused, nothing moves or flashes."""
 
 import re
 import shutil
@@ -9,8 +9,8 @@ from urllib.parse import unquote, urlsplit
 from bs4 import BeautifulSoup
 from PIL import Image
 
-# Jupyter Book and the theme put every script on all pages; these have work only where something
-# matches. `fontawesome.js` has none anywhere: the icons come from a font.
+# Jupyter Book and the theme load every script on all pages; these are needed only where a selector
+# matches. No page needs `fontawesome.js`: the icons come from a font.
 NEEDED_BY = {
     "clipboard.min.js": "div.highlight",
     "copybutton.js": "div.highlight",
@@ -29,7 +29,7 @@ NEEDED_BY = {
 NAMED = re.compile(r"[.#]([\w-]+)")
 """Classes and identifiers in a selector."""
 
-# Files of the theme that no page asks for; the rest are tools of its makers.
+# Files of the theme that no page loads.
 UNUSED = (
     "_static/**/*.map",
     "_static/*webpack-macros.html",
@@ -38,25 +38,25 @@ UNUSED = (
 )
 
 OPTIONS = "DOCUMENTATION_OPTIONS"
-"""What Sphinx's scripts set; the file `documentation_options.js` defines it."""
+"""The object that Sphinx's scripts set; the file `documentation_options.js` defines it."""
 
 CHOOSE_THEME = """
     if (document.documentElement.dataset.mode === "auto")
       document.documentElement.dataset.theme =
         matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
   """
-"""What the theme's own script does, but only once it has come."""
+"""The theme's own script does the same, but only after it has loaded."""
 
 TITLE = "page-title"
-"""The anchor of a title that has none of its own."""
+"""The anchor of a title that has no other."""
 
 PIXELS = {"": 1.0, "px": 1.0, "pt": 4 / 3, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
 """CSS pixels in one unit of length."""
 LENGTH = re.compile(r"([\d.]+)([a-z]*)")
 
 
-def lighten(page: BeautifulSoup, folder: Path) -> None:
-    """Make one page light, in place.
+def reduce_weight(page: BeautifulSoup, folder: Path) -> None:
+    """Reduce the weight of one page, in place.
 
     Args:
         page: the complete page as the theme wrote it.
@@ -70,12 +70,12 @@ def lighten(page: BeautifulSoup, folder: Path) -> None:
 
 
 def drop_idle_scripts(page: BeautifulSoup) -> None:
-    """Remove the scripts that have nothing to do on this page."""
+    """Remove the scripts that this page does not need."""
     tags = page.find_all(True)
     written = {name for tag in tags for name in (*tag.get("class", ()), tag.get("id"))}
 
     def matches(selector: str) -> bool:
-        """Ask the page only where all names of a selector stand in it: a vain search is long."""
+        """Search only if the page has all names of a selector: a search without result is slow."""
         named = (NAMED.findall(part) for part in selector.split(","))
         return any(written.issuperset(names) for names in named) and bool(page.select_one(selector))
 
@@ -86,11 +86,11 @@ def drop_idle_scripts(page: BeautifulSoup) -> None:
 
 
 def defer_scripts(page: BeautifulSoup) -> None:
-    """Let every script file wait until the page is there; they then run in their order.
+    """Defer every script file until the page is parsed; the files then run in their order.
 
-    A script written in place cannot wait, unless it is a module: so is one that sets options which
-    a file before it defines. The others need no file, like the theme's first, which sets light or
-    dark before anything shows.
+    An inline script can be deferred only as a module. A script that sets options which a file
+    before it defines becomes one. The others need no file, like the theme's first script, which
+    chooses light or dark before the page shows.
     """
     for script in page.find_all("script", type=None, attrs={"async": None}):
         if script.has_attr("src"):
@@ -100,24 +100,23 @@ def defer_scripts(page: BeautifulSoup) -> None:
 
 
 def choose_theme(page: BeautifulSoup) -> None:
-    """Decide between light and dark before anything shows.
+    """Choose light or dark before the page shows.
 
-    The theme starts with neither, for which its style sheets have no colours, and so no borders:
-    the page would change its colours and move when the deferred scripts come. Without scripts it
-    is light.
+    The theme starts with neither, and its style sheets have no colours or borders for that state:
+    the page would change its colours and move when the deferred scripts run. Without scripts the
+    page is light.
     """
     for script in page.select("html > head > script:not([src])"):
-        html = script.find_parents("html")[0]
         if "dataset.theme" in script.get_text():
             script.append(CHOOSE_THEME)
-            html["data-theme"] = "light"
+            script.find_parents("html")[0]["data-theme"] = "light"
 
 
 def wait_for_the_title(page: BeautifulSoup) -> None:
-    """Let a browser that knows `rel="expect"` show nothing before the page's title is read.
+    """Make a browser that supports `rel="expect"` wait for the page's title before it renders.
 
-    The bar above it has its buttons at the end of the line: half of them would be seen to move when
-    the others come.
+    The buttons of the bar above the title are aligned at its end: the first ones would move when
+    the others appear.
     """
     title = page.select_one("article h1")
     if page.head and title:
@@ -127,9 +126,9 @@ def wait_for_the_title(page: BeautifulSoup) -> None:
 
 
 def place_images(page: BeautifulSoup, folder: Path) -> None:
-    """Give images their size, so that nothing moves when they come, and load the lower ones late.
+    """Give images their size, so that nothing moves when they load, and load the lower ones late.
 
-    The first image of a page may be in sight at once, so it does not wait.
+    The first image of a page may be visible at once, so its loading is not delayed.
     """
     images = [image for image in page.find_all("img", src=True) if image.find_parent("article")]
     for number, image in enumerate(images):
@@ -152,24 +151,18 @@ def image_size(file: Path) -> tuple[int, int]:
             return image.size
     _, root = next(ElementTree.iterparse(file, events=["start"]))
     width, height = (LENGTH.fullmatch(root.get(name, "")) for name in ("width", "height"))
-    if width and height and width[2] in PIXELS and height[2] in PIXELS:
-        return _pixels(width), _pixels(height)
+    if width and height and {width[2], height[2]} <= PIXELS.keys():
+        return round(float(width[1]) * PIXELS[width[2]]), round(
+            float(height[1]) * PIXELS[height[2]]
+        )
     box = root.get("viewBox", "").split()
     if len(box) == 4:
         return round(float(box[2])), round(float(box[3]))
     raise ValueError(f"{file.name} states no size. Give its root element a viewBox.")
 
 
-def _pixels(length: re.Match[str]) -> int:
-    return round(float(length[1]) * PIXELS[length[2]])
-
-
 def drop_unused_files(html: Path) -> None:
-    """Remove the theme's files that no page asks for.
-
-    Args:
-        html: the folder of the site.
-    """
+    """Remove the theme's files that no page of the site's folder loads."""
     for pattern in UNUSED:
         for path in list(html.glob(pattern)):
             shutil.rmtree(path) if path.is_dir() else path.unlink()

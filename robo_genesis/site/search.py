@@ -1,11 +1,10 @@
-"""Search finds a long name by its end, too: `control_force` finds `get_dofs_control_force`.
+"""Search also finds a long name by its end: `control_force` finds `get_dofs_control_force`.
 
-Sphinx's index holds whole words, and its script looks for parts of them only where no page has the
-word itself.
+Sphinx's index contains whole words. Its script searches for parts of words only where no page has
+the whole word.
 """
 
 import re
-from typing import Any
 
 from sphinx.application import Sphinx
 from sphinx.search.en import SearchEnglish
@@ -20,12 +19,11 @@ class SearchNames(SearchEnglish):
 
 
 def ends(word: str) -> list[str]:
-    """Return a word, and what remains of it after each underscore."""
+    """Return a word, and the rest of it after each underscore."""
     starts = [0, *(match.end() for match in re.finditer("_+", word))]
     return [word[at:] for at in starts if word[at:]]
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
-    """Put it in the place of Sphinx's English."""
+def setup(app: Sphinx) -> None:
+    """Replace Sphinx's English."""
     app.add_search_language(SearchNames)
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -40,6 +40,14 @@ DROPPED = Moving(("high", "low"), link="box", thing="box")
 STEPS, DT, G = 40, 0.01, 10.0
 SOFTWARE = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 """WebGL without a graphics card."""
+HEIGHT = """() => {
+  const viewer = document.querySelector("model-viewer");
+  const symbols = Object.getOwnPropertySymbols(viewer);
+  const scene = viewer[symbols.find(symbol => symbol.description === "scene")];
+  let box;
+  scene.traverse(node => { if (node.name === "box") box ??= node; });
+  return box.position.z;
+}"""
 
 
 def falling(height: float) -> BodyTrace:
@@ -54,7 +62,7 @@ def falling(height: float) -> BodyTrace:
 
 @pytest.fixture
 def dropped(folder, monkeypatch, tmp_path):
-    """A bundle of two falls, of a lesson that declares them and handed its shape on."""
+    """A bundle of two falls, of a lesson that declares them and wrote its shape."""
     shutil.rmtree(folder / "arrays")
     traces = {"high": falling(2.0), "low": falling(1.0)}
     arrays = write_traces(folder, traces, None, ["box"])
@@ -93,10 +101,8 @@ def test_pictures_draw_what_the_bundle_holds(dropped):
     glance, panel = sphinx_glance.response(dropped, DROPPED), response(dropped, DROPPED, "cpu")
     assert glance.alt == "Height of the box over time: high and low."
     assert glance.caption == "Height of the box, from get_links_pos."
-    assert panel.alt == (
-        "Height and vertical velocity of the box over time on cpu, with the cases high and low "
-        "drawn over each other."
-    )
+    both = "Height and vertical velocity of the box over time on cpu"
+    assert panel.alt == f"{both}, with the cases high and low drawn over each other."
     other = Moving(("low", "high"), link="box", thing="box")
     assert sphinx_glance.response(dropped, other).content != glance.content
 
@@ -116,12 +122,12 @@ def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, t
     assert ">licence</a>" in text  # the viewer's
 
 
-def test_a_lesson_that_handed_on_no_shape_is_told_of_its_own_thing(dropped, tmp_path):
+def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_path):
     (tmp_path / LESSON / "lecture" / visual_shape.FILE).unlink()
     with pytest.raises(DirectiveError) as caught:
         replay_block(Panel(tmp_path / "book"), KEY, dropped)
-    assert "l99 handed on no shape of its box" in caught.value.msg
-    assert "robot_shape.read_shape(box)) after the box is built" in caught.value.msg
+    assert "l99 wrote no shape of its box" in caught.value.msg
+    assert "visual_shape.read_shape(box)) after the box is built" in caught.value.msg
 
 
 @pytest.fixture
@@ -138,14 +144,10 @@ def page(block, tmp_path) -> Iterator[Page]:
     viewer.write_viewer(SimpleNamespace(outdir=site), None)
     for name in ("plot.js", "replay.js", "plot.css", "replay.css"):
         shutil.copy(BOOK / "_static" / name, site)
-    head = "".join(
-        [
-            *(f'<link rel="stylesheet" href="../{n}.css">' for n in ("palette", "plot", "replay")),
-            *(f'<script defer src="../{n}.js"></script>' for n in ("plot", "replay")),
-        ]
-    )
+    head = [f'<link rel="stylesheet" href="../{n}.css">' for n in ("palette", "plot", "replay")]
+    head += [f'<script defer src="../{n}.js"></script>' for n in ("plot", "replay")]
     file = site / "lessons" / "page.html"
-    file.write_text(html.replace("</head>", f"{head}</head>"))
+    file.write_text(html.replace("</head>", f"{''.join(head)}</head>"))
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium(), args=SOFTWARE)
         page = browser.new_page(viewport={"width": 480, "height": 700})
@@ -192,16 +194,7 @@ def test_the_box_falls_in_3d_and_hides_again(page):
     page.locator("input[value=high]").check()
     page.locator("input[type=range]").fill("30")
     page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.29")
-    height = page.evaluate(
-        """() => {
-      const viewer = document.querySelector("model-viewer");
-      const symbols = Object.getOwnPropertySymbols(viewer);
-      const scene = viewer[symbols.find(symbol => symbol.description === "scene")];
-      let box;
-      scene.traverse(node => { if (node.name === "box") box ??= node; });
-      return box.position.z;
-    }"""
-    )
+    height = page.evaluate(HEIGHT)
     assert height == pytest.approx(2.0 - G * 0.3**2 / 2, abs=1e-5)
 
 

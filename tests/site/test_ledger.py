@@ -51,7 +51,6 @@ def test_without_an_accepted_bundle_nothing_is_called_measured(tmp_path):
     run = Run("l04/lab", tmp_path, Status("refused", "cpu", "files: gone", None, "files"))
     assert ledger_data.provenance("table", [run]) == "No accepted evidence: cpu-refused."
     assert ledger_data.provenance("figure", [run, run]).endswith(": cpu-refused, cpu-refused.")
-    assert ledger_data.facts(run) == {}
     assert ledger_data.provenance("illustration", []) == "Illustration, not measured."
     assert ledger_data.provenance("settings", []) == "Chosen, not measured."
 
@@ -63,9 +62,7 @@ def test_without_an_accepted_bundle_nothing_is_called_measured(tmp_path):
         (True, "l04/lab/cpu/recorded", "$ make evidence LESSON=l04 BACKEND=cpu"),
     ],
 )
-def test_a_recorded_run_is_another_than_the_build_s_and_is_made_otherwise(
-    tmp_path, recorded, key, command
-):
+def test_a_recorded_run_has_its_own_key_and_command(tmp_path, recorded, key, command):
     run = Run("l04/lab", tmp_path, Status("stale", "cpu", "old", None), recorded)
     assert run.key == key
     block = run_block("", run)

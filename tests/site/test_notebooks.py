@@ -2,7 +2,7 @@
 
 import contextlib
 import io
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError
 
 import nbformat
 import pytest
@@ -22,15 +22,9 @@ CELLS = (
     cell("plot()", ":tags: [figure]\n:mystnb: {figure: {caption: 'Drawn by {term}`plot`.'}}\n"),
     '\n+++ {"tags": ["site-only"]}\n\nOnly on the site.\n',
 )
+COMMANDS = ("python3 -m venv course", "course/bin/pip install ./robo.whl jupyterlab")
 ORIGIN = Origin(
-    title="A lab",
-    system="Linux with Python 3",
-    engine="1.2.3",
-    package="0.1.0",
-    wheel="robo.whl",
-    commands=("python3 -m venv course", "course/bin/pip install ./robo.whl jupyterlab"),
-    run="12345678",
-    measured="2026-01-02",
+    "A lab", "Linux with Python 3", "1.2.3", "0.1.0", "robo.whl", COMMANDS, "12345678", "2026-01-02"
 )
 
 
@@ -57,18 +51,10 @@ def test_the_student_s_notebook_is_clean_and_valid(student):
     assert "*Drawn by plot.*" in [c.source for c in student.cells]
 
 
-def test_its_first_lines_say_where_it_comes_from_and_how_to_install(student):
+def test_its_first_lines_contain_its_origin_and_how_to_install(student):
     first = student.cells[0].source
-    for words in (
-        "A lab",
-        "1.2.3",
-        "12345678",
-        "2026-01-02",
-        "CC BY 4.0",
-        ORIGIN.system,
-        *ORIGIN.commands,
-    ):
-        assert words in first
+    facts = (ORIGIN.title, ORIGIN.system, ORIGIN.engine, ORIGIN.run, ORIGIN.measured)
+    assert [words for words in (*facts, *COMMANDS, "CC BY 4.0") if words not in first] == []
 
 
 SHEET = """\
@@ -95,74 +81,75 @@ def test_a_work_sheet_is_filled_in_before_and_after_the_run(page, tmp_path):
     assert sources[-1] == "## 2. Measured\n\n```python\n## no heading\n```"
 
 
-def run_check(student, monkeypatch, installed: dict[str, str]) -> str:
+def run_check(student, monkeypatch, engine: str | None, course: str | None = "0.1.0") -> str:
+    """Run the first cell where these versions are installed, None for a missing package."""
+
     def look_up(name: str) -> str:
-        if name not in installed:
+        found = {"genesis-world": engine, "robo-genesis": course}[name]
+        if found is None:
             raise PackageNotFoundError(name)
-        return installed[name]
+        return found
 
     monkeypatch.setattr("importlib.metadata.version", look_up)
-    assert version is not look_up
     code = next(c.source for c in student.cells if c.cell_type == "code")
-    with contextlib.redirect_stdout(io.StringIO()) as said:
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
         exec(compile(code, "check", "exec"), {})
-    return said.getvalue()
+    return printed.getvalue()
 
 
 def test_its_first_cell_accepts_the_pinned_engine(student, monkeypatch):
-    installed = {"genesis-world": "1.2.3", "robo-genesis": "0.1.0"}
-    assert run_check(student, monkeypatch, installed) == "genesis-world 1.2.3\nrobo-genesis 0.1.0\n"
+    printed = run_check(student, monkeypatch, "1.2.3")
+    assert printed == "genesis-world 1.2.3\nrobo-genesis 0.1.0\n"
 
 
 @pytest.mark.parametrize(
-    ("installed", "said"),
+    ("engine", "course", "message"),
     [
-        (
-            {"genesis-world": "1.0.0", "robo-genesis": "0.1.0"},
-            "genesis-world 1.2.3; it is 1.0.0 here",
-        ),
-        ({"robo-genesis": "0.1.0"}, "genesis-world 1.2.3; it is not installed here"),
-        ({"genesis-world": "1.2.3"}, "robo-genesis 0.1.0; it is not installed here"),
+        ("1.0.0", "0.1.0", "genesis-world 1.2.3; it is 1.0.0 here"),
+        (None, "0.1.0", "genesis-world 1.2.3; it is not installed here"),
+        ("1.2.3", None, "robo-genesis 0.1.0; it is not installed here"),
     ],
 )
-def test_its_first_cell_says_what_to_do_about_another(student, monkeypatch, installed, said):
-    with pytest.raises(RuntimeError) as error:
-        run_check(student, monkeypatch, installed)
-    assert said in str(error.value)
-    assert "course/bin/pip install ./robo.whl" in str(error.value)
+def test_its_first_cell_refuses_another_version(student, monkeypatch, engine, course, message):
+    with pytest.raises(RuntimeError, match=message) as error:
+        run_check(student, monkeypatch, engine, course)
+    assert COMMANDS[1] in str(error.value)
+
+
+def executed(page, folder, *outputs):
+    """The page's executed notebook, its code cells and its text, with these outputs of cells."""
+    codes = [c.source for c in page.notebook.cells if c.cell_type == "code"]
+    ran = [
+        new_code_cell(source, execution_count=k, outputs=[output])
+        for k, (source, output) in enumerate(zip(codes, outputs, strict=True), 1)
+    ]
+    writer = Writer(folder, lambda _: "0.12 s")
+    found = executed_notebook(page, new_notebook(cells=ran), ORIGIN, writer)
+    nbformat.validate(found)
+    return [c for c in found.cells if c.cell_type == "code"], nbformat.writes(found)
 
 
 def test_the_executed_notebook_has_outputs_and_measured_values(page, tmp_path):
-    codes = [c for c in page.notebook.cells if c.cell_type == "code"]
-    ran = [new_code_cell(c.source, execution_count=k) for k, c in enumerate(codes, 1)]
-    ran[0].outputs = [new_output("stream", text="hello")]
     stack = ["File /home/me/secret.py", "\x1b[31mValueError\x1b[0m: no"]
-    ran[1].outputs = [new_output("error", ename="ValueError", evalue="no", traceback=stack)]
-    found = executed_notebook(
-        page, new_notebook(cells=ran), ORIGIN, Writer(tmp_path, lambda _: "0.12 s")
-    )
-    nbformat.validate(found)
-    code = [c for c in found.cells if c.cell_type == "code"]
-    assert code[0].outputs[0].text == "hello"
-    assert code[1].outputs[0].traceback == ["ValueError: no"]
-    assert [c.execution_count for c in code] == [1, 2, 3]
-    assert "It was 0.12 s." in nbformat.writes(found)
-    assert "Only on the site" not in nbformat.writes(found)
+    error = new_output("error", ename="ValueError", evalue="no", traceback=stack)
+    hello = new_output("stream", text="hello")
+    cells, text = executed(page, tmp_path, hello, error, hello)
+    assert cells[0].outputs[0].text == "hello"
+    assert cells[1].outputs[0].traceback == ["ValueError: no"]
+    assert [c.execution_count for c in cells] == [1, 2, 3]
+    assert "It was 0.12 s." in text
+    assert "Only on the site" not in text
 
 
-def test_notes_of_the_compiler_on_its_process_are_dropped_and_warnings_stay(page, tmp_path):
-    codes = [c for c in page.notebook.cells if c.cell_type == "code"]
-    ran = [new_code_cell(c.source) for c in codes]
+def test_notes_of_the_compiler_are_dropped_and_warnings_stay(page, tmp_path):
     note = "[I 01/02/26 11:30:00.841 25171] [shell.py:_shell_pop_print@25] a shell\n"
     warning = "[W 01/02/26 11:30:00.841 25171] [a.py:b@2] mind\n"
-    ran[0].outputs = [new_output("stream", name="stderr", text=note)]
-    ran[1].outputs = [new_output("stream", name="stderr", text=f"{note}UserWarning: x\n{warning}")]
-    ran[2].outputs = [new_output("stream", name="stdout", text=note)]
-    found = executed_notebook(page, new_notebook(cells=ran), ORIGIN, Writer(tmp_path, str))
-    outputs = [c.outputs for c in found.cells if c.cell_type == "code"]
-    assert outputs[0] == []
-    assert outputs[1][0].text == f"UserWarning: x\n{warning}"
-    assert outputs[2][0].text == note
+    streams = (("stderr", note), ("stderr", f"{note}UserWarning: x\n{warning}"), ("stdout", note))
+    outputs = (new_output("stream", name=name, text=text) for name, text in streams)
+    cells, _ = executed(page, tmp_path, *outputs)
+    assert [[output.text for output in cell.outputs] for cell in cells] == [
+        [], [f"UserWarning: x\n{warning}"], [note],
+    ]  # fmt: skip
 
 
 def test_the_same_page_gives_the_same_bytes(page, tmp_path):

@@ -1,4 +1,4 @@
-"""The panel of a reference run shows what its bundle holds, or what is missing and makes it."""
+"""The panel of a reference run shows its bundle, or the command that creates a missing one."""
 
 import shutil
 from types import SimpleNamespace
@@ -45,9 +45,10 @@ def test_a_missing_run_is_named_with_its_command(tmp_path):
 
 def test_backend_facts_are_the_manifest_s(verified):
     text = sphinx_panel.backend_text(verified)
-    predicate = verified.manifest.predicate
-    for fact in (predicate.backend.device_name, predicate.run_id[:8], predicate.render.renderer):
+    facts = verified.manifest.predicate
+    for fact in (facts.backend.device_name, facts.run_id[:8], facts.render.renderer):
         assert f"| {fact} |" in text
+    assert "| engine switches | none set |" in text
 
 
 def test_the_figure_changes_with_the_bundle_s_arrays(folder, verified, monkeypatch):
@@ -61,26 +62,20 @@ def test_the_figure_changes_with_the_bundle_s_arrays(folder, verified, monkeypat
 
 
 def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder, verified):
-    listed = {s.name: s.digest.sha256 for s in verified.manifest.subject}
-    for picture in sphinx_panel.frames(folder, FILMED, verified):
-        assert ledger_data.sha256(picture.content) == listed[f"frames/{picture.name}.png"]
-        state = f"{picture.name} state of the first run"
-        assert picture.alt == f"Camera frame of the box, {state} on cpu."
-    assert len(list(sphinx_panel.frames(folder, FILMED, verified))) == 2
-    for frame in (folder / "frames").glob("*.png"):
-        frame.unlink()
+    digests = {s.name: s.digest.sha256 for s in verified.manifest.subject}
+    pictures = list(sphinx_panel.frames(folder, FILMED, verified))
+    for picture in pictures:
+        assert ledger_data.sha256(picture.content) == digests[f"frames/{picture.name}.png"]
+    states = [f"{name} state of the first run on cpu." for name in ("initial", "final")]
+    assert [p.alt for p in pictures] == [f"Camera frame of the box, {state}" for state in states]
+    shutil.rmtree(folder / "frames")
     assert list(sphinx_panel.frames(folder, FILMED, verified)) == []
 
 
 def test_switches_are_shown_as_they_were_set(folder):
-    switches = {"GS_ENABLE_ZEROCOPY": "0", "EGL_LOG": "a|b`c"}
-    predicate(environment=switches)(folder)
+    predicate(environment={"GS_ENABLE_ZEROCOPY": "0", "EGL_LOG": "a|b`c"})(folder)
     text = sphinx_panel.backend_text(Status("verified", "cpu", "", bundle.read_manifest(folder)))
     assert "| engine switches | `GS_ENABLE_ZEROCOPY=0`, `EGL_LOG=a\\|b'c` |" in text
-
-
-def test_without_switches_none_are_shown(verified):
-    assert "| engine switches | none set |" in sphinx_panel.backend_text(verified)
 
 
 @pytest.fixture
@@ -95,95 +90,86 @@ def moved(folder, case, metric, by):
     seal(folder)
 
 
-def rows(text):
-    """Cells of every line of the tables."""
-    lines = [line for line in text.splitlines() if line.startswith("| ")]
-    return [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in lines]
-
-
-def of_metric(text, case, name):
-    return next(row[1:] for row in rows(text) if row[0] == f"{case} {name}")
-
-
-def test_equal_runs_stand_side_by_side(folder, there):
+def compared(folder, there):
+    """The text on two bundles of L04, and the cells of every line of its tables."""
     text = sphinx_panel.metrics_text("l04", folder, there)
-    assert text.startswith("**Against this build's run on cpu: equal.**")
+    lines = [line for line in text.splitlines() if line.startswith("| ")]
+    return text, [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in lines]
+
+
+def cells(rows, start, at=0):
+    """The other cells of the only row whose cell number `at` is `start`."""
+    (found,) = [row for row in rows if row[at] == start]
+    return found[1:] if at == 0 else found
+
+
+def test_equal_runs_are_side_by_side(folder, there):
+    text, rows = compared(folder, there)
+    assert text.startswith("**Compared with this build's run on cpu: equal.**")
     record = bundle.read_metrics(folder)["G2"]["overshoot"]
     value = format_value(record.value, record.unit)
-    assert of_metric(text, "G2", "overshoot")[:3] == [value, value, "0 rad"]
-    assert rows(text)[0] == [
-        "metric", "cpu, this build", "amdgpu, recorded", "difference", "allowed", "verdict",
-    ]  # fmt: skip
+    assert cells(rows, "G2 overshoot")[:3] == [value, value, "0 rad"]
+    both = ["cpu, this build", "amdgpu, recorded"]
+    assert rows[0] == ["metric", *both, "difference", "allowed", "verdict"]
     names = LESSONS["l04"].about_metrics("label").values()
-    labels = {f"{case} {name}" for case in l04.CASES for name in names}
-    assert labels <= {row[0] for row in rows(text)}
+    assert {f"{case} {name}" for case in l04.CASES for name in names} <= {row[0] for row in rows}
 
 
 @pytest.mark.parametrize(("by", "verdict"), [(5e-5, "within tolerance"), (0.5, "differs")])
-def test_a_difference_has_what_is_allowed_and_a_verdict(folder, there, by, verdict):
+def test_a_difference_has_a_tolerance_and_a_verdict(folder, there, by, verdict):
     moved(there, "G2", "overshoot", by)
-    text = sphinx_panel.metrics_text("l04", folder, there)
+    text, rows = compared(folder, there)
     value = bundle.read_metrics(there)["G2"]["overshoot"].value
     atol, rtol = l04.TOLERANCES["rad"]
     expected = [six_digits(by, "rad"), six_digits(atol + rtol * value, "rad"), verdict]
-    assert of_metric(text, "G2", "overshoot")[2:] == expected
+    assert cells(rows, "G2 overshoot")[2:] == expected
     assert f": {verdict}.**" in text
 
 
-def test_the_lesson_s_own_tolerance_is_shown(folder, there, monkeypatch):
+def test_the_lesson_s_own_tolerance_is_shown_and_a_count_may_not_differ(folder, there, monkeypatch):
     monkeypatch.setitem(l04.TOLERANCES, "overshoot", (7.0, 0.0))
-    text = sphinx_panel.metrics_text("l04", folder, there)
-    assert of_metric(text, "G2", "overshoot")[3] == "7 rad"
-
-
-def test_a_count_may_not_move(folder, there):
     moved(there, "G2", "saturation_samples", 1)
-    text = sphinx_panel.metrics_text("l04", folder, there)
-    assert of_metric(text, "G2", "saturation")[2:] == ["1", "0", "differs"]
+    _, rows = compared(folder, there)
+    assert cells(rows, "G2 overshoot")[3] == "7 rad"
+    assert cells(rows, "G2 saturation")[2:] == ["1", "0", "differs"]
 
 
-def test_each_claimed_ordering_says_what_both_runs_show(folder, there):
-    text = sphinx_panel.metrics_text("l04", folder, there)
-    claims = [row for row in rows(text) if row[-1] == "held in both"]
+def test_each_claimed_ordering_has_the_result_of_both_runs(folder, there):
+    _, rows = compared(folder, there)
+    claims = [row for row in rows if row[-1] == "held in both"]
     assert len(claims) == len(l04.RELATIONS)
     assert all(row[1].startswith("held: G") and row[2].startswith("held: G") for row in claims)
     moved(there, "G1", "overshoot", 1.0)
-    text = sphinx_panel.metrics_text("l04", folder, there)
-    (flipped,) = [row for row in rows(text) if row[-1] == "flipped"]
-    assert flipped[0] == "overshoot: G2 higher than G1"
-    assert flipped[1].startswith("held: ")
-    assert flipped[2].startswith("broken: ")
-    assert flipped[3] == "0.001 rad"
+    claim, ours, theirs, margin, _ = cells(compared(folder, there)[1], "flipped", at=-1)
+    assert (claim, margin) == ("overshoot: G2 higher than G1", "0.001 rad")
+    assert ours.startswith("held: ")
+    assert theirs.startswith("broken: ")
 
 
-def test_an_ordering_within_the_margin_is_decided_on_neither_side(folder, there):
+def test_an_ordering_within_the_margin_is_inconclusive(folder, there):
     g1, g2 = (bundle.read_metrics(folder)[case]["overshoot"].value for case in ("G1", "G2"))
     moved(there, "G1", "overshoot", g2 - g1)
-    (row,) = [
-        row
-        for row in rows(sphinx_panel.metrics_text("l04", folder, there))
-        if row[-1] == "inconclusive"
-    ]
+    row = cells(compared(folder, there)[1], "inconclusive", at=-1)
     assert row[2].startswith("within the margin: ")
 
 
 def test_a_difference_outside_the_tables_is_named(folder, there):
     edit(there, "arrays.json", lambda a: a["joints"][3].update(dof_idx_local=0))
     seal(there)
-    text = sphinx_panel.metrics_text("l04", folder, there)
-    assert ": differs.** They differ in coverage, too: see `make compare`." in text
+    text, _ = compared(folder, there)
+    assert ": differs.** They also differ in coverage: see `make compare`." in text
 
 
-def test_runs_that_cannot_be_compared_say_why(folder, there):
+def test_runs_that_cannot_be_compared_have_the_reason(folder, there):
     part("parameters", rise_fraction=0.5)(there)
-    text = sphinx_panel.metrics_text("l04", folder, there)
+    text, rows = compared(folder, there)
     assert text.startswith("**Not comparable with this build's run on cpu.**")
     assert "- parameters.rise_fraction differs: 0.9 and 0.5." in text
-    assert rows(text) == []
+    assert rows == []
 
 
 @pytest.mark.parametrize("accelerator", ["amdgpu", "cuda"])
-def test_what_compares_two_runs_names_both_and_all_else_the_recorded_one(
+def test_the_comparison_names_both_runs_and_all_else_the_recorded_one(
     folder, tmp_path, monkeypatch, accelerator
 ):
     book = tmp_path / "book"
@@ -194,7 +180,7 @@ def test_what_compares_two_runs_names_both_and_all_else_the_recorded_one(
         Run("l04/lab", book / "evidence" / "l04" / accelerator, status, recorded=True),
     )
     monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
-    hand_on_a_shape(tmp_path)
+    write_a_shape(tmp_path)
     monkeypatch.setattr(provenance, "measured_pages", lambda book: {})
     monkeypatch.setattr(provenance, "all_runs", lambda book: {run.key: run for run in runs})
     app = SimpleNamespace(env=SimpleNamespace(srcdir=book, docname="page"))
@@ -216,15 +202,13 @@ def test_what_compares_two_runs_names_both_and_all_else_the_recorded_one(
     both = ("l04/lab/cpu", f"l04/lab/{accelerator}/recorded")
     assert [item.runs for item in items] == [both[1:]] * 5 + [both] * 2
     run, badge, *_ = sphinx_ledger._of_runs(runs)
-    assert [link["refuri"] for link in run] == [
-        "#run-l04-lab-cpu",
-        f"#run-l04-lab-{accelerator}-recorded",
-    ]
+    anchors = ["#run-l04-lab-cpu", f"#run-l04-lab-{accelerator}-recorded"]
+    assert [link["refuri"] for link in run] == anchors
     assert [node.astext() for node in badge] == ["cpu-verified", f"{accelerator}-verified"]
 
 
-def hand_on_a_shape(outputs):
-    """Write what the lecture of this build would: a box for each link of the record."""
+def write_a_shape(outputs):
+    """Write the shape of this build's lecture: a box for each link of the record."""
     box = trimesh.creation.box((0.1, 0.1, 0.1))
     links = bundle.read_arrays(outputs / "l04" / "lab" / "cpu").coords["link"]
     parts = [Part(link, (9, 9, 9), box.vertices.astype(np.float32), box.faces) for link in links]
@@ -232,7 +216,7 @@ def hand_on_a_shape(outputs):
 
 
 def test_a_recorded_run_replays_from_its_own_record(folder, tmp_path, monkeypatch):
-    hand_on_a_shape(tmp_path)
+    write_a_shape(tmp_path)
     panel = panel_of(folder, tmp_path, monkeypatch)
     book = tmp_path / "book"
     place = book / "evidence" / "l04" / "amdgpu"
@@ -257,13 +241,6 @@ def panel_of(folder, tmp_path, monkeypatch, lesson="l04"):
     monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
     status = Status("verified", "amdgpu", "", bundle.read_manifest(place))
     return Panel(book).panel(lesson, status)
-
-
-def test_a_lesson_that_handed_on_no_shape_is_told_what_to_do(folder, tmp_path, monkeypatch):
-    with pytest.raises(DirectiveError) as caught:
-        panel_of(folder, tmp_path, monkeypatch)
-    assert "l04 handed on no shape of its robot" in caught.value.msg
-    assert "robot_shape.write_shape(contract.outputs / 'l04' / 'lecture'" in caught.value.msg
 
 
 def test_another_robot_s_shape_is_an_error_of_the_page(folder, tmp_path, monkeypatch):
@@ -291,7 +268,5 @@ def classes(node):
 
 
 def test_warnings_are_escaped_and_folded():
-    html = sphinx_panel.warnings_html(["a < b"])
-    assert (
-        html == "<details><summary>1 engine warnings</summary><ol><li>a &lt; b</li></ol></details>"
-    )
+    fold = "<details><summary>1 engine warnings</summary><ol><li>a &lt; b</li></ol></details>"
+    assert sphinx_panel.warnings_html(["a < b"]) == fold

@@ -1,11 +1,11 @@
-"""What is mended on a page after the theme wrote it, on small pages."""
+"""Changes to a page after the theme wrote it, on small pages."""
 
 import pytest
 from bs4 import BeautifulSoup
 from PIL import Image
 
 from robo_genesis.site import page_weight
-from robo_genesis.site.postprocess import finished
+from robo_genesis.site.postprocess import finish_page
 
 HEAD = """\
 <script data-cfasync="false">document.documentElement.dataset.mode = "auto";</script>
@@ -19,7 +19,7 @@ HEAD = """\
 
 def page(tmp_path, body: str, head: str = "") -> BeautifulSoup:
     html = f"<!DOCTYPE html><html><head>{head}</head><body>{body}</body></html>"
-    return BeautifulSoup(finished(html, tmp_path), "html.parser")
+    return BeautifulSoup(finish_page(html, tmp_path), "html.parser")
 
 
 def test_script_files_wait_and_what_needs_them_waits_behind_them(tmp_path):
@@ -37,7 +37,7 @@ def test_script_files_wait_and_what_needs_them_waits_behind_them(tmp_path):
 def test_light_or_dark_is_decided_by_the_script_in_the_head(tmp_path):
     theme = '<script>document.documentElement.dataset.theme = "auto";</script>'
     html = f'<html data-theme="auto"><head>{theme}</head><body><script>1</script></body></html>'
-    found = BeautifulSoup(finished(html, tmp_path), "html.parser")
+    found = BeautifulSoup(finish_page(html, tmp_path), "html.parser")
     assert found.html["data-theme"] == "light"  # for a reader without scripts
     first, second = (script.get_text() for script in found.select("script"))
     assert first.startswith('document.documentElement.dataset.theme = "auto";')
@@ -45,16 +45,19 @@ def test_light_or_dark_is_decided_by_the_script_in_the_head(tmp_path):
     assert second == "1"
 
 
-@pytest.mark.parametrize(("given", "anchor"), [("", "page-title"), ('id="index"', "index")])
-def test_a_page_is_first_shown_with_its_title(tmp_path, given, anchor):
-    found = page(tmp_path, f"<article><h1 {given}>Title</h1></article>")
-    (expected,) = found.select("head > link[rel=expect][blocking=render]")
-    assert expected["href"] == f"#{anchor}"
-    assert found.h1["id"] == anchor
-
-
-def test_a_page_without_title_waits_for_none(tmp_path):
-    assert page(tmp_path, "<article><p>Text</p></article>").select("link") == []
+@pytest.mark.parametrize(
+    ("body", "anchors"),
+    [
+        ("<article><h1>Title</h1></article>", ["page-title"]),
+        ("<article><h1 id='index'>Title</h1></article>", ["index"]),
+        ("<article><p>Text</p></article>", []),
+    ],
+)
+def test_a_page_with_a_title_is_first_shown_with_it(tmp_path, body, anchors):
+    found = page(tmp_path, body)
+    waits = found.select("head > link[rel=expect][blocking=render]")
+    assert [link["href"] for link in waits] == [f"#{anchor}" for anchor in anchors]
+    assert [title["id"] for title in found.select("h1")] == anchors
 
 
 def test_a_script_stays_where_it_has_work(tmp_path):
@@ -69,10 +72,8 @@ def test_scripts_of_data_are_left_alone(tmp_path):
 
 def test_images_get_their_size_and_all_but_the_first_wait(tmp_path):
     Image.new("RGB", (30, 20)).save(tmp_path / "a b.png")
-    (tmp_path / "plot.svg").write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" width="90pt" height="60pt" viewBox="0 0 9 6"/>'
-    )
-    body = '<article><img src="a%20b.png"/><img src="plot.svg"/><img src="plot.svg" width="9"/>'
+    drawing(tmp_path, 'width="90pt" height="60pt" viewBox="0 0 9 6"')
+    body = '<article><img src="a%20b.png"/><img src="x.svg"/><img src="x.svg" width="9"/>'
     first, second, third = page(tmp_path, body).select("img")
     assert (first["width"], first["height"], first.get("loading")) == ("30", "20", None)
     assert (second["width"], second["height"], second["loading"]) == ("120", "80", "lazy")
@@ -89,18 +90,18 @@ def test_images_get_their_size_and_all_but_the_first_wait(tmp_path):
     ],
 )
 def test_the_size_of_a_drawing_is_read(tmp_path, attributes, size):
-    file = tmp_path / "x.svg"
-    file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}><g/></svg>')
-    assert page_weight.image_size(file) == size
+    assert page_weight.image_size(drawing(tmp_path, attributes)) == size
 
 
 def test_a_drawing_without_size_is_refused(tmp_path):
-    file = tmp_path / "x.svg"
-    file.write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
-    with pytest.raises(
-        ValueError, match=r"x\.svg states no size\. Give its root element a viewBox"
-    ):
-        page_weight.image_size(file)
+    with pytest.raises(ValueError, match=r"x\.svg states no size\. Give its root element a viewB"):
+        page_weight.image_size(drawing(tmp_path, ""))
+
+
+def drawing(folder, attributes):
+    file = folder / "x.svg"
+    file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {attributes}><g/></svg>')
+    return file
 
 
 def test_controls_are_named_by_what_they_show(tmp_path):
@@ -127,7 +128,7 @@ def test_folds_of_the_menu_are_named_after_their_page_and_the_sidebar_is_a_landm
 
 def test_markup_outside_of_what_is_mended_comes_through(tmp_path):
     body = "<pre>\n  two\n\n lines &lt; three</pre><math><mi>x</mi></math><p>a<br/>b — c</p>"
-    assert body in finished(f"<!DOCTYPE html><html><body>{body}</body></html>", tmp_path)
+    assert body in finish_page(f"<!DOCTYPE html><html><body>{body}</body></html>", tmp_path)
 
 
 def test_unused_files_of_the_theme_go_and_others_stay(tmp_path):

@@ -1,4 +1,4 @@
-"""What the replay ships: a viewer that names no other host, and models as scripts."""
+"""Files of the replay: a viewer without addresses of other hosts, and models as scripts."""
 
 import base64
 import gzip

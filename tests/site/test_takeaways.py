@@ -9,7 +9,6 @@ import pytest
 
 from robo_genesis.core import project
 from robo_genesis.evidence.trace_files import write_traces
-from robo_genesis.site.takeaways import wheel
 from robo_genesis.site.takeaways.files import csv_text, package_facts, run_commands, without_places
 from robo_genesis.site.takeaways.wheel import build_wheel
 
@@ -49,8 +48,8 @@ def test_every_column_names_a_unit_and_nothing_is_made_up_before_the_first_step(
 
 
 def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
-    (tmp_path / "a").mkdir()
-    (tmp_path / "b").mkdir()
+    for name in "ab":
+        (tmp_path / name).mkdir()
     first, second = (build_wheel(tmp_path / name) for name in "ab")
     assert first.name == f"robo_genesis-{package_facts()['version']}-py3-none-any.whl"
     assert first.read_bytes() == second.read_bytes()
@@ -59,36 +58,13 @@ def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
         (found,) = (name for name in names if name.endswith("/METADATA"))
         needed = message_from_bytes(wheel.read(found)).get_all("Requires-Dist")
     assert f"genesis-world=={project.engine_pin()}" in needed
-    files = {p.relative_to(project.ROOT).as_posix() for p in package_files()}
+    sources = (project.ROOT / "robo_genesis").rglob("*")
+    files = {
+        path.relative_to(project.ROOT).as_posix()
+        for path in sources
+        if path.is_file() and path.suffix != ".pyc"
+    }
     assert {name for name in names if not name.startswith("robo_genesis-")} == files
-
-
-def test_a_wheel_is_built_anew_only_where_its_sources_changed(tmp_path, monkeypatch):
-    root, cache, built = tmp_path / "root", tmp_path / "cache", []
-    for name in (*wheel.SOURCES, "robo_genesis/__init__.py"):
-        (root / name).parent.mkdir(parents=True, exist_ok=True)
-        (root / name).write_text(name)
-
-    def build(folder, root):
-        built.append(folder)
-        (folder / "robo.whl").write_bytes(b"PK\nwheel")
-        return folder / "robo.whl"
-
-    monkeypatch.setattr(wheel, "build_wheel", build)
-    for number, change in enumerate(("", "robo_genesis/__init__.py", "README.md", ""), 1):
-        if change:
-            (root / change).write_text("changed")
-        found = wheel.stored_wheel(tmp_path, root, cache)
-        assert (found.name, found.read_bytes()) == ("robo.whl", b"PK\nwheel")
-        assert len(built) == min(number, 3)
-    (root / "robo_genesis" / "new.py").touch()
-    wheel.stored_wheel(tmp_path, root, cache)
-    assert len(built) == 4
-
-
-def package_files():
-    found = (project.ROOT / "robo_genesis").rglob("*")
-    return [path for path in found if path.is_file() and path.suffix != ".pyc"]
 
 
 def test_a_package_that_cannot_be_built_says_why(tmp_path):
@@ -100,12 +76,12 @@ def test_a_package_that_cannot_be_built_says_why(tmp_path):
         build_wheel(tmp_path, tmp_path)
 
 
-def test_the_commands_put_wheel_and_notebook_to_work():
-    make, install, start = run_commands("robo.whl", "lab.ipynb")
-    assert make.startswith("python3 -m venv ")
-    folder = make.split()[-1]
-    assert install == f"{folder}/bin/pip install ./robo.whl jupyterlab"
-    assert start == f"{folder}/bin/jupyter lab lab.ipynb"
+def test_the_commands_install_the_wheel_and_open_the_notebook():
+    assert run_commands("robo.whl", "lab.ipynb") == (
+        "python3 -m venv course",
+        "course/bin/pip install ./robo.whl jupyterlab",
+        "course/bin/jupyter lab lab.ipynb",
+    )
 
 
 def test_a_notebook_names_no_folder_of_the_builder():

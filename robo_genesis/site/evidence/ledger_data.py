@@ -1,4 +1,4 @@
-"""What the ledger lists: runs with their bundles, items with their digests, files to download."""
+"""Entries of the ledger: runs with their bundles, items with their digests, files to download."""
 
 import csv
 import hashlib
@@ -12,7 +12,7 @@ from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.status import Status
 
 ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)
-"""The oldest time that a zip can hold: the same bundle gives the same bytes on any day."""
+"""The oldest time that a zip can hold: the same bundle always gives the same bytes."""
 
 RASTERS = (".png", ".webp", ".jpg", ".jpeg")
 
@@ -20,17 +20,17 @@ UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",
 }
-"""Kinds of items that no run of the engine made, each with the line that stands below it."""
+"""Kinds of items that no run of the engine made, each with the line below it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One run of a page on a backend: where its bundle stands, or would, and its state."""
+    """One run of a page on a backend: the folder of its bundle, existing or not, and its state."""
 
     page: str  # as `l04/lab`
     folder: Path
     status: Status
-    recorded: bool = False  # committed with the book; else of this build
+    recorded: bool = False  # committed with the book; otherwise of this build
 
     @property
     def key(self) -> str:
@@ -39,7 +39,7 @@ class Run:
 
     @property
     def predicate(self) -> Predicate | None:
-        """What the accepted manifest says, None where there is none."""
+        """The predicate of the accepted manifest, None where there is none."""
         return self.status.manifest.predicate if self.status.manifest else None
 
 
@@ -68,56 +68,41 @@ class Item:
 
 
 def provenance(kind: str, runs: Sequence[Run]) -> str:
-    """Return the line that stands below a figure or table, without its link.
+    """Return the line below a figure or table, without its link.
 
     Args:
         kind: of the item.
-        runs: what made it, none for a kind that no run makes.
+        runs: the runs that made it, none for a kind that no run makes.
     """
     if kind in UNMEASURED:
         return UNMEASURED[kind]
     lacking = [run.status.badge for run in runs if run.predicate is None]
     if lacking:
         return f"No accepted evidence: {', '.join(lacking)}."
-    origins = [
-        f"on {run.status.backend} · Genesis {run.predicate.engine.version} "
-        f"· run {run.predicate.run_id[:8]}"
+    origins = (
+        f"on {run.status.backend} · Genesis {accepted.engine.version} · run {accepted.run_id[:8]}"
         for run in runs
-        if run.predicate
-    ]
+        if (accepted := run.predicate)
+    )
     return f"Measured {' and '.join(origins)}"
 
 
-def passed(predicate: Predicate) -> str:
-    """Return how many of a run's checks passed."""
+def facts(backend: str, predicate: Predicate) -> dict[str, str]:
+    """Return the facts of an accepted run that the ledger shows."""
     checks = predicate.checks
-    return f"{sum(check.passed for check in checks)} of {len(checks)}"
-
-
-def moment(predicate: Predicate) -> str:
-    """Return when a run started, in UTC and to the second."""
-    return predicate.started[:19].replace("T", " ")
-
-
-def facts(run: Run) -> dict[str, str]:
-    """Return what the ledger says of a run, empty without an accepted bundle."""
-    predicate = run.predicate
-    if predicate is None:
-        return {}
     return {
         "run": predicate.run_id[:8],
-        "backend": run.status.backend,
+        "backend": backend,
         "device": predicate.backend.device_name,
         "engine": f"Genesis {predicate.engine.version}",
-        "started (UTC)": moment(predicate),
+        "started (UTC)": predicate.started[:19].replace("T", " "),
         "command": predicate.command,
-        "checks passed": passed(predicate),
-        "evidence key": predicate.evidence_key,
+        "checks passed": f"{sum(check.passed for check in checks)} of {len(checks)}",
     }
 
 
 def picture_kind(path: Path) -> str:
-    """Return what a measured picture is: camera frames are pixels, a plot is drawn in lines."""
+    """Return the kind of a measured picture: a camera frame has pixels, a figure has lines."""
     is_raster = path.suffix in RASTERS or b"<image" in path.read_bytes()
     return "camera frame" if is_raster else "figure"
 
@@ -141,7 +126,7 @@ def archive_name(run: Run) -> str:
 
 
 def archive(folder: Path) -> bytes:
-    """Return a bundle as a zip whose bytes depend on names and contents of its files alone.
+    """Return a bundle as a zip whose bytes depend only on the names and contents of its files.
 
     Args:
         folder: an accepted bundle.

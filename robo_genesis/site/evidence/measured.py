@@ -1,6 +1,6 @@
 """Measured numbers and lesson states in prose: always read from an accepted bundle.
 
-Roles and directive, as pages write them:
+Roles and a directive, as pages write them:
 
 | in a page | shows |
 |---|---|
@@ -9,7 +9,7 @@ Roles and directive, as pages write them:
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
 | {lesson-state}`l04` | a badge for each backend of a lesson: backend and state |
-| {lesson-status} l04 (directive) | what was run for a lesson, and its state |
+| {lesson-status} l04 (directive) | the runs of a lesson with their states |
 """
 
 import importlib.metadata
@@ -46,7 +46,7 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
         name: `group.metric` of its metrics.json, or `engine`.
 
     Raises:
-        LookupError: there is no such metric; the message lists those there are.
+        LookupError: there is no such metric; the message lists the known ones.
         BundleRefused: the bundle cannot be read.
     """
     folder = outputs_folder() / lesson_page / BACKEND
@@ -66,7 +66,7 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
 
 
 class measured_value(nodes.inline):  # noqa: N801 - docutils names nodes in lower case
-    """A measured value in prose; its attribute `provenance` says where it comes from."""
+    """A measured value in prose; its attribute `provenance` names its run."""
 
 
 class Measured(SphinxRole):
@@ -109,33 +109,39 @@ def lesson_statuses(book: Path, lesson: str) -> list[Status]:
 
 
 class evidence_badge(nodes.inline):  # noqa: N801
-    """A state; no markup of a page makes this node, so an imitation is told apart."""
+    """A state; no markup of a page creates this node, so an imitation is recognized."""
 
 
 def badge_node(status: Status) -> nodes.Node:
-    """Return a state as the site shows it everywhere: one word, and a colour that follows it."""
+    """Return a state as the site shows it everywhere: one word and its colour."""
     return evidence_badge("", status.badge, classes=["evidence-badge", f"state-{status.state}"])
 
 
+def lesson_badges(book: Path, lesson: str) -> list[nodes.Node]:
+    """Return the badges of a lesson's lab with spaces between them."""
+    badges = [badge_node(status) for status in lesson_statuses(book, lesson)]
+    return [node for badge in badges for node in (badge, nodes.Text(" "))][:-1]
+
+
 def make_command(lesson: str, backend: str, recorded: bool) -> nodes.Node:
-    """Return the command that makes the evidence which is not there.
+    """Return the command that creates missing evidence.
 
     Args:
         lesson: as `l04`.
         backend: on which it is missing.
-        recorded: whether it is committed with the book; each build makes its own anew.
+        recorded: whether it is committed with the book; otherwise each build measures it.
     """
     command = f"$ make evidence LESSON={lesson} BACKEND={backend}" if recorded else "$ make book"
     return nodes.literal_block(command, command, language="console")
 
 
 class LessonStatus(SphinxDirective):
-    """Say what was run for a lesson: the states of its lab, each with a badge and a sentence."""
+    """List the runs of a lesson's lab, each with a badge and a sentence."""
 
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
-        """Return one line a backend."""
+        """Return one line per backend."""
         lines = nodes.bullet_list(classes=["lesson-status"])
         for status in lesson_statuses(Path(self.env.srcdir), self.arguments[0]):
             line = nodes.paragraph("", "", badge_node(status), nodes.Text(f" {status.sentence}"))
@@ -147,15 +153,12 @@ class LessonState(SphinxRole):
     """Show the badges of a lesson."""
 
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        """Return one badge a backend."""
-        shown: list[nodes.Node] = []
-        for status in lesson_statuses(Path(self.env.srcdir), self.text):
-            shown += [badge_node(status), nodes.Text(" ")]
-        return shown[:-1], []
+        """Return one badge per backend."""
+        return lesson_badges(Path(self.env.srcdir), self.text), []
 
 
 class EngineSource(SphinxRole):
-    """Link to a file of the engine at the pin; a path that it does not have is an error."""
+    """Link to a file of the pinned engine; a path that does not exist is an error."""
 
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
         """Return the link, its text the path."""
@@ -183,17 +186,11 @@ def visit_measured(self: Any, node: measured_value) -> None:
     self.body.append(self.starttag(node, "span", "", tabindex="0", role="note", **provenance))
 
 
-def depart_measured(self: Any, node: measured_value) -> None:
-    """Close the element."""
-    self.body.append("</span>")
-
-
-def setup(app: Sphinx) -> dict[str, Any]:
-    """Register role, directive and their writer."""
+def setup(app: Sphinx) -> None:
+    """Register roles, directive and writer."""
     app.add_role("measured", Measured())
     app.add_role("lesson-state", LessonState())
     app.add_role("engine-source", EngineSource())
     app.add_role("engine-release", EngineRelease())
     app.add_directive("lesson-status", LessonStatus)
-    app.add_node(measured_value, html=(visit_measured, depart_measured))
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
+    app.add_node(measured_value, html=(visit_measured, lambda self, _: self.body.append("</span>")))

@@ -1,4 +1,4 @@
-"""Which runs made a part of a page: a cell's, those of a bundle that is shown, or none."""
+"""Finds the runs that made a part of a page: that of a cell, those of a shown bundle, or none."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -10,11 +10,11 @@ from sphinx.application import Sphinx
 from robo_genesis.site.evidence.measured import BACKEND
 
 INPUTS = "inputs"
-"""The tag of a cell whose tables hold what was chosen, and nothing that was measured."""
+"""The tag of a cell whose tables contain only chosen values, no measured ones."""
 
 
 def above(node: nodes.Node, kind: type = nodes.Element) -> Iterator[Any]:
-    """Yield the nodes that hold a node, those of one type, the nearest first."""
+    """Yield the ancestors of a node that have one type, the nearest first."""
     while node.parent is not None:
         node = node.parent
         if isinstance(node, kind):
@@ -24,16 +24,16 @@ def above(node: nodes.Node, kind: type = nodes.Element) -> Iterator[Any]:
 def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
     """Return the keys of the runs that made a node.
 
-    The nodes that a cell's output leaves are known by what MyST-NB writes into them, never by a
-    class, which a page could set.
+    The nodes of a cell's output are recognized by attributes that MyST-NB sets, never by a class,
+    which a page could set.
 
     Args:
         node: a part of a page.
         page: `lesson/page` of that page, None where it declares no bundle.
 
     Returns:
-        () where a cell shows what was chosen, None where neither a cell nor a bundle made the
-        node, ("",) where a cell did and the page declares no bundle.
+        () where a cell shows chosen values, None where neither a cell nor a bundle made the node,
+        ("",) where a cell made it and the page declares no bundle.
     """
     parents = list(above(node))
     for element in parents:
@@ -48,7 +48,7 @@ def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
 
 
 class Glued:
-    """Marks what a directive pastes as the output of a cell, which it is."""
+    """Marks the nodes of a directive as the output of a cell."""
 
     def run(self) -> list[nodes.Node]:
         """Return the directive's nodes in a container."""
@@ -56,15 +56,15 @@ class Glued:
 
 
 class GluedAny(Glued, PasteAnyDirective):
-    """Paste an output in whatever form it has."""
+    """Paste an output in any form."""
 
 
 class GluedMarkdown(Glued, PasteMarkdownDirective):
-    """Paste an output as Markdown; without the mark its tables look like typed ones."""
+    """Paste an output as Markdown; without the mark its tables look typed."""
 
 
 def register(app: Sphinx) -> None:
-    """Register the mark on what is glued."""
+    """Register the marked directives."""
     app.add_directive("glue", GluedAny, override=True)
     for name, directive in (("", GluedAny), ("any", GluedAny), ("md", GluedMarkdown)):
         app.add_directive_to_domain("glue", name, directive, override=True)

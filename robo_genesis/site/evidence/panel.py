@@ -1,7 +1,8 @@
-"""The reference run in a lesson: its figures, frames, metrics and backend, or what is missing.
+"""The reference run in a lesson: its figures, frames, metrics and backend, or why it is missing.
 
-A page writes ```` ```{evidence} l04 ````. Everything shown comes from an accepted bundle below
-`book/evidence/<lesson>/<backend>/`; where there is none, the panel says why and what makes one.
+A page writes ```` ```{evidence} l04 ````. The panel shows only an accepted bundle of
+`book/evidence/<lesson>/<backend>/`. Where there is none, it gives the reason and the command that
+creates one.
 """
 
 import io
@@ -10,7 +11,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import Any
 
 from docutils import nodes
 from matplotlib.figure import Figure
@@ -27,19 +27,15 @@ from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.status import RECORDED_PAGE, Status
 from robo_genesis.lessons.declaration import Compared, Filmed, Moving
 from robo_genesis.lessons.registry import compared_cases, filmed, find_lesson
+from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import Run
-from robo_genesis.site.evidence.measured import (
-    BACKEND,
-    lesson_backends,
-    outputs_folder,
-    recorded_state,
-)
+from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.replay.directive import replay_block
 
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture of a bundle, and the words that stand with it."""
+    """A picture of a bundle, with its alternative text and caption."""
 
     name: str
     suffix: str
@@ -49,7 +45,6 @@ class Picture:
 
 
 VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
-TABLES = (*VALUES, RELATIONS)
 
 
 class Evidence(SphinxDirective):
@@ -58,10 +53,12 @@ class Evidence(SphinxDirective):
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
-        """Return one panel a backend; the reference backend has one even where it is missing."""
+        """Return one panel per backend; the reference backend has one even without a run."""
         lesson, book = self.arguments[0], Path(self.env.srcdir)
-        backends = lesson_backends(book, lesson)
-        return [self.panel(lesson, recorded_state(book, lesson, name)) for name in backends]
+        backends = measured.lesson_backends(book, lesson)
+        return [
+            self.panel(lesson, measured.recorded_state(book, lesson, name)) for name in backends
+        ]
 
     def panel(self, lesson: str, status: Status) -> nodes.Node:
         """Return the panel of one backend."""
@@ -70,14 +67,14 @@ class Evidence(SphinxDirective):
             panel += self.parse_text_to_nodes(missing_text(lesson, status))
             return panel
         folder = Path(self.env.srcdir) / "evidence" / lesson / status.backend
-        here = outputs_folder() / lesson / RECORDED_PAGE / BACKEND
+        here = measured.outputs_folder() / lesson / RECORDED_PAGE / BACKEND
         panel += self.parse_text_to_nodes(backend_text(status))
         recorded = Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True).key
         panel["evidence_runs"] = (recorded,)
         compared = compared_cases(lesson)
         drawn = [response(folder, compared, status.backend)] if compared else []
         for picture in (*drawn, *frames(folder, filmed(lesson), status)):
-            panel += self.figure(f"{lesson}-{status.backend}-{picture.name}", picture)
+            panel += figure(self, f"{lesson}-{status.backend}-{picture.name}", picture)
         if compared:
             panel += replay_block(self, recorded, folder)
         tables = self.parse_text_to_nodes(metrics_text(lesson, here, folder))
@@ -86,17 +83,18 @@ class Evidence(SphinxDirective):
         panel += nodes.raw("", warnings_html(status.manifest.predicate.warnings), format="html")
         return panel
 
-    def figure(self, anchor: str, picture: Picture) -> nodes.Node:
-        """Return a figure; its file stands beside the site until Sphinx copies it."""
-        file = Path(self.env.app.outdir).parent / "panel" / f"{anchor}{picture.suffix}"
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_bytes(picture.content)
-        image = nodes.image(uri=f"/{os.path.relpath(file, self.env.srcdir)}", alt=picture.alt)
-        return nodes.figure("", image, nodes.caption("", picture.caption), ids=[anchor])
+
+def figure(directive: SphinxDirective, anchor: str, picture: Picture) -> nodes.Node:
+    """Return a figure; its file is written outside the site until Sphinx copies it."""
+    file = Path(directive.env.app.outdir).parent / "panel" / f"{anchor}{picture.suffix}"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_bytes(picture.content)
+    image = nodes.image(uri=f"/{os.path.relpath(file, directive.env.srcdir)}", alt=picture.alt)
+    return nodes.figure("", image, nodes.caption("", picture.caption), ids=[anchor])
 
 
 def missing_text(lesson: str, status: Status) -> str:
-    """Say which evidence is not here, why, and the command that makes it."""
+    """Return the missing evidence, the reason, and the command that creates it, as Markdown."""
     return (
         f"**No evidence from {status.backend} for Genesis {project.engine_pin()} "
         f"({status.badge}).** {status.summary or status.reason} On a machine with this backend, "
@@ -127,7 +125,7 @@ def backend_text(status: Status) -> str:
 
 
 def switches_text(switches: Mapping[str, str]) -> str:
-    """Return the variables that were set for the engine as code, fit for a cell of a table."""
+    """Return the variables that were set for the engine as code for a cell of a table."""
     pairs = (" ".join(f"{name}={value}".split()) for name, value in switches.items())
     marks = str.maketrans({"`": "'", "|": "\\|"})
     return ", ".join(f"`{pair.translate(marks)}`" for pair in pairs) or "none set"
@@ -153,7 +151,7 @@ def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture
 
 
 def frames(folder: Path, shown: Filmed, status: Status) -> Iterator[Picture]:
-    """Yield the camera frames as they came, nothing where rendering was off."""
+    """Yield the unchanged camera frames, nothing where rendering was off."""
     for name in ("initial", "final"):
         path = folder / "frames" / f"{name}.png"
         if path.is_file():
@@ -164,10 +162,10 @@ def frames(folder: Path, shown: Filmed, status: Status) -> Iterator[Picture]:
 
 
 def metrics_text(lesson: str, here: Path, folder: Path) -> str:
-    """Return this build's CPU run beside the recorded run, as `make compare` holds them.
+    """Return the comparison of this build's CPU run with the recorded run, as `make compare` does.
 
     Args:
-        lesson: whose tolerances and orderings are held against both.
+        lesson: its tolerances and orderings apply.
         here: bundle of this build.
         folder: the recorded bundle.
     """
@@ -177,34 +175,29 @@ def metrics_text(lesson: str, here: Path, folder: Path) -> str:
         return f"**Not comparable with this build's run on {BACKEND}.**\n\n{reasons}"
     both = f"{BACKEND}, this build", f"{found.new.backend.actual}, recorded"
     elsewhere = [
-        s.title.lower() for s in found.sections if s.title not in TABLES and s.state == DIFFERS
+        section.title.lower()
+        for section in found.sections
+        if section.title not in (*VALUES, RELATIONS) and section.state == DIFFERS
     ]
-    more = (
-        f" They differ in {' and '.join(elsewhere)}, too: see `make compare`." if elsewhere else ""
-    )
+    more = f" They also differ in {' and '.join(elsewhere)}: see `make compare`." * bool(elsewhere)
+    orderings = "The lesson claims no ordering between cases."
+    if rows := ordering_rows(found, both):
+        claimed = "The orderings that the lesson claims, in both runs:"
+        orderings = f"{claimed}\n\n{tables.markdown(rows)}"
     return (
-        f"**Against this build's run on {BACKEND}: {found.state}.**{more} What is allowed "
-        "and claimed is declared in the lesson's specification; counts must be equal.\n\n"
-        f"{tables.markdown(value_rows(found, both, (here, folder)))}\n"
-        f"{orderings_text(ordering_rows(found, both))}"
+        f"**Compared with this build's run on {BACKEND}: {found.state}.**{more} The lesson's "
+        "specification declares tolerances and orderings; counts must be equal.\n\n"
+        f"{tables.markdown(value_rows(found, both, (here, folder)))}\n{orderings}"
     )
-
-
-def orderings_text(rows: list[dict[str, str]]) -> str:
-    """Return what the lesson claims of its cases' order, and what both runs show of it."""
-    if not rows:
-        return "The lesson claims no ordering between cases."
-    return f"The orderings that the lesson claims, in both runs:\n\n{tables.markdown(rows)}"
 
 
 def value_rows(
     found: Comparison, both: tuple[str, str], folders: tuple[Path, Path]
 ) -> list[dict[str, str]]:
-    """Return a row for each metric of each case, in the lesson's order, values as in prose."""
+    """Return a row for each metric of each case, in the lesson's order, with values as in prose."""
     spec = specification(found.new.lesson)
     ours, theirs = (bundle.read_metrics(folder) for folder in folders)
     rows = {f.what: f for s in found.sections if s.title in VALUES for f in s.findings}
-    names = [(case, name) for case, of in spec.metrics.items() for name in of]
     labels = find_lesson(found.new.lesson).about_metrics("label")
     return [
         {
@@ -215,13 +208,14 @@ def value_rows(
             "allowed": row.allowed or "–",
             "verdict": row.state,
         }
-        for case, name in names
+        for case, names in spec.metrics.items()
+        for name in names
         if (row := rows.get(f"{case}.{name}"))
     ]
 
 
 def ordering_rows(found: Comparison, both: tuple[str, str]) -> list[dict[str, str]]:
-    """Return a row for each ordering that the lesson claims: what each run shows of it."""
+    """Return a row for each ordering that the lesson claims, with the result in each run."""
     rows = []
     labels = find_lesson(found.new.lesson).about_metrics("label")
     for f in (f for s in found.sections if s.title == RELATIONS for f in s.findings):
@@ -245,7 +239,6 @@ def warnings_html(warnings: Sequence[str]) -> str:
     return f"<details><summary>{len(warnings)} engine warnings</summary><ol>{lines}</ol></details>"
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
+def setup(app: Sphinx) -> None:
     """Register the directive."""
     app.add_directive("evidence", Evidence)
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,8 +1,8 @@
-"""Finds each figure and measured table of a page, and says below it where it comes from.
+"""Finds each figure and measured table of a page, and writes its origin below it.
 
-Measured is every picture and table that a code cell put out, in its place or glued elsewhere, or
-that was read from a bundle. The tables of a cell that is tagged `inputs` were chosen; a picture
-that no run made is an illustration; a table typed in prose is not listed.
+A picture or table is measured if it is an output of a code cell, shown there or glued elsewhere, or
+was read from a bundle. The tables of a cell that is tagged `inputs` were chosen. A picture that no
+run made is an illustration. A table typed in prose is not listed.
 """
 
 import re
@@ -10,7 +10,6 @@ import textwrap
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -19,16 +18,9 @@ from sphinx.util import logging
 
 from robo_genesis.evidence.status import RECORDED_PAGE
 from robo_genesis.lessons.book_pages import find_pages
-from robo_genesis.site.evidence import ledger_data, refusals
+from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
 from robo_genesis.site.evidence.ledger_data import Item, Run
-from robo_genesis.site.evidence.measured import (
-    BACKEND,
-    lesson_backends,
-    outputs_folder,
-    page_state,
-    recorded_state,
-)
 from robo_genesis.site.evidence.origin import INPUTS, above, origin
 
 TITLE = 80
@@ -45,24 +37,21 @@ def measured_pages(book: Path) -> dict[str, str]:
 
 @lru_cache(maxsize=4)
 def all_runs(book: Path) -> dict[str, Run]:
-    """Return the runs of this build and the recorded ones by key, those that are missing too."""
-    here = outputs_folder()
-    declared = [page.split("/") for page in measured_pages(book).values()]
-    runs = [
-        Run(f"{lesson}/{page}", here / lesson / page / BACKEND,
-            page_state(here, lesson, page, book))
-        for lesson, page in declared
-    ]  # fmt: skip
-    for lesson in dict.fromkeys(lesson for lesson, _ in declared):
-        for backend in lesson_backends(book, lesson):
+    """Return the runs of this build and the recorded ones by key, missing runs included."""
+    outputs, runs, recorded = measured.outputs_folder(), [], []
+    for name in measured_pages(book).values():
+        lesson, page = name.split("/")
+        status = measured.page_state(outputs, lesson, page, book)
+        runs.append(Run(name, outputs / name / measured.BACKEND, status))
+        for backend in measured.lesson_backends(book, lesson):
             folder = book / "evidence" / lesson / backend
-            status = recorded_state(book, lesson, backend)
-            runs.append(Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True))
-    return {run.key: run for run in runs}
+            status = measured.recorded_state(book, lesson, backend)
+            recorded.append(Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True))
+    return {run.key: run for run in runs + recorded}
 
 
 def read_page(app: Sphinx, doctree: nodes.document) -> None:
-    """List what a page shows, and say below each item where it comes from."""
+    """List the figures and tables of a page, and write its origin below each of them."""
     env = app.env
     book, items = Path(env.srcdir), []
     known = all_runs(book)
@@ -71,8 +60,7 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
         is_table = isinstance(node, nodes.table)
         if keys is None and is_table:
             continue
-        problem = _problem(keys, known, is_table)
-        if problem:
+        if problem := _problem(keys, known, is_table):
             logger.warning(problem, location=env.docname)
             continue
         holder = node if is_table else next(above(node, nodes.figure), node)
@@ -104,30 +92,30 @@ def describe(
     book: Path,
 ) -> Item:
     """Return the ledger's item of a table or picture, and give `holder` an anchor."""
+    is_table = isinstance(node, nodes.table)
     section = next(above(holder, nodes.section), None)
     if not holder["ids"]:
-        _name(holder, "table" if isinstance(node, nodes.table) else "picture", section)
+        _name(holder, "table" if is_table else "picture", section)
     anchor = holder["ids"][0]
-    if isinstance(node, nodes.table):
+    if is_table:
         rows = [[e.astext() for e in row.findall(nodes.entry)] for row in node.findall(nodes.row)]
         data = ledger_data.csv_bytes(rows)
         heading = section.next_node(nodes.title).astext() if section is not None else docname
         title = f"{heading}: {', '.join(filter(None, rows[0]))}"
-        name = f"{docname}-{anchor}.csv".replace("/", "-")
-        kind = "table" if keys else "settings"
-        return Item(
-            kind, _short(title), docname, anchor, keys or (), ledger_data.sha256(data), name, data
-        )
-    caption = holder.next_node(nodes.caption)
-    title = caption.astext() if caption is not None else str(node.get("alt", anchor))
-    path = book / node["uri"]
-    kind = "illustration" if keys is None else ledger_data.picture_kind(path)
-    digest = ledger_data.sha256(path.read_bytes())
-    return Item(kind, _short(title), docname, anchor, keys or (), digest, node["uri"])
+        kind, file = "table" if keys else "settings", f"{docname}-{anchor}.csv".replace("/", "-")
+    else:
+        caption, path = holder.next_node(nodes.caption), book / node["uri"]
+        title = caption.astext() if caption is not None else str(node.get("alt", anchor))
+        kind = "illustration" if keys is None else ledger_data.picture_kind(path)
+        data, file = path.read_bytes(), node["uri"]
+    digest = ledger_data.sha256(data)
+    return Item(
+        kind, _short(title), docname, anchor, keys or (), digest, file, data if is_table else None
+    )
 
 
 def _name(holder: nodes.Element, word: str, section: nodes.Element | None) -> None:
-    """Give an anchor from the section's, which stands still when other sections change."""
+    """Derive an anchor from the section's: it stays the same when other sections change."""
     base = f"{word}-{section['ids'][0]}" if section is not None else word
     document, name, number = holder.document, base, 1
     while name in document.ids:
@@ -143,7 +131,7 @@ def _short(text: str) -> str:
 
 
 def add_line(holder: nodes.Element, text: str, row: str) -> None:
-    """Put the line of provenance at the end of a caption, or below what has none."""
+    """Insert the line of provenance at the end of the caption, or below an item without one."""
     link = nodes.reference("", "ledger", internal=True, refuri="", ledger_row=row)
     caption = holder.next_node(nodes.caption) if isinstance(holder, nodes.figure) else None
     parts = [nodes.Text(f"{text} · " if text[-1] != "." else f"{text} "), link]
@@ -157,9 +145,8 @@ def add_line(holder: nodes.Element, text: str, row: str) -> None:
 
 def all_items(env: BuildEnvironment) -> dict[str, list[Item]]:
     """Return the items of all pages read so far, by page."""
-    if not hasattr(env, "robo_genesis_items"):
-        env.robo_genesis_items = {}  # type: ignore[attr-defined]
-    return env.robo_genesis_items  # type: ignore[attr-defined]
+    items: dict[str, list[Item]] = vars(env).setdefault("robo_genesis_items", {})
+    return items
 
 
 def forget_page(app: Sphinx, env: BuildEnvironment, docname: str) -> None:
@@ -167,10 +154,9 @@ def forget_page(app: Sphinx, env: BuildEnvironment, docname: str) -> None:
     all_items(env).pop(docname, None)
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
+def setup(app: Sphinx) -> None:
     """Register the passes over each page that was read."""
     sphinx_origin.register(app)
-    refusals.register(app)
+    app.connect("doctree-read", refusals.refuse, priority=890)  # before the lines are added
     app.connect("env-purge-doc", forget_page)
     app.connect("doctree-read", read_page, priority=900)  # pictures are collected before
-    return {"version": "1", "parallel_read_safe": False, "parallel_write_safe": True}

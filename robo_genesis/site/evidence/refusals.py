@@ -1,4 +1,4 @@
-"""Refuses what a page writes by itself and only a run may say or show."""
+"""Refuses markup of a page that only a run may create."""
 
 import os
 from collections.abc import Iterator, Set
@@ -18,17 +18,17 @@ OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
     "measured": (measured_value, "Use {measured}."),
     "provenance": ((), "The build writes that line below each figure and measured table."),
 }
-"""Class → the nodes that may carry it while a page is read, and what to do instead."""
+"""Class → the nodes that may have it while a page is read, and the alternative for a page."""
 
 PICTURES = ("img", "picture")
 SHOWN = (*PICTURES, "table", "svg", "canvas", "video", "object", "embed", "iframe")
-"""Elements that show something; as raw HTML they would have neither line nor row."""
+"""Elements with content; as raw HTML they would have no provenance line and no ledger row."""
 
 logger = logging.getLogger(__name__)
 
 
 def refuse(app: Sphinx, doctree: nodes.document) -> None:
-    """Make each problem of a page that was read an error of the build."""
+    """Warn about each problem of a page; a warning fails the build."""
     env = app.env
     for node, problem in problems(doctree, Path(env.srcdir)):
         place = next((n for n in (node, *above(node)) if n.line), env.docname)
@@ -36,7 +36,7 @@ def refuse(app: Sphinx, doctree: nodes.document) -> None:
 
 
 def problems(doctree: nodes.document, book: Path) -> Iterator[tuple[nodes.Element, str]]:
-    """Yield each node that imitates what a run made or shows it past its check, and why not.
+    """Yield each node that imitates a result of a run or avoids its check, with the reason.
 
     Args:
         doctree: a page as it was read, before the lines of provenance.
@@ -53,44 +53,39 @@ def problems(doctree: nodes.document, book: Path) -> Iterator[tuple[nodes.Elemen
 
 
 def _imitated(node: nodes.Element | None, written: Set[str]) -> Iterator[str]:
-    """Yield what is wrong with the classes of a node, or of raw HTML, where `node` is None."""
+    """Yield the problems of the classes of a node, or of raw HTML, where `node` is None."""
     for name, (made, instead) in OURS.items():
         if name in written and not (node is not None and isinstance(node, made)):
-            yield f"a page may not set the class {name}: it follows from a run. {instead}"
+            yield f"a page may not set the class {name}: only the build sets it. {instead}"
 
 
 def _past_its_check(node: nodes.Element, book: Path) -> Iterator[str]:
     if isinstance(node, nodes.image) and _is_evidence(node["uri"], book):
         yield (
             f"the picture {node['uri']} lies below evidence/, where it may be stale. "
-            "Use the {evidence} directive: it shows accepted bundles alone."
+            "Use the {evidence} directive: it shows only accepted bundles."
         )
     if isinstance(node, PendingGlueReference):
         yield (
-            f"{node.key} is glued from the page {node.refdoc}, and nothing would say so. "
-            "Glue it there, or insert a metric of its bundle by {measured}."
+            f"{node.key} is glued from the page {node.refdoc}, and its origin would not be shown. "
+            "Paste it on that page, or insert a metric of its bundle with {measured}."
         )
 
 
 def _raw(node: nodes.Element, html: BeautifulSoup) -> Iterator[str]:
     in_cell = origin(node, None) is not None
     for name in sorted({tag.name for tag in html.find_all(SHOWN if in_cell else PICTURES)}):
-        mend = (
-            "Display Markdown (robo_genesis.core.tables) or a figure."
-            if in_cell
-            else "Use the {figure} directive."
-        )
-        what = "a cell puts out" if in_cell else "the page holds"
-        yield f"{what} <{name}> as raw HTML, which would have no line in the ledger. {mend}"
+        where, instead = "the page has", "Use the {figure} directive."
+        if in_cell:
+            where, instead = (
+                "a cell outputs",
+                "Display Markdown (robo_genesis.core.tables) or a figure.",
+            )
+        yield f"{where} <{name}> as raw HTML, which would have no line in the ledger. {instead}"
 
 
 def _is_evidence(uri: str, book: Path) -> bool:
-    """Whether a picture lies where recorded bundles do, as it is written or as links lead."""
+    """Return whether a picture is in the folder of recorded bundles, links included."""
     path, folder = book / uri, book / "evidence"
     normal = Path(os.path.normpath(path))
     return normal.is_relative_to(folder) or path.resolve().is_relative_to(folder.resolve())
-
-
-def register(app: Sphinx) -> None:
-    """Register the pass, before lines of provenance are added."""
-    app.connect("doctree-read", refuse, priority=890)

@@ -11,16 +11,16 @@ from robo_genesis.core.text import time_digits
 
 SPEEDS = {"1": "real time", "0.25": "1/4", "0.1": "1/10"}
 SLOW = "0.1"
-"""The speed at which a replay opens: most happens in a small part of the window."""
+"""The initial speed: most of the motion happens in a small part of the window."""
 
 PLOT = '<div class="plot"></div>'
-"""Where the script draws a channel; a page may hold no picture that is not in the ledger."""
+"""The script draws a channel here; a page may have no picture that is not in the ledger."""
 
 
 def samples(runs: Runs) -> str:
-    """Return every sample of every case as a Markdown table, the start of the runs first.
+    """Return every sample of every case as a Markdown table, in the order of time.
 
-    The columns of a case are its channels, in their order; the script finds them by that.
+    The columns of a case are its channels, in the order that the script expects.
     """
     columns = {"t [s]": runs.t} | {
         f"{case} {channel.head} [{channel.unit}]": channel.values[case]
@@ -32,11 +32,11 @@ def samples(runs: Runs) -> str:
 
 
 def markup(name: str, runs: Runs, script: str, viewer: str, weight: int) -> str:
-    """Return the controls as HTML: hidden until `_static/replay.js` fills and shows them.
+    """Return the controls as HTML, hidden until `_static/replay.js` fills and shows them.
 
     Args:
         name: of the replay, unique on the site.
-        runs: what is played.
+        runs: the runs to play.
         script: address of the script that holds the model.
         viewer: address of the viewer's script.
         weight: of both, compressed [kB].
@@ -67,7 +67,7 @@ def markup(name: str, runs: Runs, script: str, viewer: str, weight: int) -> str:
 
 
 def _data(name: str, runs: Runs) -> str:
-    """Return what the script must know of all cases, as attributes; channels as JSON."""
+    """Return the data of all cases for the script as attributes, the channels as JSON."""
     view = runs.view
     channels = [{"name": c.name, "unit": c.unit, "digits": c.digits} for c in runs.channels]
     words = {
@@ -84,7 +84,7 @@ def _data(name: str, runs: Runs) -> str:
 
 
 def _cases(name: str, runs: Runs) -> str:
-    """Return one radio button a case; each carries its mark, and the levels of its run as JSON."""
+    """Return one radio button per case, with its mark and the levels of its run as JSON."""
     marks = marks_of(list(runs.traces))
     return "".join(
         f'<span><input type="radio" name="{name}" id="{name}-{case}" value="{case}" '
@@ -114,18 +114,13 @@ def _json(content: Any) -> str:
 
 
 def _term(name: str) -> str:
-    """Return a line of the readout; it has its height before the script fills it."""
+    """Return a line of the readout; it has its final height before the script fills it."""
     return f"<div><dt>{escape(name)}</dt><dd>&nbsp;</dd></div>"
 
 
 def _legend(runs: Runs) -> str:
-    """Say what the lines of the plots mean."""
-    parts = [
-        *(
-            ["Bold: the chosen run; each run has the line beside its name."]
-            * (len(runs.traces) > 1)
-        ),
-        *(level.legend for level in runs.levels),
-        "Drag in a plot to move through time.",
-    ]
-    return " ".join(parts)
+    """Return the meaning of the lines of the plots."""
+    bold = "Bold: the chosen run; each run has the line beside its name."
+    levels = (level.legend for level in runs.levels)
+    parts = (bold * (len(runs.traces) > 1), *levels, "Drag in a plot to move through time.")
+    return " ".join(filter(None, parts))

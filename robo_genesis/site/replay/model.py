@@ -1,8 +1,8 @@
-"""Recorded runs as a GLB: the shape of what moves, moved as the link poses of the record say.
+"""Recorded runs as a GLB: the shape of the links, moved by the recorded link poses.
 
-One node per link, placed in the world and moved by one animation per case, whose keys are the
-samples of the record; one more for what stands still. Nothing is compressed: what unpacks such
-meshes would have to be loaded.
+Each link is a node, placed in the world and moved by one animation per case, whose keys are the
+samples of the record. One more node holds the parts that do not move. Nothing is compressed: the
+page would have to load a decoder.
 """
 
 import json
@@ -18,17 +18,17 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.visual_shape import WORLD, Part, check_links
 
 KEPT = 0.05
-"""Share of the triangles of a large part that is kept: with the small ones, about 10,000 of the
-Franka's 135,000."""
+"""Share of the triangles of a large part that is kept: with the small parts, about 10,000 of the
+Franka's 135,000 triangles."""
 
 SMALLEST = 400
-"""Triangles below which a part is left as it is: rings would break open and lamps vanish."""
+"""Number of triangles up to which a part stays unchanged: rings would break and lamps vanish."""
 
 CREASE = np.radians(40)
 """Angle between triangles above which an edge is drawn sharp [rad]."""
 
 STILL = "still"
-"""The node of what belongs to no link."""
+"""The node of the parts that belong to no link."""
 
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 """Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it."""
@@ -79,10 +79,10 @@ def glb(
     """Return the model with one animation a case.
 
     Args:
-        shape: the parts of what moves; those of `WORLD` stand still.
+        shape: the parts of the links; parts of `WORLD` do not move.
         links: names of the links, in the order of the record.
         traces: the record by case.
-        credit: whose the shape is, None where it needs no notice.
+        credit: copyright of the shape, None where it needs no notice.
 
     Raises:
         ValueError: a part belongs to a link that is not in the record, or two links have one name.
@@ -93,13 +93,10 @@ def glb(
     model.nodes = [gltf.Node(name=WORLD, rotation=Z_UP_TO_Y_UP, children=[])]
     first = next(iter(traces.values()))
     for k, link in enumerate(links):
-        node = gltf.Node(
-            name=link,
-            translation=first.link_pos[0, k].astype(float).tolist(),
-            rotation=rotations(first.link_quat[:1, k])[0].astype(float).tolist(),
-            mesh=_mesh(binary, link, shape),
-        )
-        model.nodes.append(node)
+        place = first.link_pos[0, k].astype(float).tolist()
+        turn = rotations(first.link_quat[:1, k])[0].astype(float).tolist()
+        mesh = _mesh(binary, link, shape)
+        model.nodes.append(gltf.Node(name=link, translation=place, rotation=turn, mesh=mesh))
     still = _mesh(binary, WORLD, shape)
     if still is not None:
         model.nodes.append(gltf.Node(name=STILL, mesh=still))
@@ -115,7 +112,7 @@ def _mesh(binary: Binary, link: str, shape: Sequence[Part]) -> int | None:
     """Add a link's mesh and return its number, None where the link has no parts."""
     model, primitives = binary.model, []
     for part in (part for part in shape if part.link == link):
-        mesh = light(part)
+        mesh = simplified(part)
         attributes = gltf.Attributes(
             POSITION=binary.add(_float32(mesh.vertices), "VEC3", gltf.ARRAY_BUFFER, bounds=True),
             NORMAL=binary.add(_float32(mesh.vertex_normals), "VEC3", gltf.ARRAY_BUFFER),
@@ -132,8 +129,8 @@ def _mesh(binary: Binary, link: str, shape: Sequence[Part]) -> int | None:
     return len(model.meshes) - 1
 
 
-def light(part: Part) -> trimesh.Trimesh:
-    """Return a part with few triangles, its vertices split where an edge is sharp."""
+def simplified(part: Part) -> trimesh.Trimesh:
+    """Return a part with few triangles, its vertices split at sharp edges."""
     mesh = trimesh.Trimesh(part.vertices, part.faces, process=False)
     mesh.merge_vertices(merge_norm=True)
     target = max(round(KEPT * len(mesh.faces)), SMALLEST)
@@ -149,21 +146,18 @@ def light(part: Part) -> trimesh.Trimesh:
 def _material(model: gltf.GLTF2, part: Part) -> int:
     """Return the number of the material of a part's colour."""
     name = json.dumps(part.rgb)
-    known = [material.name for material in model.materials]
-    if name not in known:
-        colour = [*linear(np.array(part.rgb) / 255).tolist(), 1.0]
-        look = gltf.PbrMetallicRoughness(
-            baseColorFactor=colour, metallicFactor=0.0, roughnessFactor=0.6
-        )
-        model.materials.append(
-            gltf.Material(name=name, pbrMetallicRoughness=look, alphaCutoff=None)
-        )
-        known.append(name)
-    return known.index(name)
+    colour = [*linear(np.array(part.rgb) / 255).tolist(), 1.0]
+    look = gltf.PbrMetallicRoughness(
+        baseColorFactor=colour, metallicFactor=0.0, roughnessFactor=0.6
+    )
+    material = gltf.Material(name=name, pbrMetallicRoughness=look, alphaCutoff=None)
+    if material not in model.materials:
+        model.materials.append(material)
+    return model.materials.index(material)
 
 
 def linear(srgb: FloatArray) -> FloatArray:
-    """Return sRGB values 0 to 1 as linear light, in which glTF gives its factors."""
+    """Return sRGB values 0 to 1 as linear light, the unit of glTF's factors."""
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
@@ -177,22 +171,19 @@ def _animation(binary: Binary, name: str, trace: Run) -> gltf.Animation:
             ("rotation", rotations(trace.link_quat[:, k]), "VEC4"),
         ):
             target = gltf.AnimationChannelTarget(node=k + 1, path=path)
-            animation.channels.append(
-                gltf.AnimationChannel(sampler=len(animation.samplers), target=target)
-            )
-            animation.samplers.append(
-                gltf.AnimationSampler(
-                    input=times, output=binary.add(values, kind), interpolation="LINEAR"
-                )
-            )
+            channel = gltf.AnimationChannel(sampler=len(animation.samplers), target=target)
+            output = binary.add(values, kind)
+            sampler = gltf.AnimationSampler(input=times, output=output, interpolation="LINEAR")
+            animation.channels.append(channel)
+            animation.samplers.append(sampler)
     return animation
 
 
 def rotations(wxyz: FloatArray) -> FloatArray:
     """Return unit quaternions (n, 4) as (x, y, z, w), float32, without sign flips between samples.
 
-    q and −q are one orientation; a viewer that blends from one sample to the next would turn the
-    long way round where the sign flips.
+    q and −q are one orientation. Between two samples of opposite sign, a viewer would interpolate a
+    turn in the wrong direction.
     """
     unit = wxyz.astype(float) / np.linalg.norm(wxyz.astype(float), axis=1, keepdims=True)
     flips = np.where((unit[1:] * unit[:-1]).sum(axis=1) < 0, -1.0, 1.0)

@@ -12,7 +12,7 @@ from sphinx.application import Sphinx
 from robo_genesis.build import npm
 
 FOLDER = "replay"
-"""Below the site; Jupyter Book loads every script of `_static` on every page, these on none."""
+"""Folder of the site; Jupyter Book would load every script of `_static` on every page."""
 
 VIEWER = "model-viewer.js"
 VIEWER_LICENCE = "LICENSE-Apache-2.0.txt"
@@ -20,26 +20,21 @@ NOTICE = "NOTICE.txt"
 ELSEWHERE = re.compile(
     rb"https://(?:www\.gstatic\.com|cdn\.jsdelivr\.net)/[^\"'`\s]*|//# sourceMappingURL=.*"
 )
-"""Addresses in the viewer: of decoders for compressed models, which these are not, and of its own
-source."""
+"""Addresses in the viewer: of decoders for compressed models, which the site does not have, and of
+the viewer's own source."""
 
 PARTS = (
-    "@google/model-viewer",
-    "three",
-    "lit",
-    "lit-html",
-    "lit-element",
-    "@lit/reactive-element",
+    "@google/model-viewer", "three", "lit", "lit-html", "lit-element", "@lit/reactive-element",
     "@monogrid/gainmap-js",
-)
-"""The packages whose code the viewer's one file holds, each in the lock."""
+)  # fmt: skip
+"""The packages in the viewer's single file, each in the lock."""
 
 CREDITS = f"""\
 The viewer ({VIEWER}): @google/model-viewer, © Google LLC, Apache-2.0. Changed here: the addresses
-from which it would load decoders for compressed models are taken out, so that it asks no other
+from which it would load decoders for compressed models are removed, so that it contacts no other
 host.
-Where Apache-2.0 is named here, its text stands in {VIEWER_LICENCE}.
-The viewer is one file made of these packages; the text of each licence stands in the file named:
+The text of Apache-2.0 is in {VIEWER_LICENCE}.
+The viewer is one file made of these packages; the text of each licence is in the named file:
 """
 
 
@@ -52,7 +47,7 @@ def viewer() -> bytes:
 
 
 def write_viewer(app: Sphinx, exception: Exception | None) -> None:
-    """Put the viewer, the licences and the notice beside the models, where there are any."""
+    """Write the viewer, the licences and the notice into the folder of the models, if it exists."""
     folder = Path(app.outdir) / FOLDER
     if exception is None and folder.is_dir():
         (folder / VIEWER).write_bytes(viewer())
@@ -61,24 +56,21 @@ def write_viewer(app: Sphinx, exception: Exception | None) -> None:
 
 
 def model_credits(folder: Path) -> Iterator[str]:
-    """Yield for the notice whose each model is, by its own word; the course's own have none."""
+    """Yield a line of the notice for each model that names a copyright."""
     for file in sorted(folder.glob("*.glb")):
         content = file.read_bytes()
         length = int.from_bytes(content[12:16], "little")  # of the first chunk, which is JSON
-        credit = json.loads(content[20 : 20 + length])["asset"].get("copyright")
-        if credit:
+        if credit := json.loads(content[20 : 20 + length])["asset"].get("copyright"):
             yield f"The model {file.name}, and the same in {file.stem}.js: {credit}.\n"
 
 
 def copy_licences(folder: Path) -> Iterator[str]:
-    """Copy the licence of each package in the viewer; yield a line on each for the notice."""
+    """Copy the licence of each package in the viewer; yield a line of the notice for each."""
     for name in PARTS:
         package = npm.packages() / name
-        said = json.loads((package / "package.json").read_text("utf8"))
-        file = (
-            VIEWER_LICENCE
-            if name == PARTS[0]
-            else f"LICENSE-{name.strip('@').replace('/', '-')}.txt"
-        )
+        about = json.loads((package / "package.json").read_text("utf8"))
+        file = f"LICENSE-{name.strip('@').replace('/', '-')}.txt"
+        if name == PARTS[0]:
+            file = VIEWER_LICENCE
         shutil.copyfile(package / "LICENSE", folder / file)
-        yield f"- {name} {said['version']}: {said['license']}, {file}\n"
+        yield f"- {name} {about['version']}: {about['license']}, {file}\n"

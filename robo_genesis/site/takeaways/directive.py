@@ -1,53 +1,48 @@
-"""What a reader takes from a lab, and the commands that run it: ```` ```{takeaways} l04/lab ````.
+"""Files to download from a lab, and the commands that run it: ```` ```{takeaways} l04/lab ````.
 
-The files are written while the page is read, so that the page can say how big they are, and are
-moved into the site when it is complete.
+The files are written while the page is read, so that the page can show their sizes. They are copied
+into the site when it is complete.
 """
 
-import os
 import shutil
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 from docutils import nodes
-from nbformat import NotebookNode
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
-from robo_genesis.build.page_cache import PageCache
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons.book_pages import Page, find_pages
 from robo_genesis.site.evidence.measured import BACKEND, measured, outputs_folder
-from robo_genesis.site.executed_pages import PAGE_CACHE
+from robo_genesis.site.executed_pages import executed_notebook
 from robo_genesis.site.takeaways.files import Takeaways, system, write_takeaways
 from robo_genesis.site.takeaways.plain_markdown import ProseError
 
 FOLDER = "takeaways"
+Link = Callable[..., list[nodes.Node]]
+"""Returns the link to a file with an optional text, and its size."""
 
 
 class TakeawaysBox(SphinxDirective):
-    """Show how to run a lab at home, and list what was measured for download."""
+    """Show how to run a lab at home, and list its measured files for download."""
 
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
         """Return the box and the list; a page without a run of its own is an error."""
-        page = self.page(self.arguments[0])
-        name = f"{page.lesson}/{page.page}"
-        files = staging(self.env.app)
+        name, files = self.arguments[0], staging(self.env.app)
+        page, run = self.page(name), outputs_folder() / name / BACKEND
         try:
             found = write_takeaways(
-                page,
-                executed(page),
-                outputs_folder() / name / BACKEND,
-                files,
+                page, executed_notebook(page.notebook), run, files,
                 lambda value: measured(*value.split(" ", 1))[0],
-            )
+            )  # fmt: skip
         except (LookupError, ProseError, bundle.BundleRefused) as error:
             raise self.error(f"takeaways: {error}") from error
-        links = Links(relative_uri(f"{self.env.docname}.html", FOLDER), files)
+        links = partial(link, relative_uri(f"{self.env.docname}.html", FOLDER), files)
         return [self.box(found, links), *self.downloads(found, links)]
 
     def page(self, name: str) -> Page:
@@ -55,10 +50,10 @@ class TakeawaysBox(SphinxDirective):
         pages = {f"{p.lesson}/{p.page}": p for p in find_pages(Path(self.env.srcdir))}
         if name not in pages:
             known = ", ".join(sorted(pages.keys() - {"None/None"}))
-            raise self.error(f"takeaways: no page is {name!r}. Choices: {known}.")
+            raise self.error(f"takeaways: there is no page {name!r}. Choices: {known}.")
         return pages[name]
 
-    def box(self, found: Takeaways, links: "Links") -> nodes.Node:
+    def box(self, found: Takeaways, links: Link) -> nodes.Node:
         """Return what to download and the commands that run the lab."""
         commands = "\n".join(found.commands)
         box = nodes.admonition("", nodes.title("", "Run it yourself"), classes=["run-it-yourself"])
@@ -76,14 +71,12 @@ class TakeawaysBox(SphinxDirective):
         )
         return box
 
-    def downloads(self, found: Takeaways, links: "Links") -> Iterable[nodes.Node]:
-        """Return the list of what this run of the lab left."""
+    def downloads(self, found: Takeaways, links: Link) -> Iterable[nodes.Node]:
+        """Return the list of the files of this run."""
         yield from self.prose("Results of the run on this page, for your own tools:")
-        tables = [
-            part
-            for case, table, archive in found.arrays
-            for part in (f"{case} ", links(table, "CSV"), " and ", links(archive, "npz"), "; ")
-        ]
+        tables: list[str | list[nodes.Node]] = []
+        for case, table, archive in found.arrays:
+            tables += [f"{case} ", links(table, "CSV"), " and ", links(archive, "npz"), "; "]
         figures = [part for path in found.figures for part in (links(path), ", ")]
         yield bullets(
             (links(found.executed), ", the notebook as it ran"),
@@ -97,28 +90,24 @@ class TakeawaysBox(SphinxDirective):
         return list(self.parse_text_to_nodes(text))
 
 
-class Links:
-    """Makes a link to a file of the takeaways, with its size.
+def link(base: str, files: Path, file: Path, text: str = "") -> list[nodes.Node]:
+    """Return a link to a downloadable file, and its size.
 
     Args:
-        base: where they are on the site, seen from the page.
-        staging: where they are now.
+        base: address of the files on the site, relative to the page.
+        files: the folder that holds the files now.
+        file: one of them.
+        text: of the link, by default the file's name.
     """
-
-    def __init__(self, base: str, staging: Path):
-        self.base, self.staging = base, staging
-
-    def __call__(self, file: Path, text: str = "") -> list[nodes.Node]:
-        """Return the link, named by the file unless `text` is given, and the size."""
-        address = f"{self.base}/{file.relative_to(self.staging).as_posix()}"
-        link = nodes.reference(
-            "", text or file.name, internal=True, refuri=address, classes=["takeaway"]
-        )
-        return [link, nodes.Text(f" ({max(1, round(file.stat().st_size / 1000))} kB)")]
+    address = f"{base}/{file.relative_to(files).as_posix()}"
+    reference = nodes.reference(
+        "", text or file.name, internal=True, refuri=address, classes=["takeaway"]
+    )
+    return [reference, nodes.Text(f" ({max(1, round(file.stat().st_size / 1000))} kB)")]
 
 
 def bullets(*items: Iterable[str | list[nodes.Node]]) -> nodes.Node:
-    """Return a list; an item is made of words and links."""
+    """Return a list; an item consists of words and links."""
     found = nodes.bullet_list()
     for item in items:
         line = nodes.paragraph()
@@ -128,25 +117,18 @@ def bullets(*items: Iterable[str | list[nodes.Node]]) -> nodes.Node:
     return found
 
 
-def executed(page: Page) -> NotebookNode:
-    """Return a page's code cells with the outputs of this build."""
-    cache = PageCache(os.environ[PAGE_CACHE])
-    return cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
-
-
 def staging(app: Sphinx) -> Path:
-    """Return where the files stand until the site is complete."""
+    """Return the folder that holds the files until the site is complete."""
     return Path(app.outdir).parent / FOLDER
 
 
-def move_in(app: Sphinx, exception: Exception | None) -> None:
-    """Put the files into the site."""
+def copy_files(app: Sphinx, exception: Exception | None) -> None:
+    """Copy the files into the site."""
     if exception is None and app.builder.format == "html" and staging(app).is_dir():
         shutil.copytree(staging(app), Path(app.outdir) / FOLDER, dirs_exist_ok=True)
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
-    """Register the directive, and what moves its files."""
+def setup(app: Sphinx) -> None:
+    """Register the directive and the copying of its files."""
     app.add_directive("takeaways", TakeawaysBox)
-    app.connect("build-finished", move_in)
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
+    app.connect("build-finished", copy_files)

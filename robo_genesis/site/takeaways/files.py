@@ -1,4 +1,4 @@
-"""What a reader takes from a lab: notebooks, arrays with units, figures, the package's wheel."""
+"""Files that a reader takes from a lab: notebooks, arrays with units, figures, the package."""
 
 import csv
 import io
@@ -21,18 +21,18 @@ from robo_genesis.evidence.trace_files import fields_of, read_any_trace
 from robo_genesis.lessons.book_pages import Page
 from robo_genesis.site.takeaways.notebooks import Origin, executed_notebook, student_notebook
 from robo_genesis.site.takeaways.plain_markdown import Writer
-from robo_genesis.site.takeaways.wheel import stored_wheel
+from robo_genesis.site.takeaways.wheel import build_wheel
 
 ENVIRONMENT = "course"
-UNTOLD = "*(your run measures it)*"
-"""Stands in the student notebook for a value that the site measured."""
+NOT_SHOWN = "*(your run measures it)*"
+"""Replaces in the student notebook a value that the site measured."""
 
 CHECKOUT = "robo-genesis"
-"""Stands for the folder that the site was built in."""
+"""Replaces the folder that the site was built in."""
 
 AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z")}
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
-"""What each step's trace was before the first step, where that was read."""
+"""The field that holds the value before the first step, where it was read."""
 
 DEBIAN = ("python3-venv", "libegl1", "libgl1")
 """Packages of Debian that a fresh system lacks."""
@@ -40,7 +40,7 @@ DEBIAN = ("python3-venv", "libegl1", "libgl1")
 
 @dataclass(frozen=True, slots=True)
 class Takeaways:
-    """The files of one lab; arrays are (case, its CSV, its npz)."""
+    """The files of one lab; `arrays` are (case, its CSV, its npz)."""
 
     student: Path
     executed: Path
@@ -66,17 +66,16 @@ def write_takeaways(
     name = f"{page.lesson}-{page.page}"
     own = folder / name
     own.mkdir(parents=True, exist_ok=True)
-    wheel = stored_wheel(folder)
+    wheel = build_wheel(folder)
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(wheel.name, student.name)
     origin = _origin(page, run, wheel.name, commands)
-    _write(student, student_notebook(page, origin, Writer(page.path.parent, lambda _: UNTOLD)))
+    _write(student, student_notebook(page, origin, Writer(page.path.parent, lambda _: NOT_SHOWN)))
     writer = Writer(page.path.parent, measured)
     _write(ran, executed_notebook(page, executed, origin, writer))
-    shutil.copy(run / "arrays.json", own)
-    arrays = tuple(_arrays(run, own))
-    figures = tuple(_figures(page, executed, own))
-    return Takeaways(student, ran, wheel, own / "arrays.json", arrays, figures, commands)
+    units = Path(shutil.copy(run / "arrays.json", own))
+    arrays, figures = tuple(_arrays(run, own)), tuple(_figures(page, executed, own))
+    return Takeaways(student, ran, wheel, units, arrays, figures, commands)
 
 
 def run_commands(wheel: str, notebook: str) -> tuple[str, ...]:
@@ -84,7 +83,7 @@ def run_commands(wheel: str, notebook: str) -> tuple[str, ...]:
 
     Args:
         wheel: file name of the package, which pins the engine.
-        notebook: file name of the notebook; both lie in the present folder.
+        notebook: file name of the notebook; both are in the current folder.
     """
     return (
         f"python3 -m venv {ENVIRONMENT}",
@@ -94,15 +93,14 @@ def run_commands(wheel: str, notebook: str) -> tuple[str, ...]:
 
 
 def system() -> str:
-    """Return what the commands run on."""
+    """Return the system that the commands need."""
     python = package_facts()["requires-python"].replace(",", ", ")
     return f"Linux with Python {python} (Debian: `apt install {' '.join(DEBIAN)}` first)"
 
 
-def package_facts(root: Path = project.ROOT) -> dict[str, str]:
-    """Return name, version and valid Python versions of the package."""
-    facts = tomllib.loads((root / "pyproject.toml").read_text("utf8"))["project"]
-    return {key: facts[key] for key in ("name", "version", "requires-python")}
+def package_facts() -> dict[str, str]:
+    """Return the `project` table of pyproject.toml."""
+    return tomllib.loads((project.ROOT / "pyproject.toml").read_text("utf8"))["project"]
 
 
 def _origin(page: Page, run: Path, wheel: str, commands: tuple[str, ...]) -> Origin:
@@ -126,7 +124,7 @@ def _write(path: Path, notebook: NotebookNode) -> None:
 
 
 def without_places(text: str, root: Path = project.ROOT) -> str:
-    """Return a text without the builder's own folders: only the checkout's name, and `~`."""
+    """Return a text with the checkout's folder replaced by its name, and home folders by `~`."""
     checkout = rf"(?<![\w.-]){re.escape(str(root))}(?![\w.-])"
     return project.without_home(re.sub(checkout, CHECKOUT, text))
 
@@ -134,30 +132,26 @@ def without_places(text: str, root: Path = project.ROOT) -> str:
 def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
     """Copy each case's archive, and write it as a table; yield (case, CSV, npz)."""
     described = bundle.read_arrays(run)
-    for case in described.cases:
+    for case, arrays in described.cases.items():
         archive, table = folder / f"{case}.npz", folder / f"{case}.csv"
-        shutil.copy(run / described.cases[case].file, archive)
+        shutil.copy(run / arrays.file, archive)
         table.write_text(csv_text(read_any_trace(run, described, case), described, case), "utf8")
         yield case, table, archive
 
 
 def csv_text(trace: TimeSeries, described: Arrays, case: str) -> str:
-    """Return a run as a table: one row a state, one column a number, its unit in the head.
+    """Return a run as a table: one row per state, one column per number, units in the head.
 
-    The first row is the state before any step, so what is read after a step is empty there unless
-    it was read before, too. What holds for the whole run stands in each row. Each number is the
-    shortest that gives the recorded one back.
+    The first row is the state before any step. A quantity that is read only after a step is empty
+    there. A quantity of the whole run is repeated in each row. Each number is the shortest text
+    that reproduces the recorded value.
     """
-    states = len(trace.t)
     columns: dict[str, list[str]] = {}
     for field, (name, dims, *_) in fields_of(trace).items():
-        if field in AT_REST.values():
-            continue
-        values = _by_state(trace, field, dims, states)
-        for label, column in zip(
-            _labels(field, described.cases[case].variables[name], described), values, strict=True
-        ):
-            columns[label] = ["" if value is None else str(value) for value in column]
+        if field not in AT_REST.values():
+            labels = _labels(field, described.cases[case].variables[name], described)
+            for label, column in zip(labels, _by_state(trace, field, dims), strict=True):
+                columns[label] = ["" if value is None else str(value) for value in column]
     stream = io.StringIO()
     writer = csv.writer(stream)
     writer.writerow(columns)
@@ -165,43 +159,36 @@ def csv_text(trace: TimeSeries, described: Arrays, case: str) -> str:
     return stream.getvalue()
 
 
-def _by_state(
-    trace: TimeSeries, field: str, dims: list[str], states: int
-) -> list[list[np.generic]]:
-    """Return the columns of a field, one entry a state, None where nothing was read."""
+def _by_state(trace: TimeSeries, field: str, dims: list[str]) -> list[tuple[np.generic, ...]]:
+    """Return the columns of a field, each with one entry per state, None where nothing was read."""
     values = np.asarray(getattr(trace, field))
-    rows = values.reshape(len(values), -1) if dims[0] in ("state", "step") else values[None]
-    listed = [list(row) for row in rows]
+    rows = list(values.reshape(len(values), -1) if dims[0] in ("state", "step") else values[None])
     if dims[0] == "step":
-        first = getattr(trace, AT_REST[field]) if field in AT_REST else [None] * rows.shape[1]
-        listed = [list(first), *listed]
+        first = getattr(trace, AT_REST[field]) if field in AT_REST else [None] * len(rows[0])
+        rows = [first, *rows]
     elif dims[0] != "state":
-        listed = listed * states
-    return [list(column) for column in zip(*listed, strict=True)]
+        rows *= len(trace.t)
+    return list(zip(*rows, strict=True))
 
 
 def _labels(field: str, variable: Variable, described: Arrays) -> list[str]:
     """Return the head of each column: field, joint or link, axis and unit."""
-    inner = [dim for dim in variable.dims if dim not in ("state", "step")]
     names = [field]
-    for dim in inner:
-        names = [
-            f"{name} {part}"
-            for name in names
-            for part in described.coords.get(dim, AXES.get(dim, ()))
-        ]
+    for dim in (dim for dim in variable.dims if dim not in ("state", "step")):
+        parts = described.coords.get(dim, AXES.get(dim, ()))
+        names = [f"{name} {part}" for name in names for part in parts]
     units = variable.unit if isinstance(variable.unit, list) else [variable.unit] * len(names)
     return [f"{name} [{unit}]" for name, unit in zip(names, units, strict=True)]
 
 
 def _figures(page: Page, executed: NotebookNode, folder: Path) -> Iterator[Path]:
-    """Write each figure that a cell drew as SVG, under the name that the page gives it."""
+    """Write each figure of a cell as SVG, under the name that the page gives it."""
     cells = [cell for cell in page.notebook.cells if cell.cell_type == "code"]
     for number, (cell, ran) in enumerate(zip(cells, executed.cells, strict=True), 1):
         for output in ran.outputs:
             drawn = output.get("data", {}).get("image/svg+xml")
             if drawn:
-                named = cell.metadata.get("mystnb", {}).get("figure", {})
-                path = folder / f"{named.get('name', f'figure-{number}')}.svg"
+                figure = cell.metadata.get("mystnb", {}).get("figure", {})
+                path = folder / f"{figure.get('name', f'figure-{number}')}.svg"
                 path.write_text(drawn.strip(), "utf8")
                 yield path

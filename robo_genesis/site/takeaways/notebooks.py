@@ -1,4 +1,4 @@
-"""A lab as notebooks to take away: one to work in, without outputs or solutions, one as it ran."""
+"""A lab as two notebooks: one to work in, without outputs or solutions, and one executed."""
 
 import re
 from collections.abc import Sequence
@@ -16,11 +16,11 @@ from robo_genesis.lessons.book_pages import Page
 from robo_genesis.site.takeaways.plain_markdown import SOLUTION, ProseError, Writer, plain
 
 SITE_ONLY = "site-only"
-"""The tag of a cell that makes sense on the site alone."""
+"""The tag of a cell that makes sense only on the site."""
 
 WORK_SHEET = "worksheet.md"
 BEFORE = "before the run"
-"""What a heading of the work sheet says where its part comes first."""
+"""Words in the heading of each part of the work sheet that comes first."""
 
 OWN_NOTE = re.compile(r"^\[I \d\d/\d\d/\d\d [\d:.]+ \d+\] .*\n?", re.MULTILINE)
 """A note of the engine's compiler on its own process: date, time and process number."""
@@ -49,7 +49,7 @@ print(*(f"{{package}} {{number}}" for package, number in NEEDED.items()), sep="\
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where a notebook comes from: its lab, the versions it needs, and the run on the site."""
+    """The origin of a notebook: its lab, the versions that it needs, and the run on the site."""
 
     title: str
     system: str
@@ -60,29 +60,26 @@ class Origin:
     run: str
     measured: str
 
-    @property
-    def install(self) -> str:
-        """The command that installs package and engine."""
-        return next(line for line in self.commands if " install " in line)
-
 
 def student_notebook(page: Page, origin: Origin, writer: Writer) -> NotebookNode:
     """Return the lab to work in: no outputs, no solutions, and a first check of the versions.
 
-    Where a work sheet lies beside the page, its parts are cells to fill in: what is asked before
-    the run stands after the lab's first words, the rest at the end.
+    The parts of a work sheet in the page's folder become cells to fill in: the parts before the run
+    follow the lab's introduction, the others are at the end.
 
     Args:
         page: the lab.
-        origin: said in the first lines.
-        writer: of its prose; no measured value may come from it.
+        origin: shown in the first lines.
+        writer: of its prose; it must not return measured values.
     """
     needed = {ENGINE: origin.engine, COURSE: origin.package}
-    check = CHECK.format(needed=needed, wheel=origin.wheel, install=origin.install)
+    install = next(line for line in origin.commands if " install " in line)
+    check = CHECK.format(needed=needed, wheel=origin.wheel, install=install)
     cells = [_header(origin, "student notebook"), new_code_cell(check)]
     for cell in page.notebook.cells:
         if not {SOLUTION, SITE_ONLY} & set(cell.metadata.get("tags", [])):
-            cells += _prose(cell, writer) if cell.cell_type == "markdown" else _code(cell, writer)
+            is_prose = cell.cell_type == "markdown"
+            cells += _sections(plain(cell.source, writer)) if is_prose else _code(cell, writer)
     before, after = _work_sheet(page)
     return _notebook([*cells[:3], *before, *cells[3:], *after])
 
@@ -95,7 +92,7 @@ def executed_notebook(
     Args:
         page: the lab.
         executed: the same code cells with outputs.
-        origin: said in the first lines.
+        origin: shown in the first lines.
         writer: of its prose; measured values are those of this run.
     """
     ran = (cell for cell in executed.cells if cell.cell_type == "code")
@@ -104,7 +101,7 @@ def executed_notebook(
         if cell.cell_type == "code":
             cells += _code(cell, writer, next(ran))
         elif SITE_ONLY not in cell.metadata.get("tags", []):
-            cells += _prose(cell, writer)
+            cells += _sections(plain(cell.source, writer))
     return _notebook(cells)
 
 
@@ -120,13 +117,8 @@ def _header(origin: Origin, kind: str) -> NotebookNode:
     )
 
 
-def _prose(cell: NotebookNode, writer: Writer) -> list[NotebookNode]:
-    """Return a cell for each section."""
-    return _sections(plain(cell.source, writer))
-
-
 def _sections(text: str) -> list[NotebookNode]:
-    """Return a cell for what stands before the first heading of level two, and for each of them."""
+    """Return a cell for the text before the first heading of level two, and for each section."""
     headings = (t for t in MarkdownIt().parse(text) if t.type == "heading_open" and not t.level)
     starts = [heading.map[0] for heading in headings if heading.map and heading.tag == "h2"]
     lines = text.splitlines()
@@ -135,16 +127,16 @@ def _sections(text: str) -> list[NotebookNode]:
 
 
 def _work_sheet(page: Page) -> tuple[list[NotebookNode], list[NotebookNode]]:
-    """Return what of the page's work sheet is filled in before the run, and what after it."""
+    """Return the parts of the page's work sheet before the run, and those after it."""
     sheet = page.path.with_name(WORK_SHEET)
     cells = _sections(sheet.read_text("utf8")) if sheet.is_file() else []
-    asked_first = [cell for cell in cells if BEFORE in cell.source.splitlines()[0]]
-    if cells and not asked_first:
+    before = [cell for cell in cells if BEFORE in cell.source.splitlines()[0]]
+    if cells and not before:
         raise ProseError(
             f"{sheet} has no part to fill in {BEFORE}: end the heading of its predictions with "
             "these words."
         )
-    return asked_first, [cell for cell in cells if cell not in asked_first]
+    return before, [cell for cell in cells if cell not in before]
 
 
 def _code(
@@ -161,9 +153,9 @@ def _code(
 
 
 def _output(output: NotebookNode) -> NotebookNode | None:
-    """Return an output, or None where it holds nothing but notes of the process that ran the cell.
+    """Return an output, or None where it holds only notes of the compiler.
 
-    Of an expected error it is the exception alone: its stack names private paths.
+    An expected error keeps only its last line: its stack contains private paths.
     """
     if output.output_type == "stream" and output.name == "stderr":
         text = OWN_NOTE.sub("", output.text)
@@ -174,7 +166,7 @@ def _output(output: NotebookNode) -> NotebookNode | None:
 
 
 def _notebook(cells: list[NotebookNode]) -> NotebookNode:
-    """Return a valid notebook whose bytes depend on its content alone."""
+    """Return a valid notebook whose bytes depend only on its content."""
     for number, cell in enumerate(cells):
         cell["id"] = f"cell-{number}"
     notebook = new_notebook(cells=cells, metadata={"kernelspec": KERNEL})

@@ -1,6 +1,6 @@
 """A page's prose as plain Markdown, for a notebook that is opened outside the site.
 
-Only the directives that are listed here are kept, so a solution never passes unseen.
+Only the directives that are listed here are kept, so that no solution passes unnoticed.
 """
 
 import re
@@ -19,14 +19,14 @@ from sphinx.config import Config
 from sphinx.directives.code import LiteralInclude, LiteralIncludeReader
 
 SOLUTION = "solution"
-"""The tag of a code cell and the class of a directive that hold one."""
+"""The tag of a code cell and the class of a directive that contain a solution."""
 
 ADMONITIONS = ("note", "tip", "hint", "important", "attention", "caution", "warning", "danger")
 UNTITLED = {
     "numref": "the figure", "eq": "the equation", "ref": "the section", "doc": "the site",
     "lesson-state": "",
 }  # fmt: skip
-"""The words in the place of a role whose text only the site can write."""
+"""Words that replace a role whose text only the site can write."""
 
 BLOCKS = (
     "fence", "code_block", "colon_fence", "math_block", "math_block_label", "amsmath",
@@ -38,19 +38,19 @@ DIRECTIVE = re.compile(r"\{([\w:-]+)\}\s*(.*)")
 ANSWER = re.compile(r"(?:our |a )?(?:answer|solution)", re.IGNORECASE)
 ROLE = re.compile(r"\{([a-z][\w:-]*)\}(`+)(.+?)\2", re.DOTALL)
 TITLED = re.compile(r"(.+?)\s*<[^<>]+>", re.DOTALL)
-LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!https?:|mailto:)[^)\s]*\)")
+LINK = re.compile(r"!?\[([^\]]*)\]\((?!https?:|mailto:)[^)\s]*\)")
 PARSER = create_md_parser(
     MdParserConfig(enable_extensions={"amsmath", "colon_fence", "dollarmath"}), RendererHTML
 )
 
 
 class ProseError(ValueError):
-    """The prose cannot become plain Markdown; the message says what to write instead."""
+    """The prose cannot be converted to plain Markdown; the message says what to write instead."""
 
 
 @dataclass(frozen=True, slots=True)
 class Writer:
-    """The page's folder, and the function that returns the words for a measured value."""
+    """The page's folder, and the function that returns the text of a measured value."""
 
     folder: Path
     measured: Callable[[str], str]
@@ -79,15 +79,14 @@ def plain(text: str, writer: Writer) -> str:
 
 
 def _block(token: Token, source: str, writer: Writer) -> str:
-    """Return a block as plain Markdown; targets, comments and breaks are left out."""
-    found = DIRECTIVE.match(token.info.strip())
-    if found:
+    """Return a block as plain Markdown without targets, comments and breaks."""
+    if found := DIRECTIVE.match(token.info.strip()):
         return _directive(found[1], found[2], token.content, writer)
     return "" if token.type.startswith(("myst", "colon")) else source
 
 
 def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
-    """Return a directive as plain Markdown, nothing for a solution and for one not listed here."""
+    """Return a directive as plain Markdown; a solution or an unlisted directive is dropped."""
     kind = LiteralInclude if name == "literalinclude" else TestDirective  # takes any option
     found = parse_directive_text(kind, first_line, content)
     argument, body, options = " ".join(found.arguments), "\n".join(found.body), found.options
@@ -101,8 +100,8 @@ def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
         return textwrap.indent(quoted, "> ", lambda _: True)
     match name:
         case "literalinclude":
-            path = str((writer.folder / argument).resolve())
-            excerpt, _ = LiteralIncludeReader(path, options, Config()).read()
+            path = (writer.folder / argument).resolve()
+            excerpt, _ = LiteralIncludeReader(str(path), options, Config()).read()
             return f"```python\n{excerpt.rstrip()}\n```"
         case "code" | "code-block":
             return f"```{argument}\n{body}\n```"
@@ -116,9 +115,9 @@ def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
 
 
 def _inline(lines: list[str], writer: Writer) -> str:
-    """Return running text without roles, and without links that lead nowhere outside the site."""
+    """Return running text without roles, and without links that do not work outside the site."""
     text = ROLE.sub(lambda role: _role(role[1], role[3], writer), "\n".join(lines))
-    return LINK.sub(lambda link: link[2], text)
+    return LINK.sub(r"\1", text)
 
 
 def _role(name: str, text: str, writer: Writer) -> str:
