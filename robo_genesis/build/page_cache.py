@@ -1,5 +1,6 @@
 """The cache of executed pages: a page needs no run if its outputs and its bundle are of one run."""
 
+import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -77,6 +78,9 @@ def store(page: Page, notebook: NotebookNode, seconds: float | None, folder: Pat
         notebook, str(page.path.absolute()), data={"execution_seconds": seconds}
     )
     cache = PageCache(notebooks_folder(folder))
+    _, digest = cache.create_hashed_notebook(notebook)
+    # A killed build may have left a folder without its notebook, which jupyter-cache refuses.
+    shutil.rmtree(Path(cache.path) / "executed" / digest, ignore_errors=True)
     cache.cache_notebook_bundle(executed, check_validity=False, overwrite=True)
 
 
