@@ -166,15 +166,9 @@ def test_a_build_that_is_refused_leaves_the_old_site(
     assert marker.read_text() == "the old site"
 
 
-@pytest.mark.parametrize(
-    ("backend", "render", "said"),
-    [
-        ("cpu", "0", "frames: .* render.mode is 'camera', expected 'skip'"),
-        ("auto", "1", "backend: .* backend.requested is 'cpu', expected 'auto'"),
-    ],
-)
-def test_a_bundle_of_another_kind_of_run_is_refused(backend, render, said):
-    contract = {"ROBO_GENESIS_BACKEND": backend, "ROBO_GENESIS_RENDER": render}
+def test_a_bundle_of_another_backend_is_refused():
+    contract = {"ROBO_GENESIS_BACKEND": "auto", "ROBO_GENESIS_RENDER": "1"}
+    said = r"backend: .* backend\.requested is 'cpu', expected 'auto'"
     with pytest.raises(BundleRefused, match=said):
         require_contract(FACTS, contract)
 

@@ -7,7 +7,6 @@ import pytest
 
 from robo_genesis.core import project
 from robo_genesis.core.project import ProjectError
-from robo_genesis.maintain import pin
 from robo_genesis.maintain.pin import RepinError, chosen_version, installable_versions, set_pin
 
 KNOWN = ["1.4.5", "1.4.0", "1.3.3", "2.0.0rc1"]
@@ -77,7 +76,3 @@ def test_a_pin_that_does_not_stand_there_once_is_not_touched(tmp_path, lines):
     with pytest.raises(ProjectError, match=r"expected once"):
         set_pin(root, "1.3.3", "1.4.5")
     assert (root / "pyproject.toml").read_text() == text
-
-
-def test_this_environment_holds_the_lock():
-    pin.require_locked_packages(project.ROOT)
