@@ -7,7 +7,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
 MAKEFLAGS += --no-print-directory
-# The book is built on all cores; a test or a second build beside it would only disturb it.
+# A build uses all cores; a test or a second build at the same time would only disturb it.
 .NOTPARALLEL:
 
 ifdef PYTHON
@@ -21,7 +21,7 @@ BASE_PYTHON ?= python3
 
 # The code under test is this checkout's, whatever environment runs it.
 export PYTHONPATH := $(CURDIR)
-# What pydantic accepts as evidence is decided here, not by packages that happen to be installed.
+# Without plug-ins, no other installed package decides what pydantic accepts as evidence.
 export PYDANTIC_DISABLE_PLUGINS := __all__
 export RENDER ?= 1
 export JOBS
@@ -42,7 +42,7 @@ book: $(ENVIRONMENT) ## measure every lesson on CPU, verify, render and check th
 
 # PAGE and TO reach the script as environment variables.
 .PHONY: execute
-execute: $(ENVIRONMENT) ## execute one page and hand it over as files (PAGE=l04/lab TO=folder)
+execute: $(ENVIRONMENT) ## execute one page and export it as files (PAGE=l04/lab TO=folder)
 	@"$(PY)" build_scripts/execute.py
 
 .PHONY: pages
@@ -96,7 +96,7 @@ distclean: clean ## remove the environment and every cache too
 	@rm -rf .venv .cache
 
 .PHONY: lock
-lock: $(ENVIRONMENT) ## resolve requirements.lock anew from pyproject.toml
+lock: $(ENVIRONMENT) ## resolve requirements.lock again from pyproject.toml
 	@"$(PY)" build_scripts/lock.py
 
 # GENESIS reaches the script as an environment variable.
@@ -106,7 +106,7 @@ repin: $(ENVIRONMENT) ## try another engine version, then change pin and lock (G
 
 .PHONY: test-repin
 test-repin: $(ENVIRONMENT) ## change the pin there and back in a clone (network; an hour)
-	@"$(PY)" -m pytest -m repin tests/test_repin_round_trip.py
+	@"$(PY)" -m pytest -m repin tests/maintain/test_repin_round_trip.py
 
 # ROWS and RUNS reach the script as environment variables.
 .PHONY: bench
@@ -117,11 +117,11 @@ bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=
 has-packages:
 	@"$(PY)" -c 'import sys; from importlib.util import find_spec; \
 	  needed = "genesis jupyter_book pytest ruff mypy importlinter codespell_lib check_jsonschema".split(); \
-	  gone = [name for name in needed if find_spec(name) is None]; \
+	  missing = [name for name in needed if find_spec(name) is None]; \
 	  sys.exit("PYTHON=%s lacks %s. Install the lock there: pip install -r requirements.lock" \
-	  % (sys.argv[1], ", ".join(gone)) if gone else 0)' "$(PY)"
+	  % (sys.argv[1], ", ".join(missing)) if missing else 0)' "$(PY)"
 
-# The stamp is written last: an installation that was broken off starts again.
+# The file is touched last, so an interrupted installation starts again.
 .venv/.installed: requirements.lock
 	@"$(BASE_PYTHON)" -c 'import sys; v = sys.version_info[:2]; sys.exit(0 if (3, 11) <= v < (3, 14) else \
 	  "The course needs Python 3.11 to 3.13, found %d.%d. Name another with BASE_PYTHON=python3.11." % v)'

@@ -12,8 +12,7 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import nbformat
@@ -21,18 +20,16 @@ import yaml
 
 from robo_genesis.build.command import run
 from robo_genesis.build.page_cache import notebooks_folder
+from robo_genesis.build.worktree import environment, worktree
 from robo_genesis.core import project, tables
-from robo_genesis.lessons.book_pages import Page, PageError, find_pages
+from robo_genesis.lessons.book_pages import Page, find_pages
 
 Sides = tuple[Callable[[], float], Callable[[], float]]
 """Run the course's command, or its bare counterpart, and return the elapsed time [s]."""
 
 TREE = project.CACHE / "bench"
-NOT_PASSED_ON = (
-    "MAKEFLAGS", "MFLAGS", "MAKELEVEL", "RENDER", "JOBS", "RELEASE", "BUNDLE", "GENESIS",
-    "SITE_URL", "EXECUTED", "ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND",
-)  # fmt: skip
-"""Variables of the outer make that would change a measured command."""
+SETTINGS = ("RENDER", "JOBS", "SITE_URL", "ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND")
+"""Further variables that would change a measured command."""
 
 BARE_CONFIG = """\
 extensions = ["myst_nb", "sphinx_external_toc", "sphinx_design", "sphinx_book_theme"]
@@ -46,7 +43,7 @@ NBCLIENT = "import nbclient, nbformat, sys; nbclient.execute(nbformat.read(sys.a
 
 
 class BenchError(Exception):
-    """A command failed or did other work than is measured; the message says which and why."""
+    """A command failed or did other work than intended; the message says which and why."""
 
 
 def seconds(*command: str, says: str = "", **variables: str) -> float:
@@ -55,10 +52,9 @@ def seconds(*command: str, says: str = "", **variables: str) -> float:
     Raises:
         BenchError: it failed, or its output lacks the words `says`.
     """
-    passed_on = {name: os.environ[name] for name in os.environ.keys() - {*NOT_PASSED_ON}}
-    environment = passed_on | {"PYTHONPATH": str(TREE)} | variables
+    passed_on = environment(TREE, *SETTINGS) | variables
     begin = time.monotonic()
-    done = subprocess.run(command, cwd=TREE, env=environment, capture_output=True, check=False)
+    done = subprocess.run(command, cwd=TREE, env=passed_on, capture_output=True, check=False)
     elapsed = time.monotonic() - begin
     output = (done.stdout + done.stderr).decode("utf8", "replace")
     if done.returncode or says not in output:
@@ -71,21 +67,6 @@ def seconds(*command: str, says: str = "", **variables: str) -> float:
 
 python = partial(seconds, sys.executable)
 make = partial(seconds, "make", f"PYTHON={sys.executable}")
-
-
-@contextmanager
-def worktree() -> Iterator[None]:
-    """Check the last commit out at TREE, with the caches of this checkout, for a while."""
-    git = ("git", "-C", str(project.ROOT), "worktree")
-    shutil.rmtree(TREE, ignore_errors=True)  # of a bench that was killed
-    try:
-        subprocess.run([*git, "prune"], check=True)
-        subprocess.run([*git, "add", "--quiet", "--detach", str(TREE)], check=True)
-        (TREE / ".cache").symlink_to(project.CACHE)
-        yield
-    finally:
-        shutil.rmtree(TREE, ignore_errors=True)
-        subprocess.run([*git, "prune"], check=False)
 
 
 def last_lab() -> Page:
@@ -139,7 +120,7 @@ def execute() -> Sides:
 
     def anew() -> float:
         shutil.rmtree(cache / "pages", ignore_errors=True)
-        where = {"PAGE": page.docname, "TO": str(cache / "handed-over")}
+        where = {"PAGE": page.docname, "TO": str(cache / "exported")}
         return python("build_scripts/execute.py", "--cache", str(cache), **where)
 
     anew()  # compiles what is not compiled yet
@@ -155,9 +136,9 @@ ROWS = {
 """Name to the course's command, its bare counterpart, and what prepares both."""
 
 
-def chosen(asked: str) -> list[str]:
+def chosen(given: str) -> list[str]:
     """Return the rows that a list names, separated by spaces or commas; all if it is empty."""
-    names = asked.replace(",", " ").split()
+    names = given.replace(",", " ").split()
     if unknown := [name for name in names if name not in ROWS]:
         raise BenchError(f"ROWS names {', '.join(unknown)}. Choices: {', '.join(ROWS)}.")
     return names or list(ROWS)
@@ -186,7 +167,7 @@ def measure() -> list[str]:
     if not (runs.isdecimal() and int(runs) > 0):
         raise BenchError(f"RUNS={runs!r} is not valid. Give a number from 1.")
     samples = {}
-    with worktree():
+    with worktree(project.ROOT, TREE, project.CACHE):
         for name in names:
             print(f"{name}: preparation, then {runs} runs of each side", flush=True)
             course, bare = ROWS[name][2]()
@@ -195,5 +176,4 @@ def measure() -> list[str]:
 
 
 if __name__ == "__main__":
-    failures = (BenchError, PageError, project.ProjectError, subprocess.CalledProcessError)
-    sys.exit(run(measure, "measured", failures))
+    sys.exit(run(measure, "measured", (BenchError, project.ProjectError)))

@@ -2,7 +2,7 @@
 
 Writes report.md and report.html, by default below .cache/reports/, and prints the summary.
 Exit status: 0 equal or within tolerance, 1 differs or inconclusive, 2 not comparable or refused.
-`make` itself ends with 2 for each but 0; call this script where the difference matters.
+`make` itself ends with 2 for each but 0; call this script if you need the difference.
 """
 
 import argparse

@@ -1,17 +1,15 @@
 """Verify evidence: `make verify` (BUNDLE=path checks one folder).
 
 One line for each bundle that is recorded in the book and for each of the last build: lesson,
-backend, state, reason. Exit status: 0 all verified, or none there; 1 any that is inconclusive,
-stale, failed or refused.
+backend, state, reason. Exit status: 0 all verified, or no bundle; 1 any is inconclusive, stale,
+failed or refused.
 """
 
-import os
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 
-from robo_genesis.build.publish import PUBLISHED
-from robo_genesis.core.project import BOOK, ProjectError
+from robo_genesis.build.command import path
+from robo_genesis.core.project import BOOK, PUBLISHED, ProjectError
 from robo_genesis.evidence.status import Status, bundle_status, recorded_folders, recorded_status
 
 
@@ -26,32 +24,24 @@ def all_bundles() -> Iterator[tuple[str, Status]]:
 
 def line(place: str, status: Status) -> str:
     """Return one bundle's line."""
-    text = status.reason or f"run {_run(status)}"
+    text = status.reason
+    if not text and status.manifest:
+        run = status.manifest.predicate
+        text = f"run {run.run_id[:8]} of {run.started[:10]}, Genesis {run.engine.version}"
     return f"{place:14} {status.backend:8} {status.state:12} {text}"
 
 
-def _run(status: Status) -> str:
-    assert status.manifest is not None
-    predicate = status.manifest.predicate
-    return f"{predicate.run_id[:8]} of {predicate.started[:10]}, Genesis {predicate.engine.version}"
-
-
-def main() -> int:
-    """Print the lines and return the exit status."""
-    asked = os.environ.get("BUNDLE")
+def main() -> int | str:
+    """Print the lines and return the exit status, or why nothing can be verified."""
     try:
-        if asked:
-            folder = Path(asked).absolute()
-            found = [(folder.parent.name, bundle_status(folder))]
-        else:
-            found = list(all_bundles())
+        bundle = path("BUNDLE")
+        found = [(bundle.parent.name, bundle_status(bundle))] if bundle else list(all_bundles())
     except (ProjectError, OSError) as error:
-        print(f"Nothing can be verified: {error}", file=sys.stderr)
-        return 1
+        return f"Nothing can be verified: {error}"
     if not found:
         print("No bundle is recorded in book/evidence, and none is built. `make book` builds one.")
-        return 0
-    print("\n".join(line(place, status) for place, status in found))
+    for place, status in found:
+        print(line(place, status))
     return 0 if all(status.state == "verified" for _, status in found) else 1
 
 

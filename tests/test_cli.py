@@ -1,4 +1,4 @@
-"""The commands around the package: what `make` and `make serve` say of a wrong environment."""
+"""The Makefile and `make serve`: their messages about a wrong environment."""
 
 import os
 import shutil
@@ -31,30 +31,25 @@ def python(folder: Path, *options: str) -> Path:
     return path
 
 
-def make_serve(folder: Path, interpreter: Path) -> subprocess.CompletedProcess[str]:
-    command = ["make", "-C", str(folder), "serve", f"PYTHON={interpreter}"]
+def make(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    command = ["make", "-C", str(folder), *words, f"BASE_PYTHON={sys.executable}"]
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
 
 
-def test_a_path_with_spaces_is_no_hindrance(checkout):
-    done = make_serve(checkout, python(checkout))
+def test_a_path_may_contain_spaces(checkout):
+    done = make(checkout, "serve", f"PYTHON={python(checkout)}")
     assert done.returncode == 0, done.stderr
     assert str(checkout) in done.stdout.splitlines()
 
 
-def test_a_python_without_the_packages_is_refused_with_their_names_and_the_mend(checkout):
+def test_a_python_without_the_packages_is_refused_with_their_names_and_the_fix(checkout):
     without = python(checkout, "-S")
-    done = make_serve(checkout, without)
+    done = make(checkout, "serve", f"PYTHON={without}")
     assert done.returncode != 0
     assert f"PYTHON={without} lacks genesis, jupyter_book, pytest" in done.stderr
     assert "pip install -r requirements.lock" in done.stderr
     assert "Traceback" not in done.stderr
     assert str(checkout) not in done.stdout.splitlines()
-
-
-def make(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    command = ["make", "-C", str(folder), *words, f"BASE_PYTHON={sys.executable}"]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
 
 
 def test_clean_keeps_what_the_engine_compiled_and_distclean_does_not(checkout):

@@ -1,12 +1,16 @@
 """Tiny books for the tests of the build: pages that run in a second, without the engine."""
 
 import json
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import yaml
 
-from robo_genesis.core.project import BOOK
+from robo_genesis.build.worktree import environment
+from robo_genesis.core.project import BOOK, ROOT
 
 FRONT = (
     "---\nfile_format: mystnb\nkernelspec: {{name: python3}}\n{front}---\n# {title}\n\nA page.\n"
@@ -22,6 +26,7 @@ manifest = {"predicate": {"run_id": os.environ["ROBO_GENESIS_RUN_ID"]}}
 (folder / "manifest.json").write_text(json.dumps(manifest))"""
 
 LAB_FRONT = "robo_genesis: {lesson: l04, page: lab}\n"
+SETTINGS = ("RENDER", "RELEASE", "JOBS", "SITE_URL", "EXECUTED", "PAGE", "TO", "LESSON", "BACKEND")
 
 
 def cell(code: str, options: str = "") -> str:
@@ -56,7 +61,7 @@ def make_book(folder: Path, **pages: str) -> Path:
 
 
 def published_marker(book: Path) -> Path:
-    """Put an old site in place and return a file of it that a failed build must leave alone."""
+    """Publish an old site and return a file of it that a failed build must leave alone."""
     marker = book / "_build" / "html" / "index.html"
     marker.parent.mkdir(parents=True)
     marker.write_text("the old site")
@@ -69,3 +74,52 @@ def write_bundle(outputs: Path, run_id: str, backend: str = "cpu") -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "manifest.json").write_text(json.dumps({"predicate": {"run_id": run_id}}))
     return folder
+
+
+def start(script: str, folder: Path, *more: str, **settings: str) -> subprocess.Popen[str]:
+    """Start a command on a folder's tiny book, with more arguments and these settings alone."""
+    arguments = ["--book", str(folder / "book"), "--cache", str(folder / "cache"), *more]
+    kept = {name: value for name, value in os.environ.items() if name not in SETTINGS}
+    return subprocess.Popen(
+        [sys.executable, str(ROOT / "build_scripts" / script), *arguments],
+        env=kept | {"PYTHONPATH": str(ROOT)} | settings,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def fails(script: str, folder: Path, *more: str, **settings: str) -> str:
+    """Run a command on a folder's tiny book that ends with status 1; return its report."""
+    process = start(script, folder, *more, **settings)
+    _, report = process.communicate(timeout=120)
+    assert process.returncode == 1, report
+    assert "Traceback" not in report
+    return report
+
+
+def make(folder: Path, *words: str, fails: bool = False) -> str:
+    """Run make in another checkout, with no setting of an outer make; return its output."""
+    done = subprocess.run(
+        ["make", *words],
+        cwd=folder,
+        env=environment(folder, *SETTINGS),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode != 0) == fails, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+def git(root: Path, *words: str) -> str:
+    """Return what git prints in a folder, where it can commit."""
+    command = ["git", "-C", str(root), "-c", "user.name=a", "-c", "user.email=a@b", *words]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def commit(root: Path) -> None:
+    """Commit everything in a folder, which becomes a repository."""
+    git(root, "init", "--quiet")
+    git(root, "add", ".")
+    git(root, "commit", "--quiet", "--message", "a")

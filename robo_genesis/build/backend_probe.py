@@ -1,4 +1,4 @@
-"""Which backend a run would find, as Torch sees it in a process of its own, before the run."""
+"""The backend that a run would find, as Torch reports it in a process of its own before the run."""
 
 import json
 import subprocess
@@ -14,10 +14,10 @@ print(json.dumps([torch.version.hip, torch.version.cuda, count]))
 PROBE_SECONDS = 180.0
 
 
-def foreseen_backend() -> str:
-    """Return the backend that `auto` would find, as Torch sees it in a process of its own.
+def expected_backend() -> str:
+    """Return the backend that `auto` would find.
 
-    It only spares a run that is bound to be refused: what counts is what the run itself finds.
+    It only avoids a run that would be refused: the run itself decides.
 
     Raises:
         ProjectError: Torch does not answer.
@@ -34,17 +34,10 @@ def foreseen_backend() -> str:
     except (subprocess.SubprocessError, ValueError, IndexError) as error:
         last = str(getattr(error, "stderr", "") or error).strip().splitlines()[-1:]
         raise ProjectError(
-            f"Torch of {sys.executable} does not say what it runs on: {' '.join(last)}\n"
-            "Mend that environment, or name another with PYTHON=path."
+            f"Torch of {sys.executable} does not report its devices: {' '.join(last)}\n"
+            "Repair that environment, or name another with PYTHON=path."
         ) from error
-    return backend_of(hip, cuda, count)
-
-
-def backend_of(hip: str | None, cuda: str | None, count: int) -> str:
-    """Return the backend of a Torch build and its number of devices.
-
-    ROCm and CUDA both call their device `cuda`; the build's versions tell them apart.
-    """
+    # ROCm and CUDA both call their device `cuda`; the build's versions distinguish them.
     if count and hip:
         return "amdgpu"
     return "cuda" if count and cuda else "cpu"

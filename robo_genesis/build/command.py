@@ -1,19 +1,40 @@
-"""What the commands share: settings from the environment, and how a long one ends."""
+"""What the commands share: arguments, settings from the environment, and exit statuses."""
 
+import argparse
 import gc
 import os
 import signal
 import sys
+import time
 from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
 
-from robo_genesis.core.project import BUILD_BACKEND
+from robo_genesis.core.project import BOOK, BUILD_BACKEND, CACHE
+
+TIMEOUT = 1500
+"""Seconds for one cell; a page's front matter may set another."""
+
+say = partial(print, flush=True)
+
+
+class Progress:
+    """Prints lines of elapsed time, stage, page and event."""
+
+    def __init__(self, say: Callable[[str], None]):
+        self.say, self.begin = say, time.monotonic()
+
+    def __call__(self, stage: str, what: str, event: str = "") -> None:
+        """Print one line."""
+        elapsed = time.monotonic() - self.begin
+        self.say(f"[{elapsed:7.1f} s] {stage:8} {what}  {event}".rstrip())
 
 
 def collect_rarely() -> None:
-    """Let Python look for cyclic garbage a thousand times less often than it usually does.
+    """Let Python collect cyclic garbage a thousand times less often than usual.
 
-    Parsed pages are millions of objects that stay; looking through them again and again takes a
-    quarter of a render. What is found rarely costs memory: some 100 MB for ten pages.
+    Parsed pages are millions of objects that stay, and scanning them repeatedly takes a quarter of
+    a render. Rare collection costs memory: some 100 MB for ten pages.
     """
     gc.set_threshold(1_000_000, 20, 100)
 
@@ -21,12 +42,11 @@ def collect_rarely() -> None:
 def run(task: Callable[[], Sequence[str]], done: str, failures: tuple[type[Exception], ...]) -> int:
     """Run a task, print its last lines and return the exit status.
 
-    A cancelled CI job sends SIGTERM: it takes the same way out as Ctrl-C, so that no kernel stays
-    behind.
+    A cancelled CI job sends SIGTERM, which ends the task as Ctrl-C does, so that no kernel is left.
 
     Args:
         task: does the work and returns the last lines for the user.
-        done: what it does to its result: `published`, `recorded`.
+        done: the verb for its result: `published`, `recorded`.
         failures: exceptions whose message is a whole report.
 
     Returns:
@@ -35,43 +55,56 @@ def run(task: Callable[[], Sequence[str]], done: str, failures: tuple[type[Excep
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         print("\n".join(task()))
-    except failures as error:
-        return _failed(str(error), done)
-    except OSError as error:
-        report = f"A file cannot be used: {error}. Give it free space or write access."
-        return _failed(report, done)
     except KeyboardInterrupt:
         print(f"\nInterrupted: nothing was {done}.", file=sys.stderr)
         return 130
-    return 0
-
-
-def _failed(report: str, done: str) -> int:
+    except failures as error:
+        report = str(error)
+    except OSError as error:
+        report = f"A file cannot be used: {error}. Give it free space or write access."
+    else:
+        return 0
     print(f"\n{report}\n\nFAILED: nothing was {done}.", file=sys.stderr)
     return 1
 
 
-def choice(name: str, default: str, choices: tuple[str, ...]) -> str:
-    """Return an environment variable that has few valid values; exit with 1 on another."""
+def choice(name: str, default: str, choices: tuple[str, ...], reason: str = "") -> str:
+    """Return an environment variable that has few valid values; exit with 1 on another.
+
+    Args:
+        name: the variable.
+        default: its value if it is unset or empty.
+        choices: the valid values.
+        reason: why no other is valid.
+    """
     value = os.environ.get(name) or default
     if value not in choices:
-        sys.exit(f"{name}={value!r} is not valid. Choices: {', '.join(choices)}.")
+        sys.exit(f"{name}={value!r} is not valid{reason}. Choices: {', '.join(choices)}.")
     return value
 
 
-def require_cpu() -> None:
-    """Exit with 1 where the environment asks for another backend than the CPU."""
-    value = os.environ.get("ROBO_GENESIS_BACKEND") or BUILD_BACKEND
-    if value != BUILD_BACKEND:
-        sys.exit(
-            f"ROBO_GENESIS_BACKEND={value!r} is not valid for a build, which measures on the CPU: "
-            "its pages show what was measured there, and accelerators are recorded apart. "
-            f"Unset it. Choices: {BUILD_BACKEND}."
-        )
-    os.environ["ROBO_GENESIS_BACKEND"] = BUILD_BACKEND
+def path(name: str) -> Path | None:
+    """Return an environment variable as an absolute path, None if it is unset or empty."""
+    value = os.environ.get(name)
+    return Path(value).absolute() if value else None
 
 
-def as_published() -> None:
-    """Let what is measured run as the site's pages do: on their backend, with a camera."""
-    os.environ["ROBO_GENESIS_RENDER"] = "1"
-    os.environ["ROBO_GENESIS_BACKEND"] = BUILD_BACKEND
+def set_contract() -> None:
+    """Set the camera as RENDER says, and the CPU; exit with 1 on another setting."""
+    os.environ["ROBO_GENESIS_RENDER"] = choice("RENDER", "1", ("0", "1"))
+    os.environ["ROBO_GENESIS_BACKEND"] = choice(
+        "ROBO_GENESIS_BACKEND",
+        BUILD_BACKEND,
+        (BUILD_BACKEND,),
+        " for a build, which executes its pages on the CPU; `make evidence` records accelerators. "
+        "Unset it",
+    )
+
+
+def parser(description: str) -> argparse.ArgumentParser:
+    """Return a parser with the arguments of the commands that execute pages."""
+    arguments = argparse.ArgumentParser(description=description.splitlines()[0])
+    arguments.add_argument("--book", type=Path, default=BOOK, help="folder of the pages")
+    arguments.add_argument("--cache", type=Path, default=CACHE, help="folder of the caches")
+    arguments.add_argument("--timeout", type=int, default=TIMEOUT, help="seconds for one cell")
+    return arguments

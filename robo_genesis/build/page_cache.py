@@ -1,28 +1,31 @@
-"""Which pages need no run: cached outputs and a bundle that belong to one run."""
+"""The cache of executed pages: a page needs no run if its outputs and its bundle are of one run."""
 
-import hashlib
 import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
-from jupyter_cache.base import JupyterCacheAbstract
-from jupyter_cache.cache.db import NbCacheRecord
+from jupyter_cache.base import CacheBundleIn, JupyterCacheAbstract
 from jupyter_cache.cache.main import JupyterCacheBase
 from nbformat import NotebookNode
 from sqlalchemy.exc import OperationalError
 
-from robo_genesis.build.page_results import Failure, PageResult, find_bundle, unexpected_outcome
+from robo_genesis.build.page_results import (
+    Failure,
+    PageResult,
+    Status,
+    find_bundle,
+    unexpected_outcome,
+)
 from robo_genesis.core.project import ProjectError
 from robo_genesis.lessons.book_pages import Page
 
 
 class PageCache(JupyterCacheBase):
-    """A jupyter-cache that knows a page by its code alone.
+    """A jupyter-cache that identifies a page by its code alone.
 
-    The base class counts the cells' metadata, too: a better caption would run the engine again.
-    What metadata decide (exceptions, captions, tags) is read from the page, never from the cache.
+    The base class hashes the cells' metadata as well, so a better caption would run the engine
+    again. Tags, captions and expected exceptions are read from the page, never from the cache.
     """
 
     def create_hashed_notebook(
@@ -62,41 +65,54 @@ def usable(folder: Path) -> Iterator[None]:
         ) from error
 
 
-def array_digests(outputs: Path) -> dict[str, str]:
-    """Return each archive of arrays that pages recorded, by its name below `outputs`, → its sha256.
+def store(page: Page, notebook: NotebookNode, seconds: float | None, folder: Path) -> None:
+    """Keep an executed page in the cache folder of its fingerprint.
 
-    The archives hold no time and no run id: the same numbers make the same bytes.
+    Args:
+        page: the page that was executed.
+        notebook: its cells with their outputs.
+        seconds: how long the execution took.
+        folder: the cache folder.
     """
-    return {
-        path.relative_to(outputs).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in sorted(outputs.glob("*/*/*/arrays/*.npz"))
-    }
+    executed = CacheBundleIn(
+        notebook, str(page.path.absolute()), data={"execution_seconds": seconds}
+    )
+    cache = PageCache(notebooks_folder(folder))
+    _, digest = cache.create_hashed_notebook(notebook)
+    # A killed build may have left a folder without its notebook, which jupyter-cache refuses.
+    shutil.rmtree(Path(cache.path) / "executed" / digest, ignore_errors=True)
+    cache.cache_notebook_bundle(executed, check_validity=False, overwrite=True)
 
 
-def cached_results(
-    pages: Sequence[Page], cache: JupyterCacheAbstract, outputs: Path
-) -> dict[str, PageResult]:
-    """Return the results of pages that need no run; remove what is cached of all others.
+def cached_results(pages: Sequence[Page], folder: Path) -> dict[str, PageResult]:
+    """Return the results of pages that need no run, by name.
 
     Args:
         pages: the pages of the book.
-        cache: the jupyter-cache of their fingerprint.
-        outputs: where their bundles are.
+        folder: the cache folder of their fingerprint.
     """
-    found = _twins(pages, cache)
-    for page in [page for page in pages if page.docname not in found]:
+    cache, outputs = PageCache(notebooks_folder(folder)), outputs_folder(folder)
+    first: dict[str, Page] = {}
+    found: dict[str, PageResult] = {}
+    for page in pages:
+        # The cache identifies pages by their code cells, so two equal ones overwrite each other.
+        earlier = first.setdefault(cache.create_hashed_notebook(page.notebook)[1], page)
+        if earlier is not page:
+            message = (
+                f"its code cells equal those of {earlier.docname}; the cache cannot distinguish "
+                "them. Change a cell of one of the two."
+            )
+            failure = Failure("SameCode", message)
+            found[page.docname] = PageResult(page, "failed", 0.0, "", failure=failure)
+            continue
         executed = _cached_notebook(page, cache)
         run_id = executed.metadata.get("robo_genesis", {}).get("run_id") if executed else None
         bundle = find_bundle(outputs, page, run_id) if run_id and page.declares_bundle else None
         if executed is None or not run_id or (page.declares_bundle and bundle is None):
-            _forget(page, cache)
             continue
-        failure = unexpected_outcome(page.notebook, executed)
-        found[page.docname] = (
-            _failed(page, failure, run_id)
-            if failure
-            else PageResult(page, "reused", 0.0, run_id, bundle)
-        )
+        outcome = unexpected_outcome(page.notebook, executed)
+        status: Status = "failed" if outcome else "reused"
+        found[page.docname] = PageResult(page, status, 0.0, run_id, bundle, outcome)
     return found
 
 
@@ -106,36 +122,3 @@ def _cached_notebook(page: Page, cache: JupyterCacheAbstract) -> NotebookNode | 
         return cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
     except (KeyError, ValueError):
         return None
-
-
-def _forget(page: Page, cache: Any) -> None:
-    """Remove what the cache holds of a page, whole or half."""
-    _, digest = cache.create_hashed_notebook(page.notebook)
-    shutil.rmtree(Path(cache.path) / "executed" / digest, ignore_errors=True)
-    try:
-        record = NbCacheRecord.record_from_hashkey(digest, cache.db)
-    except KeyError:
-        return
-    NbCacheRecord.remove_record(record.pk, cache.db)
-
-
-def _twins(pages: Sequence[Page], cache: JupyterCacheAbstract) -> dict[str, PageResult]:
-    """Return a failure for each page whose code cells equal an earlier page's.
-
-    jupyter-cache knows pages by their code cells alone: the two would overwrite each other.
-    """
-    first: dict[str, Page] = {}
-    failed: dict[str, PageResult] = {}
-    for page in pages:
-        _, digest = cache.create_hashed_notebook(page.notebook)
-        earlier = first.setdefault(digest, page)
-        if earlier is not page:
-            message = (
-                f"its code cells are those of {earlier.docname}; the cache cannot tell them apart."
-            )
-            failed[page.docname] = _failed(page, Failure("SameCode", message))
-    return failed
-
-
-def _failed(page: Page, failure: Failure, run_id: str = "") -> PageResult:
-    return PageResult(page, "failed", 0.0, run_id, failure=failure)

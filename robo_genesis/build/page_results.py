@@ -1,4 +1,4 @@
-"""What came of executing a page: expected exceptions, its bundle, the failure and the report."""
+"""The result of executing a page: expected exceptions, its bundle, the failure and the report."""
 
 import json
 import re
@@ -12,6 +12,8 @@ from nbformat import NotebookNode
 from robo_genesis.lessons.book_pages import Page
 
 LOG_LINES = 15
+Status = Literal["executed", "reused", "failed"]
+PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
 ANSI = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
 
 
@@ -33,10 +35,10 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class PageResult:
-    """What one build did with a page; `bundle` is None where the page declares none."""
+    """The result of one page in one build; `bundle` is None if the page declares none."""
 
     page: Page
-    status: Literal["executed", "reused", "failed"]
+    status: Status
     seconds: float
     run_id: str
     bundle: Path | None = None
@@ -70,40 +72,30 @@ def missing_bundle(outputs: Path, page: Page, run_id: str) -> Failure | None:
         "BundleMissing",
         f"the front matter declares a bundle, but the run left no {wanted} with predicate.run_id "
         f"{run_id}. Write one to ROBO_GENESIS_OUTPUTS_DIR with ROBO_GENESIS_RUN_ID, "
-        "or take `robo_genesis` out of the front matter.",
+        "or remove `robo_genesis` from the front matter.",
     )
 
 
 def unexpected_outcome(source: NotebookNode, executed: NotebookNode) -> Failure | None:
-    """Return the first cell whose exception is not what its tag and `expects` say.
+    """Return the first cell that lacks its figure, or whose exception is not the expected one.
 
     Args:
-        source: the notebook as the page has it now; tags and `expects` are read here, because a
-            cached notebook keeps those of the day it ran.
+        source: the page's notebook now; tags and `expects` are read here, because a cached
+            notebook keeps those of its execution.
         executed: the same code cells with outputs.
     """
     ran = [cell for cell in executed.cells if cell.cell_type == "code"]
     places = [index for index, cell in enumerate(source.cells) if cell.cell_type == "code"]
     for index, cell in zip(places, ran, strict=True):
-        if _lacks_figure(source.cells[index].metadata, cell):
-            return at_cell(
-                source, index, "FigureMissing", "the cell is tagged figure, but shows none."
-            )
+        metadata = source.cells[index].metadata
+        kinds = {kind for out in cell.outputs for kind in out.get("data", {})}
+        if "figure" in metadata.get("tags", []) and not kinds & PICTURES:
+            reason = "the cell is tagged figure, but shows none."
+            return at_cell(source, index, "FigureMissing", reason)
         raised = [out for out in cell.outputs if out.output_type == "error"]
-        reason = _contradiction(source.cells[index].metadata, raised)
-        if reason:
-            return at_cell(source, index, "ExpectedException", reason)
+        if contradiction := _contradiction(metadata, raised):
+            return at_cell(source, index, "ExpectedException", contradiction)
     return None
-
-
-def _lacks_figure(metadata: NotebookNode, executed: NotebookNode) -> bool:
-    """Whether a cell that is tagged figure put out no picture."""
-    kinds = {kind for out in executed.outputs for kind in out.get("data", {})}
-    return "figure" in metadata.get("tags", []) and not kinds & {
-        "image/svg+xml",
-        "image/png",
-        "image/jpeg",
-    }
 
 
 def _contradiction(metadata: NotebookNode, raised: Sequence[NotebookNode]) -> str | None:
@@ -122,8 +114,9 @@ def _contradiction(metadata: NotebookNode, raised: Sequence[NotebookNode]) -> st
             f'it raised {happened}. Add the option `expects: "ValueError: part of the message"`.'
         )
     name, _, text = str(expects).partition(":")
-    came = raised and raised[-1].ename == name.strip() and text.strip() in raised[-1].evalue
-    return None if came else f"expected was {expects!r}, but the cell raised {happened}."
+    if raised and raised[-1].ename == name.strip() and text.strip() in raised[-1].evalue:
+        return None
+    return f"expected was {expects!r}, but the cell raised {happened}."
 
 
 def at_cell(
@@ -172,22 +165,14 @@ def failure_report(results: Sequence[PageResult]) -> str:
     Args:
         results: all pages of the build.
     """
-    failed = [result for result in results if result.failure]
+    failed = [(result.page, result.failure) for result in results if result.failure]
     lines = [f"{len(failed)} of {len(results)} pages failed."]
-    for result in failed:
-        lines += ["", *_describe(result.page, result.failure)]
+    for page, failure in failed:
+        place = page.docname
+        if failure.cell is not None:
+            place += f", code cell {failure.cell}, line {failure.line}: {failure.source}"
+        message = f"{failure.error}: {failure.message}".splitlines()
+        lines += ["", place, *(f"    {line}" for line in message)]
+        if failure.log:
+            lines += ["    last log lines:", *(f"    | {line}" for line in failure.log)]
     return "\n".join(lines)
-
-
-def _describe(page: Page, failure: Failure | None) -> list[str]:
-    assert failure is not None
-    place = page.docname
-    if failure.cell is not None:
-        place += f", code cell {failure.cell}, line {failure.line}: {failure.source}"
-    what = f"{failure.error}: {failure.message}".splitlines()
-    log = [f"    | {line}" for line in failure.log]
-    return [
-        place,
-        *(f"    {line}" for line in what),
-        *(["    last log lines:", *log] if log else []),
-    ]

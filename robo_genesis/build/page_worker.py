@@ -1,6 +1,5 @@
-"""Execute one page in a process of its own, and judge what came of it."""
+"""Execute one page in a process of its own, and store it in the page cache if it did not fail."""
 
-import logging
 import os
 import tempfile
 import time
@@ -9,9 +8,7 @@ from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from jupyter_cache.base import ProjectNb
-from jupyter_cache.executors.basic import ExecutionWorkerTempMProc, ProcessData
-from jupyter_cache.executors.utils import ExecutionResult, single_nb_execution
+import nbclient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError
 from nbformat import NotebookNode
 
@@ -21,7 +18,7 @@ from robo_genesis.build.kernels import (
     clean_environment,
     die_with_parent,
 )
-from robo_genesis.build.page_cache import outputs_folder
+from robo_genesis.build.page_cache import outputs_folder, store
 from robo_genesis.build.page_results import (
     Failure,
     at_cell,
@@ -31,110 +28,23 @@ from robo_genesis.build.page_results import (
     unexpected_outcome,
 )
 from robo_genesis.core.project import ROOT
-from robo_genesis.lessons.book_pages import Page
+from robo_genesis.lessons.book_pages import Page, code_digest
 
 
 @dataclass(frozen=True, slots=True)
 class PageRun:
     """One run of one page: what its worker process needs to know.
 
-    `folder` is the cache folder of the fingerprint; `scratch` is temporary, and goes with the build
-    even where the worker is killed.
+    `folder` is the cache folder of the fingerprint; `scratch` is temporary, and is removed with the
+    build even where the worker is killed; `timeout` is in seconds, for one cell.
     """
 
     page: Page
     run_id: str
     folder: Path
     scratch: Path
-    data: ProcessData
+    timeout: int
     environment: Mapping[str, str]
-
-
-class PageFailed(Exception):  # noqa: N818 - it reports a page, it is no error of this program
-    """Carries a failure through jupyter-cache, which then does not store the page."""
-
-    def __init__(self, failure: Failure):
-        super().__init__(f"{failure.error}: {failure.message}")
-        self.failure = failure
-
-
-class PageWorker(ExecutionWorkerTempMProc):
-    """Executes one page in an empty temporary folder and stores it if nothing contradicts it."""
-
-    def __init__(self, run: PageRun):
-        self.run = run
-        self.started: list[int] = []
-        self.begin = 0.0
-        self.seconds: list[float] = []
-        self.failure: Failure | None = None
-
-    @property
-    def logger(self) -> logging.Logger:
-        """Return the logger of this module: failures are reported, not logged."""
-        return logging.getLogger(__name__)
-
-    def execute(self, project_nb: ProjectNb, data: ProcessData) -> ExecutionResult:
-        """Execute a page; called by jupyter-cache, which stores the result unless it has `err`."""
-        notebook = project_nb.nb
-        own = notebook.metadata.setdefault("robo_genesis", NotebookNode())
-        own["run_id"] = self.run.run_id
-        begin = time.monotonic()
-        with tempfile.TemporaryDirectory(dir=self.run.scratch) as folder:
-            try:
-                result = single_nb_execution(
-                    notebook,
-                    cwd=folder,
-                    timeout=data.timeout,
-                    allow_errors=False,
-                    kernel_manager_class=CleanKernelManager,
-                    extra_arguments=ARGUMENTS,
-                    on_cell_execute=self._cell_starts,
-                    on_cell_executed=self._cell_ends,
-                )
-            except Exception as error:  # a dead kernel, or none that starts: a failed page, too
-                result = ExecutionResult(notebook, folder, time.monotonic() - begin, err=error)
-        own["cell_seconds"] = self.seconds
-        self.failure = self._judge(notebook, result.err)
-        result.err = PageFailed(self.failure) if self.failure else None
-        return result
-
-    def _cell_starts(self, cell: NotebookNode, cell_index: int) -> None:
-        CleanKernelManager.busy = True
-        self.started.append(cell_index)
-        self.begin = time.monotonic()
-
-    def _cell_ends(self, cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
-        CleanKernelManager.busy = False
-        self.seconds.append(round(time.monotonic() - self.begin, 3))
-
-    def _judge(self, notebook: NotebookNode, error: Exception | None) -> Failure | None:
-        """Return why the page failed, None if it did not."""
-        if error is None:
-            outputs = outputs_folder(self.run.folder)
-            return unexpected_outcome(notebook, notebook) or missing_bundle(
-                outputs, self.run.page, self.run.run_id
-            )
-        name, message = type(error).__name__, str(error)
-        if isinstance(error, CellExecutionError):
-            name, message = error.ename, error.evalue
-        elif isinstance(error, CellTimeoutError):
-            message = message.splitlines()[0]
-        if not self.started:
-            return Failure(name, message)
-        last = self.started[-1]
-        return at_cell(notebook, last, name, message, last_log_lines(notebook, last))
-
-
-def capture_file_descriptors(path: Path) -> Path:
-    """Send what this process and its kernel write past Python to a file, and return the file.
-
-    The engine's compiled parts do so: it would stand among the build's progress lines, and a crash
-    would take its last words along.
-    """
-    target = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
-    for descriptor in (1, 2):
-        os.dup2(target, descriptor)
-    return path
 
 
 def work(run: PageRun, connection: Connection) -> None:
@@ -142,22 +52,87 @@ def work(run: PageRun, connection: Connection) -> None:
 
     Args:
         run: what to execute.
-        connection: takes one pair; a process that ends without sending it has failed, too.
+        connection: takes one pair; a process that ends without sending it has failed as well.
     """
     die_with_parent(run.scratch)
-    logging.getLogger(__name__).addHandler(logging.NullHandler())
-    logging.getLogger(__name__).propagate = False
     runtime = Path(tempfile.mkdtemp(dir=run.scratch))
-    environment = clean_environment(run.folder / "home", runtime, ROOT, run.environment)
+    own = {
+        "ROBO_GENESIS_RUN_ID": run.run_id,
+        "ROBO_GENESIS_OUTPUTS_DIR": str(outputs_folder(run.folder)),
+        "ROBO_GENESIS_PAGE_SHA256": code_digest(run.page),
+    }
+    environment = clean_environment(run.folder / "home", runtime, ROOT, {**run.environment, **own})
     os.environ.clear()
     os.environ.update(environment)
-    raw = capture_file_descriptors(runtime / "raw.log")
-    worker = PageWorker(run)
+    # The engine's compiled parts write past Python: to a file, because the build prints its
+    # progress here, and because a crash would lose the last lines.
+    raw = runtime / "raw.log"
+    descriptor = os.open(raw, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    for standard in (1, 2):
+        os.dup2(descriptor, standard)
     begin = time.monotonic()
-    code, _ = worker(run.data)
-    failure = worker.failure
-    if code and failure is None:
-        failure = Failure("CacheError", "jupyter-cache could not read or store the page.")
+    failure = execute_page(run)
     if failure:
         failure = replace(failure, log=failure.log + last_lines(raw.read_text(errors="replace")))
     connection.send((time.monotonic() - begin, failure))
+
+
+def execute_page(run: PageRun) -> Failure | None:
+    """Execute a page in an empty temporary folder; store it, or return why it failed."""
+    notebook, error = run.page.notebook, None
+    started: list[int] = []
+    begins: list[float] = []
+    seconds: list[float] = []
+
+    def cell_starts(cell: NotebookNode, cell_index: int) -> None:
+        CleanKernelManager.busy = True
+        started.append(cell_index)
+        begins.append(time.monotonic())
+
+    def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
+        CleanKernelManager.busy = False
+        seconds.append(round(time.monotonic() - begins[-1], 3))
+
+    begin = time.monotonic()
+    with tempfile.TemporaryDirectory(dir=run.scratch) as folder:
+        try:
+            nbclient.execute(
+                notebook,
+                cwd=folder,
+                timeout=notebook.metadata.get("execution", {}).get("timeout", run.timeout),
+                kernel_manager_class=CleanKernelManager,
+                extra_arguments=ARGUMENTS,
+                record_timing=False,
+                on_cell_execute=cell_starts,
+                on_cell_executed=cell_ends,
+            )
+        except Exception as caught:  # a dead kernel, or none that starts, is a failed page as well
+            error = caught
+    elapsed = time.monotonic() - begin
+    failure = _failure(run, error, started)
+    if failure is None:
+        own = notebook.metadata.setdefault("robo_genesis", NotebookNode())
+        own.update(run_id=run.run_id, cell_seconds=seconds)
+        try:
+            store(run.page, notebook, elapsed, run.folder)
+        except Exception as caught:  # of the database or the disk
+            failure = Failure("CacheError", f"the executed page cannot be stored: {caught}")
+    return failure
+
+
+def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failure | None:
+    """Return why a page failed, None if it did not."""
+    notebook = run.page.notebook
+    if error is None:
+        return unexpected_outcome(notebook, notebook) or missing_bundle(
+            outputs_folder(run.folder), run.page, run.run_id
+        )
+    name, message = type(error).__name__, str(error)
+    if isinstance(error, CellExecutionError):
+        name, message = error.ename, error.evalue
+    elif isinstance(error, CellTimeoutError):
+        message = message.splitlines()[0]
+    if not started:
+        return Failure(name, message)
+    last = started[-1]
+    return at_cell(notebook, last, name, message, last_log_lines(notebook, last))

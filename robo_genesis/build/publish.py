@@ -5,23 +5,14 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:  # `make verify` asks only for names, and need not load Jupyter for them
-    from robo_genesis.build.page_results import PageResult
-
 from robo_genesis.core.files import NEXT, beside, settle, swap
 from robo_genesis.core.project import PUBLISHED
 
+if TYPE_CHECKING:  # commands that need only names load no Jupyter
+    from robo_genesis.build.page_results import PageResult
+
 PAGES = "pages"
-"""Beside `evidence`: the bundles of pages that are no lab, which a refresh compares as well."""
-
-
-def recover(book: Path) -> None:
-    """Bring a book's published folder into order after a build that was killed; see `settle`.
-
-    Args:
-        book: the folder that holds `_build`.
-    """
-    settle(book / PUBLISHED)
+"""The folder beside `evidence` with the bundles of other pages than labs."""
 
 
 def publish(
@@ -30,7 +21,7 @@ def publish(
     results: Iterable["PageResult"],
     finish: Callable[[Path], None] = lambda folder: None,
 ) -> Path:
-    """Put a rendered site and its pages' bundles in the place of the old ones.
+    """Replace the published site and its pages' bundles by new ones.
 
     Args:
         book: the folder that holds `_build`.
@@ -43,9 +34,9 @@ def publish(
         The folder of the published site's HTML.
 
     Raises:
-        OSError: nothing is changed, the old site stands.
+        OSError: nothing is changed.
     """
-    recover(book)
+    settle(book / PUBLISHED)
     following = beside(book / PUBLISHED, NEXT)
     try:
         following.mkdir()
@@ -58,5 +49,5 @@ def publish(
         finish(following)
         swap(book / PUBLISHED)
     finally:
-        recover(book)
+        settle(book / PUBLISHED)
     return book / PUBLISHED / "html"

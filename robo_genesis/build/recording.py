@@ -1,18 +1,20 @@
 """`make evidence`: run a lesson's lab on this machine and keep its bundle, whole or not at all."""
 
-import os
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.build.backend_probe import foreseen_backend
-from robo_genesis.build.execute import TIMEOUT, execute_pages
+from robo_genesis.build.backend_probe import expected_backend
+from robo_genesis.build.command import TIMEOUT, Progress, say
+from robo_genesis.build.execute import execute_pages, kernel_environment
+from robo_genesis.build.page_artifacts import Verify
 from robo_genesis.build.page_results import PageResult, failure_report
-from robo_genesis.build.stages import Progress, Verify, only_build
+from robo_genesis.build.stages import only_build, require_contract
 from robo_genesis.core import project
-from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence.bundle_store import put, recover, require_folder
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.book_pages import Page, find_pages
@@ -23,17 +25,16 @@ COMMAND = "make evidence"
 
 
 class RecordingError(Exception):
-    """Nothing was recorded; the message is the whole report. What stood before still stands."""
+    """Nothing was recorded; the message is the whole report. The older bundle is unchanged."""
 
 
 @dataclass(frozen=True, slots=True)
 class Recording:
     """Which lab to record, and where its bundle goes.
 
-    `expected` is the backend that must be found; None stands for any accelerator. `to` holds
-    `<lesson>/<actual backend>`; None is the book's own `evidence`. `verify` takes a bundle folder
-    and its run id, returns the manifest or raises; None is the course's own verification.
-    `foresee` tells before the run which backend it would find.
+    `expected` is the backend that must be found; None accepts any accelerator. `to` gets the folder
+    `<lesson>/<actual backend>`; None is the book's own `evidence`. `probe` returns, before the run,
+    the backend that it would find.
     """
 
     lesson: str
@@ -43,9 +44,9 @@ class Recording:
     book: Path = project.BOOK
     cache: Path = project.CACHE
     timeout: int = TIMEOUT
-    verify: Verify | None = None
-    foresee: Callable[[], str] | None = None
-    say: Callable[[str], None] = print
+    verify: Verify = verify_bundle
+    probe: Callable[[], str] = expected_backend
+    say: Callable[[str], None] = say
 
     @property
     def evidence(self) -> Path:
@@ -54,7 +55,7 @@ class Recording:
 
     @property
     def requested(self) -> str:
-        """What the lab is told in ROBO_GENESIS_BACKEND."""
+        """The lab's ROBO_GENESIS_BACKEND."""
         return "cpu" if self.expected == "cpu" else "auto"
 
 
@@ -65,11 +66,11 @@ def record(recording: Recording) -> list[str]:
         recording: see there.
 
     Returns:
-        The last lines for the user: what stands where, and what to look at before a commit.
+        The last lines for the user: where the bundle is, and what to look at before a commit.
 
     Raises:
         RecordingError: the lesson or backend is not valid, another backend was found, the lab
-            failed, or its bundle was refused. What was recorded before still stands.
+            failed, or its bundle was refused. The older bundle is unchanged.
         BuildError: a build, or another recording, runs here.
         ProjectError, PageError: checkout, environment or the bundle's place is not fit for it.
     """
@@ -79,26 +80,21 @@ def record(recording: Recording) -> list[str]:
         require_folder(recording.evidence)
         project.require_pinned_engine(recording.root)
         if recording.requested == "auto":
-            found = (recording.foresee or foreseen_backend)()
-            progress("probe", f"Torch sees {found}")
+            found = recording.probe()
+            progress("probe", f"Torch finds {found}")
             require_expected(recording, found)
-        place, facts = _run(recording, page, progress)
-        return summary(place, facts)
-
-
-def _run(recording: Recording, page: Page, progress: Progress) -> tuple[Path, Any]:
-    """Execute, verify and put in place; return where the bundle stands and what it says."""
-    project.remove_stale_kernel_lock(recording.cache)
-    folder = recording.cache / "recording"  # new each time: nothing is ever reused
-    shutil.rmtree(folder, ignore_errors=True)
-    try:
-        result = _execute(recording, page, folder, progress)
-        bundle, facts = _accepted(recording, result, progress)
-        place = put(bundle, recording.evidence / recording.lesson)
-    finally:
+        project.remove_stale_kernel_lock(recording.cache)
+        folder = recording.cache / "recording"  # new each time: nothing is ever reused
         shutil.rmtree(folder, ignore_errors=True)
-    progress("record", str(place))
-    return place, facts
+        try:
+            result = _execute(recording, page, folder, progress)
+            bundle, facts = _accepted(recording, result)
+            progress("verify", page.docname, "accepted")
+            place = put(bundle, recording.evidence / recording.lesson)
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+        progress("record", str(place))
+        return summary(place, facts)
 
 
 def _lab(recording: Recording) -> Page:
@@ -118,74 +114,61 @@ def _lab(recording: Recording) -> Page:
 
 
 def require_expected(recording: Recording, actual: str) -> None:
-    """Raise RecordingError where the backend found is not the one that was expected."""
+    """Raise RecordingError if the backend found is not the expected one."""
     valid = ACCELERATORS if recording.expected is None else (recording.expected,)
     if actual in valid:
         return
-    asked = recording.expected or f"none given, so one of {', '.join(ACCELERATORS)}"
-    mend = "Check driver, device and Torch build"
+    expected = recording.expected or f"none given, so one of {', '.join(ACCELERATORS)}"
+    remedy = "Check driver, device and Torch build"
     if actual in BACKENDS:
-        mend += f", or record {actual} on purpose with BACKEND={actual}"
+        remedy += f", or record {actual} on purpose with BACKEND={actual}"
     raise RecordingError(
-        f"Expected backend: {asked}; ROBO_GENESIS_BACKEND={recording.requested} finds {actual!r}. "
-        f"Nothing is relabelled. {mend}."
+        f"Expected backend: {expected}; ROBO_GENESIS_BACKEND={recording.requested} finds "
+        f"{actual!r}. Nothing is relabelled. {remedy}."
     )
 
 
+def contract(recording: Recording) -> dict[str, str]:
+    """Return the variables that request the lab's backend and, always, its camera."""
+    return {"ROBO_GENESIS_BACKEND": recording.requested, "ROBO_GENESIS_RENDER": "1"}
+
+
 def _execute(recording: Recording, page: Page, folder: Path, progress: Progress) -> PageResult:
-    """Run the lab in a clean kernel and return what came of it."""
+    """Run the lab in a clean kernel and return the result."""
     progress("execute", page.docname, f"ROBO_GENESIS_BACKEND={recording.requested}")
     [result] = execute_pages(
         [page],
         folder,
         timeout=recording.timeout,
-        environment=kernel_environment(recording),
-        on_progress=lambda what, event: progress("execute", what, event),
+        environment=kernel_environment(
+            recording.root, recording.cache, COMMAND, **contract(recording)
+        ),
+        on_progress=partial(progress, "execute"),
     )
     if result.failure:
         raise RecordingError(failure_report([result]))
     return result
 
 
-def kernel_environment(recording: Recording) -> dict[str, str]:
-    """Return the variables that the lab's kernel gets; a recording always uses the camera."""
-    asked = {"ROBO_GENESIS_BACKEND": recording.requested, "ROBO_GENESIS_RENDER": "1"}
-    return {
-        **project.engine_cache_environment(recording.root, recording.cache),
-        **project.environment_contract({**os.environ, **asked}),
-        "ROBO_GENESIS_COMMAND": COMMAND,
-    }
-
-
-def _accepted(recording: Recording, result: PageResult, progress: Progress) -> tuple[Path, Any]:
-    """Return a bundle that is verified and of the run that was asked for, and what it says."""
-    if result.bundle is None:
-        raise RecordingError(f"{result.page.docname} left no bundle.")
+def _accepted(recording: Recording, result: PageResult) -> tuple[Path, Any]:
+    """Return a verified bundle of the requested run, and what its manifest says."""
+    assert result.bundle is not None  # a lab without a bundle has failed
     require_expected(recording, result.bundle.name)
     try:
-        manifest = (recording.verify or verify_bundle)(result.bundle, result.run_id)
+        facts = recording.verify(result.bundle, result.run_id).predicate
+        require_contract(facts, contract(recording))
+        expect("command", "manifest.json", "command", facts.command, COMMAND)
     except BundleRefused as error:
         raise RecordingError(f"The bundle of this run is refused: {error}") from error
-    facts = manifest.predicate
     require_expected(recording, facts.backend.actual)
-    asked = {"backend.requested": recording.requested, "render.mode": "camera", "command": COMMAND}
-    found = dict(
-        zip(asked, (facts.backend.requested, facts.render.mode, facts.command), strict=True)
-    )
-    if found != asked:
-        raise RecordingError(
-            f"The bundle says {found}, this recording asked for {asked}. Let the page read "
-            "runtime.read_contract() and set nothing of it itself."
-        )
-    progress("verify", result.page.docname, "accepted")
     return result.bundle, facts
 
 
 def summary(place: Path, facts: Any) -> list[str]:
-    """Return what a recording ends with: the facts of the run, and what to check by eye.
+    """Return the last lines of a recording: the facts of the run, and what to check by eye.
 
     Args:
-        place: where the bundle stands.
+        place: where the bundle is.
         facts: what its manifest says of the run.
     """
     files = [path for path in place.rglob("*") if path.is_file()]
@@ -202,19 +185,19 @@ def summary(place: Path, facts: Any) -> list[str]:
         f"Checks passed: {sum(check.passed for check in facts.checks)} of {len(facts.checks)}. "
         f"Engine warnings kept: {len(facts.warnings)}.",
         f"Files: {len(files)}, {size:.1f} MB",
-        *_checkout(facts.git),
-        f"Before you commit: look at both pictures in {place / 'frames'}, read log.txt, and see "
-        "that manifest.json names nothing of your machine that is private.",
+        _checkout(facts.git),
+        f"Before you commit: look at both pictures in {place / 'frames'}, read log.txt, and check "
+        "that manifest.json names nothing private of your machine.",
     ]
 
 
-def _checkout(git: Any) -> Sequence[str]:
-    """Return a line for a checkout that does not say exactly which sources ran."""
+def _checkout(git: Any) -> str:
+    """Return a line that says which sources ran."""
     if git is None:
-        return ["Checkout: no git here, so no commit is recorded; a release refuses that."]
+        return "Checkout: no git here, so no commit is recorded; a release refuses that."
     if git.dirty:
-        return [
+        return (
             f"Checkout: changed since commit {git.commit[:12]}, and the manifest says so; a "
             "release refuses that. Commit or stash, then record again."
-        ]
-    return [f"Checkout: clean, commit {git.commit[:12]}"]
+        )
+    return f"Checkout: clean, commit {git.commit[:12]}"

@@ -1,6 +1,6 @@
-"""What `make book RELEASE=1` asks for beyond a build and a clean tree: current evidence."""
+"""The evidence that `make book RELEASE=1` requires in addition to a build and a clean tree."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from robo_genesis.core.git import git
@@ -9,28 +9,28 @@ from robo_genesis.evidence.status import Status, bundle_status, recorded_folders
 from robo_genesis.lessons.registry import find_lesson
 
 
-def lacking(book: Path, built: Mapping[str, Path | None], root: Path) -> list[str]:
-    """Return a line for each thing that the evidence of a book lacks for a release.
+def missing_for_release(book: Path, built: Mapping[str, Path | None], root: Path) -> list[str]:
+    """Return a line for each requirement of a release that the evidence of a book does not meet.
 
-    A lesson requires the evidence of its minimum hardware. Where that is the CPU it is this
-    build's; else it is the recorded one. What is recorded beyond that may be missing or stale, but
-    if it is shown, it comes from a commit.
+    A lesson requires the evidence of its minimum hardware: this build's if that is the CPU, else
+    the recorded one. Other recorded bundles may be missing or stale, but a bundle that is shown
+    comes from one commit.
 
     Args:
         book: the folder of the pages.
-        built: each lesson of the book to the folder of this build's bundle of its lab, None where
-            it has no lab.
+        built: the folder of the lab's bundle of this build, by lesson of the book; None for a
+            lesson without a lab.
         root: the checkout that the build's bundles must name.
     """
-    return [
-        *(line for lesson in built for line in _required(book, lesson, built[lesson], root)),
-        *(line for path in recorded_folders(book) for line in _recorded(book, path)),
-    ]
+    lines = [line for lesson in built for line in _required(book, lesson, built[lesson], root)]
+    for path in recorded_folders(book):
+        lines += _of_commit(f"{path.relative_to(book)}", recorded_status(book, *path.parts[-2:]))
+    return lines
 
 
 def _required(book: Path, lesson: str, folder: Path | None, root: Path) -> Iterator[str]:
     if folder is None:
-        yield f"{lesson} has no lab in the table of contents, so nothing of it is measured for it."
+        yield f"{lesson} has no lab in the table of contents, so this build measures nothing of it."
         return
     here = bundle_status(folder, lesson, "lab", book=book)
     hardware = find_lesson(lesson).spec.MINIMUM_HARDWARE
@@ -45,13 +45,8 @@ def _required(book: Path, lesson: str, folder: Path | None, root: Path) -> Itera
         yield from _of_commit(f"{lesson} on {here.backend}, this build", here, commit)
 
 
-def _recorded(book: Path, path: Path) -> Iterable[str]:
-    status = recorded_status(book, *path.parts[-2:])
-    return _of_commit(f"{path.relative_to(book)}", status)
-
-
 def _of_commit(what: str, status: Status, commit: str | None = None) -> Iterator[str]:
-    """Yield why a bundle that is shown was not made from one commit."""
+    """Yield why a shown bundle was not made from one commit."""
     if status.manifest is None:
         return
     git: GitRecord | None = status.manifest.predicate.git

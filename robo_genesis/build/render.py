@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from robo_genesis.build.page_cache import notebooks_folder, outputs_folder
+from robo_genesis.build.page_results import ANSI
 from robo_genesis.core.project import ROOT
 
 COMMAND = """\
@@ -18,12 +19,11 @@ from jupyter_book.cli.main import main
 main()
 """
 EXECUTED = "ROBO_GENESIS_EXECUTED_PAGES"
-ANSI = re.compile(r"\x1b\[[0-9;]*m")
-TELLING = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
+COMPLAINT = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
 
 
 class RenderError(Exception):
-    """Sphinx failed or warned; the message holds what it said and where the log is."""
+    """Sphinx failed or warned; the message holds its complaints and the place of the log."""
 
 
 def render(
@@ -33,9 +33,9 @@ def render(
 
     Args:
         book: folder with `_config.yml`, `_toc.yml` and the pages.
-        staging: folder for the result; what it held before is removed.
+        staging: folder for the result; its older content is removed.
         folder: cache folder of the executed pages.
-        log: file for everything that Sphinx says.
+        log: file for the output of Sphinx.
         executed: names of the pages that this build executed.
 
     Returns:
@@ -69,5 +69,5 @@ def render(
 def _complaints(log: Path) -> str:
     """Return the warnings and errors of a log, or its end where it names none."""
     lines = ANSI.sub("", log.read_text("utf8", errors="replace")).splitlines()
-    found = list(dict.fromkeys(line for line in lines if TELLING.search(line)))
+    found = list(dict.fromkeys(line for line in lines if COMPLAINT.search(line)))
     return "\n".join(found or lines[-20:])

@@ -1,4 +1,4 @@
-"""Where the site will stand: the environment variable `SITE_URL`, as `https://example.org/course/`."""
+"""The address of the published site: the environment variable `SITE_URL`, as `https://example.org/course/`."""
 
 import os
 from collections.abc import Mapping
@@ -8,14 +8,14 @@ SITE_URL = "SITE_URL"
 
 
 class AddressError(ValueError):
-    """`SITE_URL` is no address; the message says what is valid."""
+    """`SITE_URL` is not an address; the message says what is valid."""
 
 
 def site_address(environment: Mapping[str, str] = os.environ) -> str | None:
-    """Return the site's address with a slash at its end, None where none is given.
+    """Return the site's address with a slash at its end, None if none is given.
 
     Raises:
-        AddressError: it is no address of the web, or has a query or a fragment.
+        AddressError: it is not an address of the web, or it has a query or a fragment.
     """
     given = environment.get(SITE_URL)
     if not given:
@@ -23,11 +23,11 @@ def site_address(environment: Mapping[str, str] = os.environ) -> str | None:
     parts = urlsplit(given)
     if parts.scheme not in ("http", "https") or not parts.netloc or parts.query or parts.fragment:
         raise AddressError(
-            f"{SITE_URL} is {given!r}; valid is an address like https://example.org/course/."
+            f"{SITE_URL}={given!r} is not valid. Give an address like https://example.org/course/."
         )
     return given.rstrip("/") + "/"
 
 
 def site_root(environment: Mapping[str, str] = os.environ) -> str:
-    """Return the path of the site's root on its server, `/` where no address is given."""
+    """Return the path of the site's root on its server, `/` if no address is given."""
     return urlsplit(site_address(environment) or "/").path

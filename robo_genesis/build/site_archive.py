@@ -6,11 +6,11 @@ from pathlib import Path
 from bs4 import BeautifulSoup
 
 ARCHIVE = "offline/robo-genesis-site.zip"
-"""Where the archive lies in the site, for the link of the home page."""
+"""The archive's place in the site, for the link of the home page."""
 FOLDER = "robo-genesis-site"
-"""What unpacking it makes."""
+"""The folder that unpacking makes."""
 OFFER = ".offline-offer"
-"""What a page says about the archive; the archive's own copy of the page has no such archive."""
+"""A page's offer of the archive; the archive's own copy of the page must not have it."""
 DATE = (1980, 1, 1, 0, 0, 0)  # the earliest one: the same site makes the same archive
 
 
@@ -18,7 +18,7 @@ def pack(html: Path) -> Path:
     """Put the archive of a site into the site.
 
     Args:
-        html: the folder of the complete site; pages are checked after this, links to it included.
+        html: the folder of the complete site, before its checks: they include links to the archive.
 
     Returns:
         The archive. The same files make the same bytes.
@@ -36,7 +36,7 @@ def pack(html: Path) -> Path:
 
 
 def content(path: Path) -> bytes:
-    """Return what the archive holds of a file: all of it, but a page without its offer."""
+    """Return a file for the archive: its content, a page's without the offer of the archive."""
     data = path.read_bytes()
     if path.suffix != ".html" or OFFER[1:].encode() not in data:
         return data

@@ -1,7 +1,7 @@
 """Checks on the built site that need no browser: links, alt texts, third parties, leftovers."""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urldefrag, urlsplit
@@ -25,7 +25,7 @@ LEFTOVERS = re.compile(r"\{[a-z][a-z:_-]*\}(?=`|\()|\\[\[\(]|\$\$|\[\[[^\]]*\]\]
 
 @dataclass(frozen=True, slots=True)
 class SiteCheck:
-    """One check: how many things it looked at, and a line for each that is wrong."""
+    """One check: how many things it examined, and a line for each problem."""
 
     name: str
     count: int
@@ -42,13 +42,15 @@ class Site:
             for path in sorted(self.root.rglob("*.html"))
         }
         self.anchors: dict[Path, set[str]] = {}
-        self.addresses: dict[Path, list[tuple[Tag, str]]] = {}
-        self.styled: dict[Path, list[Tag]] = {}
+        self.addresses: list[tuple[Path, Tag, str]] = []
+        self.styles = [(path, path.read_text("utf8")) for path in sorted(self.root.rglob("*.css"))]
         for path, page in self.pages.items():
             tags = page.find_all(True)
-            self.anchors[path] = set(_anchors(tags))
-            self.addresses[path] = list(_addresses(tags))
-            self.styled[path] = [tag for tag in tags if tag.has_attr("style")]
+            names = (tag.get(name) for tag in tags for name in ("id", "name"))
+            self.anchors[path] = {str(name) for name in names if name}
+            self.addresses += [(path, tag, url) for tag in tags for url in _addresses(tag)]
+            self.styles += [(path, tag.get_text()) for tag in tags if tag.name == "style"]
+            self.styles += [(path, str(tag["style"])) for tag in tags if tag.has_attr("style")]
 
     def name(self, path: Path) -> str:
         """Return a file's name for messages."""
@@ -69,8 +71,7 @@ def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
 
 def check_links(site: Site) -> SiteCheck:
     """Every address inside the site leads to a file, and every fragment to an element."""
-    found = [(path, url) for path, listed in site.addresses.items() for _, url in listed]
-    found += _style_addresses(site)
+    found = [(path, url) for path, _, url in site.addresses] + _style_addresses(site)
     inside = [(path, url) for path, url in found if not urlsplit(url).scheme and url[:2] != "//"]
     problems = {
         f"{site.name(path)}: {url!r} {reason}"
@@ -85,7 +86,7 @@ def _broken(site: Site, page: Path, url: str) -> str | None:
     address, fragment = urldefrag(url)
     place = unquote(urlsplit(address).path)
     if place.startswith("/") and not place.startswith(site.base):
-        return f"leads out of {site.base}, where the site will stand."
+        return f"leads out of {site.base}, the path of the site."
     base = site.root if place.startswith("/") else page.parent
     target = (base / place.removeprefix(site.base)).resolve() if place else page
     target = target / "index.html" if target.is_dir() else target
@@ -98,38 +99,26 @@ def _broken(site: Site, page: Path, url: str) -> str | None:
 
 
 def check_alt_texts(site: Site) -> SiteCheck:
-    """Every image has an alternative text that says something: no file name, no hash."""
+    """Every image has an alternative text that is neither empty nor a file name nor a hash."""
     images = [(path, image) for path, page in site.pages.items() for image in page.find_all("img")]
-    problems = [
-        f"{site.name(path)}: {image.get('src')} has the alt text {image.get('alt')!r}."
-        for path, image in images
-        if not _speaks(str(image.get("alt") or ""), str(image.get("src") or ""))
-    ]
+    problems = []
+    for path, image in images:
+        text, source = (str(image.get(name) or "").strip() for name in ("alt", "src"))
+        if not text or FILE_NAME.match(text) or text == PurePosixPath(urlsplit(source).path).stem:
+            problems.append(f"{site.name(path)}: {source} has the alt text {image.get('alt')!r}.")
     return SiteCheck("alt texts", len(images), tuple(problems))
 
 
-def _speaks(text: str, source: str) -> bool:
-    text = text.strip()
-    stem = PurePosixPath(urlsplit(source).path).stem
-    return bool(text) and not FILE_NAME.match(text) and text != stem
-
-
 def check_third_parties(site: Site) -> SiteCheck:
-    """Nothing is loaded from another address; links that a reader may follow are fine."""
-    found = [
-        (path, url)
-        for path, listed in site.addresses.items()
-        for tag, url in listed
-        if _is_loaded(tag)
-    ]
-    found += _style_addresses(site)
-    found += _script_addresses(site)
+    """Nothing is loaded from another address; links that a reader may follow are allowed."""
+    found = [(path, url) for path, tag, url in site.addresses if _is_loaded(tag)]
+    found += _style_addresses(site) + _script_addresses(site)
     problems = sorted({f"{site.name(path)}: {url}" for path, url in found if ELSEWHERE.match(url)})
     return SiteCheck("third parties", len(found), tuple(problems))
 
 
 def check_leftovers(site: Site) -> SiteCheck:
-    """No page shows markup that was not understood, or an error of the page generator."""
+    """No page shows unprocessed markup, or an error of the page generator."""
     problems: list[str] = []
     for path, page in site.pages.items():
         found = [
@@ -144,23 +133,12 @@ def check_leftovers(site: Site) -> SiteCheck:
     return SiteCheck("leftovers", len(site.pages), tuple(problems))
 
 
-def _anchors(tags: Iterable[Tag]) -> Iterator[str]:
-    for tag in tags:
-        yield from (str(tag[name]) for name in ("id", "name") if tag.get(name))
-
-
-def _addresses(tags: Iterable[Tag]) -> Iterator[tuple[Tag, str]]:
-    """Yield every address that elements carry."""
-    for tag in tags:
-        for name in tag.attrs.keys() & ADDRESSES:
-            value = str(tag.get(name) or "").strip()
-            for url in _listed(value) if name == "srcset" else [value]:
-                if url:
-                    yield tag, url
-
-
-def _listed(srcset: str) -> list[str]:
-    return [part.split()[0] for part in srcset.split(",") if part.split()]
+def _addresses(tag: Tag) -> Iterator[str]:
+    """Yield every address that an element carries."""
+    for name in tag.attrs.keys() & ADDRESSES:
+        value = str(tag.get(name) or "").strip()
+        listed = [part.split()[:1] for part in value.split(",")] if name == "srcset" else [[value]]
+        yield from (url for urls in listed for url in urls if url)
 
 
 def _is_loaded(tag: Tag) -> bool:
@@ -171,22 +149,19 @@ def _is_loaded(tag: Tag) -> bool:
 
 def _style_addresses(site: Site) -> list[tuple[Path, str]]:
     """Return the addresses in style sheets, style elements and style attributes."""
-    texts = [(path, path.read_text("utf8")) for path in sorted(site.root.rglob("*.css"))]
-    for path, page in site.pages.items():
-        texts += [(path, tag.get_text()) for tag in page.find_all("style")]
-        texts += [(path, str(tag["style"])) for tag in site.styled[path]]
-    return [(path, url) for path, text in texts for url in _in_style(text)]
-
-
-def _in_style(text: str) -> Iterable[str]:
-    return (url for url in CSS_ADDRESS.findall(CSS_COMMENT.sub("", text)) if url[:1] != "#")
+    return [
+        (path, url)
+        for path, text in site.styles
+        for url in CSS_ADDRESS.findall(CSS_COMMENT.sub("", text))
+        if url[:1] != "#"
+    ]
 
 
 def _script_addresses(site: Site) -> list[tuple[Path, str]]:
     """Return addresses of our pages' inline scripts, and those of known services in files.
 
-    Script files of the theme name addresses in licence notes and messages; what they load cannot
-    be read off the text, so files are searched for the usual services only.
+    Script files of the theme contain addresses in licence notes and messages, and their text does
+    not show which ones they load; so files are searched for the usual services only.
     """
     inline = [
         (path, url)

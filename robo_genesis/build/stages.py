@@ -1,45 +1,50 @@
-"""The stages of `make book` in their order: execute, verify, render, pack, check, publish."""
+"""The stages of `make book` in their order: execute, verify, render, pack, check, publish.
+
+`make execute` is the first of them, for one page.
+"""
 
 import os
 import shutil
-import time
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from robo_genesis.build import npm, up_to_date
-from robo_genesis.build.execute import TIMEOUT, execute_pages
-from robo_genesis.build.page_import import Verify, take_over
+from robo_genesis.build.command import TIMEOUT, Progress, say
+from robo_genesis.build.execute import execute_pages, kernel_environment
+from robo_genesis.build.page_artifacts import Verify, export_page, import_pages
 from robo_genesis.build.page_results import PageResult, failure_report
-from robo_genesis.build.publish import publish, recover
-from robo_genesis.build.release import lacking
+from robo_genesis.build.publish import publish
+from robo_genesis.build.release import missing_for_release
 from robo_genesis.build.render import render
 from robo_genesis.build.site_address import AddressError, site_address, site_root
 from robo_genesis.build.site_archive import pack
 from robo_genesis.build.site_checks import check_site
 from robo_genesis.core import project
-from robo_genesis.core.files import locked
+from robo_genesis.core.files import locked, settle
 from robo_genesis.core.git import unclean
+from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence import bundle_store
+from robo_genesis.evidence.status import refused_records
+from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.book_pages import Page, find_pages, fingerprint
 
 
 class BuildError(Exception):
-    """A stage failed; the message is the whole report. The site that stood before still stands."""
+    """A stage failed; the message is the whole report, and the old site is unchanged."""
 
 
 @dataclass(frozen=True, slots=True)
 class Build:
     """What to build, with which resources, and where progress is printed.
 
-    `jobs` None means one for each core; `verify` takes a bundle folder and its run id, returns the
-    manifest or raises; None is the course's own verification. `release` demands a clean tree and
-    every lesson's required evidence, and executes all pages anew. `executed` holds all pages as
-    another machine executed them; then none is executed here. `command` is what bundles name.
+    `jobs` None means one for each core; `verify` None is the course's own verification. `release`
+    demands a clean tree and every lesson's required evidence, and executes all pages anew.
+    `executed` holds all pages as another machine executed them; then none is executed here.
+    `command` is the command that bundles name.
     """
 
     root: Path = project.ROOT
@@ -51,19 +56,7 @@ class Build:
     release: bool = False
     executed: Path | None = None
     command: str = "make book"
-    say: Callable[[str], None] = print
-
-
-class Progress:
-    """Prints lines of elapsed time, stage, page and event."""
-
-    def __init__(self, say: Callable[[str], None]):
-        self.say, self.begin = say, time.monotonic()
-
-    def __call__(self, stage: str, what: str, event: str = "") -> None:
-        """Print one line."""
-        elapsed = time.monotonic() - self.begin
-        self.say(f"[{elapsed:7.1f} s] {stage:8} {what}  {event}".rstrip())
+    say: Callable[[str], None] = say
 
 
 def run_build(build: Build) -> list[str]:
@@ -77,59 +70,89 @@ def run_build(build: Build) -> list[str]:
 
     Raises:
         BuildError: a stage failed; nothing was published.
-        HandoverError: pages that were executed elsewhere are refused; nothing was published.
+        ArtifactError: pages that were executed elsewhere are refused; nothing was published.
         ProjectError, PageError: the checkout is not fit for a build.
     """
     with only_build(build.cache):
-        recover(build.book)
+        settle(build.book / project.PUBLISHED)
         bundle_store.recover(build.book / "evidence")
         inputs = up_to_date.inputs_digest(build.root, build.book)
         progress = Progress(build.say)
-        engine = project.require_pinned_engine(build.root)
         _require_for_render()
-        project.remove_stale_kernel_lock(build.cache)
-        pages = find_pages(build.book)
-        folder = project.page_cache_folder(fingerprint(pages, build.root), build.cache)
+        engine, pages, folder = _prepare(build)
+        verify = build.verify or partial(verify_bundle, book=build.book)
         if build.release:
             _require_for_release(unclean(build.root))
-            shutil.rmtree(folder, ignore_errors=True)  # what is released was run at this commit
+            shutil.rmtree(folder, ignore_errors=True)  # a release is executed at this commit
         if build.executed:
-            for record in take_over(build.executed, pages, folder, _verifier(build)):
-                progress("handover", record.docname, f"run {record.run_id[:8]}")
-        results = execute_stage(build, pages, folder, progress)
-        manifests = _verify(build, results, progress)
+            for record in import_pages(build.executed, pages, folder, verify):
+                progress("import", record.docname, f"run {record.run_id[:8]}")
+        results = _execute(build, pages, folder, progress)
+        manifests = _verify(build.book, verify, results, progress)
         if build.release:
-            problems = lacking(build.book, _labs(results), build.root)
+            problems = missing_for_release(build.book, _labs(results), build.root)
             _require_for_release([*unclean(build.root), *problems])
             progress("release", "clean tree, current evidence")
         progress("render", "all pages")
         staging, log = build.cache / "staging", build.cache / "render.log"
         executed = [r.page.docname for r in results if r.status == "executed"]
         html = render(build.book, staging, folder, log, executed)
-        progress("pack", pack(html).name)  # last of the site's files; the checks know it
+        progress("pack", pack(html).name)  # last of the site's files; the checks look for it
         checked = _check(html, progress)
         project.forget_old_pages(folder)
-        finish = partial(
-            _keep, build, inputs, _summary(engine, _reused(results), manifests, checked)
-        )
+        summary = partial(_summary, engine, results, manifests, checked)
+
+        def finish(published: Path) -> None:
+            now = up_to_date.inputs_digest(build.root, build.book)
+            up_to_date.record(published, inputs, now, summary(executed=0))
+
         html = publish(build.book, html, results, finish)  # last: after it, nothing may fail
         progress("publish", str(html))
-        return [f"Site: {html / 'index.html'}", *_summary(engine, results, manifests, checked)]
+        return [f"Site: {html / 'index.html'}", *summary(executed=len(executed))]
 
 
-def _reused(results: Sequence[PageResult]) -> list[PageResult]:
-    """Return the results as the next build would have them, if nothing changes."""
-    return [replace(result, status="reused") for result in results]
+def export_one(name: str, to: Path | None, build: Build) -> list[str]:
+    """Execute one page of the book, unless the cache holds it, and export it as files.
+
+    Args:
+        name: the page as the table of contents names it, or as `l04/lab`.
+        to: gets the page's folder.
+        build: where book and caches are, and with which resources.
+
+    Returns:
+        The last lines for the user: where the page is, and what executed it.
+
+    Raises:
+        BuildError: there is no such page, it failed, or a build runs here. Nothing was exported.
+        ArtifactError, ProjectError, PageError: folder, checkout or book are not fit for it.
+    """
+    with only_build(build.cache):
+        engine, pages, folder = _prepare(build)
+        names = {page.docname: page for page in pages}
+        names |= {f"{page.lesson}/{page.page}": page for page in pages if page.declares_bundle}
+        if name not in names:
+            valid = ", ".join(page.docname for page in pages) or "none"
+            raise BuildError(f"PAGE={name!r} is not valid. Executed pages of this book: {valid}.")
+        if to is None:
+            raise BuildError("TO is not set. Name the folder that gets the page: TO=folder.")
+        bundle_store.require_folder(to)
+        progress = Progress(build.say)
+        [result] = _execute(build, [names[name]], folder, progress)
+        place = export_page(result, folder, to)
+        progress("export", result.page.docname, result.status)
+    return [f"Executed page: {place}", f"Engine: {project.ENGINE} {engine}, run {result.run_id}"]
 
 
-def _keep(build: Build, inputs: str | None, lines: Sequence[str], published: Path) -> None:
-    """Write beside the site what it was made from; not known where a file was edited meanwhile."""
-    after = up_to_date.inputs_digest(build.root, build.book)
-    up_to_date.keep(published, inputs if inputs == after else None, lines)
+def _prepare(build: Build) -> tuple[str, list[Page], Path]:
+    """Return the engine's version, the pages of the book, and their cache folder."""
+    engine = project.require_pinned_engine(build.root)
+    project.remove_stale_kernel_lock(build.cache)
+    pages = find_pages(build.book)
+    return engine, pages, project.page_cache_folder(fingerprint(pages, build.root), build.cache)
 
 
 def _require_for_render() -> None:
-    """Raise what the last stages would raise after minutes: an address, npm's packages."""
+    """Raise errors that the last stages would raise after minutes: of SITE_URL, of npm."""
     try:
         site_address()
     except AddressError as error:
@@ -138,20 +161,20 @@ def _require_for_render() -> None:
 
 
 def _require_for_release(problems: Sequence[str]) -> None:
-    """Raise BuildError where anything stands against a release."""
+    """Raise BuildError if there is a reason against a release."""
     if problems:
         raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
 
 
 def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
-    """Return each lesson of the book to the folder of its lab's bundle of this build."""
+    """Return the folder of the lab's bundle of this build, by lesson of the book."""
     labs: dict[str, Path | None] = {
         str(result.page.lesson): None for result in results if result.page.declares_bundle
     }
     return labs | {str(r.page.lesson): r.bundle for r in results if r.page.page == "lab"}
 
 
-def execute_stage(
+def _execute(
     build: Build, pages: Sequence[Page], folder: Path, progress: Progress
 ) -> list[PageResult]:
     """Run the execution stage; every page is tried before the report."""
@@ -162,76 +185,52 @@ def execute_stage(
         folder,
         jobs=build.jobs or max(1, min(cores, len(pages))),
         timeout=build.timeout,
-        environment=_kernel_environment(build),
-        on_progress=lambda what, event: progress("execute", what, event),
+        environment=kernel_environment(build.root, build.cache, build.command),
+        on_progress=partial(progress, "execute"),
     )
     if any(result.failure for result in results):
         raise BuildError(failure_report(results))
     return results
 
 
-def _kernel_environment(build: Build) -> dict[str, str]:
-    """Return the variables that every page's kernel gets from this build."""
-    return {
-        **project.engine_cache_environment(build.root, build.cache),
-        **project.environment_contract(),
-        "ROBO_GENESIS_COMMAND": build.command,
-    }
-
-
-def _verifier(build: Build) -> Verify:
-    """Return what a build verifies bundles with."""
-    from robo_genesis.evidence.verify import verify_bundle
-
-    return build.verify or partial(verify_bundle, book=build.book)
-
-
-def _verify(build: Build, results: Sequence[PageResult], progress: Progress) -> Mapping[str, Any]:
+def _verify(
+    book: Path, verify: Verify, results: Sequence[PageResult], progress: Progress
+) -> Mapping[str, Any]:
     """Return the accepted manifests of this build's bundles, by page name.
 
     A recorded bundle that is neither current nor stale stops the build as well.
     """
-    from robo_genesis.evidence.bundle import BundleRefused
-    from robo_genesis.evidence.status import refused_records
-
-    verify = _verifier(build)
+    contract = project.environment_contract()
     manifests, refused = {}, []
     for result in results:
         if result.bundle is None:
             continue
         try:
             manifest = verify(result.bundle, result.run_id)
-            _require_what_was_asked(manifest.predicate)
+            require_contract(manifest.predicate, contract)
             manifests[result.page.docname] = manifest
             progress("verify", result.page.docname, "accepted")
         except BundleRefused as error:
             refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
-    refused += refused_records(build.book)
+    refused += refused_records(book)
     if refused:
         raise BuildError("\n".join(refused))
     return manifests
 
 
-def _require_what_was_asked(predicate: Any) -> None:
-    """Raise BundleRefused where a bundle's backend or camera is not the one this build asked for.
+def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
+    """Raise BundleRefused if a bundle's backend or camera is not the requested one.
 
     Args:
         predicate: what the bundle's manifest says of its run.
+        contract: the variables that requested it.
     """
-    from robo_genesis.evidence.bundle import BundleRefused
-
-    contract = project.environment_contract()
+    remedy = "Let the page read runtime.read_contract() and set neither itself."
     backend, render = contract["ROBO_GENESIS_BACKEND"], contract["ROBO_GENESIS_RENDER"]
-    for code, what, found, asked in (
-        ("backend", "backend.requested", predicate.backend.requested, backend),
-        ("frames", "render.mode", predicate.render.mode, "camera" if render == "1" else "skip"),
-    ):
-        if found != asked:
-            raise BundleRefused(
-                code,
-                f"{what} is {found!r}, this build asked for {asked!r}. "
-                "Let the page read runtime.read_contract() and set neither itself.",
-            )
+    mode = "camera" if render == "1" else "skip"
+    found = predicate.backend.requested
+    expect("backend", "manifest.json", "backend.requested", found, backend, remedy)
+    expect("frames", "manifest.json", "render.mode", predicate.render.mode, mode, remedy)
 
 
 def _check(html: Path, progress: Progress) -> int:
@@ -247,13 +246,15 @@ def _check(html: Path, progress: Progress) -> int:
 
 
 def _summary(
-    engine: str, results: Sequence[PageResult], manifests: Mapping[str, Any], checked: int
+    engine: str,
+    results: Sequence[PageResult],
+    manifests: Mapping[str, Any],
+    checked: int,
+    executed: int,
 ) -> list[str]:
     """Return the facts that a build ends with, one line for each lab."""
-    counts = Counter(result.status for result in results)
-    labs = [result.page for result in results if result.page.page == "lab"]
     lines = [f"Engine: {project.ENGINE} {engine}"]
-    for page in labs:
+    for page in (result.page for result in results if result.page.page == "lab"):
         facts = manifests[page.docname].predicate
         renderer = facts.render.renderer or "SKIP: no camera frames"
         lines.append(
@@ -261,7 +262,7 @@ def _summary(
             f"{facts.backend.requested}, actual {facts.backend.actual}, "
             f"render {facts.render.mode} ({renderer})"
         )
-    lines.append(f"Pages: {counts['executed']} executed, {counts['reused']} reused.")
+    lines.append(f"Pages: {executed} executed, {len(results) - executed} reused.")
     measured = sum(len(manifest.predicate.checks) for manifest in manifests.values())
     lines.append(f"Checks passed: {measured} on what was measured, {checked} on the site.")
     return lines

@@ -1,8 +1,8 @@
-"""Whether the published site still stands for all that it was made from: then a build has no work.
+"""Whether the published site is up to date with all of its inputs: then a build has nothing to do.
 
 Inputs and site are read whole, which takes a tenth of a second. A link in the book that leads to a
-folder counts as changed. Packages count by name, version and time of installation: a file that is
-edited inside one is not seen.
+folder counts as changed. Packages count by name, version and time of installation: an edited file
+inside one is not noticed.
 """
 
 import hashlib
@@ -22,8 +22,8 @@ from robo_genesis.core.project import (
     require_pinned_engine,
 )
 
-RECORD = "standing.json"
-"""Beside the site's HTML; it speaks of what was published with it."""
+RECORD = "build.json"
+"""Lies beside the site's HTML and describes the site that was published with it."""
 
 FOLDERS = ("robo_genesis", "build_scripts")
 FILES = (
@@ -40,13 +40,13 @@ PUBLISHED = ("html", "evidence", "pages")
 
 
 class UnseenError(Exception):
-    """Something among the inputs leads to where no digest looks."""
+    """A link among the inputs leads to a place that no digest covers."""
 
 
 def inputs_digest(
     root: Path, book: Path, environment: Mapping[str, str] | None = None
 ) -> str | None:
-    """Return the digest of everything that decides a build's site, None if something is unseen.
+    """Return the digest of everything that decides a build's site, None if a link hides some of it.
 
     Args:
         root: the checkout.
@@ -82,7 +82,7 @@ def files_digest(base: Path, files: Iterable[Path]) -> str:
 
 
 def _inside(folder: Path, skip: str = "\0") -> Iterator[Path]:
-    """Yield all files below a folder, but for what Python leaves and for names that begin so.
+    """Yield all files below a folder, except Python's caches and top-level names with a prefix.
 
     Raises:
         UnseenError: a link leads to a folder, or to nothing.
@@ -100,7 +100,7 @@ def _inside(folder: Path, skip: str = "\0") -> Iterator[Path]:
 
 
 def history(book: Path) -> list[str | None]:
-    """Return what the pages' histories follow from: the commit, and what is not in it."""
+    """Return what decides the pages' histories: the commit, and the uncommitted changes."""
     return [
         git_or_none(book, "rev-parse", "HEAD", "--is-shallow-repository"),
         git_or_none(book, "status", "--porcelain", "-z", "--", "."),
@@ -113,7 +113,7 @@ def site_digest(published: Path) -> str:
 
 
 def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
-    """Return the last lines for the user where a build has no work, none where it has.
+    """Return the last lines for the user if a build has nothing to do, none if it has work.
 
     Args:
         root: the checkout.
@@ -122,41 +122,41 @@ def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
     """
     try:
         require_pinned_engine(root)
-        lines = standing(published, inputs_digest(root, book))
+        lines = recorded_lines(published, inputs_digest(root, book))
     except (ProjectError, OSError):
-        return []  # the build says it
-    if lines is None:
-        return []
-    return ["Nothing changed: the site stands.", f"Site: {published / 'html/index.html'}", *lines]
+        return []  # the build reports it
+    site = ["Nothing changed: the site is up to date.", f"Site: {published / 'html/index.html'}"]
+    return lines and [*site, *lines]
 
 
-def keep(published: Path, inputs: str | None, lines: Sequence[str]) -> None:
-    """Write beside a site what it was made from and what its build said at its end.
+def record(published: Path, inputs: str | None, now: str | None, lines: Sequence[str]) -> None:
+    """Write beside a site from which inputs it was made, and the last lines of its build.
+
+    Nothing is written, and so the next build has work, if the inputs are unknown or have changed
+    during the build.
 
     Args:
         published: the folder of the complete site.
-        inputs: the digest of what it was made from, None where that is not known.
-        lines: the last lines of the build.
+        inputs: the digest of the inputs when the build began, None if it is unknown.
+        now: the same at its end.
+        lines: the last lines of a build without work.
     """
-    with suppress(UnseenError):  # of such a site nothing is kept: the next build builds it
-        if inputs is None:
-            return
-        record = {"inputs": inputs, "site": site_digest(published), "lines": list(lines)}
-        (published / RECORD).write_text(json.dumps(record, indent=1) + "\n", "utf8")
+    with suppress(UnseenError):
+        if inputs is not None and inputs == now:
+            record = {"inputs": inputs, "site": site_digest(published), "lines": list(lines)}
+            (published / RECORD).write_text(json.dumps(record, indent=1) + "\n", "utf8")
 
 
-def standing(published: Path, inputs: str | None) -> list[str] | None:
-    """Return the last lines of the build that made the site, None where there is work to do.
+def recorded_lines(published: Path, inputs: str | None) -> list[str]:
+    """Return the last lines of the build that made the site, none if there is work to do.
 
     Args:
         published: the folder of the published site.
-        inputs: the digest of what a build would be made from now.
+        inputs: the digest of the inputs of a build now.
     """
     try:
         record = json.loads((published / RECORD).read_text("utf8"))
-        if inputs is None or record["inputs"] != inputs:
-            return None
-        unchanged = record["site"] == site_digest(published)
+        current = record["inputs"] == inputs and record["site"] == site_digest(published)
+        return list(record["lines"]) if current else []
     except (OSError, ValueError, KeyError, TypeError, UnseenError):
-        return None
-    return list(record["lines"]) if unchanged else None
+        return []

@@ -1,4 +1,4 @@
-"""The engine pin: which version may take its place, and writing it."""
+"""The engine pin: which version may replace it, and how it is written."""
 
 import re
 import subprocess
@@ -30,7 +30,7 @@ def chosen_version(given: str, pin: str, versions: Versions) -> str:
     Args:
         given: what the user gave.
         pin: the version that is pinned now.
-        versions: returns those that can be installed, pre-releases included where asked for.
+        versions: returns the installable ones, on request with pre-releases.
 
     Raises:
         RepinError: none was given, it is no version, it is the pin, or it cannot be installed.
@@ -50,8 +50,8 @@ def chosen_version(given: str, pin: str, versions: Versions) -> str:
     if not found:
         newest = ", ".join(sorted(known, key=Version, reverse=True)[:12])
         raise RepinError(
-            f"GENESIS={given}: there is no {ENGINE} {given} for this Python. Newest first, there "
-            f"are: {newest}{', …' if len(known) > 12 else ''}. Give one of them."
+            f"GENESIS={given}: there is no {ENGINE} {given} for this Python. The newest versions: "
+            f"{newest}{', …' if len(known) > 12 else ''}. Give one of them."
         )
     return found[0]
 
@@ -69,56 +69,57 @@ def installable_versions(prereleases: bool) -> list[str]:
     if done.returncode or line is None:
         raise RepinError(
             f"pip cannot list the versions of {ENGINE}: {done.stderr.strip()[-600:]}\n"
-            "A new pin needs the network: look after it, or after pip's index (pip config list)."
+            "A new pin needs the network: check it, or pip's index (pip config list)."
         )
     return line[1].split(", ")
 
 
 def require_locked_packages(root: Path) -> None:
-    """Raise RepinError where this environment is not the one that the lock describes.
+    """Raise RepinError if this environment is not the one that the lock describes.
 
-    What is installed is what the new lock keeps, so it has to be what the old one says.
+    The new lock keeps the installed versions, so they must be those of the old one.
     """
     installed = {canonicalize_name(d.name): d.version.split("+")[0] for d in distributions()}
     unlike = [
         f"{name} {installed.get(canonicalize_name(name), '(none)')} instead of {version}"
-        for name, version in locked(root).items()
+        for name, version in locked_versions((root / FILES[1]).read_text("utf8")).items()
         if installed.get(canonicalize_name(name)) != version
     ]
     if unlike:
         raise RepinError(
-            f"This environment does not hold what requirements.lock names: {', '.join(unlike[:5])}"
+            f"This environment differs from requirements.lock: {', '.join(unlike[:5])}"
             f"{', …' if unlike[5:] else ''}. Install the lock (pip install -r requirements.lock), "
-            "or leave PYTHON=… out, so that .venv is used."
+            "or omit PYTHON=…, so that .venv is used."
         )
 
 
 def require_plain_files(root: Path) -> None:
-    """Raise RepinError where a file of the pin is a link: the new pin would be written through."""
+    """Raise RepinError if a file of the pin is a link: the new pin would change its target."""
     links = [name for name in FILES if (root / name).is_symlink()]
     if links:
         raise RepinError(
             f"{' and '.join(links)} in {root}: a link, expected the file itself, since make repin "
-            "would change what it leads to. Put the file there."
+            "would change the link's target. Replace the link by the file."
         )
 
 
-def locked(root: Path) -> dict[str, str]:
-    """Return package to version of a checkout's lock."""
-    lines = (root / FILES[1]).read_text("utf8").splitlines()
-    return dict(line.split("==") for line in lines if line and not line.startswith("#"))
+def locked_versions(lock: str) -> dict[str, str]:
+    """Return package to version of a lock's text."""
+    return dict(line.split("==") for line in lock.splitlines() if "==" in line and line[0] != "#")
 
 
 def set_pin(root: Path, old: str, new: str) -> None:
     """Write another engine version into the one line that pins it.
 
     Raises:
-        ProjectError: the line is written in a way that cannot be changed here.
+        ProjectError: the line is not written as expected.
     """
     path = root / FILES[0]
     pattern = rf"(?<=[\"']){ENGINE}\s*==\s*{re.escape(old)}(?=[\"'])"
     text, count = re.subn(pattern, f"{ENGINE}=={new}", path.read_text("utf8"))
     if count != 1:
-        raise ProjectError(f'{path} has {count} times "{ENGINE}=={old}", expected once.')
+        raise ProjectError(
+            f'{path} has "{ENGINE}=={old}" {count} times, expected once. Write the pin in one line.'
+        )
     path.write_text(text, "utf8")
     project.engine_pin(root)

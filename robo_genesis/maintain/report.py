@@ -16,6 +16,7 @@ from robo_genesis.evidence.compare import Comparison, compare, specification_of
 from robo_genesis.evidence.findings import SEVERITY, worst
 from robo_genesis.evidence.report import Row
 from robo_genesis.evidence.status import Status, recorded_folders, recorded_status
+from robo_genesis.maintain.pin import locked_versions
 
 Pair = tuple[str, str]
 
@@ -23,24 +24,24 @@ VOLATILE = re.compile(
     r"\brun[ |]+[0-9a-f]{8}\b(?!\.\d)|\b[0-9a-f]{32,64}\b"
     r"|\b\d{4}-\d\d-\d\d(?:[T ]\d\d:\d\d[\d:.]*Z?)?"
 )
-"""What differs between any two runs of one version: run ids, digests and dates with times."""
+"""Text that differs between any two runs of one version: run ids, digests and dates with times."""
 LOG = re.compile(r"\[(Genesis\b|[TDIWEC] \d\d/\d\d/)")
-"""How a line of the engine's or its compiler's log begins; warnings are compared from bundles."""
+"""The beginning of a log line of the engine or its compiler; bundles supply the warnings."""
 END = re.compile(r"(?<=[.!?])\s+(?=[^\s\d])")
 BLOCKS = "p, li, tr, figcaption, caption, dt, dd, pre, h1, h2, h3, h4"
 HIDDEN = "math, svg, .cell_input"
 BREAK = "\x1e"
 LEFT_OUT = Path("evidence", "ledger.html")
-"""The ledger lists digests of what other pages show."""
+"""The ledger lists digests of the content of other pages."""
 
 
 @dataclass(frozen=True, slots=True)
 class Refresh:
-    """What two builds of one checkout, each with its engine version, say of one another.
+    """The comparison of two builds of one checkout, each with its engine version.
 
-    `packages` is name → versions in both locks, "" where there is none; `missing` names the lessons
-    with a bundle in one build alone; `recorded` is lesson/backend → state under both pins;
-    `moved` holds (page, old, new) of each sentence that changed, see `moved_sentences`.
+    `packages` is name → versions in both locks, "" for none; `missing` names the lessons with a
+    bundle in one build only; `recorded` is lesson/backend → state under both pins;
+    `changed` holds (page, old, new) of each changed sentence, see `changed_sentences`.
     """
 
     versions: Pair
@@ -48,11 +49,11 @@ class Refresh:
     comparisons: tuple[Comparison, ...]
     missing: tuple[str, ...]
     recorded: dict[str, tuple[Status, Status]]
-    moved: tuple[tuple[str, str, str], ...]
+    changed: tuple[tuple[str, str, str], ...]
 
     @property
     def state(self) -> str:
-        """The worst state of a lesson; a lesson that one build lacks cannot be compared."""
+        """The worst state of a lesson; a lesson that is in one build only cannot be compared."""
         lacking = [SEVERITY[-1]] if self.missing else []
         return worst([comparison.state for comparison in self.comparisons] + lacking)
 
@@ -79,7 +80,7 @@ def compare_builds(
     Args:
         versions: of the engine, old and new, as all pairs here.
         builds: folders with `html` and `evidence`.
-        recorded: what `recorded` returned under each pin.
+        recorded: the result of `recorded` under each pin.
         locks: texts of requirements.lock.
 
     Raises:
@@ -89,11 +90,11 @@ def compare_builds(
     shared = sorted(old.keys() & new.keys())
     return Refresh(
         versions,
-        moved_packages(*locks),
+        changed_packages(*locks),
         tuple(compare(old[n], new[n], specification_of(new[n])) for n in shared),
         tuple(sorted(old.keys() ^ new.keys())),
         {name: (recorded[0][name], recorded[1][name]) for name in recorded[0]},
-        tuple(moved_sentences(builds[0] / "html", builds[1] / "html")),
+        tuple(changed_sentences(builds[0] / "html", builds[1] / "html")),
     )
 
 
@@ -110,21 +111,18 @@ def recorded(root: Path) -> dict[str, Status]:
     return {"/".join(key): recorded_status(book, *key, root=root) for key in keys}
 
 
-def moved_packages(old: str, new: str) -> dict[str, Pair]:
-    """Return name → (old, new) version of each package that two locks do not agree on."""
-    was, now = (
-        dict(line.split("==") for line in text.splitlines() if "==" in line and line[0] != "#")
-        for text in (old, new)
-    )
-    both = {name: (was.get(name, ""), now.get(name, "")) for name in {**was, **now}}
+def changed_packages(old: str, new: str) -> dict[str, Pair]:
+    """Return name → (old, new) version of each package that differs between two locks."""
+    was, now = locked_versions(old), locked_versions(new)
+    both = {name: (was.get(name, ""), now.get(name, "")) for name in was | now}
     return {name: pair for name, pair in both.items() if pair[0] != pair[1]}
 
 
-def moved_sentences(old: Path, new: Path) -> Iterator[tuple[str, str, str]]:
+def changed_sentences(old: Path, new: Path) -> Iterator[tuple[str, str, str]]:
     """Yield (page, old, new) of each sentence that changed between two builds' folders of HTML.
 
-    One of the texts is empty where the other has no counterpart. The pages' sources are the same,
-    so a sentence that changed holds something measured or computed.
+    One of the texts is empty if the other has no counterpart. The pages' sources are the same, so a
+    changed sentence contains a measured or computed value.
     """
     names = {page.relative_to(site) for site in (old, new) for page in site.rglob("*.html")}
     for name in sorted(names - {LEFT_OUT}):
@@ -137,9 +135,9 @@ def moved_sentences(old: Path, new: Path) -> Iterator[tuple[str, str, str]]:
 
 
 def sentences(page: Path) -> Iterator[str]:
-    """Yield the sentences of a page's article, none where there is no page.
+    """Yield the sentences of a page's article, none if the page does not exist.
 
-    A table row is one piece of text, and so is a line of printed output.
+    A table row counts as one sentence, as does a line of printed output.
     """
     soup = BeautifulSoup(page.read_text("utf8") if page.is_file() else "", "html.parser")
     article = soup.select_one("article") or soup
@@ -157,10 +155,10 @@ def sentences(page: Path) -> Iterator[str]:
 
 
 def summary(refresh: Refresh) -> str:
-    """Say the result in one line."""
+    """Return the result in one line."""
     return (
-        f"{refresh.state}; packages that moved: {len(refresh.packages)}, sentences: "
-        f"{len(refresh.moved)}; recorded bundles that became stale: {len(refresh.stale)}"
+        f"{refresh.state}; changed packages: {len(refresh.packages)}, changed sentences: "
+        f"{len(refresh.changed)}, recorded bundles that became stale: {len(refresh.stale)}"
     )
 
 
@@ -187,17 +185,17 @@ def html(refresh: Refresh) -> str:
 
 
 def _tables(refresh: Refresh) -> Iterator[tuple[str, list[Row], str]]:
-    """Yield (heading, rows with their head, what stands there without rows)."""
-    lacking = [(name, "in one build alone") for name in refresh.missing]
+    """Yield (heading, rows with their head, the text for a table without rows)."""
+    lacking = [(name, "in one build only") for name in refresh.missing]
     if lacking:
         yield "Lessons without a counterpart", [("lesson", "evidence"), *lacking], ""
     packages = [(name, *versions) for name, versions in refresh.packages.items()]
-    yield "Packages", [("package", "old", "new"), *packages], "No other package moved."
+    yield "Packages", [("package", "old", "new"), *packages], "No other package changed."
     rows = [(name, was.state, now.state, now.reason)
             for name, (was, now) in refresh.recorded.items()]  # fmt: skip
     head = ("bundle", f"under {refresh.versions[0]}", f"under {refresh.versions[1]}", "reason")
     yield "Recorded bundles", [head, *rows], "No bundle is recorded."
-    for page, moved in groupby(refresh.moved, key=lambda one: one[0]):
-        yield f"Sentences of {page}", [("old", "new"), *(one[1:] for one in moved)], ""
-    if not refresh.moved:
-        yield "Sentences", [("", "")], "No sentence of the site moved."
+    for page, changed in groupby(refresh.changed, key=lambda one: one[0]):
+        yield f"Sentences of {page}", [("old", "new"), *(one[1:] for one in changed)], ""
+    if not refresh.changed:
+        yield "Sentences", [("", "")], "No sentence of the site changed."

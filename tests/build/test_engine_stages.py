@@ -5,16 +5,14 @@ the L04 lab without its prose, and a ball that falls. The commands are those of 
 """
 
 import json
-import os
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from tiny_book import cell, make_book, notebook
+from tiny_book import cell, make, make_book, notebook
 
 from robo_genesis.build import npm
 from robo_genesis.core.git import git
@@ -23,7 +21,7 @@ from robo_genesis.evidence.bundle import sha256
 
 pytestmark = pytest.mark.engine
 
-OUTER = ("PYTHONPATH", "MAKEFLAGS", "MFLAGS", "MAKELEVEL", "RELEASE", "EXECUTED", "RENDER", "JOBS")
+PYTHON = f"PYTHON={sys.executable}"
 CELLS = re.compile(r"^```\{code-cell\}.*?^```$", re.M | re.S)
 BALL = """\
 from robo_genesis.sim import session as runtime
@@ -53,20 +51,6 @@ def clone(folder: Path, name: str) -> Path:
     return work
 
 
-def make(work: Path, *words: str, fails: bool = False) -> str:
-    """Run make in a clone with this interpreter; return what it said."""
-    done = subprocess.run(
-        ["make", *words, f"PYTHON={sys.executable}"],
-        cwd=work,
-        env={name: value for name, value in os.environ.items() if name not in OUTER},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert (done.returncode != 0) == fails, done.stdout + done.stderr
-    return done.stdout + done.stderr
-
-
 def arrays(bundle: Path) -> dict[str, tuple[str, tuple[int, ...], bytes]]:
     """Return every array of a bundle, bit for bit."""
     found = {}
@@ -87,16 +71,15 @@ def clones(tmp_path_factory) -> Path:
     """The folder of clone `lab`, whose kernels start cold, and clone `ball`, both executed."""
     folder = tmp_path_factory.mktemp("clones")
     for name, page in (("lab", "l04/lab"), ("ball", "ball")):
-        said = make(
-            clone(folder, name), "execute", f"PAGE={page}", f"TO={folder / 'executed' / name}"
-        )
+        to = f"TO={folder / 'executed' / name}"
+        said = make(clone(folder, name), "execute", f"PAGE={page}", to, PYTHON)
         assert f"{name}  executed in" in said
     return folder
 
 
 @pytest.fixture(scope="module")
-def handed_over(clones) -> dict[str, tuple[str, tuple[int, ...], bytes]]:
-    """The lab's arrays as they were handed over: executed alone, with a cold cache of kernels."""
+def exported(clones) -> dict[str, tuple[str, tuple[int, ...], bytes]]:
+    """The lab's arrays as they were exported: executed alone, with a cold cache of kernels."""
     found = arrays(clones / "executed/lab/lab/outputs/l04/lab/cpu")
     assert {name.split(".")[0] for name in found} == {"baseline", "G1", "G2", "G3"}
     return found
@@ -116,26 +99,26 @@ def test_a_bundle_that_was_changed_on_the_way_leaves_no_site(site, clones, tmp_p
     record = json.loads((place / "page.json").read_text())
     record["files"][metrics.relative_to(place).as_posix()] = sha256(metrics)
     (place / "page.json").write_text(json.dumps(record))
-    said = make(site, "book", f"EXECUTED={spoiled}", fails=True)
+    said = make(site, "book", f"EXECUTED={spoiled}", PYTHON, fails=True)
     assert "is refused: digest: metrics.json" in said
     assert not (site / "book" / "_build").exists()
 
 
-def test_the_site_is_built_from_the_executed_pages_alone(site, clones, handed_over):
-    said = make(site, "book", f"EXECUTED={clones / 'executed'}")
+def test_the_site_is_built_from_the_executed_pages_alone(site, clones, exported):
+    said = make(site, "book", f"EXECUTED={clones / 'executed'}", PYTHON)
     assert "Pages: 0 executed, 2 reused." in said
     assert "lab  accepted" in said
     assert "height 0.9" in (site / "book/_build/html/ball.html").read_text()
-    assert arrays(site / "book/_build/evidence/l04/cpu") == handed_over
+    assert arrays(site / "book/_build/evidence/l04/cpu") == exported
     assert kernels(clones / "lab")
     assert not kernels(site)
 
 
-def test_results_depend_neither_on_jobs_nor_on_the_caches(clones, handed_over):
+def test_results_depend_neither_on_jobs_nor_on_the_caches(clones, exported):
     """The same lab, executed again beside another page, with the kernels of the first run."""
     work = clones / "lab"
     for folder in (work / ".cache" / "pages").iterdir():
         shutil.rmtree(folder)
-    said = make(work, "book", "JOBS=2")
+    said = make(work, "book", "JOBS=2", PYTHON)
     assert "Pages: 2 executed, 0 reused." in said
-    assert arrays(work / "book/_build/evidence/l04/cpu") == handed_over
+    assert arrays(work / "book/_build/evidence/l04/cpu") == exported

@@ -1,55 +1,18 @@
-"""What `make evidence` answers: exit status, what is printed, and the real lab on the CPU."""
+"""`make evidence`: exit status, what is printed, and the real lab on the CPU."""
 
-import os
 import shutil
-import signal
 import subprocess
 import sys
-import time
-from pathlib import Path
 
-import psutil
 import pytest
-from tiny_book import LAB_FRONT, cell, make_book, notebook
+from tiny_book import LAB_FRONT, cell, fails, make_book, notebook, start
 
-from robo_genesis.core.project import CACHE, ROOT
+from robo_genesis.core.project import BOOK, CACHE, ROOT
 from robo_genesis.evidence.bundle import evidence_key
 from robo_genesis.evidence.verify import verify_bundle
 
-SCRIPT = ROOT / "build_scripts" / "evidence.py"
 
-
-def command(*arguments: str, **environment: str) -> subprocess.Popen[str]:
-    """Start the command with these arguments and variables; none of the caller's own names."""
-    names = ("LESSON", "BACKEND", "TO", "RENDER")
-    kept = {name: value for name, value in os.environ.items() if name not in names}
-    return subprocess.Popen(
-        [sys.executable, str(SCRIPT), *arguments],
-        env={**kept, "PYTHONPATH": str(ROOT), **environment},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
-def tiny(folder: Path, code: str, **environment: str) -> subprocess.Popen[str]:
-    """Start the command on a tiny book whose lab has one cell."""
-    book = make_book(folder, lab=notebook(cell(code), front=LAB_FRONT))
-    arguments = ["--book", str(book), "--cache", str(folder / "cache")]
-    asked = {"LESSON": "l04", "BACKEND": "cpu", "TO": str(folder / "kept")}
-    return command(*arguments, **{**asked, **environment})
-
-
-@pytest.fixture
-def old(tmp_path):
-    """A file of a bundle that was recorded before."""
-    place = tmp_path / "kept" / "l04" / "cpu"
-    place.mkdir(parents=True)
-    (place / "manifest.json").write_text("the old one")
-    return place / "manifest.json"
-
-
-def test_make_hands_the_settings_over(tmp_path):
+def test_make_passes_the_settings(tmp_path):
     (tmp_path / "build_scripts").mkdir()
     shutil.copy(ROOT / "Makefile", tmp_path)
     stub = "import os\nprint([os.environ.get(name) for name in ('LESSON', 'BACKEND', 'TO')])\n"
@@ -60,58 +23,24 @@ def test_make_hands_the_settings_over(tmp_path):
     assert "['l04', 'amdgpu', 'a folder']" in done.stdout.splitlines(), done.stderr
 
 
-def test_a_failing_lab_is_status_1_a_report_and_the_old_bundle(tmp_path, old):
-    process = tiny(tmp_path, "1 / 0")
-    _, err = process.communicate(timeout=120)
-    assert process.returncode == 1
-    assert "lab, code cell 1, line " in err
-    assert "ZeroDivisionError: division by zero" in err
-    assert err.endswith("FAILED: nothing was recorded.\n")
-    assert old.read_text() == "the old one"
-
-
 @pytest.mark.parametrize(
-    ("name", "value", "said"),
+    ("settings", "said"),
     [
-        ("LESSON", "l99", "Lessons with a lab: l04."),
-        ("BACKEND", "gpu", "Choices: amdgpu, cuda, cpu"),
-        ("RENDER", "0", "always has camera frames. Unset it. Choices: 1."),
+        ({}, "lab, code cell 1, line "),
+        ({"LESSON": "l99"}, "LESSON='l99' is not valid. Lessons with a lab: l04."),
+        ({"BACKEND": "gpu"}, "BACKEND='gpu' is not valid. Choices: amdgpu, cuda, cpu"),
+        ({"RENDER": "0"}, "RENDER='0' is not valid for a recording, which always has camera fr"),
     ],
 )
-def test_invalid_settings_are_refused_with_name_value_and_choices(tmp_path, name, value, said):
-    process = tiny(tmp_path, "1", **{name: value})
-    _, err = process.communicate(timeout=60)
-    assert process.returncode == 1
-    assert f"{name}={value!r} is not valid" in err
-    assert said in err
-    assert "Traceback" not in err
-
-
-def test_a_cache_that_cannot_be_written_is_status_1_and_named(tmp_path, no_file):
-    process = command("--cache", str(no_file), LESSON="l04", BACKEND="cpu", TO=str(tmp_path))
-    _, err = process.communicate(timeout=60)
-    assert process.returncode == 1
-    assert f"Not a directory: '{no_file}" in err
-    assert "Traceback" not in err
-
-
-@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
-def test_ctrl_c_and_cancelling_end_with_130_no_kernel_and_the_old_bundle(tmp_path, old, sent):
-    pid = tmp_path / "kernel.pid"
-    code = f"import os, pathlib, time\npathlib.Path({str(pid)!r}).write_text(str(os.getpid()))\n"
-    process = tiny(tmp_path, code + "time.sleep(100)")
-    end = time.monotonic() + 60
-    while not (pid.exists() and pid.read_text()):
-        assert time.monotonic() < end
-        assert process.poll() is None
-        time.sleep(0.05)
-    below = psutil.Process(process.pid).children(recursive=True)
-    process.send_signal(sent)
-    _, err = process.communicate(timeout=60)
-    assert process.returncode == 130
-    assert "Interrupted: nothing was recorded." in err
-    assert "Traceback" not in err
-    assert psutil.wait_procs(below, timeout=10)[1] == []
+def test_a_failure_is_status_1_a_report_and_the_old_bundle(tmp_path, settings, said):
+    old = tmp_path / "kept/l04/cpu/manifest.json"
+    old.parent.mkdir(parents=True)
+    old.write_text("the old one")
+    make_book(tmp_path, lab=notebook(cell("1 / 0"), front=LAB_FRONT))
+    given = {"LESSON": "l04", "BACKEND": "cpu", "TO": str(tmp_path / "kept")} | settings
+    report = fails("evidence.py", tmp_path, **given)
+    assert said in report
+    assert settings or report.endswith("FAILED: nothing was recorded.\n")
     assert old.read_text() == "the old one"
 
 
@@ -121,7 +50,8 @@ def test_the_real_lab_recorded_on_the_cpu_is_accepted_evidence(tmp_path):
     (CACHE / "engine").mkdir(parents=True, exist_ok=True)
     cache.mkdir()
     (cache / "engine").symlink_to(CACHE / "engine")  # compiled kernels, no executed page
-    process = command("--cache", str(cache), LESSON="l04", BACKEND="cpu", TO=str(kept))
+    given = {"LESSON": "l04", "BACKEND": "cpu", "TO": str(kept)}
+    process = start("evidence.py", tmp_path, "--book", str(BOOK), **given)
     out, err = process.communicate()
     assert process.returncode == 0, err
     place = kept / "l04" / "cpu"

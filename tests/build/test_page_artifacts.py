@@ -1,4 +1,4 @@
-"""Executed pages that travel as files: what is handed over, what is taken over, what is refused."""
+"""Executed pages as files: what is exported, what is imported, what is refused."""
 
 import json
 import os
@@ -10,16 +10,10 @@ import pytest
 from nbformat.v4 import new_output
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
-from robo_genesis.build import page_export
+from robo_genesis.build import page_artifacts
 from robo_genesis.build.execute import execute_pages
-from robo_genesis.build.page_cache import (
-    PageCache,
-    cached_results,
-    notebooks_folder,
-    outputs_folder,
-)
-from robo_genesis.build.page_export import HandoverError, hand_over
-from robo_genesis.build.page_import import take_over
+from robo_genesis.build.page_artifacts import ArtifactError, export_page, import_pages
+from robo_genesis.build.page_cache import cached_results
 from robo_genesis.evidence.bundle import BundleRefused, sha256
 from robo_genesis.lessons.book_pages import find_pages
 
@@ -31,14 +25,14 @@ MORE = WRITE_BUNDLE + '\n(folder.parent / "shape.npz").write_bytes(b"shape")'
 
 @pytest.fixture(scope="module")
 def elsewhere(tmp_path_factory) -> Path:
-    """A book, executed once, with both of its pages handed over."""
+    """A book, executed once, with both of its pages exported."""
     root = tmp_path_factory.mktemp("elsewhere")
     lab = notebook(cell(MORE), cell("print('measured')"), front=LAB_FRONT)
     book = make_book(root, text=notebook(cell("print('seen')")), **{LAB: lab})
     folder = root / "cache" / FINGERPRINT
     for result in execute_pages(find_pages(book), folder):
         assert result.status == "executed", result.failure
-        hand_over(result, folder, root / "executed")
+        export_page(result, folder, root / "executed")
     return root
 
 
@@ -52,13 +46,11 @@ def here(elsewhere, tmp_path) -> Path:
 
 def take(here: Path, fingerprint: str = FINGERPRINT, verify=lambda folder, run_id: None):
     pages = find_pages(here / "book")
-    return take_over(here / "executed", pages, here / "cache" / fingerprint, verify)
+    return import_pages(here / "executed", pages, here / "cache" / fingerprint, verify)
 
 
 def cached(here: Path):
-    folder = here / "cache" / FINGERPRINT
-    cache = PageCache(notebooks_folder(folder))
-    return cached_results(find_pages(here / "book"), cache, outputs_folder(folder))
+    return cached_results(find_pages(here / "book"), here / "cache" / FINGERPRINT)
 
 
 def edit(here: Path, **changes) -> None:
@@ -96,43 +88,31 @@ def test_a_page_is_its_notebook_its_record_and_what_it_left(elsewhere):
     assert "measured" in (place / "executed.ipynb").read_text()
 
 
-def test_what_is_taken_over_needs_no_run_and_is_the_same_run(here):
+def test_an_imported_page_needs_no_run_is_the_same_run_and_replaces_an_older_one(here):
+    take(here)
+    outputs = here / "cache" / FINGERPRINT / "outputs/l04/lab"
+    (outputs / "cpu/manifest.json").write_text("{}")
     runs = {record.docname: record.run_id for record in take(here)}
     results = cached(here)
-    assert {name: result.status for name, result in results.items()} == dict.fromkeys(
-        ["text", LAB], "reused"
-    )
+    assert [(name, result.status) for name, result in results.items()] == [
+        ("text", "reused"),
+        (LAB, "reused"),
+    ]
     assert {name: result.run_id for name, result in results.items()} == runs
-    shape = here / "cache" / FINGERPRINT / "outputs/l04/lab/shape.npz"
-    assert shape.read_bytes() == b"shape"
+    assert (outputs / "shape.npz").read_bytes() == b"shape"
 
 
-def test_folders_may_lie_at_any_depth(here):
-    deep = here / "executed" / "executed-0"
-    deep.mkdir()
-    (here / "executed" / LAB).rename(deep / "any name")
-    assert len(take(here)) == 2
-
-
-def test_what_an_earlier_take_over_left_is_replaced(here, elsewhere):
-    take(here)
-    stale = here / "cache" / FINGERPRINT / "outputs/l04/lab/cpu/manifest.json"
-    stale.write_text("{}")
-    take(here)
-    assert cached(here)[LAB].bundle is not None
-
-
-def test_handing_over_again_replaces_the_page_and_no_other_folder(here):
+def test_exporting_again_replaces_the_page_and_no_other_folder(here):
     folder = here / "cache" / FINGERPRINT
     take(here)
-    (result, *_) = [r for r in cached(here).values() if r.page.docname == LAB]
+    result = cached(here)[LAB]
     left_over = here / "executed" / LAB / "left over"
     left_over.touch()
-    hand_over(result, folder, here / "executed")
+    export_page(result, folder, here / "executed")
     assert not left_over.exists()
     (here / "mine" / LAB).mkdir(parents=True)
-    with pytest.raises(HandoverError, match="is no executed page"):
-        hand_over(result, folder, here / "mine")
+    with pytest.raises(ArtifactError, match="is not an executed page"):
+        export_page(result, folder, here / "mine")
     assert [path.name for path in (here / "mine").iterdir()] == [LAB]
 
 
@@ -141,128 +121,104 @@ def test_a_bundle_that_is_refused_leaves_what_was_executed_here(here):
         raise BundleRefused("stale", f"{folder.name} answers an older question")
 
     before = take(here)
-    with pytest.raises(HandoverError, match=r"lab: its bundle is refused: stale: cpu answers"):
+    with pytest.raises(ArtifactError, match=r"lab: its bundle is refused: stale: cpu answers"):
         take(here, verify=refuse)
     assert {result.run_id for result in cached(here).values()} == {r.run_id for r in before}
     shutil.rmtree(here / "cache")
-    with pytest.raises(HandoverError):
+    with pytest.raises(ArtifactError):
         take(here, verify=refuse)
     assert not (here / "cache").exists()
 
 
-def test_what_lies_within_a_page_or_is_hidden_is_no_page(here):
+def test_pages_lie_at_any_depth_but_not_within_another_nor_hidden(here):
     (here / "executed" / LAB / "outputs/l04/lab/page.json").write_text("its own")
     seal(here)
     for left in (".left", f"{LAB}.next", f"{LAB}.old"):
         shutil.copytree(here / "executed" / LAB, here / "executed" / left)
+    (here / "executed" / "z").mkdir()
+    (here / "executed" / LAB).rename(here / "executed" / "z" / "any name")
     assert [record.docname for record in take(here)] == ["text", LAB]
 
 
-def test_a_folder_that_is_not_there_is_named(here):
-    shutil.rmtree(here / "executed")
-    with pytest.raises(HandoverError, match=r"EXECUTED=.*executed is no folder"):
-        take(here)
+def lab(here: Path, name: str) -> Path:
+    return here / "executed" / LAB / name
 
 
-def drop(name):
-    return lambda here: (here / "executed" / LAB / name).unlink()
-
-
-def add(name):
-    return lambda here: (here / "executed" / LAB / name).write_text("new")
-
-
-def add_and_seal(name):
-    def spoil(here):
-        add(name)(here)
-        seal(here)
-
-    return spoil
+def add_and_seal(here, name, text):
+    lab(here, name).write_text(text)
+    seal(here)
 
 
 def link(here):
-    path = here / "executed" / LAB / "outputs/l04/lab/shape.npz"
-    path.unlink()
-    path.symlink_to("/etc/hostname")
+    lab(here, SHAPE).unlink()
+    lab(here, SHAPE).symlink_to("/etc/hostname")
 
 
-def pipe(here):
-    os.mkfifo(here / "executed" / LAB / "pipe")
-
-
-def other_code(here):
-    rewrite(here, lambda executed: executed.cells[0].update(source="print('forged')"))
-
-
-def other_kernel(here):
-    rewrite(here, lambda executed: executed.metadata.kernelspec.update(name="other"))
-
-
-def other_run(here):
-    rewrite(here, lambda executed: executed.metadata.robo_genesis.update(run_id="f" * 32))
-
-
-def no_run(here):
-    rewrite(here, lambda executed: executed.metadata.update(robo_genesis="none"))
-
-
-def other_bundle(here):
-    manifest = here / "executed" / LAB / "outputs/l04/lab/cpu/manifest.json"
-    manifest.write_text(json.dumps({"predicate": {"run_id": "f" * 32}}))
-    seal(here)
-
-
-def failed_cell(here):
-    error = new_output("error", ename="ValueError", evalue="no", traceback=[])
-    rewrite(here, lambda executed: executed.cells[0].update(outputs=[error]))
-
-
-def no_notebook(here):
-    (here / "executed" / LAB / "executed.ipynb").write_text("[]")
-    seal(here)
-
-
-def twice(here):
-    shutil.copytree(here / "executed" / LAB, here / "executed" / "again")
-
-
+OTHER_RUN = "f" * 32
+ERROR = new_output("error", ename="ValueError", evalue="no", traceback=[])
+CODE = "its code cells are not those of"
+BUNDLE, SHAPE = "outputs/l04/lab/cpu/manifest.json", "outputs/l04/lab/shape.npz"
 SPOILT = {
-    "another fingerprint": (lambda here: edit(here, fingerprint="1" * 20), "its fingerprint is 11"),
-    "an unknown page": (lambda here: edit(here, docname="gone"), "its page is 'gone'. Pages of"),
-    "a path for a page": (lambda here: edit(here, docname="../lab"), "its page is '../lab'"),
-    "changed code": (lambda here: edit(here, code="0" * 64), "its code cells are not those of"),
-    "forged code": (other_code, "its code cells are not those of"),
-    "another kernel": (other_kernel, "its code cells are not those of"),
-    "a run that is none": (lambda here: edit(here, run_id="../x"), "page.json is not what"),
-    "a word too many": (lambda here: edit(here, signed=True), "page.json is not what"),
-    "no JSON": (
-        lambda here: (here / "executed/lab/page.json").write_text("{"),
-        "is not what `make",
+    "another fingerprint": (lambda h: edit(h, fingerprint="1" * 20), "its fingerprint is 11"),
+    "an unknown page": (lambda h: edit(h, docname="gone"), "its page is 'gone'. Pages of"),
+    "a path for a page": (lambda h: edit(h, docname="../lab"), "its page is '../lab'"),
+    "changed code": (lambda h: edit(h, code="0" * 64), CODE),
+    "forged code": (lambda h: rewrite(h, lambda nb: nb.cells[0].update(source="1")), CODE),
+    "another kernel": (
+        lambda h: rewrite(h, lambda nb: nb.metadata.kernelspec.update(name="other")),
+        CODE,
     ),
-    "the notebook of another run": (other_run, "executed.ipynb is of run ffff"),
-    "a notebook of no run": (no_run, "executed.ipynb is of run None"),
-    "the bundle of another run": (other_bundle, "it has no evidence bundle of run"),
-    "a cell that failed": (failed_cell, "ExpectedException: "),
-    "no notebook": (drop("executed.ipynb"), "absent are ['executed.ipynb']"),
-    "what is no notebook": (no_notebook, "executed.ipynb is no notebook"),
-    "no manifest": (drop("outputs/l04/lab/cpu/manifest.json"), "absent are ['outputs/l04/lab/cpu"),
-    "a changed file": (add("outputs/l04/lab/shape.npz"), "shape.npz'] changed since"),
-    "an unlisted file": (add("outputs/l04/lab/new"), "not of this page ['outputs/l04/lab/new']"),
-    "a file of another page": (add_and_seal("outputs/new"), "not of this page ['outputs/new']"),
+    "a run that is none": (lambda h: edit(h, run_id="../x"), "page.json is not what"),
+    "a word too many": (lambda h: edit(h, signed=True), "page.json is not what"),
+    "no JSON": (lambda h: lab(h, "page.json").write_text("{"), "is not what `make"),
+    "the notebook of another run": (
+        lambda h: rewrite(h, lambda nb: nb.metadata.robo_genesis.update(run_id=OTHER_RUN)),
+        "executed.ipynb is of run ffff",
+    ),
+    "a notebook of no run": (
+        lambda h: rewrite(h, lambda nb: nb.metadata.update(robo_genesis="none")),
+        "executed.ipynb is of run None",
+    ),
+    "the bundle of another run": (
+        lambda h: add_and_seal(h, BUNDLE, json.dumps({"predicate": {"run_id": OTHER_RUN}})),
+        "it has no evidence bundle of run",
+    ),
+    "a cell that failed": (
+        lambda h: rewrite(h, lambda nb: nb.cells[0].update(outputs=[ERROR])),
+        "ExpectedException: ",
+    ),
+    "no notebook": (lambda h: lab(h, "executed.ipynb").unlink(), "absent are ['executed.ipynb']"),
+    "what is no notebook": (
+        lambda h: add_and_seal(h, "executed.ipynb", "[]"),
+        "executed.ipynb is not a notebook",
+    ),
+    "no manifest": (lambda h: lab(h, BUNDLE).unlink(), f"absent are ['{BUNDLE}']"),
+    "a changed file": (lambda h: lab(h, SHAPE).write_text("new"), "shape.npz'] changed since"),
+    "an unlisted file": (
+        lambda h: lab(h, "outputs/l04/lab/new").write_text("new"),
+        "not of this page ['outputs/l04/lab/new']",
+    ),
+    "a file of another page": (
+        lambda h: add_and_seal(h, "outputs/new", "new"),
+        "not of this page ['outputs/new']",
+    ),
     "a path for a file": (
-        lambda here: edit(here, files={"../../x": "0" * 64}),
-        "absent are ['../../x']",
+        lambda h: edit(h, files={"../../x": "0" * 64}),
+        "absent are ['../../x'",
     ),
     "a link": (link, "shape.npz is a link or device"),
-    "a pipe": (pipe, "pipe is a link or device"),
-    "two of one page": (twice, "lab is in "),
+    "a pipe": (lambda h: os.mkfifo(lab(h, "pipe")), "pipe is a link or device"),
+    "two of one page": (
+        lambda h: shutil.copytree(h / "executed" / LAB, h / "executed" / "again"),
+        "lab is in ",
+    ),
 }
 
 
 @pytest.mark.parametrize(("spoil", "said"), SPOILT.values(), ids=SPOILT)
-def test_a_page_that_does_not_hold_is_refused_and_nothing_is_taken_over(here, spoil, said):
+def test_a_page_that_does_not_hold_is_refused_and_nothing_is_imported(here, spoil, said):
     spoil(here)
-    with pytest.raises(HandoverError) as refused:
+    with pytest.raises(ArtifactError) as refused:
         take(here)
     first, *problems = str(refused.value).splitlines()
     assert first == f"The executed pages in {here / 'executed'} are refused."
@@ -273,29 +229,27 @@ def test_a_page_that_does_not_hold_is_refused_and_nothing_is_taken_over(here, sp
 
 def test_every_missing_page_is_named_with_the_command_that_makes_it(here):
     shutil.rmtree(here / "executed")
+    with pytest.raises(ArtifactError, match=r"EXECUTED=.*executed is not a folder"):
+        take(here)
     (here / "executed").mkdir()
-    with pytest.raises(HandoverError) as refused:
+    with pytest.raises(ArtifactError) as refused:
         take(here)
     for name in ("text", LAB):
         assert f"\n{name} is not among them." in str(refused.value)
         assert f"make execute PAGE={name} TO=folder" in str(refused.value)
 
 
-def test_a_page_that_changed_since_is_refused(here):
-    page = here / "book" / "text.md"
-    page.write_text(page.read_text().replace("seen", "changed"))
-    with pytest.raises(HandoverError, match=f"code cells are not those of {page}"):
-        take(here)
-
-
-def test_prose_may_change_on_the_way(here):
+def test_prose_may_change_after_the_export_and_code_may_not(here):
     page = here / "book" / "text.md"
     page.write_text(page.read_text().replace("A page.", "Another sentence."))
     assert len(take(here)) == 2
+    page.write_text(page.read_text().replace("seen", "changed"))
+    with pytest.raises(ArtifactError, match=f"code cells are not those of {page}"):
+        take(here)
 
 
 @pytest.mark.parametrize(("name", "limit"), [("SIZE_LIMIT", 3), ("FILES_LIMIT", 1)])
 def test_too_much_is_refused_before_it_is_read(here, monkeypatch, name, limit):
-    monkeypatch.setattr(page_export, name, limit)
-    with pytest.raises(HandoverError, match="is too much: at most"):
+    monkeypatch.setattr(page_artifacts, name, limit)
+    with pytest.raises(ArtifactError, match="exceeds a limit: at most"):
         take(here)

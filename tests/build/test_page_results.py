@@ -1,37 +1,54 @@
-"""Judging executed cells; whole pages are executed in test_execute."""
+"""Checks of executed cells; whole pages are executed in test_execute."""
 
-import nbformat
 import pytest
+from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from robo_genesis.build.page_results import last_lines, unexpected_outcome
 
-
-def notebook(tags, outputs):
-    cell = nbformat.v4.new_code_cell("draw()", metadata={"tags": tags}, outputs=outputs)
-    return nbformat.v4.new_notebook(cells=[cell])
+RAISES = {"tags": ["raises-exception"], "expects": "ValueError: no"}
 
 
 def picture(kind):
-    return nbformat.v4.new_output("display_data", data={kind: "<svg/>"})
+    return new_output("display_data", data={kind: "<svg/>"})
 
 
-def test_a_figure_cell_without_a_figure_fails_its_page():
-    text = nbformat.v4.new_output("display_data", data={"text/plain": "<Figure>"})
-    book = notebook(["figure"], [text])
+def raised(name, message):
+    return new_output("error", ename=name, evalue=message, traceback=[])
+
+
+@pytest.mark.parametrize(
+    ("metadata", "outputs", "said"),
+    [
+        ({"tags": ["figure"]}, [picture("text/plain")], "FigureMissing tagged figure, but shows"),
+        ({"tags": ["figure"]}, [picture("image/svg+xml")], None),
+        ({"tags": ["figure"]}, [picture("image/png")], None),
+        ({}, [], None),
+        ({}, [raised("KeyError", "kp")], "raised KeyError: kp, but is not tagged raises-exception"),
+        (RAISES, [raised("ValueError", "no way")], None),
+        (RAISES, [], "expected was 'ValueError: no', but the cell raised no exception."),
+        (RAISES, [raised("ValueError", "maybe")], "but the cell raised ValueError: maybe."),
+        (RAISES, [raised("KeyError", "no")], "but the cell raised KeyError: no."),
+        (
+            {"tags": ["raises-exception"]},
+            [raised("ValueError", "no")],
+            "it raised ValueError: no. Add the option `expects:",
+        ),
+        ({"expects": "ValueError: no"}, [], "without the tag raises-exception"),
+        ({"tags": ["skip-execution"]}, [], "skip-execution is not allowed"),
+    ],
+)
+def test_a_cell_has_its_figure_and_its_expected_exception_or_fails_its_page(
+    metadata, outputs, said
+):
+    book = new_notebook(cells=[new_code_cell("draw()", metadata=metadata, outputs=outputs)])
     failure = unexpected_outcome(book, book)
-    assert (failure.error, failure.cell) == ("FigureMissing", 1)
-    assert "tagged figure, but shows none" in failure.message
-
-
-@pytest.mark.parametrize("kind", ["image/svg+xml", "image/png"])
-def test_a_figure_cell_with_its_figure_passes(kind):
-    book = notebook(["figure"], [picture(kind)])
-    assert unexpected_outcome(book, book) is None
-
-
-def test_a_cell_without_the_tag_may_show_nothing():
-    book = notebook([], [])
-    assert unexpected_outcome(book, book) is None
+    if said is None:
+        assert failure is None
+    else:
+        assert failure.cell == 1
+        assert said.removeprefix("FigureMissing ") in failure.message
+        figure = said.startswith("FigureMissing")
+        assert failure.error == ("FigureMissing" if figure else "ExpectedException")
 
 
 def test_last_lines_are_few_and_without_colours():

@@ -6,9 +6,10 @@ import pytest
 from tiny_book import LAB_FRONT, cell, make_book, notebook
 
 from robo_genesis.build import recording
+from robo_genesis.build.execute import kernel_environment
 from robo_genesis.build.recording import Recording, RecordingError, record
 from robo_genesis.build.stages import BuildError, only_build
-from robo_genesis.core.project import ProjectError
+from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.evidence.bundle import BundleRefused
 
 # A lab's cell that leaves what a recording looks at, as if it had run on ACTUAL.
@@ -26,17 +27,14 @@ facts = dict(
     render=dict(mode="camera" if camera else "skip", renderer="llvmpipe", software=True),
     checks=[dict(passed=True), dict(passed=True)],
     warnings=["Approximating tendon."],
-    git={git},
+    git=dict(commit="0123456789abcdef", dirty=True),
 )
 (folder / "manifest.json").write_text(json.dumps(dict(predicate=facts)))
 (folder / "log.txt").write_text("new")"""
 
-DIRTY = '{"commit": "0123456789abcdef", "dirty": True}'
-CLEAN = '{"commit": "0123456789abcdef", "dirty": False}'
-
 
 def accept(folder: Path, run_id: str) -> SimpleNamespace:
-    """Stand in for the verification of evidence, which needs the engine's records."""
+    """Replace the verification of evidence, which needs the engine's records."""
     text = (folder / "manifest.json").read_text()
     manifest = json.loads(text, object_hook=lambda fields: SimpleNamespace(**fields))
     assert manifest.predicate.run_id == run_id
@@ -47,8 +45,8 @@ def refuse(folder: Path, run_id: str) -> SimpleNamespace:
     raise BundleRefused("metrics", "metrics.json g1.rise_time is not what the arrays say.")
 
 
-def lab(actual: str, git: str = CLEAN, more: str = "") -> str:
-    return notebook(cell(LAB.format(actual=actual, git=git) + more), front=LAB_FRONT)
+def lab(actual: str, more: str = "") -> str:
+    return notebook(cell(LAB.format(actual=actual) + more), front=LAB_FRONT)
 
 
 def run(folder: Path, page: str, expected: str | None = None, **settings) -> list[str]:
@@ -57,7 +55,7 @@ def run(folder: Path, page: str, expected: str | None = None, **settings) -> lis
     settings = {
         "lesson": "l04",
         "verify": accept,
-        "foresee": lambda: expected or "cuda",
+        "probe": lambda: expected or "cuda",
         "say": lambda line: None,
         "to": folder / "kept",
     } | settings
@@ -74,47 +72,47 @@ def old_bundle(folder: Path, backend: str) -> Path:
     return place / "log.txt"
 
 
-@pytest.mark.parametrize("backend", ["amdgpu", "cuda", "cpu"])
-def test_the_backend_that_was_expected_is_recorded_under_its_own_name(tmp_path, backend):
-    old = old_bundle(tmp_path, backend)
-    said: list[str] = []
-    last = run(tmp_path, lab(backend), backend, say=said.append)
-    place = tmp_path / "kept/l04" / backend
-    assert sorted(path.name for path in place.iterdir()) == ["log.txt", "manifest.json"]
-    assert old.read_text() == "new"
-    asked = "cpu" if backend == "cpu" else "auto"
-    assert last[:2] == [
-        f"Recorded: {place}",
-        f"Backend: requested {asked}, actual {backend}, device a device",
-    ]
+def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(tmp_path):
+    old, run_ids = old_bundle(tmp_path, "cuda"), []
+    place = tmp_path / "kept/l04/cuda"
+    for _ in range(2):
+        said: list[str] = []
+        last = run(tmp_path, lab("cuda"), say=said.append)
+        assert sorted(path.name for path in place.iterdir()) == ["log.txt", "manifest.json"]
+        assert old.read_text() == "new"
+        run_ids.append(json.loads((place / "manifest.json").read_text())["predicate"]["run_id"])
+    assert run_ids[0] != run_ids[1]
     stages = list(dict.fromkeys(line.split("] ")[1].split()[0] for line in said))
-    assert stages == ["probe"] * (asked == "auto") + ["execute", "verify", "record"]
-
-
-def test_the_last_lines_say_engine_camera_checks_size_and_what_to_look_at(tmp_path):
-    last = run(tmp_path, lab("cuda"))
-    assert last[2:6] == [
+    assert stages == ["probe", "execute", "verify", "record"]
+    assert last[:7] == [
+        f"Recorded: {place}",
+        "Backend: requested auto, actual cuda, device a device",
         "Engine: genesis-world 1.2.3, quadrants 0.9, torch 2.13.0",
         "Camera: llvmpipe (drawn in software)",
         "Checks passed: 2 of 2. Engine warnings kept: 1.",
         "Files: 2, 0.0 MB",
+        "Checkout: changed since commit 0123456789ab, and the manifest says so; a release refuses "
+        "that. Commit or stash, then record again.",
     ]
-    assert last[6] == "Checkout: clean, commit 0123456789ab"
     assert last[7].startswith("Before you commit: look at both pictures")
+
+
+def test_the_cpu_is_recorded_without_a_probe_and_by_default_in_the_book(tmp_path):
+    said: list[str] = []
+    last = run(tmp_path, lab("cpu"), "cpu", to=None, probe=None, say=said.append)
+    assert (tmp_path / "book/evidence/l04/cpu/manifest.json").is_file()
+    assert last[1] == "Backend: requested cpu, actual cpu, device a device"
 
 
 @pytest.mark.parametrize(
     ("git", "said"),
-    [(DIRTY, "Checkout: changed since commit 0123456789ab"), ("None", "Checkout: no git here")],
+    [
+        (None, "Checkout: no git here, so no commit is recorded; a release refuses that."),
+        (SimpleNamespace(commit="0123456789abcdef", dirty=False), "Checkout: clean, commit 01234"),
+    ],
 )
-def test_a_checkout_that_names_no_exact_sources_is_recorded_and_mentioned(tmp_path, git, said):
-    last = run(tmp_path, lab("cuda", git))
-    assert any(line.startswith(said) and "a release refuses that" in line for line in last)
-
-
-def test_without_another_root_the_bundle_stands_in_the_book(tmp_path):
-    run(tmp_path, lab("cuda"), to=None)
-    assert (tmp_path / "book/evidence/l04/cuda/manifest.json").is_file()
+def test_the_last_lines_name_the_checkout(git, said):
+    assert recording._checkout(git).startswith(said)
 
 
 @pytest.mark.parametrize(
@@ -128,14 +126,9 @@ def test_without_another_root_the_bundle_stands_in_the_book(tmp_path):
         (None, "metal", "finds 'metal'. .* Check driver, device and Torch build\\."),
     ],
 )
-def test_another_backend_than_expected_is_refused_and_the_old_bundle_stands(
-    tmp_path, expected, actual, said
-):
-    old = old_bundle(tmp_path, actual)
+def test_another_backend_than_expected_is_refused(expected, actual, said):
     with pytest.raises(RecordingError, match=said):
-        run(tmp_path, lab(actual), expected)
-    assert old.read_text() == "old"
-    assert [path.name for path in (tmp_path / "kept/l04").iterdir()] == [actual]
+        recording.require_expected(Recording("l04", expected), actual)
 
 
 def test_a_folder_that_names_another_backend_than_its_manifest_is_refused(tmp_path):
@@ -145,13 +138,10 @@ def test_a_folder_that_names_another_backend_than_its_manifest_is_refused(tmp_pa
     assert not (tmp_path / "kept").exists()
 
 
-@pytest.mark.parametrize(
-    ("expected", "seen"), [(None, "cpu"), ("amdgpu", "cpu"), ("amdgpu", "cuda"), ("cuda", "amdgpu")]
-)
-def test_what_torch_already_shows_is_refused_before_the_run(tmp_path, expected, seen):
+def test_what_torch_already_shows_is_refused_before_the_run(tmp_path):
     said: list[str] = []
-    with pytest.raises(RecordingError, match=f"finds '{seen}'"):
-        run(tmp_path, lab(seen), expected, foresee=lambda: seen, say=said.append)
+    with pytest.raises(RecordingError, match="finds 'cpu'"):
+        run(tmp_path, lab("cpu"), "amdgpu", probe=lambda: "cpu", say=said.append)
     assert [line.split("] ")[1].split()[0] for line in said] == ["probe"]
 
 
@@ -159,35 +149,36 @@ def test_what_torch_already_shows_is_refused_before_the_run(tmp_path, expected, 
     ("page", "settings", "said"),
     [
         (lab("cuda", more="\n1 / 0"), {}, "ZeroDivisionError: division by zero"),
-        (notebook(cell("1"), front=LAB_FRONT), {}, "BundleMissing"),
+        (lab("amdgpu"), {}, "Expected backend: cuda; .* finds 'amdgpu'"),
         (lab("cuda"), {"verify": refuse}, "bundle of this run is refused: metrics: metrics.json"),
-        (lab("cuda").replace('"camera" if camera', '"skip" if camera'), {}, "'render.mode': 'skip"),
-        (lab("cuda").replace('["ROBO_GENESIS_COMMAND"]', '["HOME"]'), {}, "'make evidence'"),
+        (
+            lab("cuda").replace('"camera" if camera', '"skip" if camera'),
+            {},
+            "render.mode is 'skip', expected 'camera'",
+        ),
+        (
+            lab("cuda").replace('["ROBO_GENESIS_COMMAND"]', '["HOME"]'),
+            {},
+            "command: manifest.json: command is .*, expected 'make evidence'",
+        ),
     ],
-    ids=["raising cell", "no bundle", "refused bundle", "no camera", "another command"],
+    ids=["raising cell", "another backend", "refused bundle", "no camera", "another command"],
 )
 def test_a_run_that_is_not_accepted_leaves_the_old_bundle(tmp_path, page, settings, said):
     old = old_bundle(tmp_path, "cuda")
     with pytest.raises(RecordingError, match=said):
-        run(tmp_path, page, **settings)
+        run(tmp_path, page, "cuda", **settings)
     assert old.read_text() == "old"
     assert not (tmp_path / "cache/recording").exists()
-
-
-def test_an_earlier_execution_is_never_used_again(tmp_path):
-    run_ids = []
-    for _ in range(2):
-        run(tmp_path, lab("cuda"))
-        manifest = json.loads((tmp_path / "kept/l04/cuda/manifest.json").read_text())
-        run_ids.append(manifest["predicate"]["run_id"])
-    assert run_ids[0] != run_ids[1]
+    assert [path.name for path in (tmp_path / "kept/l04").iterdir()] == ["cuda"]
 
 
 def test_engine_switches_reach_the_lab_and_the_user_s_contract_does_not(tmp_path, monkeypatch):
     monkeypatch.setenv("GS_ENABLE_ZEROCOPY", "0")
     monkeypatch.setenv("ROBO_GENESIS_BACKEND", "cpu")
     monkeypatch.setenv("ROBO_GENESIS_RENDER", "0")
-    environment = recording.kernel_environment(Recording("l04", cache=tmp_path))
+    recorded = recording.contract(Recording("l04"))
+    environment = kernel_environment(ROOT, tmp_path, "make evidence", **recorded)
     assert environment["GS_ENABLE_ZEROCOPY"] == "0"
     assert environment["ROBO_GENESIS_BACKEND"] == "auto"
     assert environment["ROBO_GENESIS_RENDER"] == "1"
@@ -231,5 +222,5 @@ def test_the_next_command_brings_back_what_a_kill_left_aside(tmp_path):
     old = old_bundle(tmp_path, "cuda")
     old.parent.rename(old.parents[1] / ".cuda.old")
     with pytest.raises(RecordingError):
-        run(tmp_path, lab("cuda"), foresee=lambda: "cpu")
+        run(tmp_path, lab("cuda"), probe=lambda: "cpu")
     assert old.read_text() == "old"

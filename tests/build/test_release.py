@@ -2,23 +2,17 @@
 
 import json
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 from spoilers import part, seal
 from test_status import spoil_stale
+from tiny_book import commit, git
 
-from robo_genesis.build.release import lacking
+from robo_genesis.build.release import missing_for_release
 from robo_genesis.core.git import unclean
 from robo_genesis.evidence.status import recorded_folders, recorded_status
 from robo_genesis.lessons.l04 import spec as l04
-
-
-def git(folder: Path, *arguments: str) -> str:
-    identity = ["-c", "user.name=A", "-c", "user.email=a@example.org"]
-    command = ["git", "-C", str(folder), *identity, *arguments]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
 @pytest.fixture
@@ -26,16 +20,14 @@ def checkout(tmp_path) -> Path:
     root = tmp_path / "checkout"
     root.mkdir()
     (root / "page.md").write_text("A page.\n")
-    git(root, "init", "-q")
-    git(root, "add", ".")
-    git(root, "commit", "-qm", "first")
+    commit(root)
     return root
 
 
 @pytest.fixture
 def built(folder, checkout) -> dict[str, Path]:
     """A bundle that this commit's build left."""
-    recorded_at(folder, git(checkout, "rev-parse", "HEAD"))
+    recorded_at(folder, git(checkout, "rev-parse", "HEAD").strip())
     return {"l04": folder}
 
 
@@ -54,7 +46,7 @@ def book(tmp_path, courses_pages) -> Path:
 
 def test_a_clean_commit_with_its_own_evidence_lacks_nothing(checkout, built, book):
     assert unclean(checkout) == []
-    assert lacking(book, built, checkout) == []
+    assert missing_for_release(book, built, checkout) == []
 
 
 @pytest.mark.parametrize("name", ["page.md", "new.md"])
@@ -73,7 +65,7 @@ def test_a_new_file_is_seen_whatever_the_user_s_git_shows(checkout):
 
 
 def test_a_lesson_without_a_lab_is_named(checkout, book):
-    [line] = lacking(book, {"l04": None}, checkout)
+    [line] = missing_for_release(book, {"l04": None}, checkout)
     assert line.startswith("l04 has no lab in the table of contents")
 
 
@@ -85,13 +77,13 @@ def test_a_copy_without_git_is_refused(tmp_path, monkeypatch):
 
 def test_stale_evidence_of_the_minimum_hardware_is_named(checkout, built, book):
     spoil_stale(built["l04"])
-    [line] = lacking(book, built, checkout)
+    [line] = missing_for_release(book, built, checkout)
     assert line.startswith("l04 requires evidence of its minimum hardware, cpu, which is stale: ")
 
 
 def test_hardware_that_this_build_has_not_must_be_recorded(checkout, built, book, monkeypatch):
     monkeypatch.setattr(l04, "MINIMUM_HARDWARE", "amdgpu")
-    [line] = lacking(book, built, checkout)
+    [line] = missing_for_release(book, built, checkout)
     assert "its minimum hardware, amdgpu, which is missing" in line
 
 
@@ -105,7 +97,7 @@ def test_hardware_that_this_build_has_not_must_be_recorded(checkout, built, book
 )
 def test_evidence_of_another_state_of_the_tree_is_named(checkout, built, book, commit, dirty, said):
     recorded_at(built["l04"], commit, dirty)
-    [line] = lacking(book, built, checkout)
+    [line] = missing_for_release(book, built, checkout)
     assert line.startswith("l04 on cpu, this build: ")
     assert said in line
 
@@ -115,9 +107,9 @@ def test_a_shown_recording_of_a_changed_tree_is_named_and_an_older_commit_is_not
 ):
     recorded = shutil.copytree(built["l04"], book / "evidence" / "l04" / "cpu")
     recorded_at(recorded, "1" * 40)
-    assert lacking(book, built, checkout) == []
+    assert missing_for_release(book, built, checkout) == []
     recorded_at(recorded, "1" * 40, dirty=True)
-    [line] = lacking(book, built, checkout)
+    [line] = missing_for_release(book, built, checkout)
     assert line.startswith("evidence/l04/cpu: recorded from a changed tree")
 
 
@@ -125,7 +117,7 @@ def test_a_stale_recording_beyond_what_is_required_stops_no_release(checkout, bu
     recorded = shutil.copytree(built["l04"], book / "evidence" / "l04" / "cpu")
     part("engine", quadrants_version="1.2.9")(recorded)
     seal(recorded)
-    assert lacking(book, built, checkout) == []
+    assert missing_for_release(book, built, checkout) == []
 
 
 def test_a_signature_beside_a_bundle_is_no_bundle_and_spoils_none(checkout, built, book):

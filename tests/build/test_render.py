@@ -1,4 +1,4 @@
-import shutil
+import re
 from pathlib import Path
 
 import pytest
@@ -9,44 +9,56 @@ from robo_genesis.build.execute import execute_pages
 from robo_genesis.build.render import RenderError, render
 from robo_genesis.lessons.book_pages import find_pages
 
-TEXT = """\
+CLAIMS = "status: amdgpu-verified\nbadge: cpu-verified\n"
+LAB = "robo_genesis: {lesson: l04, page: lab, state: verified, status: verified}\n"
+BADGES = "\n```{lesson-status} l04\n```\n\n{lesson-state}`l04`\n"
+TEXT = f"""\
+---
+{CLAIMS}---
 # Text
 
-```{math}
+```{{math}}
 :label: law
 \\tau = k_p q
 ```
 
-See {eq}`law` and $x^2$.
-"""
-
-
-@pytest.fixture(scope="module")
-def executed(tmp_path_factory):
-    """A book whose one notebook is executed; tests change copies of it."""
-    folder = tmp_path_factory.mktemp("render")
-    book = make_book(folder, text=TEXT, page=notebook(cell("print('measured ' + '7')")))
-    (result,) = execute_pages(find_pages(book), folder / "cache")
-    assert result.status == "executed"
-    return folder
-
-
-@pytest.fixture
-def folder(executed, tmp_path):
-    return Path(shutil.copytree(executed, tmp_path / "copy"))
+See {{eq}}`law` and $x^2$.
+{BADGES}"""
 
 
 def build(folder: Path) -> Path:
     return render(folder / "book", folder / "staging", folder / "cache", folder / "render.log")
 
 
-def test_outputs_numbers_and_math_need_no_script_from_elsewhere(folder):
+@pytest.fixture(scope="module")
+def html(tmp_path_factory):
+    """A rendered book, with a page that got a tag after it was executed.
+
+    The lab's bundle is a manifest that says it was verified, and nothing more.
+    """
+    folder = tmp_path_factory.mktemp("render")
+    said = WRITE_BUNDLE.replace('"predicate": {', '"state": "verified", "predicate": {')
+    page, lab = cell("print('measured ' + '7')"), notebook(cell(said), front=CLAIMS + LAB)
+    book = make_book(folder, text=TEXT, page=notebook(page), lab=lab + BADGES)
+    results = execute_pages(find_pages(book), folder / "cache")
+    assert [result.status for result in results] == ["executed", "executed"]
+    text = (book / "page.md").read_text()
+    (book / "page.md").write_text(text.replace("cell}", "cell}\n:tags: [hide-input]"))
     (folder / "staging").mkdir()
     (folder / "staging" / "stale").touch()
-    html = build(folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("SITE_URL", raising=False)
+        html = build(folder)
     assert not (folder / "staging" / "stale").exists()
-    assert "measured 7" in (html / "page.html").read_text()
-    text = BeautifulSoup((html / "text.html").read_text(), "html.parser")
+    return html
+
+
+def parsed(page: Path) -> BeautifulSoup:
+    return BeautifulSoup(page.read_text(), "html.parser")
+
+
+def test_numbers_and_math_need_no_script_from_elsewhere(html):
+    text = parsed(html / "text.html")
     assert len(text.select("article math")) == 2
     assert text.select_one("#equation-law .eqno").get_text().startswith("(1)")
     assert text.select_one('p a[href="#equation-law"]').get_text() == "(1)"
@@ -56,61 +68,54 @@ def test_outputs_numbers_and_math_need_no_script_from_elsewhere(folder):
     assert "thebe" not in str(text).lower()
 
 
-def test_metadata_come_from_the_page_and_outputs_from_the_cache(folder):
-    page = folder / "book/page.md"
-    page.write_text(
-        page.read_text().replace("```{code-cell}", "```{code-cell}\n:tags: [hide-input]")
-    )
-    shown = (build(folder) / "page.html").read_text()
+def test_metadata_come_from_the_page_and_outputs_from_the_cache(html):
+    shown = (html / "page.html").read_text()
     assert "tag_hide-input" in shown
     assert "measured 7" in shown
 
 
+@pytest.mark.parametrize("name", ["text", "lab"])
+def test_no_front_matter_or_bundle_s_word_can_set_a_badge(html, name):
+    badges = [badge.get_text() for badge in parsed(html / f"{name}.html").select(".evidence-badge")]
+    assert badges == ["cpu-refused", "amdgpu-missing"] * 2
+
+
+def test_without_an_address_nothing_claims_one(html):
+    assert not (html / "sitemap.xml").exists()
+    claims = 'link[rel="canonical"], meta[property^="og:"]'
+    assert parsed(html / "page.html").select(claims) == []
+    lost = parsed(html / "404.html")
+    assert lost.select_one("form.lost")["action"] == "/search.html"
+    tags = lost.select("link[rel=stylesheet], script[src]")
+    addresses = [tag.get("href") or tag.get("src") for tag in tags]
+    assert len(addresses) > 5
+    others = {address for address in addresses if not address.startswith("/_static/")}
+    assert others <= {"/searchindex.js"}
+
+
 @pytest.mark.parametrize("front", ["", "mystnb: {execution_mode: force}\n"])
-def test_sphinx_executes_nothing_and_names_the_page(folder, front):
+def test_sphinx_executes_nothing_and_names_the_page(tmp_path, front):
     """A page that the execution stage has not seen would leave a file behind if it were run."""
-    trace = folder / "was executed"
-    text = notebook(cell(f"open({str(trace)!r}, 'w')"), front=front)
-    (folder / "book/page.md").write_text(text)
+    trace = tmp_path / "was executed"
+    make_book(tmp_path, page=notebook(cell(f"open({str(trace)!r}, 'w')"), front=front))
     with pytest.raises(RenderError, match=r"page\.md is not executed, and Sphinx executes nothing"):
-        build(folder)
+        build(tmp_path)
     assert not trace.exists()
 
 
-@pytest.mark.parametrize(
-    ("markdown", "said"),
-    [
-        ("$\\foo{x}$", r"uses \\foo, which latex2mathml does not know"),
-        ("{doc}`nowhere`", "nowhere"),
-        ("[missing](#nowhere)", "nowhere"),
-        ("{py:func}`nowhere`", "reference target not found: nowhere"),
-        ("{nosuchrole}`x`", "nosuchrole"),
-    ],
-)
-def test_a_warning_fails_the_build_and_is_shown_with_page_and_line(folder, markdown, said):
-    with (folder / "book/text.md").open("a") as file:
-        file.write(f"\n{markdown}\n")
-    with pytest.raises(RenderError, match=said) as caught:
-        build(folder)
-    assert "text.md:10" in str(caught.value)
-    assert str(folder / "render.log") in str(caught.value)
+WARNINGS = {
+    r"$\foo{x}$": r"uses \\foo, which latex2mathml does not know",
+    "{doc}`nowhere`": "nowhere",
+    "[missing](#away)": "away",
+    "{py:func}`module`": "reference target not found: module",
+    "{nosuchrole}`x`": "nosuchrole",
+}
 
 
-CLAIMS = "status: amdgpu-verified\nbadge: cpu-verified\n"
-LAB = "robo_genesis: {lesson: l04, page: lab, state: verified, status: verified}\n"
-
-
-def test_no_front_matter_or_bundle_s_word_can_set_a_badge(tmp_path):
-    """The lab's bundle is a manifest that says it was verified, and nothing more."""
-    said = WRITE_BUNDLE.replace('"predicate": {', '"state": "verified", "predicate": {')
-    shown = "\n```{lesson-status} l04\n```\n\n{lesson-state}`l04`\n"
-    lab = notebook(cell(said), front=CLAIMS + LAB) + shown
-    text = f"---\n{CLAIMS}---\n# Text\n{shown}"
-    book = make_book(tmp_path, text=text, lab=lab)
-    (result,) = execute_pages(find_pages(book), tmp_path / "cache")
-    assert result.status == "executed"
-    html = build(tmp_path)
-    for name in ("text", "lab"):
-        page = BeautifulSoup((html / f"{name}.html").read_text(), "html.parser")
-        badges = [badge.get_text() for badge in page.select("article .evidence-badge")]
-        assert badges == ["cpu-refused", "amdgpu-missing"] * 2
+def test_each_warning_fails_the_build_and_is_shown_with_page_and_line(tmp_path):
+    make_book(tmp_path, text="# Text\n\n" + "\n\n".join(WARNINGS) + "\n")
+    with pytest.raises(RenderError) as caught:
+        build(tmp_path)
+    for number, said in enumerate(WARNINGS.values()):
+        assert re.search(rf"text\.md:{3 + 2 * number}\b.*{said}", str(caught.value)), said
+    assert str(tmp_path / "render.log") in str(caught.value)

@@ -30,10 +30,10 @@ def make_site(folder: Path, body: str = GOOD, head: str = "") -> Path:
     [
         ("/course/sub/page.html#part", None),
         ("/course/gone.html", "leads to no file of the site."),
-        ("/sub/page.html", "leads out of /course/, where the site will stand."),
+        ("/sub/page.html", "leads out of /course/, the path of the site."),
     ],
 )
-def test_addresses_from_the_root_are_held_against_the_site_s_place(tmp_path, href, reason):
+def test_addresses_from_the_root_begin_with_the_path_of_the_site(tmp_path, href, reason):
     make_site(tmp_path, body=f'<a href="{href}">a page</a>')
     links = check_site(tmp_path, "/course/")[0]
     assert links.problems == ((f"index.html: {href!r} {reason}",) if reason else ())

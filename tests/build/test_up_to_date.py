@@ -2,25 +2,16 @@
 
 import os
 import shutil
-import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from loading import ENGINE, JUPYTER, run_watched
-from tiny_book import cell, make_book, notebook
+from tiny_book import commit, git
 
 from robo_genesis.build import up_to_date
-from robo_genesis.build.stages import Build, run_build
-from robo_genesis.core.project import ROOT
 
 ENVIRONMENT = {"SITE_URL": "https://example.org/"}
-
-
-def git(root: Path, *words: str) -> None:
-    own = ["-c", "user.name=a", "-c", "user.email=a@b"]
-    subprocess.run(["git", "-C", str(root), *own, *words], check=True, capture_output=True)
 
 
 @pytest.fixture
@@ -42,10 +33,8 @@ def root(tmp_path, monkeypatch) -> Path:
         (root / name).write_text(name)
     monkeypatch.setattr(sys, "path", [str(tmp_path / "packages")])
     (tmp_path / "packages" / "genesis-1.dist-info").mkdir(parents=True)
-    git(root, "init", "--quiet")
+    commit(root)
     (root / ".git" / "info" / "exclude").write_text("_build*\n*.tmp\n")
-    git(root, "add", ".")
-    git(root, "commit", "--quiet", "-m", "first")
     return root
 
 
@@ -133,14 +122,14 @@ def published(tmp_path) -> Path:
     for name in ("html/index.html", "html/_static/a.css", "evidence/l04/cpu/log.txt", "pages/a"):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(name)
-    up_to_date.keep(folder, "inputs", ["the last lines"])
+    up_to_date.record(folder, "inputs", "inputs", ["the last lines"])
     return folder
 
 
 def test_a_site_stands_as_long_as_inputs_and_site_are_what_they_were(published):
-    assert up_to_date.standing(published, "inputs") == ["the last lines"]
-    assert up_to_date.standing(published, "others") is None
-    assert up_to_date.standing(published, None) is None
+    assert up_to_date.recorded_lines(published, "inputs") == ["the last lines"]
+    assert up_to_date.recorded_lines(published, "others") == []
+    assert up_to_date.recorded_lines(published, None) == []
 
 
 def remove(path: Path) -> None:
@@ -159,61 +148,17 @@ def add(path: Path) -> None:
 @pytest.mark.parametrize("name", ["html/index.html", "evidence/l04/cpu/log.txt", "pages/a"])
 def test_each_change_of_the_site_is_work(published, name, change):
     change(published / name)
-    assert up_to_date.standing(published, "inputs") is None
+    assert up_to_date.recorded_lines(published, "inputs") == []
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"inputs": "inputs"}'])
 def test_a_record_that_cannot_be_read_is_work(published, text):
     (published / up_to_date.RECORD).write_text(text)
-    assert up_to_date.standing(published, "inputs") is None
+    assert up_to_date.recorded_lines(published, "inputs") == []
 
 
-def test_inputs_that_are_not_known_leave_no_record(published):
+@pytest.mark.parametrize(("inputs", "now"), [(None, None), ("inputs", "others")])
+def test_unknown_inputs_and_those_that_changed_meanwhile_leave_no_record(published, inputs, now):
     (published / up_to_date.RECORD).unlink()
-    up_to_date.keep(published, None, [])
+    up_to_date.record(published, inputs, now, [])
     assert not (published / up_to_date.RECORD).exists()
-
-
-@pytest.fixture(scope="module")
-def built(tmp_path_factory) -> Path:
-    folder = tmp_path_factory.mktemp("built")
-    make_book(folder, page=notebook(cell("print('seen')")))
-    run_build(Build(book=folder / "book", cache=folder / "cache", say=lambda line: None))
-    return folder
-
-
-def make_book_command(folder: Path, **more: str) -> str:
-    script = [sys.executable, str(ROOT / "build_scripts" / "book.py")]
-    script += ["--book", str(folder / "book"), "--cache", str(folder / "cache")]
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "RENDER": "1", "RELEASE": "0"} | more
-    done = subprocess.run(script, env=environment, capture_output=True, text=True, check=False)
-    return done.stdout + done.stderr
-
-
-def test_a_second_build_says_that_nothing_changed_with_the_usual_last_lines(built):
-    said = make_book_command(built).splitlines()
-    assert said[0] == "Nothing changed: the site stands."
-    assert said[1] == f"Site: {built / 'book/_build/html/index.html'}"
-    assert "Pages: 0 executed, 1 reused." in said
-
-
-def test_a_release_is_built_whether_anything_changed_or_not(built):
-    assert "Nothing changed" not in make_book_command(built, RELEASE="1")
-
-
-def test_a_page_that_is_edited_while_its_build_runs_is_built_again(tmp_path):
-    book = make_book(tmp_path, page=notebook(cell("print('seen')")))
-
-    def edit_meanwhile(line: str) -> None:
-        if "render" in line:
-            (book / "index.md").write_text("# Home\n\nEdited meanwhile.\n")
-
-    run_build(Build(book=book, cache=tmp_path / "cache", say=edit_meanwhile))
-    assert not (book / "_build" / up_to_date.RECORD).exists()
-
-
-def test_a_build_without_work_loads_neither_engine_nor_sphinx_nor_jupyter(built):
-    wishes = {"RENDER": "1", "RELEASE": "0"}
-    said, loaded = run_watched("book.py", "--book", str(built / "book"), **wishes)
-    assert said.startswith("Nothing changed")
-    assert not loaded & {*ENGINE, *JUPYTER, "numpy"}

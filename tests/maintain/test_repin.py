@@ -1,7 +1,6 @@
 """The steps of make repin on a made-up course: no network, no engine, pages in a moment."""
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -11,11 +10,12 @@ from pathlib import Path
 
 import psutil
 import pytest
+from tiny_book import commit, git
 
+from robo_genesis.core.files import locked
 from robo_genesis.core.project import ROOT, engine_pin
-from robo_genesis.maintain.logged import run_logged
 from robo_genesis.maintain.pin import RepinError
-from robo_genesis.maintain.repin import Repin, only_repin, run_repin
+from robo_genesis.maintain.repin import Repin, run_logged, run_repin
 
 OLD, NEW = engine_pin(), "99.1"
 FAILS = {"resolve": "99.2", "install": "99.3", "book": "99.4", "test": "99.5"}
@@ -65,24 +65,13 @@ def root(tmp_path) -> Path:
     (root / "requirements.lock").write_text(LOCK.format(OLD))
     (root / ".gitignore").write_text("/.cache\n/.venv\n/book/_build\n")
     (root / "book" / "index.md").write_text("committed\n")
-    git(root, "init", "--quiet")
     commit(root)
     return root
 
 
-def git(root: Path, *arguments: str) -> str:
-    command = ["git", "-C", str(root), *arguments]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
-
-
-def commit(root: Path) -> None:
-    git(root, "add", ".")
-    git(root, "-c", "user.name=a", "-c", "user.email=a@b", "commit", "--quiet", "-m", "a")
-
-
-def asked(root: Path, genesis: str, **changes) -> Repin:
+def repin(root: Path, genesis: str, **changes) -> list[str]:
     values = {"versions": lambda prereleases: KNOWN, "say": lambda line: None} | changes
-    return Repin(genesis=genesis, root=root, cache=root / ".cache", **values)
+    return run_repin(Repin(genesis=genesis, root=root, cache=root / ".cache", **values))
 
 
 def state(root: Path) -> tuple[str, str, str]:
@@ -97,9 +86,9 @@ def left(root: Path) -> list[str]:
     return sorted(path.name for path in (root / ".cache" / "repin").glob("*"))
 
 
-def test_pin_and_lock_change_together_and_git_brings_both_back(root):
+def test_pin_and_lock_change_together_with_a_report_and_git_restores_both(root, monkeypatch):
     before = state(root)
-    lines = run_repin(asked(root, NEW))
+    lines = repin(root, NEW)
     assert (root / "pyproject.toml").read_text() == PROJECT.format(NEW)
     assert (root / "requirements.lock").read_text() == LOCK.format(NEW) + "zeta==2\n"
     assert git(root, "status", "--porcelain") == " M pyproject.toml\n M requirements.lock\n"
@@ -107,26 +96,7 @@ def test_pin_and_lock_change_together_and_git_brings_both_back(root):
     assert "Nothing is committed" in lines[0]
     assert left(root) == ["lock", "logs"]
     assert not (root / "book" / "_build").exists()
-    undo = lines[-1].removesuffix(" brings the old pin back.").split()
-    assert undo == ["git", "restore", "pyproject.toml", "requirements.lock"]
-    git(root, *undo[1:])
-    assert state(root) == before
 
-
-@pytest.mark.parametrize("name", ["book/index.md", "new.txt"])
-def test_a_changed_or_new_file_is_refused_by_name_before_anything_runs(root, name):
-    (root / name).write_text("mine\n")
-    before = state(root)
-    with pytest.raises(
-        RepinError, match=rf"1 changed or new files \({name}\)\. .*: commit or stash"
-    ):
-        run_repin(asked(root, NEW))
-    assert state(root) == before
-    assert left(root) == []
-
-
-def test_the_report_names_packages_and_the_sentence_that_moved(root):
-    run_repin(asked(root, NEW))
     folder = root / ".cache" / "reports" / f"repin-{OLD}-{NEW}"
     text = (folder / "report.md").read_text()
     assert f"| genesis-world | {OLD} | {NEW} |" in text
@@ -135,21 +105,21 @@ def test_the_report_names_packages_and_the_sentence_that_moved(root):
     assert "Same." not in text
     assert f"<td>Measured with {NEW}.</td>" in (folder / "report.html").read_text()
 
-
-def test_there_and_back_restores_every_byte(root, monkeypatch):
-    before = state(root)
-    run_repin(asked(root, NEW))
     commit(root)
     monkeypatch.setattr("robo_genesis.maintain.repin.require_locked_packages", lambda root: None)
-    run_repin(asked(root, OLD))
+    repin(root, OLD)
     assert state(root)[:2] == before[:2]
+    undo = lines[-1].removesuffix(" restores the old pin.").split()
+    assert undo == ["git", "restore", "pyproject.toml", "requirements.lock"]
+    git(root, *undo[1:])
+    assert state(root)[2] == ""
 
 
 @pytest.mark.parametrize("stage", FAILS)
 def test_a_step_that_fails_leaves_the_tree_as_it_was_and_names_its_log(root, stage):
     before = state(root)
     with pytest.raises(RepinError, match=f"{stage} .* failed") as caught:
-        run_repin(asked(root, FAILS[stage]))
+        repin(root, FAILS[stage])
     message = str(caught.value)
     assert f"still pins {OLD}" in message
     (log,) = (line.removeprefix("Log: ") for line in message.split("\n") if "Log: " in line)
@@ -162,45 +132,67 @@ def test_a_step_that_fails_leaves_the_tree_as_it_was_and_names_its_log(root, sta
     assert left(root) == ["lock", "logs"]
 
 
-@pytest.mark.parametrize(
-    ("genesis", "says"),
-    [
-        ("", r"GENESIS is not given\. Usage: make repin GENESIS="),
-        ("newest", r"GENESIS='newest' is not a version\. Usage"),
-        (OLD, r"is the pin already"),
-        (f"v{OLD}.0", r"is the pin already"),
-    ],
-)
-def test_a_wrong_wish_is_refused_before_anything_is_asked_or_copied(root, genesis, says):
-    before = state(root)
+def edit(root: Path, name: str, text: str, keep: bool = True) -> None:
+    """Change a file of the course, in a commit of its own or not."""
+    (root / name).write_text(text)
+    if keep:
+        commit(root)
+
+
+def link(root: Path, name: str) -> None:
+    (root / name).rename(root.parent / name)
+    (root / name).symlink_to(root.parent / name)
+
+
+REFUSALS = {
+    "no version": ("", None, r"GENESIS is not given\. Usage: make repin GENESIS="),
+    "a word": ("newest", None, r"GENESIS='newest' is not a version\. Usage"),
+    "the pin": (OLD, None, r"is the pin already"),
+    "the pin in other words": (f"v{OLD}.0", None, r"is the pin already"),
+    "an unknown version": ("9.9.9", None, r"no genesis-world 9\.9\.9 .*: 99\.6, 99\.5, .* one of"),
+    "a changed file": (
+        NEW,
+        lambda root: edit(root, "book/index.md", "mine\n", keep=False),
+        r"1 changed or new files \(book/index.md\)\. .*: commit or stash",
+    ),
+    "a new file": (
+        NEW,
+        lambda root: edit(root, "new.txt", "mine\n", keep=False),
+        r"1 changed or new files \(new.txt\)\. .*: commit or stash",
+    ),
+    "another environment": (
+        NEW,
+        lambda root: edit(root, "requirements.lock", LOCK.format(OLD) + "pip==0.1\n"),
+        r"differs from .*: pip \S+ instead of 0\.1\. Install",
+    ),
+    "no repository": (
+        NEW,
+        lambda root: (root / ".git").rename(root.parent / ".git.away"),
+        r"is no git checkout: .* clone the repository",
+    ),
+    "a linked project": (NEW, lambda root: link(root, "pyproject.toml"), r"^pyproject.* a link, "),
+    "a linked lock": (NEW, lambda root: link(root, "requirements.lock"), r"^requirements.* a link"),
+}
+
+
+@pytest.mark.parametrize(("genesis", "spoil", "says"), REFUSALS.values(), ids=REFUSALS)
+def test_what_cannot_be_tried_is_refused_before_anything_runs(root, genesis, spoil, says):
+    if spoil:
+        spoil(root)
+    files = {path: path.read_bytes() for path in (*root.glob("*.*"), *root.parent.glob("*.*l*"))
+             if path.is_file()}  # fmt: skip
     with pytest.raises(RepinError, match=says):
-        run_repin(asked(root, genesis, versions=None))
-    assert state(root) == before
-    assert left(root) == []
-
-
-def test_a_version_that_is_not_there_is_refused_with_those_there_are(root):
-    before = state(root)
-    with pytest.raises(RepinError, match=r"no genesis-world 9\.9\.9 .*: 99\.6, 99\.5, .* one of"):
-        run_repin(asked(root, "9.9.9"))
-    assert state(root) == before
-    assert left(root) == []
-
-
-def test_an_environment_that_is_not_the_locked_one_is_refused(root):
-    (root / "requirements.lock").write_text(LOCK.format(OLD) + "pip==0.1\n")
-    commit(root)
-    with pytest.raises(RepinError, match=r"does not hold .*: pip \S+ instead of 0\.1\. Install"):
-        run_repin(asked(root, NEW))
-    assert left(root) == []
+        repin(root, genesis)
+    assert {path: path.read_bytes() for path in files} == files
+    assert not (root / ".cache" / "repin").exists()
 
 
 def test_two_at_once_are_refused(root):
     with (
-        only_repin(root / ".cache" / "repin"),
+        locked(root / ".cache" / "repin" / "lock", RuntimeError),
         pytest.raises(RepinError, match=rf"Another make repin runs here \(process {os.getpid()}\)"),
     ):
-        run_repin(asked(root, NEW))
+        repin(root, NEW)
 
 
 def test_a_pin_that_is_edited_meanwhile_is_kept(root):
@@ -211,22 +203,15 @@ def test_a_pin_that_is_edited_meanwhile_is_kept(root):
             (root / "pyproject.toml").write_text(mine)
 
     with pytest.raises(RepinError, match=r"pyproject\.toml .* changed while .* again"):
-        run_repin(asked(root, NEW, say=edit_during_the_tests))
+        repin(root, NEW, say=edit_during_the_tests)
     assert (root / "pyproject.toml").read_text() == mine
     assert (root / "requirements.lock").read_text() == LOCK.format(OLD)
-
-
-def test_a_checkout_that_is_no_repository_is_refused(root):
-    shutil.rmtree(root / ".git")
-    with pytest.raises(RepinError, match=r"is no git checkout: .* clone the repository"):
-        run_repin(asked(root, NEW))
-    assert (root / "pyproject.toml").read_text() == PROJECT.format(OLD)
 
 
 def test_a_worktree_whose_making_was_killed_is_removed_first(root):
     work = root / ".cache" / "repin" / "work"
     git(root, "worktree", "add", "--detach", "--lock", str(work), "HEAD")
-    run_repin(asked(root, NEW))
+    repin(root, NEW)
     assert left(root) == ["lock", "logs"]
 
 
@@ -240,19 +225,7 @@ def test_a_command_gets_no_variable_that_was_meant_for_the_outer_make(tmp_path, 
     assert not found & meant
 
 
-@pytest.mark.parametrize("name", ["pyproject.toml", "requirements.lock"])
-def test_a_linked_file_of_the_pin_is_refused_and_what_it_leads_to_is_kept(root, tmp_path, name):
-    elsewhere = (root / name).rename(tmp_path / name)
-    (root / name).symlink_to(elsewhere)
-    text = elsewhere.read_bytes()
-    with pytest.raises(RepinError, match=rf"^{name} in .*: a link, expected the file itself.*"):
-        run_repin(asked(root, NEW))
-    assert elsewhere.read_bytes() == text
-    assert left(root) == []
-
-
 def test_the_command_refuses_without_a_traceback():
-    before = [(ROOT / name).read_bytes() for name in ("pyproject.toml", "requirements.lock")]
     command = [sys.executable, str(ROOT / "build_scripts" / "repin.py")]
     environment = os.environ | {"PYTHONPATH": str(ROOT), "GENESIS": OLD}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
@@ -261,8 +234,6 @@ def test_the_command_refuses_without_a_traceback():
         f"\nGENESIS={OLD} is the pin already. Give another version.\n\n"
         "FAILED: nothing was changed.\n"
     )
-    after = [(ROOT / name).read_bytes() for name in ("pyproject.toml", "requirements.lock")]
-    assert after == before
 
 
 RUN = """
@@ -292,6 +263,6 @@ def test_an_end_by_signal_takes_the_children_along_and_the_next_one_works(root, 
     assert process.wait() == status
     assert not psutil.wait_procs([child], timeout=30)[1]
     assert state(root) == before
-    run_repin(asked(root, NEW))
+    repin(root, NEW)
     assert (root / "pyproject.toml").read_text() == PROJECT.format(NEW)
     assert left(root) == ["lock", "logs"]

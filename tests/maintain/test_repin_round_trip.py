@@ -1,15 +1,14 @@
 """The real change of the pin, there and back, in a clone: `make test-repin`, never `make test`."""
 
 import json
-import os
-import subprocess
+import shutil
 import sys
 from pathlib import Path
 
 import pytest
+from tiny_book import commit, git, make
 
 from robo_genesis.core import project
-from robo_genesis.core.git import git
 from robo_genesis.core.project import ROOT
 from robo_genesis.evidence import report as pages
 from robo_genesis.evidence.compare import compare, specification
@@ -19,25 +18,15 @@ pytestmark = pytest.mark.repin
 
 PIN = project.engine_pin()
 OTHER = "1.4.5" if PIN != "1.4.5" else "1.3.3"
-OUTER = ("PYTHON", "MAKEFLAGS", "MFLAGS", "MAKELEVEL", "GENESIS", "PYTHONPATH")
+BASE = f"BASE_PYTHON={sys.executable}"
+PYTHON = f"PYTHON={sys.executable}"
 
 
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("repin") / "course"
-    subprocess.run(["git", "clone", "--quiet", str(ROOT), str(folder)], check=True)
+    git(ROOT, "clone", "--quiet", str(ROOT), str(folder))
     return folder
-
-
-def make(clone: Path, *words: str, fails: bool = False) -> str:
-    """Run make in the clone, with its own environment unless words name another."""
-    environment = {name: value for name, value in os.environ.items() if name not in OUTER}
-    command = ["make", *words, f"BASE_PYTHON={sys.executable}"]
-    done = subprocess.run(
-        command, cwd=clone, env=environment, check=False, capture_output=True, text=True
-    )
-    assert (done.returncode != 0) == fails, done.stdout + done.stderr
-    return done.stdout + done.stderr
 
 
 def texts(clone: Path) -> dict[str, bytes]:
@@ -59,27 +48,25 @@ def predicate(bundle: Path) -> dict:
 def keep(clone: Path, name: str) -> Path:
     """Copy the built bundle to where no later build removes it; its folder names the backend."""
     kept = clone.parent / name
-    kept.mkdir()
-    subprocess.run(["cp", "-r", str(built(clone)), str(kept)], check=True)
-    return kept / "cpu"
+    return shutil.copytree(built(clone), kept / "cpu")
 
 
 def test_there_and_back(clone):
     before = texts(clone)
-    refused = make(clone, "repin", "GENESIS=9.9.9", f"PYTHON={sys.executable}", fails=True)
+    refused = make(clone, "repin", "GENESIS=9.9.9", PYTHON, fails=True)
     assert "there is no genesis-world 9.9.9" in refused
     assert changed(clone) == []
 
-    make(clone, "book", f"PYTHON={sys.executable}")
+    make(clone, "book", PYTHON)
     first = keep(clone, "first")
-    make(clone, "repin", f"GENESIS={OTHER}", f"PYTHON={sys.executable}")
+    make(clone, "repin", f"GENESIS={OTHER}", PYTHON)
     assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
     assert project.engine_pin(clone) == OTHER
     report = (clone / ".cache/reports" / f"repin-{PIN}-{OTHER}" / "report.md").read_text()
     assert "## L04 lab: engine version" in report
     assert "| differs |" not in report
 
-    make(clone, "book")  # in the environment of the new lock
+    make(clone, "book", BASE)  # in the environment of the new lock
     second = keep(clone, "second")
     found = compare(first, second, specification("l04"))
     assert found.state in (EQUAL, WITHIN), pages.summary(found)
@@ -91,12 +78,11 @@ def test_there_and_back(clone):
         assert f"/v{PIN}" not in html, page
         assert predicate(first)["run_id"][:8] not in html, page
 
-    identity = ("-c", "user.name=A", "-c", "user.email=a@example.org")
-    git(clone, *identity, "commit", "--quiet", "--all", "--message", f"Genesis {OTHER}")
-    make(clone, "repin", f"GENESIS={PIN}")
+    commit(clone)
+    make(clone, "repin", f"GENESIS={PIN}", BASE)
     assert texts(clone) == before
     assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
-    make(clone, "book")
+    make(clone, "book", BASE)
     third = keep(clone, "third")
     assert predicate(third)["evidence_key"] == predicate(first)["evidence_key"]
     assert compare(first, third, specification("l04")).state == EQUAL

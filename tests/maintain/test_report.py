@@ -11,7 +11,7 @@ from robo_genesis.core import project
 from robo_genesis.evidence import bundle, status
 from robo_genesis.evidence.status import Status
 from robo_genesis.maintain import report as refresh
-from robo_genesis.maintain.report import LEFT_OUT, compare_builds, moved_sentences, recorded
+from robo_genesis.maintain.report import LEFT_OUT, changed_sentences, compare_builds, recorded
 from robo_genesis.site.evidence.ledger import LEDGER
 
 
@@ -46,15 +46,15 @@ def compared(builds: tuple[Path, Path], **records) -> refresh.Refresh:
 
 def test_equal_metrics_are_reported_as_such(builds):
     found = compared(builds)
-    assert (found.state, found.packages, found.moved) == ("equal", {"b": ("", "2")}, ())
+    assert (found.state, found.packages, found.changed) == ("equal", {"b": ("", "2")}, ())
     text = refresh.markdown(found)
     assert text.startswith(
-        "# Engine 1.0 → 9.9.9\n\n**Equal; packages that moved: 1, sentences: 0; "
+        "# Engine 1.0 → 9.9.9\n\n**Equal; changed packages: 1, changed sentences: 0, "
     )
     assert "## L04 lab: engine version" in text
     assert "### Relations: equal" in text
     assert "No bundle is recorded." in text
-    assert "No sentence of the site moved." in text
+    assert "No sentence of the site changed." in text
 
 
 def test_the_lecture_s_bundle_is_compared_as_well(builds):
@@ -89,7 +89,7 @@ def test_a_lesson_that_one_build_lacks_makes_the_builds_not_comparable(builds):
     shutil.rmtree(builds[1] / "evidence" / "l04")
     found = compared(builds)
     assert (found.state, found.missing) == ("not comparable", ("l04/cpu",))
-    assert "| l04/cpu | in one build alone |" in refresh.markdown(found)
+    assert "| l04/cpu | in one build only |" in refresh.markdown(found)
 
 
 def test_a_bundle_that_a_new_pin_makes_stale_is_named_with_both_states(builds):
@@ -114,7 +114,7 @@ def copy(folder, tmp_path, courses_pages) -> Path:
     return root
 
 
-def test_recorded_bundles_are_judged_by_the_pin_of_their_own_checkout(copy):
+def test_recorded_bundles_are_verified_with_the_pin_of_their_own_checkout(copy):
     assert {name: found.state for name, found in recorded(copy).items()} == {"l04/cpu": "verified"}
     pin = copy / "pyproject.toml"
     pin.write_text(pin.read_text().replace(f"=={project.engine_pin()}", "==9.9.9"))
@@ -123,27 +123,18 @@ def test_recorded_bundles_are_judged_by_the_pin_of_their_own_checkout(copy):
     assert "engine.version is" in found.reason
     assert "9.9.9" in found.reason
     assert found.summary.endswith(f"Genesis {project.engine_pin()}; this site uses 9.9.9.")
-    manifest = copy / "book" / "evidence" / "l04" / "cpu" / "manifest.json"
-    manifest.write_text("{}")
+    absent = status.recorded_status(copy / "book", "l04", "cuda", root=copy)
+    assert absent.reason == "No run on this backend is recorded for Genesis 9.9.9."
+    (copy / "book/evidence/l04/cpu/manifest.json").write_text("{}")
     assert recorded(copy)["l04/cpu"].state == "refused"
 
 
-def test_a_recorded_bundle_that_does_not_show_the_claims_has_the_state_that_the_site_shows(
-    copy, monkeypatch
-):
+def test_a_recorded_bundle_that_does_not_show_the_claims_is_inconclusive(copy, monkeypatch):
     monkeypatch.setattr(status, "not_shown", lambda metrics, relations: ["one relation"])
     found = recorded(copy)["l04/cpu"]
     assert found == status.recorded_status(copy / "book", "l04", "cpu")
-    assert (found.state, found.reason) == (
-        "inconclusive", "Not shown of what the lesson claims: one relation."
-    )  # fmt: skip
-
-
-def test_what_is_missing_is_said_for_the_pin_of_its_own_checkout(copy):
-    pin = copy / "pyproject.toml"
-    pin.write_text(pin.read_text().replace(f"=={project.engine_pin()}", "==9.9.9"))
-    absent = status.recorded_status(copy / "book", "l04", "cuda", root=copy)
-    assert absent.reason == "No run on this backend is recorded for Genesis 9.9.9."
+    assert found.state == "inconclusive"
+    assert found.reason == "Not shown of what the lesson claims: one relation."
 
 
 def test_a_built_bundle_that_cannot_be_read_is_an_error(builds):
@@ -194,7 +185,7 @@ def test_a_sentence_that_changed_is_listed_and_what_any_two_runs_differ_in_is_no
     for name, values in (("old", SAME), ("new", SAME | change)):
         (tmp_path / name).mkdir()
         (tmp_path / name / "lab.html").write_text(PAGE.format_map(values))
-    found = list(moved_sentences(tmp_path / "old", tmp_path / "new"))
+    found = list(changed_sentences(tmp_path / "old", tmp_path / "new"))
     assert found == [("lab", *pair) for pair in moved]
 
 
@@ -204,4 +195,4 @@ def test_a_page_of_one_build_alone_is_listed_and_the_ledger_never(tmp_path):
         page = tmp_path / "new" / name
         page.parent.mkdir(parents=True, exist_ok=True)
         page.write_text("<p>New.</p>")
-    assert list(moved_sentences(tmp_path / "old", tmp_path / "new")) == [("more", "", "New.")]
+    assert list(changed_sentences(tmp_path / "old", tmp_path / "new")) == [("more", "", "New.")]
