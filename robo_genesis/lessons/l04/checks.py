@@ -28,7 +28,7 @@ class StepExperiment:
     """Everything that the checks of lesson L04 read.
 
     `model` counts links, joints, dofs and qpos as the engine reports them. `end_state` is `camera`
-    or `schematic`: camera `frames` show the baseline's ends, or a drawing of the measured links does.
+    or `schematic`: camera `frames` show the baseline's ends, or a drawing of measured links does.
     """
 
     joints: JointMap

@@ -100,18 +100,17 @@ def first_step_rows(run: Studies) -> list[dict[str, Any]]:
 
 def first_step_sentence(run: Studies) -> str:
     """Name the engines in which G2 and G3 moved alike while both were clipped."""
-    slow, fast = (run.by_engine(case) for case in ("G3", "G2"))
+    fast, slow = (run.by_engine(case) for case in ("G2", "G3"))
+    if not all(clipped_at_start(t, run.entry) for t in (*fast.values(), *slow.values())):
+        return (
+            "G2 and G3 were not both clipped before and after the first step in every engine, so "
+            "their speeds after it do not isolate the integrator."
+        )
     alike: list[str] = []
     apart: list[str] = []
     for engine in ENGINES:
-        pair = fast[engine], slow[engine]
-        if not all(clipped_until_first(trace, run.entry) for trace in pair):
-            return (
-                "G2 and G3 were not both clipped throughout the first step in every engine, so "
-                "their speeds after it do not isolate the integrator."
-            )
-        speeds = [float(trace.qd[0, run.entry]) for trace in pair]
-        same = abs(speeds[0] - speeds[1]) <= spec.RESOLUTION["rad/s"]
+        difference = abs(fast[engine].qd[0, run.entry] - slow[engine].qd[0, run.entry])
+        same = difference <= spec.RESOLUTION["rad/s"]
         (alike if same else apart).append(ENGINE_LABELS[engine])
     text = "G2 and G3 differ in KV alone and were clipped to one effort before and after this step."
     if alike:
@@ -121,8 +120,8 @@ def first_step_sentence(run: Studies) -> str:
     return text
 
 
-def clipped_until_first(trace: Trace, entry: int) -> bool:
-    """Return whether a joint's effort is clipped at the start and at the first sample."""
+def clipped_at_start(trace: Trace, entry: int) -> bool:
+    """Return whether a joint's effort is clipped before the first step and after it."""
     efforts = np.array([trace.start_control_force[entry], trace.control_force[0, entry]])
     return bool(is_saturated(efforts, trace.effort_limit[entry]).all())
 

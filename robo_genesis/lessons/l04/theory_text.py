@@ -42,9 +42,9 @@ def ideal_rows(run: Studies) -> list[dict[str, Any]]:
 
 def part(run: Studies, case: str) -> Parting:
     """Find where a compared case's position leaves the ideal joint's, which has no gravity."""
-    trace, configured = run.traces[case], study_spec.COMPARED[case]
+    trace = run.traces[case]
     q = trace.q[:, run.entry].astype(float)
-    step = float(configured.q_target[run.entry]) - q[0]
+    step = float(study_spec.COMPARED[case].q_target[run.entry]) - q[0]
     ideal = q[0] + step * run.ideal(case).response(trace.t)
     return parting(trace, q, ideal, run.entry, study_spec.PARTING_THRESHOLD)
 
