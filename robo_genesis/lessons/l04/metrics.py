@@ -15,7 +15,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace, first_time, settled_from
 
 RISE_FRACTION = 0.9
-"""Share of the step at which the rise time is read."""
+"""Share of the step that counts as risen."""
 
 SETTLING_BAND = 0.01
 """Half width of the settling band around the target [rad or m]."""
