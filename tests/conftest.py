@@ -235,7 +235,7 @@ def experiment(joints, traces, frames) -> step_checks.StepExperiment:
         cases=l04.CASES,
         traces=traces,
         metrics=measure(traces, l04.CASES, joints.entry(l04.STEPPED_JOINT)),
-        posture="camera",
+        end_state="camera",
         frames=frames,
     )
 

@@ -12,7 +12,7 @@ from robo_genesis.core.project import BOOK, CACHE, ROOT
 pytestmark = pytest.mark.engine
 LAB = "lessons/l04-joint-control/lab"
 SPOIL = """experiment = step_checks.StepExperiment(
-    joints, model | {"links": 12}, l04.CASES, traces, metrics, posture, frames
+    joints, model | {"links": 12}, spec.CASES, traces, metrics, end_state, frames
 )
 """
 

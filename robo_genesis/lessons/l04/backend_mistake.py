@@ -1,4 +1,4 @@
-"""What the engine does when it is asked, by name or in general, for a backend that is not there."""
+"""A request for a backend that this machine does not have: by name, and for any accelerator."""
 
 import json
 import subprocess
@@ -15,7 +15,7 @@ kept = []
 keep = logging.Handler()
 keep.emit = lambda record: kept.append([record.levelname, record.getMessage()])
 logging.getLogger("genesis").addHandler(keep)
-raised, found = None, None
+raised = found = None
 try:
     gs.init(backend=getattr(gs, sys.argv[1]), theme=plain_theme(), logging_level="warning")
 except Exception as error:
@@ -25,39 +25,42 @@ except Exception as error:
     found = gs.backend.name
 print(json.dumps({"raised": raised, "found": found, "warnings": kept}))
 """
-"""Two requests in a process of its own, since an engine is started once: by name, then any GPU."""
+"""Two requests: one backend by name, then any GPU. They run in their own process, because an engine
+can be initialised only once in a process."""
 
 
 def absent_backend(hip_version: str | None) -> Failure:
-    """Ask for the accelerator whose Torch is not installed here, then for any accelerator.
+    """Request the accelerator whose Torch is not installed here, then any accelerator.
 
     Args:
-        hip_version: of the installed Torch, as the probe reads it; None for one without ROCm.
+        hip_version: of the installed Torch, as the probe reads it; None without ROCm.
+
+    Raises:
+        RuntimeError: the process failed.
     """
     name = "cuda" if hip_version else "amdgpu"
     done = subprocess.run(
         [sys.executable, "-c", REQUEST, name], capture_output=True, text=True, check=False
     )
     if done.returncode:
-        raise RuntimeError(f"The engine did not start in a process of its own:\n{done.stderr}")
-    return judge(name, **json.loads(done.stdout.splitlines()[-1]))
+        raise RuntimeError(f"The engine did not start in its own process:\n{done.stderr}")
+    return absent_backend_failure(name, **json.loads(done.stdout.splitlines()[-1]))
 
 
-def judge(
+def absent_backend_failure(
     name: str, raised: list[str] | None, found: str | None, warnings: list[list[str]]
 ) -> Failure:
-    """Tell what the two requests came to.
+    """Return the failure from the results of the two requests.
 
     Args:
-        name: the backend that was asked for by name.
+        name: the backend that was requested by name.
         raised: type and message of its exception, None if there was none.
-        found: the backend after `gs.gpu` was asked for.
-        warnings: level and message of each line that the engine logged at that.
+        found: the backend after the request for `gs.gpu`.
+        warnings: level and message of each line that the engine logged at this request.
     """
     if raised is None:
         return Failure("absent_backend", False, f"`gs.init(backend=gs.{name})` raised nothing.")
     plain = [text.replace("~", "") for _, text in warnings]
-    said = " ".join(plain) if plain else "nothing"
     fell_back = found != "cpu" or (len(plain) == 1 and "Falling back to CPU" in plain[0])
     refused = raised[0] == "GenesisException" and "not available" in raised[1]
     return Failure(
@@ -66,6 +69,6 @@ def judge(
         evidence=(
             f"`gs.init(backend=gs.{name})` raised `{raised[0]}`: {raised[1].replace('~', '')} "
             f"`gs.init(backend=gs.gpu)` raised nothing and started on `{found}`; "
-            f"its warnings ({len(plain)}): {said}"
+            f"its warnings ({len(plain)}): {' '.join(plain) or 'none'}"
         ),
     )

@@ -1,4 +1,4 @@
-"""Many control cases at once, one in each environment of a batched scene, and what they did."""
+"""Many control cases at once, one in each environment of a batched scene, and their results."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -8,9 +8,9 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04 import spec
-from robo_genesis.lessons.l04.grid_spec import GridPoint
 from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
+from robo_genesis.lessons.l04.spec import STEPPED_JOINT
+from robo_genesis.lessons.l04.study_spec import GridPoint
 from robo_genesis.sim.joint_control import (
     CaseError,
     ControlCase,
@@ -19,21 +19,21 @@ from robo_genesis.sim.joint_control import (
     read_step,
     require_read_back,
     validate,
-)
+)  # fmt: skip
 from robo_genesis.sim.joints import JointMap, to_numpy
 
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
-    """What the stepped joint did at each of p points, in runs of n steps.
+    """Results of the stepped joint at p points, in runs of n steps.
 
     | field | shape | meaning |
     |---|---|---|
     | `points` | (p,) | gains and step of each run |
-    | `cases` | (p,) | the whole case that was run there |
+    | `cases` | (p,) | the complete case of each run |
     | `t` | (n+1,) | time of each state [s] |
     | `q` | (p, n+1) | position [rad] |
-    | `control_force` | (p, n) | control force after each step, stamped t[1] … t[n] [N·m] |
+    | `control_force` | (p, n) | control force after each step, at t[1] … t[n] [N·m] |
     | `effort_limit` | (p,) | limit read back [N·m] |
     | `metrics` | (p,) | of each run |
     """
@@ -50,37 +50,31 @@ class Sweep:
         """Return the number of a point.
 
         Raises:
-            ValueError: it is none of the grid's.
+            ValueError: the grid does not have it.
         """
         return self.points.index(point)
 
 
 def sweep(scene: Any, robot: Any, joints: JointMap, points: Sequence[GridPoint]) -> Sweep:
-    """Run every point, each in an environment of its own, and keep the stepped joint."""
-    cases = tuple(point.case for point in points)
-    return collect(points, cases, run_batch(scene, robot, joints, cases), joints)
+    """Run every point in its own environment and keep the stepped joint's results."""
+    return collect(points, run_batch(scene, robot, joints, [p.case for p in points]), joints)
 
 
-def collect(
-    points: Sequence[GridPoint],
-    cases: Sequence[ControlCase],
-    traces: Sequence[Trace],
-    joints: JointMap,
-) -> Sweep:
+def collect(points: Sequence[GridPoint], traces: Sequence[Trace], joints: JointMap) -> Sweep:
     """Return the stepped joint's part of the points' traces, with its metrics."""
-    k = joints.entry(spec.STEPPED_JOINT)
-    found = Sweep(
+    k = joints.entry(STEPPED_JOINT)
+    results = Sweep(
         points=tuple(points),
-        cases=tuple(cases),
+        cases=tuple(point.case for point in points),
         t=traces[0].t,
         q=np.stack([trace.q[:, k] for trace in traces]),
         control_force=np.stack([trace.control_force[:, k] for trace in traces]),
         effort_limit=np.stack([trace.effort_limit[k] for trace in traces]),
         metrics=tuple(step_metrics(trace, k) for trace in traces),
     )
-    for array in (found.q, found.control_force, found.effort_limit):
+    for array in (results.q, results.control_force, results.effort_limit):
         array.setflags(write=False)
-    return found
+    return results
 
 
 def run_batch(
@@ -101,11 +95,10 @@ def run_batch(
     Returns:
         A trace for each case.
     """
-    reset_batch(scene, robot, joints, cases)
+    q_target = reset_batch(scene, robot, joints, cases).q_target
     dofs = joints.dofs_idx_local.tolist()
     states, steps = [read_state(robot, dofs)], []
     start_qd = to_numpy(robot.get_dofs_velocity(dofs))
-    q_target = stacked(cases, "q_target")
     robot.control_dofs_position(q_target, dofs)
     start_control_force = to_numpy(robot.get_dofs_control_force(dofs))
     effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
@@ -128,38 +121,37 @@ def run_batch(
     ]
 
 
-def reset_batch(scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase]) -> None:
+def reset_batch(
+    scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase]
+) -> ControlCase:
     """Do as `joint_control.reset` does in every environment, and read back what was set.
 
     Raises:
-        CaseError: the scene does not fit the cases, a case must not be run, or the engine reads
-            back something else than was asked for.
+        CaseError: the scene does not fit the cases, a case must not be run, or a value reads back
+            differently from the value that was set.
+
+    Returns:
+        The cases as one: its arrays are (cases, joints).
     """
     for case in cases:
         validate(case, joints)
     found = (scene.n_envs, scene.dt, scene.substeps)
-    asked = {(len(cases), case.dt, case.substeps) for case in cases}
-    if asked != {found} or len({case.steps for case in cases}) != 1:
+    required = {(len(cases), case.dt, case.substeps) for case in cases}
+    if required != {found} or len({case.steps for case in cases}) != 1:
         raise CaseError(
-            f"The scene has (environments, dt, substeps) {found}, the cases ask for "
-            f"{sorted(asked)}. Build it with n_envs={len(cases)}, for cases of equal length."
+            f"The scene has (environments, dt, substeps) {found}, the cases require "
+            f"{sorted(required)}. Build it with n_envs={len(cases)}, for cases of equal length."
         )
     dofs = joints.dofs_idx_local.tolist()
-    batch = replace(
-        cases[0],
-        q_start=stacked(cases, "q_start"),
-        kp=stacked(cases, "kp"),
-        kv=stacked(cases, "kv"),
-        effort_limit=stacked(cases, "effort_limit"),
-    )
+    arrays: dict[str, Any] = {
+        name: np.stack([getattr(case, name) for case in cases])
+        for name in ("q_start", "q_target", "kp", "kv", "effort_limit")
+    }
+    batch = replace(cases[0], **arrays)
     scene.reset()
     robot.set_dofs_kp(batch.kp, dofs)
     robot.set_dofs_kv(batch.kv, dofs)
     robot.set_dofs_force_range(-batch.effort_limit, batch.effort_limit, dofs)
     robot.set_dofs_position(batch.q_start, dofs, zero_velocity=True)
     require_read_back(robot, dofs, batch)
-
-
-def stacked(cases: Sequence[ControlCase], field: str) -> FloatArray:
-    """Return one array of the cases as (cases, joints)."""
-    return np.stack([getattr(case, field) for case in cases])
+    return batch

@@ -1,11 +1,11 @@
-"""Named checks of a step experiment: all pass, or the exact invariant that failed is named."""
+"""Named checks of a step experiment."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, evaluate
+from robo_genesis.core.checks import Check, evaluate, wrong_stamps
 from robo_genesis.core.scene import JOINT_NAMES
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec
@@ -14,8 +14,8 @@ from robo_genesis.lessons.l04.metrics import (
     SATURATION_THRESHOLD,
     SETTLING_BAND,
     StepMetrics,
-)
-from robo_genesis.sim import end_state as postures
+)  # fmt: skip
+from robo_genesis.sim import end_state
 from robo_genesis.sim.joint_control import LIMIT_TOLERANCE, ControlCase, differences
 from robo_genesis.sim.joints import EFFORT_UNIT, POSITION_UNIT, JointMap
 
@@ -25,10 +25,10 @@ CONTROL_LAW_TOLERANCE = 1e-2
 
 @dataclass(frozen=True, slots=True)
 class StepExperiment:
-    """All that the checks of lesson L04 look at.
+    """Everything that the checks of lesson L04 read.
 
-    `model` counts links, joints, dofs and qpos as the engine reports them; `posture` says what
-    shows it: camera frames, or a schematic of the measured links.
+    `model` counts links, joints, dofs and qpos as the engine reports them. `end_state` is `camera`
+    or `schematic`: camera `frames` show the baseline's ends, or a drawing of measured links does.
     """
 
     joints: JointMap
@@ -36,7 +36,7 @@ class StepExperiment:
     cases: Mapping[str, ControlCase]
     traces: Mapping[str, Trace]
     metrics: Mapping[str, StepMetrics]
-    posture: str
+    end_state: str
     frames: Mapping[str, np.ndarray]
 
     @property
@@ -46,25 +46,24 @@ class StepExperiment:
 
 
 def mapping(run: StepExperiment) -> list[str]:
-    """Seven arm joints and two fingers, found by name, each with a DOF of its own."""
-    problems = []
-    if dict(run.model) != spec.EXPECTED_MODEL:
-        problems.append(f"the model has {dict(run.model)}, expected {spec.EXPECTED_MODEL}")
-    if run.joints.names != JOINT_NAMES:
-        problems.append(f"names are {run.joints.names}, expected {JOINT_NAMES}")
-    if run.joints.types != spec.EXPECTED_TYPES:
-        problems.append(f"types are {run.joints.types}, expected {spec.EXPECTED_TYPES}")
-    for what, indices, count in (
-        ("DOFs", run.joints.dofs_idx_local.tolist(), run.model["dofs"]),
-        ("qpos", run.joints.qs_idx_local.tolist(), run.model["qpos"]),
-    ):
-        if len(set(indices)) != len(JOINT_NAMES) or not all(0 <= k < count for k in indices):
-            problems.append(f"local {what} {indices} are not nine distinct ones of {count}")
+    """Seven arm joints and two finger joints are found by name, each with its own DOF."""
+    found = (
+        ("the model has", dict(run.model), spec.EXPECTED_MODEL),
+        ("names are", run.joints.names, JOINT_NAMES),
+        ("types are", run.joints.types, spec.EXPECTED_TYPES),
+    )
+    problems = [f"{what} {a}, expected {b}" for what, a, b in found if a != b]
+    for what, indices in (("dofs", run.joints.dofs_idx_local), ("qpos", run.joints.qs_idx_local)):
+        if len(set(indices)) != len(JOINT_NAMES) or not set(indices) <= set(range(run.model[what])):
+            problems.append(
+                f"local {what} are {indices.tolist()}, expected nine distinct ones below "
+                f"{run.model[what]}"
+            )
     return problems
 
 
 def configuration(run: StepExperiment) -> list[str]:
-    """Start, target, gains, limits and ranges: one finite value per joint, a unit for each type."""
+    """Start, target, gains and limits have one finite value per joint; joint types have units."""
     n = len(run.joints.names)
     problems = [
         f"{case}.{name} is not {n} finite values"
@@ -98,7 +97,7 @@ def target_limits(run: StepExperiment) -> list[str]:
 
 
 def baseline_approaches(run: StepExperiment) -> list[str]:
-    """The baseline ends nearer to its target than it began."""
+    """The baseline ends nearer to its target than it starts."""
     m = run.metrics["baseline"]
     if m.final_error < m.initial_error:
         return []
@@ -106,46 +105,37 @@ def baseline_approaches(run: StepExperiment) -> list[str]:
 
 
 def stamps(run: StepExperiment) -> list[str]:
-    """States at k · dt from zero, one value per step after each step, as many as were asked for."""
-    problems = []
-    for name, case in run.cases.items():
-        trace = run.traces[name]
-        if trace.steps != case.steps or not np.allclose(
-            trace.t, np.arange(case.steps + 1) * case.dt, rtol=0, atol=1e-9
-        ):
-            problems.append(f"{name} has {trace.steps} steps to {trace.t[-1]:g} s, asked for "
-                            f"{case.steps} steps of {case.dt:g} s")  # fmt: skip
-        if not (trace.target == case.q_target).all():
-            problems.append(f"{name} was not commanded its target at every step")
-    return problems
+    """Each run has its configured steps, states at times k · dt from zero, and its own target."""
+    return wrong_stamps(run.cases, run.traces) + [
+        f"{name} was not commanded its target at every step"
+        for name, case in run.cases.items()
+        if not (run.traces[name].target == case.q_target).all()
+    ]
 
 
 def same_start(run: StepExperiment) -> list[str]:
-    """Compared cases start in one and the same state, at rest."""
+    """The compared cases start in the same state, at rest."""
     problems = []
     first = run.traces["G1"]
     for name in ("G1", "G2", "G3"):
         trace = run.traces[name]
-        if (
-            not (trace.q[0] == first.q[0]).all()
-            or not (trace.link_pos[0] == first.link_pos[0]).all()
-        ):
+        if (trace.q[0] != first.q[0]).any() or (trace.link_pos[0] != first.link_pos[0]).any():
             problems.append(f"{name} starts elsewhere than G1")
         if not np.allclose(trace.q[0], run.cases[name].q_start, rtol=0, atol=LIMIT_TOLERANCE):
             problems.append(f"{name} does not start at its case's q_start")
-        if not (trace.start_qd == 0).all():
+        if trace.start_qd.any():
             problems.append(f"{name} starts with velocity {trace.start_qd.tolist()}")
     return problems
 
 
 def one_factor(run: StepExperiment) -> list[str]:
     """G1 and G2 differ in the stepped joint's KP alone, G2 and G3 in its KV alone."""
-    problems = []
-    for (one, other), expected in spec.ONE_FACTOR.items():
-        found = differences(run.cases[one], run.cases[other], run.joints)
-        if found != expected:
-            problems.append(f"{one} → {other} changes {found}, expected {expected}")
-    return problems
+    return [
+        f"{one} → {other} changes {found}, expected {expected}"
+        for (one, other), expected in spec.ONE_FACTOR.items()
+        for found in [differences(run.cases[one], run.cases[other], run.joints)]
+        if found != expected
+    ]
 
 
 def not_observed(run: StepExperiment) -> list[str]:
@@ -164,7 +154,7 @@ def not_observed(run: StepExperiment) -> list[str]:
             if (time is not None) != seen:
                 problems.append(f"{name}: {label} time is {time}, the samples say observed={seen}")
         if m.rise_time is not None and risen[trace.t < m.rise_time].any():
-            problems.append(f"{name}: an earlier sample than {m.rise_time:g} s had risen")
+            problems.append(f"{name}: a sample before {m.rise_time:g} s had risen already")
         if m.settling_time is not None and not inside[trace.t >= m.settling_time].all():
             problems.append(f"{name}: it leaves the band after {m.settling_time:g} s")
     return problems
@@ -179,15 +169,17 @@ def control_law(run: StepExperiment) -> list[str]:
         law = np.clip(c.kp * (c.q_target - trace.q[1:]) - c.kv * trace.qd, -limit, limit)  # (n, d)
         apart = float(np.abs(law - trace.control_force).max())
         if apart > CONTROL_LAW_TOLERANCE:
-            problems.append(f"{name}: control force is up to {apart:g} off its case's control law")
+            problems.append(
+                f"{name}: control force differs by up to {apart:g} from its case's control law"
+            )
     return problems
 
 
 def measurements(run: StepExperiment) -> list[str]:
-    """Position, velocity and forces are finite, and no control force passes its limit."""
+    """Position, velocity and forces are finite, and no control force exceeds its limit."""
     problems = []
     for name, trace in run.traces.items():
-        # A trace refuses values that are not finite; this holds for one that was changed since.
+        # A trace refuses values that are not finite when it is made; its arrays may change later.
         problems += [
             f"{name}.{field} is not finite everywhere"
             for field in ("q", "qd", "control_force", "internal_force")
@@ -195,12 +187,12 @@ def measurements(run: StepExperiment) -> list[str]:
         ]
         excess = np.abs(trace.control_force) - trace.effort_limit
         if (excess > 1e-3).any():
-            problems.append(f"{name}: control force passes its limit by {excess.max():g}")
+            problems.append(f"{name}: control force exceeds its limit by {excess.max():g}")
     return problems
 
 
 def saturation(run: StepExperiment) -> list[str]:
-    """Saturated samples are counted against the limit that was read back, which is the one set."""
+    """The limit reads back as it was set, and saturated samples are counted against it."""
     problems = []
     for name, case in run.cases.items():
         trace, m = run.traces[name], run.metrics[name]
@@ -214,26 +206,16 @@ def saturation(run: StepExperiment) -> list[str]:
 
 
 def posture(run: StepExperiment) -> list[str]:
-    """The posture's evidence says what it is, and shows two different postures."""
-    return postures.problems(run.posture, run.frames, run.traces["baseline"].link_pos)
+    """Two different camera frames, or a schematic whose links moved, show the end state."""
+    return end_state.problems(run.end_state, run.frames, run.traces["baseline"].link_pos)
 
 
 CHECKS: tuple[Callable[[StepExperiment], list[str]], ...] = (
-    mapping,
-    configuration,
-    target_limits,
-    baseline_approaches,
-    stamps,
-    same_start,
-    one_factor,
-    control_law,
-    not_observed,
-    measurements,
-    saturation,
-    posture,
-)
+    mapping, configuration, target_limits, baseline_approaches, stamps, same_start, one_factor,
+    control_law, not_observed, measurements, saturation, posture,
+)  # fmt: skip
 
 
 def run_checks(run: StepExperiment) -> tuple[Check, ...]:
-    """Run every check; one that fails says what it found, one that passes what it held."""
+    """Run every check on an experiment."""
     return evaluate(CHECKS, run)

@@ -1,34 +1,32 @@
-"""The step explorer: a sweep as compact JSON, as a table, and as the markup that a script fills."""
+"""The step explorer: a sweep as compact JSON, as a table, and as markup for a script."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.quantities import format_value
-from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l04 import grid_spec
 from robo_genesis.lessons.l04.batch import Sweep
-from robo_genesis.lessons.l04.grid_spec import GridPoint
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import STEPPED_JOINT
+from robo_genesis.lessons.l04.study_spec import CASE_POINTS, KP, KV, STEP_SIZES, GridPoint
 
 RESOLUTION = {"q": 1e-4, "force": 1e-2}
-"""What one unit of the packed integers stands for [rad, N·m]. Metrics are computed before."""
+"""Value of one unit of the packed integers [rad, N·m]. Metrics come from the full arrays."""
 
 AXES: tuple[tuple[str, str, Sequence[float], str], ...] = (
-    ("step", "Step", grid_spec.STEP_SIZES, "rad"),
-    ("kp", "KP", grid_spec.KP, "N·m/rad"),
-    ("kv", "KV", grid_spec.KV, "N·m·s/rad"),
+    ("step", "Step", STEP_SIZES, "rad"),
+    ("kp", "KP", KP, "N·m/rad"),
+    ("kv", "KV", KV, "N·m·s/rad"),
 )
 """Name, label, values and unit of each axis, in the order of the grid's points."""
 
 LABELS = StepMetrics.about("label")
 SHOWN = tuple(name for name in LABELS if name != "initial_error")
-"""The metrics beside a run; the initial error is the step."""
+"""The metrics shown for a run. The initial error is left out: it equals the step."""
 
-NAMES = {point: name for name, point in grid_spec.CASE_POINTS.items()}
+NAMES = {point: name for name, point in CASE_POINTS.items()}
 
 
 def overshoot_share(point: GridPoint, measured: StepMetrics) -> float:
@@ -37,19 +35,19 @@ def overshoot_share(point: GridPoint, measured: StepMetrics) -> float:
 
 
 def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
-    """Say what a point is, how far it shot past, and whether it saturated."""
+    """Describe a point, its overshoot, and whether it saturated."""
     name = f" (the case {NAMES[point]})" if point in NAMES else ""
-    past = f"{100 * overshoot_share(point, measured):.1f} % of the step" * (measured.overshoot > 0)
+    overshoot = f"{100 * overshoot_share(point, measured):.1f} % of the step"
     count = measured.saturation_samples
     force = f"Saturated: {count} of {samples} samples" if count else "Not saturated: no sample"
     return (
         f"KP {point.kp:g}, KV {point.kv:g}, step {point.step:g} rad{name}. "
-        f"Overshoot: {past or 'none'}. {force} at the force limit."
+        f"Overshoot: {overshoot if measured.overshoot > 0 else 'none'}. {force} at the force limit."
     )
 
 
 def pack(found: Sweep) -> dict[str, Any]:
-    """Return a sweep as JSON values: traces as integers, metrics as a reader sees them."""
+    """Return a sweep as JSON values: traces as integers, metrics as text."""
     start = float(found.q[0, 0])
     q = np.rint((found.q.astype(float) - start) / RESOLUTION["q"]).astype(int)
     force = np.rint(found.control_force.astype(float) / RESOLUTION["force"]).astype(int)
@@ -77,21 +75,16 @@ def _written(measured: StepMetrics) -> dict[str, str]:
     return {name: format_value(value, unit) for name, value, unit in measured.items()}
 
 
-def unpack(data: Mapping[str, Any]) -> tuple[FloatArray, FloatArray]:
-    """Return position (p, n+1) [rad] and control force (p, n) [N·m] of packed data."""
-    q = np.array([point["q"] for point in data["points"]]) * data["resolution"]["q"]
-    force = np.array([point["force"] for point in data["points"]])
-    return q + data["start"], force * data["resolution"]["force"]
-
-
 def cell_labels(found: Sweep, numbers: Sequence[str]) -> list[str]:
-    """Return the text of each point's cell in a map: its number, below the case's name if any."""
-    names = [f"{NAMES[point]}\n" if point in NAMES else "" for point in found.points]
-    return [name + number for name, number in zip(names, numbers, strict=True)]
+    """Return the text of each point's cell in a map: the case's name, if any, above its number."""
+    return [
+        f"{NAMES[point]}\n{number}" if point in NAMES else number
+        for point, number in zip(found.points, numbers, strict=True)
+    ]
 
 
 def rows(found: Sweep) -> list[dict[str, str]]:
-    """Return one row a point for a table, with the metrics that the maps and the widget name."""
+    """Return one row a point for a table, with the metrics of the maps and the explorer."""
     table = []
     for point, measured in zip(found.points, found.metrics, strict=True):
         written = _written(measured)
@@ -109,9 +102,9 @@ def rows(found: Sweep) -> list[dict[str, str]]:
 
 
 def markup(found: Sweep) -> str:
-    """Return the explorer as HTML: hidden, with a word instead, until `_static/explorer.js` runs.
+    """Return the explorer as HTML. A notice replaces it until `_static/explorer.js` runs.
 
-    It opens at the last of the lesson's cases that overshoots, if there is one.
+    It opens at the first of the lesson's cases that overshoots, if there is one.
     """
     text = json.dumps(pack(found), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     first = next((p for p in NAMES if found.metrics[found.at(p)].overshoot > 0), found.points[-1])
@@ -127,6 +120,6 @@ def markup(found: Sweep) -> str:
         'aria-live="polite"></output>'
         f'<div class="plots" data-curves="{" ".join(RESOLUTION)}"></div><dl></dl>'
         f'<script type="application/json">{text.replace("<", chr(92) + "u003c")}</script></div>'
-        "<p>The explorer needs JavaScript. The maps above and the table below hold the same runs."
+        "<p>The explorer needs JavaScript. The maps above and the table below show the same runs."
         "</p>"
     )

@@ -1,7 +1,7 @@
 """Step-response metrics of one joint, from a trace alone, and their form in `metrics.json`.
 
-All of them look through a finite window at samples dt apart. They say what was seen there; none of
-them is a proof of stability. What was not seen is None, written `not observed`.
+All of them describe a finite window with samples dt apart; none of them proves stability. A metric
+that was not observed is None.
 """
 
 from collections.abc import Iterable, Mapping
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, case_records, count_records, metric
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace, first_time, settled_from
 
 RISE_FRACTION = 0.9
@@ -20,12 +21,18 @@ SETTLING_BAND = 0.01
 """Half width of the settling band around the target [rad or m]."""
 
 SATURATION_THRESHOLD = 0.99
-"""Share of the read-back limit from which a sample is called saturated: a detector, no limit."""
+"""Share of the read-back limit from which a sample is called saturated. It detects saturation; the
+engine clips at the full limit."""
+
+
+def is_saturated(control_force: FloatArray | float, limit: FloatArray | float) -> np.ndarray:
+    """Return where a control force of either sign reaches the saturation threshold of its limit."""
+    return np.asarray(np.abs(control_force) >= SATURATION_THRESHOLD * limit)
 
 
 @dataclass(frozen=True, slots=True)
 class StepMetrics(CaseMetrics):
-    """What one joint did in the window, None where it was not observed."""
+    """Step response of one joint in the window; None where a metric was not observed."""
 
     initial_error: float = metric("rad", "initial error", "q_rad_or_m", "target_rad_or_m")
     rise_time: float | None = metric("s", "rise time", "q_rad_or_m", "target_rad_or_m", "t_s")
@@ -38,20 +45,12 @@ class StepMetrics(CaseMetrics):
     peak_speed: float = metric("rad/s", "peak speed", "qd_rad_s_or_m_s")
     peak_control: float = metric("N·m", "peak control", "control_force_Nm_or_N")
     saturation_samples: int = metric(
-        "1",
-        "saturation",
-        "control_force_Nm_or_N",
-        "effort_limit_Nm_or_N",
+        "1", "saturation", "control_force_Nm_or_N", "effort_limit_Nm_or_N",
         noun="number of saturated samples",
-    )
+    )  # fmt: skip
     saturation_duration: float = metric(
         "s", "saturation, seconds", "control_force_Nm_or_N", "effort_limit_Nm_or_N", "t_s"
     )
-
-    @property
-    def saturated(self) -> bool:
-        """Whether any sample reached the saturation threshold."""
-        return self.saturation_samples > 0
 
 
 def step_metrics(trace: Trace, entry: int) -> StepMetrics:
@@ -60,22 +59,24 @@ def step_metrics(trace: Trace, entry: int) -> StepMetrics:
     rise       first sample with q − q₀ ≥ 0.9 (q_target − q₀)
     overshoot  max(0, max(q − q_target))
     settling   first sample from which |q − q_target| ≤ 0.01 holds to the end of the record
-    saturation samples with |control force| ≥ 0.99 · read-back limit, stamped dt … n·dt
+    saturation samples with |control force| ≥ 0.99 · read-back limit, at times dt … n·dt
 
     Args:
-        trace: the run; its target must not change on the way.
+        trace: the run; its target must be constant.
         entry: column of the joint in the trace's arrays.
 
     Raises:
         ValueError: the step is zero or negative (rise and overshoot are one-sided), the target
-            changes during the run, or `entry` is no column.
+            changes during the run, or the arrays have no column `entry`.
     """
     if not 0 <= entry < trace.q.shape[1]:
-        raise ValueError(f"entry {entry} given, the trace has joints 0 to {trace.q.shape[1] - 1}.")
+        raise ValueError(
+            f"entry is {entry}, expected 0 to {trace.q.shape[1] - 1}: a joint's column."
+        )
     q = trace.q[:, entry].astype(np.float64)
     target = trace.target[:, entry].astype(np.float64)
     if not (target == target[0]).all():
-        raise ValueError("The target changes during the run; these metrics take a constant one.")
+        raise ValueError("The target changes during the run. Measure a run with a constant target.")
     q_target = float(target[0])
     step = q_target - q[0]
     if step <= 0:
@@ -84,8 +85,7 @@ def step_metrics(trace: Trace, entry: int) -> StepMetrics:
             "defined for a positive step. Measure the mirrored response, or choose a higher target."
         )
     control = np.abs(trace.control_force[:, entry].astype(np.float64))
-    threshold = SATURATION_THRESHOLD * float(trace.effort_limit[entry])
-    saturation_samples = int((control >= threshold).sum())
+    saturation_samples = int(is_saturated(control, float(trace.effort_limit[entry])).sum())
     qd = trace.qd[:, entry].astype(np.float64)
     return StepMetrics(
         initial_error=float(step),
@@ -104,12 +104,7 @@ def step_metrics(trace: Trace, entry: int) -> StepMetrics:
 def measure(
     traces: Mapping[str, Trace], cases: Iterable[str], entry: int
 ) -> dict[str, StepMetrics]:
-    """Return the metrics of each of the cases, from its trace alone.
-
-    Args:
-        traces: the runs by case; others than the cases are left out.
-        cases: whose metrics are wanted.
-        entry: column of the joint in the traces' arrays.
+    """Return the metrics of each case from its trace; `entry` is the joint's column in the arrays.
 
     Raises:
         KeyError: a case has no trace.

@@ -1,9 +1,9 @@
-"""Failures of joint control, made on purpose: what a failure is, and those of a wrong command.
+"""Mistakes in joint control, made on purpose: commands, resets and readings.
 
-Every function makes one mistake and measures what follows. None is a way to do anything.
+Every function makes one mistake and measures its effect. Do not copy them.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,12 +12,13 @@ import numpy as np
 from robo_genesis.core.mistakes import Failure, quoted, refused
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l04.metrics import SATURATION_THRESHOLD
-from robo_genesis.sim.joint_control import CaseError, ControlCase, reset, validate
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l04.metrics import is_saturated, step_metrics
+from robo_genesis.sim.joint_control import CaseError, ControlCase, reset, run_case, validate
 from robo_genesis.sim.joints import JointMap, to_numpy
 
 SMALL = 0.05
-"""Share of the commanded step that counts as nothing, beside the step itself."""
+"""Share of the commanded step that counts as negligible."""
 
 
 def positions(
@@ -35,7 +36,7 @@ def positions(
 
 
 def wrong_index(scene: Any, robot: Any, joints: JointMap, case: ControlCase, joint: str) -> Failure:
-    """Command one joint by its solver-level index, where an entity-local one is asked for."""
+    """Command one joint by its solver-level index, where an entity-local one is required."""
     k, dofs = joints.entry(joint), joints.dofs_idx_local.tolist()
     wrong = list(robot.get_joint(joint).dofs_idx)  # the mistake: counted over the whole scene
     reset(scene, robot, joints, case)
@@ -79,15 +80,15 @@ def past_a_limit(
         shown=bool(
             isinstance(refusal, CaseError)
             and short > 0.5 * beyond
-            and abs(effort) >= SATURATION_THRESHOLD * case.effort_limit[k]
+            and is_saturated(effort, case.effort_limit[k])
             and abs(q[-1] - q[-2]) < SMALL * beyond
         ),
         evidence=(
-            f"The engine took the target without a word. `{joint}` ended "
+            f"The engine accepted the target without a warning. `{joint}` ended "
             f"{in_unit(short, joints, k)} from it, at {in_unit(q[-1], joints, k)} with its limit "
-            f"at {in_unit(joints.upper[k], joints, k)}, and the controller still pushed with "
+            f"at {in_unit(joints.upper[k], joints, k)}. The control force was still "
             f"{format_value(effort, joints.effort_units[k])}. "
-            f"The course's own test before a run: {quoted(refusal)}"
+            f"The course's validation before a run: {quoted(refusal)}"
         ),
         curves={"commanded past its limit": (np.arange(len(q)) * case.dt, q)},
     )
@@ -105,9 +106,7 @@ def lengths_differ(
     q = positions(scene, robot, joints, case.steps)
     refusal = refused(lambda: validate(replace(case, q_target=case.q_target[[k]]), joints))
     moved = np.abs(q[-1] - q[0]) > 10 * SMALL * abs(case.q_target[k] - case.q_start[k])
-    others = [
-        name for name, gone in zip(joints.names, moved, strict=True) if gone and name != joint
-    ]
+    others = [joints.names[n] for n in np.flatnonzero(moved) if n != k]
     return Failure(
         "lengths_differ",
         shown=type(seven).__name__ == "GenesisException"
@@ -116,9 +115,9 @@ def lengths_differ(
         and isinstance(refusal, CaseError),
         evidence=(
             f"- Seven values for nine joints: {quoted(seven)}\n"
-            f"- One value for nine joints: {quoted(one)} It was meant for `{joint}`; also moved: "
-            f"{', '.join(f'`{name}`' for name in others) or 'none'}.\n"
-            f"- The course's own test before a run: {quoted(refusal)}"
+            f"- One value for nine joints: {quoted(one)} The value was meant for `{joint}`. "
+            f"Other joints that moved: {', '.join(f'`{name}`' for name in others) or 'none'}.\n"
+            f"- The course's validation before a run: {quoted(refusal)}"
         ),
     )
 
@@ -155,6 +154,127 @@ def fingers_without_gains(
     )
 
 
+def assigned_each_step(
+    scene: Any, robot: Any, joints: JointMap, case: ControlCase, joint: str
+) -> Failure:
+    """Write the target into the state before each step, where a command was meant."""
+    k, dofs = joints.entry(joint), joints.dofs_idx_local.tolist()
+    reset(scene, robot, joints, case)
+
+    def mistake() -> None:
+        robot.set_dofs_position(case.q_target.copy(), dofs, zero_velocity=True)
+
+    first = positions(scene, robot, joints, 1, mistake)[:, k]
+    read = float(to_numpy(robot.get_dofs_velocity(dofs))[k])
+    rest = positions(scene, robot, joints, case.steps - 1, mistake)[:, k]
+    q = np.append(first, rest[1:])
+    step, left = case.q_target[k] - case.q_start[k], abs(case.q_target[k] - q[1])
+    needed, unit = (q[1] - q[0]) / case.dt, f"{joints.position_units[k]}/s"
+    return Failure(
+        "assigned_each_step",
+        shown=bool(left < SMALL * abs(step) and abs(read) < SMALL * abs(needed)),
+        evidence=(
+            f"At the first sample after the start, {case.dt:g} s later, `{joint}` is "
+            f"{in_unit(left, joints, k)} from its target. This motion would have needed "
+            f"{format_value(needed, unit)}; `get_dofs_velocity` reads {format_value(read, unit)}."
+        ),
+        curves={"assigned before each step": (np.arange(len(q)) * case.dt, q)},
+    )
+
+
+def stale_target(
+    scene: Any, robot: Any, joints: JointMap, case: ControlCase, joint: str
+) -> Failure:
+    """After a run, restore only the position, then step without a command."""
+    k, dofs = joints.entry(joint), joints.dofs_idx_local.tolist()
+    run_case(scene, robot, joints, case)
+    robot.set_dofs_position(case.q_start.copy(), dofs, zero_velocity=True)  # no scene.reset()
+    stale = positions(scene, robot, joints, case.steps)[:, k]
+    reset(scene, robot, joints, case)
+    robot.control_dofs_position(case.q_start.copy(), dofs)  # a first command before the first step
+    fresh = positions(scene, robot, joints, case.steps)[:, k]
+    t, step = np.arange(len(stale)) * case.dt, abs(case.q_target[k] - case.q_start[k])
+    drift, kept = abs(stale[-1] - stale[0]), abs(fresh[-1] - fresh[0])
+    return Failure(
+        "stale_target",
+        shown=bool(drift > 0.5 * step and kept < SMALL * step),
+        evidence=(
+            f"No command followed after the position was restored, yet `{joint}` moved "
+            f"{in_unit(abs(stale[1] - stale[0]), joints, k)} in the first step and "
+            f"{in_unit(drift, joints, k)} in {case.steps} steps. After a complete reset and a "
+            f"first command to stay, it moved {in_unit(kept, joints, k)} in as many steps."
+        ),
+        curves={"position restored, no command": (t, stale), "complete reset": (t, fresh)},
+    )
+
+
+def gains_without_reset(
+    scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase], joint: str
+) -> Failure:
+    """Run the second case where the first one ended: new gains, but no reset."""
+    k, dofs = joints.entry(joint), joints.dofs_idx_local.tolist()
+    first, second = cases
+    fair = run_case(scene, robot, joints, second)
+    run_case(scene, robot, joints, first)
+    robot.set_dofs_kp(second.kp.copy(), dofs)  # the mistake: nothing else is reset
+    robot.set_dofs_kv(second.kv.copy(), dofs)
+    robot.control_dofs_position(second.q_target.copy(), dofs)
+    q = positions(scene, robot, joints, second.steps)[:, k]
+    step, found = (abs(second.q_target[k] - start) for start in (second.q_start[k], q[0]))
+    return Failure(
+        "gains_without_reset",
+        shown=bool(found < SMALL * step and np.ptp(q) < SMALL * np.ptp(fair.q[:, k])),
+        evidence=(
+            f"The second run began {in_unit(found, joints, k)} from its target instead of "
+            f"{in_unit(step, joints, k)}. In the whole window `{joint}` moved through "
+            f"{in_unit(np.ptp(q), joints, k)}; after a reset it moves through "
+            f"{in_unit(np.ptp(fair.q[:, k]), joints, k)}."
+        ),
+        curves={
+            "no reset": (np.arange(len(q)) * second.dt, q),
+            "after a reset": (fair.t, fair.q[:, k]),
+        },
+    )
+
+
+def wrong_getter(trace: Trace, joints: JointMap, joint: str) -> Failure:
+    """Read the net force at the end of a run as the motor's effort."""
+    k = joints.entry(joint)
+    net, control = float(trace.internal_force[-1, k]), float(trace.control_force[-1, k])
+    unit = joints.effort_units[k]
+    return Failure(
+        "wrong_getter",
+        shown=abs(net) < SMALL * abs(control),
+        evidence=(
+            f"At the last sample `get_dofs_force` is {format_value(net, unit)} and "
+            f"`get_dofs_control_force` is {format_value(control, unit)}."
+        ),
+    )
+
+
+def time_shift(trace: Trace, joints: JointMap, joint: str) -> Failure:
+    """Label the first state after a step as t = 0, and measure again."""
+    k = joints.entry(joint)
+    names = ("q", "link_pos", "link_quat", "qd", "target", "control_force", "internal_force")
+    late = {name: getattr(trace, name)[1:] for name in names}
+    right = step_metrics(trace, k)
+    shifted = step_metrics(replace(trace, t=trace.t[:-1], **late), k)  # the mistake
+    pairs = {
+        "rise time": (shifted.rise_time, right.rise_time),
+        "settling time": (shifted.settling_time, right.settling_time),
+    }
+    texts = [
+        f"{name} {format_value(early, 's')} instead of {format_value(time, 's')}"
+        for name, (early, time) in pairs.items()
+    ]
+    gaps = [b - a for a, b in pairs.values() if a is not None and b is not None]
+    return Failure(
+        "time_shift",
+        shown=bool(gaps) and np.allclose(gaps, trace.dt, rtol=0, atol=1e-9),
+        evidence=f"From the same curve, the shifted times give {' and '.join(texts)}.",
+    )
+
+
 def in_unit(value: Any, joints: JointMap, k: int) -> str:
-    """Write a position of joint `k` for a reader."""
+    """Write a position of joint `k` with its unit."""
     return format_value(float(value), joints.position_units[k])

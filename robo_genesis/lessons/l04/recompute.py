@@ -1,4 +1,4 @@
-"""The step experiments of a bundle as their page measured them, from arrays, joints and frames."""
+"""The step experiments of a bundle, recomputed from its arrays, joints and frames."""
 
 from collections.abc import Mapping
 
@@ -15,7 +15,7 @@ ENTRY = JOINT_NAMES.index(spec.STEPPED_JOINT)
 
 
 def recompute(files: BundleReader) -> Recomputed:
-    """Return what the runs of a bundle give, with the studies where the page has them.
+    """Return metrics and checks from the runs of a bundle; the lecture's has the studies as well.
 
     Raises:
         BundleRefused: `cases`, `labels`, `stamps`, `constant`, `metrics`, `bad-trace`, `frames`,
@@ -35,7 +35,7 @@ def recompute(files: BundleReader) -> Recomputed:
 
 
 def read_run(files: BundleReader, traces: Mapping[str, Trace]) -> checks.StepExperiment:
-    """Return the experiment as its page had it, with metrics computed again from the arrays.
+    """Return the experiment of the page, with metrics computed again from the arrays.
 
     Raises:
         BundleRefused: `frames`, `metrics`; `bad-trace` where the arrays give no metrics.
@@ -51,21 +51,24 @@ def read_run(files: BundleReader, traces: Mapping[str, Trace]) -> checks.StepExp
         cases=spec.CASES,
         traces={case: traces[case] for case in spec.CASES},
         metrics=metrics,
-        posture=files.end_state,
+        end_state=files.end_state,
         frames=frames,
     )
 
 
 def read_traces(files: BundleReader) -> dict[str, Trace]:
-    """Return the traces of a bundle by case, each of them a run that can have happened.
+    """Return the traces of a bundle by case, each of them a possible run.
 
     Raises:
         BundleRefused: `cases`, `labels`, `stamps`, `constant`, or as `read_trace`.
     """
     traces = files.traces(spec.CASES, _check_coords)
-    for case in spec.CASES:
-        _check_time(case, traces[case])
-        _check_motion(case, traces[case])
+    for name, case in spec.CASES.items():
+        file, trace = f"arrays/{name}.npz", traces[name]
+        expect("stamps", file, "number of steps", trace.steps, case.steps)
+        if not np.allclose(trace.t, np.arange(case.steps + 1) * case.dt, rtol=0, atol=1e-9):
+            expect("stamps", file, "dt of the stamps [s]", trace.dt, case.dt)
+        _check_motion(file, trace)
     return traces
 
 
@@ -76,15 +79,8 @@ def _check_coords(coords: Mapping[str, list[str]]) -> None:
     expect("labels", "arrays.json", "number of different links", len(set(links)), len(links))
 
 
-def _check_time(case: str, trace: Trace) -> None:
-    file, asked = f"arrays/{case}.npz", spec.CASES[case]
-    expect("stamps", file, "number of steps", trace.steps, asked.steps)
-    if not np.allclose(trace.t, np.arange(asked.steps + 1) * asked.dt, rtol=0, atol=1e-9):
-        expect("stamps", file, "dt of the stamps [s]", trace.dt, asked.dt)
-
-
-def _check_motion(case: str, trace: Trace) -> None:
-    """A stepped joint moves and is driven; an array of one constant was not measured."""
+def _check_motion(file: str, trace: Trace) -> None:
+    """Refuse an array of one constant: a stepped joint moves and is driven."""
     for name, values in (
         (f"position of {spec.STEPPED_JOINT}", trace.q[:, ENTRY]),
         (f"velocity of {spec.STEPPED_JOINT}", trace.qd[:, ENTRY]),
@@ -94,7 +90,7 @@ def _check_motion(case: str, trace: Trace) -> None:
         if (values == values.flat[0]).all():
             raise BundleRefused(
                 "constant",
-                f"arrays/{case}.npz: {name} is {values.flat[0]:g} at every sample, expected one "
+                f"{file}: {name} is {values.flat[0]:g} at every sample, expected one "
                 f"that changes. {AGAIN}",
             )
 
@@ -102,18 +98,21 @@ def _check_motion(case: str, trace: Trace) -> None:
 def read_studies(files: BundleReader, traces: Mapping[str, Trace]) -> study.Studies:
     """Return the studies as their page measured them.
 
-    What the engines report of a posture is in no array. It is taken from metrics.json, and the
-    checks compare it with the runs.
+    Readings of the engines without a run are in no array. They come from metrics.json, and the
+    checks compare them with the runs.
 
     Raises:
         BundleRefused: `cases` or `metrics`, where a run or a reading is missing.
     """
-    wanted = (*study_spec.STEP_CASES, *study_spec.SUBSTEP_CASES, *study_spec.SECOND_RUNS)
-    missing = sorted(set(wanted) - set(traces))
+    missing = sorted(set(study.STUDY_RUNS) - set(traces))
     expect("cases", "arrays.json", "list of missing study runs", missing, [])
-    try:
-        return study.from_readings(files.joints(), traces, files.recorded("readings"))
-    except KeyError as error:
-        raise BundleRefused(
-            "metrics", f"metrics.json: readings lacks {error}, expected a number. {AGAIN}"
-        ) from error
+    engines = ("Genesis", "MuJoCo")
+    groups = {"inertia": engines, "gravity_at_start": engines, "gravity": tuple(spec.CASES)}
+    names = [f"{group}_{name}" for group, members in groups.items() for name in members]
+    readings = files.readings("readings", ["passive_damping", *names])
+    inertia, gravity_at_start, gravity = (
+        {name: readings[f"{group}_{name}"] for name in members} for group, members in groups.items()
+    )
+    return study.Studies(
+        files.joints(), traces, inertia, gravity_at_start, readings["passive_damping"], gravity
+    )

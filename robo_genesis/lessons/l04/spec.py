@@ -1,10 +1,11 @@
-"""Specification of lesson L04: cases, predictions and what they are compared by.
+"""Specification of lesson L04: cases, predictions, margins and tolerances.
 
-Pages, checks, verification and tests read the experiment here; none of them repeats it. It is data
-and computes nothing: what of it decides a measured value or a check is in `parameters()`, and only
-a change there makes evidence stale.
+Pages, checks, verification and tests read the experiment here. The module is data and computes
+nothing. Every value that decides a measurement or a check is in `parameters()`; only a change there
+makes evidence stale.
 """
 
+from collections.abc import Mapping
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -21,7 +22,7 @@ from robo_genesis.core.scene import (
     KV_BASELINE,
     Q_START,
     FloatArray,
-)
+)  # fmt: skip
 from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
 from robo_genesis.sim.joint_control import ControlCase
 
@@ -40,7 +41,7 @@ STEPS = round(WINDOW / DT)
 EXPECTED_MODEL, EXPECTED_TYPES = FRANKA_MODEL, FRANKA_TYPES
 
 RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "N·m": 1e-2, "1": 0.5}
-"""Differences below these are called equal: the noise floor of a comparison, by unit."""
+"""By unit: values that differ by no more than this are called equal, the noise floor."""
 
 
 def with_entry(values: FloatArray, value: float) -> FloatArray:
@@ -68,7 +69,7 @@ G3 = replace(G2, kv=with_entry(KV_BASELINE, 300.0))
 CASES = {"baseline": BASELINE, "G1": G1, "G2": G2, "G3": G3}
 
 ONE_FACTOR = {("G1", "G2"): [f"kp[{STEPPED_JOINT}]"], ("G2", "G3"): [f"kv[{STEPPED_JOINT}]"]}
-"""What may differ between two compared cases, and nothing else."""
+"""The only entry that may differ between two compared cases."""
 
 PREDICTIONS = {
     ("G1", "G2"): (
@@ -77,29 +78,20 @@ PREDICTIONS = {
         ("overshoot", "higher"),
         ("saturation_samples", "higher"),
     ),
-    ("G2", "G3"): (
-        ("peak_speed", "lower"),
-        ("overshoot", "lower"),
-        ("rise_time", "later"),
-    ),
+    ("G2", "G3"): (("peak_speed", "lower"), ("overshoot", "lower"), ("rise_time", "later")),
 }
-"""Written down before the runs: what the second case of a pair would do against the first."""
+"""Written down before the runs: how the second case of a pair compares with the first."""
 
-MARGINS = {
-    "rise_time": 1.5 * DT,
-    "peak_speed": 0.05,
-    "overshoot": 1e-3,
-    "saturation_samples": 1.5,
-}
-"""What an order must exceed to count as shown when runs are compared, above `RESOLUTION`: a time
-or a count may fall one sample to either side."""
+MARGINS = {"rise_time": 1.5 * DT, "peak_speed": 0.05, "overshoot": 1e-3, "saturation_samples": 1.5}
+"""An order counts as shown when the difference exceeds this margin. The margins are above
+`RESOLUTION`, because a time or a count may fall one sample to either side."""
 
 RELATIONS = tuple(
     (pair, metric, order, MARGINS[metric])
     for pair, predicted in PREDICTIONS.items()
     for metric, order in predicted
 )
-"""The orderings that the lesson claims: a refreshed run must still show them."""
+"""The orderings that the lesson claims. A refreshed run must still show them."""
 
 TOLERANCES = {
     "rad": (1e-4, 1e-3),
@@ -110,15 +102,23 @@ TOLERANCES = {
     "N·m·s/rad": (1e-6, 0.0),
     "initial_error": (1e-6, 0.0),
 }
-"""By unit, or by metric where that is stricter: (atol, rtol) that one metric may differ by between
-engine versions or backends. A time on the grid of samples may not move at all; counts are exact."""
+"""By unit, or by metric where that is stricter: (atol, rtol) of a metric between engine versions or
+backends. A time on the grid of samples must not move at all; counts are exact."""
+
+
+def case_parameters(cases: Mapping[str, ControlCase]) -> dict[str, dict[str, Any]]:
+    """Return every field of every case as JSON values."""
+    return {
+        name: {key: np.asarray(value).tolist() for key, value in asdict(case).items()}
+        for name, case in cases.items()
+    }
 
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lesson as JSON values, for the evidence key.
 
-    Predictions, margins, tolerances and resolutions are no inputs: they are held against what was
-    measured, and do not change it.
+    Predictions, margins, tolerances and resolutions are not inputs: they judge the measurement and
+    do not change it.
     """
     return {
         "joints": list(JOINT_NAMES),
@@ -130,8 +130,5 @@ def parameters() -> dict[str, Any]:
         "rise_fraction": RISE_FRACTION,
         "settling_band_rad": SETTLING_BAND,
         "saturation_threshold": SATURATION_THRESHOLD,
-        "cases": {
-            name: {key: np.asarray(value).tolist() for key, value in asdict(case).items()}
-            for name, case in CASES.items()
-        },
+        "cases": case_parameters(CASES),
     }

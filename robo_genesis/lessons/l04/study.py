@@ -1,30 +1,30 @@
-"""What the studies around lesson L04 measured, and the numbers that they are about."""
+"""What the studies around lesson L04 measured."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
-from robo_genesis.core.orderings import Value, outcome
+from robo_genesis.core.metrics import case_records, reading_records
+from robo_genesis.core.orderings import Relation, Value, outcome
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study_spec
-from robo_genesis.lessons.l04.metrics import StepMetrics, metric_records, step_metrics
+from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
 from robo_genesis.lessons.l04.theory import IdealJoint, step_share
 from robo_genesis.sim.joints import JointMap
 
 
 @dataclass(frozen=True, slots=True)
 class Studies:
-    """All that the studies of the lesson look at, for the stepped joint.
+    """Everything that the studies of the lesson read, for the stepped joint.
 
     | field | meaning |
     |---|---|
     | `joints` | the map, for names |
-    | `traces` | by name: the lesson's cases, and all runs of `l04_studies` |
+    | `traces` | by name: the lesson's cases and all runs of the studies |
     | `inertia`, `gravity_at_start` | by engine: [kg·m²] and [N·m] in the start pose |
     | `passive_damping` | of the model's joint [N·m·s/rad] |
-    | `gravity` | by case of the lesson: effort that holds its last posture [N·m] |
+    | `gravity` | by case of the lesson: effort that holds its end state [N·m] |
     """
 
     joints: JointMap
@@ -45,7 +45,7 @@ class Studies:
         damping = float(gains.kv[self.entry]) + self.passive_damping
         return IdealJoint(self.inertia["Genesis"], damping, float(gains.kp[self.entry]))
 
-    def share(self, case: str, kind: str = "") -> np.ndarray:
+    def share(self, case: str, kind: str = "") -> FloatArray:
         """Return a response as a share of its step: the lesson's, or with `kind` the small one."""
         step = self.traces[f"{case}_{kind}" if kind else case]
         return step_share(step, self.traces[f"{case}_hold"], self.entry)
@@ -66,8 +66,10 @@ class Studies:
 
     def compared(self, engine: str) -> dict[str, StepMetrics]:
         """Return the metrics of G1 to G3 at the lesson's solver step, in one engine."""
-        cases = study_spec.COMPARED
-        return {case: step_metrics(self.by_engine(case)[engine], self.entry) for case in cases}
+        return {
+            name: self.measure(run_name(engine, name, case.substeps))
+            for name, case in study_spec.COMPARED.items()
+        }
 
 
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
@@ -82,10 +84,8 @@ def run_name(engine: str, case: str, substeps: int) -> str:
     return study_spec.SecondRun(case, engine, substeps).name
 
 
-def relation_outcome(
-    run: Studies, engine: str, relation: tuple[tuple[str, str], str, str, float]
-) -> tuple[str, str]:
-    """Return whether an engine's runs hold one claimed ordering, and the two values."""
+def relation_outcome(run: Studies, engine: str, relation: Relation) -> tuple[str, str]:
+    """Return whether an engine's runs show one claimed ordering, and the two values."""
     numbers = {
         f"{case}.{name}": Value(value, unit)
         for case, metrics in run.compared(engine).items()
@@ -94,12 +94,8 @@ def relation_outcome(
     return outcome(numbers, relation)
 
 
-STEPPED_RUNS = tuple(
-    name
-    for name in (*study_spec.STEP_CASES, *study_spec.SUBSTEP_CASES, *study_spec.SECOND_RUNS)
-    if not name.endswith("_hold")
-)
-"""The studies' own runs that step: one that holds its start has no metrics of a step."""
+STUDY_RUNS = (*study_spec.STEP_CASES, *study_spec.SUBSTEP_CASES, *study_spec.SECOND_RUNS)
+"""The names of the studies' own runs."""
 
 READING_UNITS = {
     "inertia": "kg·m²",
@@ -107,38 +103,19 @@ READING_UNITS = {
     "gravity": "N·m",
     "passive_damping": "N·m·s/rad",
 }
-"""Unit of what the engines say of the stepped joint apart from any run."""
+"""Unit of each value that the engines report of the stepped joint without a run."""
 
 
 def records(run: Studies) -> dict[str, dict[str, dict[str, Any]]]:
-    """Return the studies' groups of `metrics.json`: each run's metrics, and what engines said."""
-    groups = metric_records({name: run.measure(name) for name in STEPPED_RUNS}, {})
-    del groups["model"]
-    readings = {"passive_damping": ("passive_damping", run.passive_damping)}
-    for what in ("inertia", "gravity_at_start", "gravity"):
-        readings |= {f"{what}_{k}": (what, value) for k, value in getattr(run, what).items()}
-    return groups | {
-        "readings": {
-            name: {"value": v, "unit": READING_UNITS[what], "class": "value", "from": ["engine"]}
-            for name, (what, v) in readings.items()
-        }
-    }
+    """Return the studies' groups of `metrics.json`: each run's metrics, and the engines' readings.
 
-
-def from_readings(
-    joints: JointMap, traces: Mapping[str, Trace], readings: Mapping[str, float]
-) -> Studies:
-    """Return the studies of recorded runs and the recorded `readings` group, by name.
-
-    Raises:
-        KeyError: a reading is missing.
+    A run that holds its start has no step, so it has no metrics.
     """
-    engines = ("Genesis", "MuJoCo")
-    return Studies(
-        joints=joints,
-        traces=traces,
-        inertia={name: readings[f"inertia_{name}"] for name in engines},
-        gravity_at_start={name: readings[f"gravity_at_start_{name}"] for name in engines},
-        passive_damping=readings["passive_damping"],
-        gravity={name: readings[f"gravity_{name}"] for name in spec.CASES},
+    stepped = [name for name in STUDY_RUNS if not name.endswith("_hold")]
+    readings = reading_records(
+        {"passive_damping": run.passive_damping}, READING_UNITS["passive_damping"]
     )
+    for what in ("inertia", "gravity_at_start", "gravity"):
+        values = {f"{what}_{name}": value for name, value in getattr(run, what).items()}
+        readings |= reading_records(values, READING_UNITS[what])
+    return case_records({name: run.measure(name) for name in stepped}) | {"readings": readings}

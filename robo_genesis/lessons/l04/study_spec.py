@@ -1,13 +1,21 @@
-"""Specification of the studies around lesson L04: cases beyond the lab, and what they must show."""
+"""Specification of L04's studies: cases beyond the lab, a grid of steps, and their tolerances."""
 
 from dataclasses import asdict, dataclass, replace
+from itertools import product
 from typing import Any
 
-import numpy as np
-
-from robo_genesis.core.scene import DT, SUBSTEPS
+from robo_genesis.core.scene import DT, JOINT_NAMES, SUBSTEPS
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
-from robo_genesis.lessons.l04.spec import G1, G2, G3, START_OF_STEP, with_entry
+from robo_genesis.lessons.l04.spec import (
+    G1,
+    G2,
+    G3,
+    START_OF_STEP,
+    STEP,
+    STEPPED_JOINT,
+    case_parameters,
+    with_entry,
+)  # fmt: skip
 from robo_genesis.sim.joint_control import ControlCase
 
 PAGE = "lecture"
@@ -23,7 +31,7 @@ SMALL_STEP = 0.005
 
 
 def commanded(case: ControlCase, height: float) -> ControlCase:
-    """Return a case in which the height of the stepped joint's step [rad] alone is another."""
+    """Return the case with another height of the stepped joint's step [rad]."""
     return replace(case, q_target=with_entry(case.q_target, START_OF_STEP + height))
 
 
@@ -39,7 +47,7 @@ SUBSTEPS_STUDIED = (1, 2, 4, 10, 20, 50)
 SUBSTEP_CASES = {
     f"G2_substeps_{n}": replace(G2, substeps=n) for n in SUBSTEPS_STUDIED if n != SUBSTEPS
 }
-"""The solver's step is the one factor: each of these takes a scene of its own, G2 has one."""
+"""The solver's step is the one factor. Each case needs its own scene."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,19 +78,21 @@ SECOND_RUNS = {
         *(SecondRun("G2", integrator, n) for n in SUBSTEPS_STUDIED if n != SUBSTEPS),
     )
 }
-"""All compared cases at the lesson's solver step, and G2 at every one that is studied."""
+"""All compared cases at the lesson's solver step, and G2 at every studied one."""
 
 SMALL_STEP_TOLERANCE = 0.03
-"""What theory and a small unsaturated step may differ by in overshoot, as a share of the step."""
+"""Largest difference in overshoot between theory and a small unsaturated step, as a share of the
+step."""
 
 GRAVITY_AGREEMENT = 0.01
-"""Share within which KP × final error and gravity are said to agree."""
+"""Share within which KP × final error and gravity agree."""
 
 SAME_MODEL = 1e-3
-"""Share within which both engines must give one inertia, and one gravity effort, at the start."""
+"""Share within which both engines must agree on inertia, and on gravity effort, at the start."""
 
 SPREAD_SHARE = 0.2
-"""What must be left, at the finest solver step, of the engines' spread at the lesson's step."""
+"""Largest spread between the engines at the finest solver step, as a share of their spread at the
+lesson's step."""
 
 
 def parameters() -> dict[str, Any]:
@@ -90,9 +100,57 @@ def parameters() -> dict[str, Any]:
     return {
         "studies": {
             "second_runs": {name: asdict(run) for name, run in SECOND_RUNS.items()},
-            "cases": {
-                name: {key: np.asarray(value).tolist() for key, value in asdict(case).items()}
-                for name, case in (STEP_CASES | SUBSTEP_CASES).items()
-            },
+            "cases": case_parameters(STEP_CASES | SUBSTEP_CASES),
         }
     }
+
+
+STEP_SIZES = (0.02, 0.05, 0.1, STEP)
+"""Heights of the commanded step in the grid [rad]."""
+
+KP = (3500.0, 4375.0, 5250.0, 6125.0, 7000.0)
+"""Position gains of the stepped joint in the grid [N·m/rad]."""
+
+KV = (100.0, 150.0, 200.0, 250.0, 300.0)
+"""Velocity gains of the stepped joint in the grid [N·m·s/rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class GridPoint:
+    """One run of the grid: step [rad], KP [N·m/rad] and KV [N·m·s/rad] of the stepped joint."""
+
+    step: float
+    kp: float
+    kv: float
+
+    @property
+    def case(self) -> ControlCase:
+        """The control case: G1 except for step, KP and KV of the stepped joint."""
+        gains = replace(G1, kp=with_entry(G1.kp, self.kp), kv=with_entry(G1.kv, self.kv))
+        return commanded(gains, self.step)
+
+
+POINTS = tuple(GridPoint(*values) for values in product(STEP_SIZES, KP, KV))
+"""All points; KV changes fastest, the step slowest."""
+
+
+def point_of(case: ControlCase) -> GridPoint:
+    """Return the grid point of a case."""
+    k = JOINT_NAMES.index(STEPPED_JOINT)
+    step = round(float(case.q_target[k]) - START_OF_STEP, 9)  # without rounding errors of the sum
+    return GridPoint(step, float(case.kp[k]), float(case.kv[k]))
+
+
+CASE_POINTS = {name: point_of(case) for name, case in COMPARED.items()}
+"""The points of the lesson's own cases."""
+
+BOUNDS = {
+    "kp": (min(p.kp for p in CASE_POINTS.values()), max(p.kp for p in CASE_POINTS.values())),
+    "kv": (min(p.kv for p in CASE_POINTS.values()), max(p.kv for p in CASE_POINTS.values())),
+    "step": (0.0, STEP),
+}
+"""Smallest and largest value of each axis: no point is more violent than the compared cases."""
+
+AGREEMENT = {"rad": 1e-6, "rad/s": 1e-5, "s": 0.0, "N·m": 1e-3, "1": 0.0}
+"""By unit: largest difference between a run in the batch and the same case run alone. Times and
+counts must be equal. A CPU showed 0 rad, 2e-7 rad/s and 6e-5 N·m."""

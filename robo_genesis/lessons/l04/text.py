@@ -1,10 +1,10 @@
-"""Sentences from measured metrics, right for every outcome, `not observed` included.
+"""Sentences from measured metrics and traces, correct for every outcome.
 
-Nothing here is copied from an earlier run: each sentence is chosen and filled by the numbers that
-it is given.
+The numbers of the run choose and fill each sentence; nothing is copied from an earlier run.
 """
 
 from collections.abc import Mapping, Sequence
+from itertools import groupby
 
 import numpy as np
 
@@ -12,48 +12,49 @@ from robo_genesis.core.comparison import INSPECT, compare, comparison_sentence, 
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04.metrics import SATURATION_THRESHOLD, SETTLING_BAND, StepMetrics
+from robo_genesis.lessons.l04.metrics import (
+    SATURATION_THRESHOLD,
+    SETTLING_BAND,
+    StepMetrics,
+    is_saturated,
+)  # fmt: skip
 
-SATURATION_SHARE = f"{100 * SATURATION_THRESHOLD:.0f} %"
+COMPARED_METRICS = ("rise_time", "peak_speed", "overshoot", "settling_time")
+"""Metrics that the text compares between two cases."""
 
 AT_REST = 0.01
 """Speed below which the last sample is called nearly at rest [rad/s]."""
 
 
-def pair_block(
-    title: str,
+def pair_sentences(
     names: tuple[str, str],
     metrics: Mapping[str, StepMetrics],
-    changed: list[str],
+    changed: Sequence[str],
     predictions: tuple[tuple[str, str], ...],
-    resolution: Mapping,
-) -> Block:
+    resolution: Mapping[str, float],
+) -> list[str]:
     """Compare two cases that should differ in one entry.
 
     Args:
-        title: heading of the block.
         names: the two cases, in order.
         metrics: by case name.
-        changed: what the configurations really differ in, from `joint_control.differences`.
+        changed: the entries in which the configurations differ, from `joint_control.differences`.
         predictions: (metric, order) written down before the runs.
         resolution: by unit, the difference that counts as none.
     """
-    first, second = metrics[names[0]], metrics[names[1]]
-    compared = {
-        metric: compare(metric, first, second, resolution)
-        for metric in ("rise_time", "peak_speed", "overshoot", "settling_time")
+    of_metric = {
+        metric: compare(metric, metrics[names[0]], metrics[names[1]], resolution)
+        for metric in (*COMPARED_METRICS, *(metric for metric, _ in predictions))
     }
-    sentences = [factor_sentence(names, changed)]
-    sentences += [comparison_sentence(names, c) for c in compared.values()]
-    sentences += [
-        prediction_sentence(names, compare(metric, first, second, resolution), order)
-        for metric, order in predictions
+    return [
+        factor_sentence(names, changed),
+        *(comparison_sentence(names, of_metric[metric]) for metric in COMPARED_METRICS),
+        *(prediction_sentence(names, of_metric[metric], order) for metric, order in predictions),
     ]
-    return Block(title, tuple(sentences))
 
 
-def factor_sentence(names: tuple[str, str], changed: list[str]) -> str:
-    """Say what two configurations differ in."""
+def factor_sentence(names: tuple[str, str], changed: Sequence[str]) -> str:
+    """Name the entries in which two configurations differ."""
     if len(changed) == 1:
         return (
             f"Between {names[0]} and {names[1]} only `{changed[0]}` differs; every other entry of "
@@ -61,7 +62,7 @@ def factor_sentence(names: tuple[str, str], changed: list[str]) -> str:
         )
     found = ", ".join(f"`{entry}`" for entry in changed) or "nothing"
     return (
-        f"{names[0]} and {names[1]} differ in {found}, so no difference below can be put down "
+        f"{names[0]} and {names[1]} differ in {found}, so no difference below can be attributed "
         "to one factor."
     )
 
@@ -71,76 +72,70 @@ def start_sentence(
     traces: Mapping[str, Trace],
     changed: Sequence[str],
     entry: int,
-    resolution: Mapping,
+    resolution: Mapping[str, float],
 ) -> str:
-    """Say what two cases did while both were clipped to the same effort, if they were.
+    """Describe the motion of two cases while both were clipped to the same effort.
 
-    Under one and the same effort a difference in motion is no work of the controller. The engine's
-    implicit integrator adds substep length · KV to the inertia of a position-controlled DOF: that
-    explains it where KV alone was `changed`, and nowhere else.
+    Under the same effort, the controller cannot cause a difference in motion. The engine's implicit
+    integrator adds substep length · KV to the inertia of a position-controlled DOF. This explains
+    the difference only where KV is the only entry in `changed`.
     """
     one, other = (traces[name] for name in names)
-    alike = _clipped_alike(one, other, entry)
-    if alike == 0:
-        return "No leading samples of the two were clipped to the same effort."
-    speeds = [float(trace.qd[alike - 1, entry]) for trace in (one, other)]
-    told = " and ".join(
+    a, b = one.control_force[:, entry], other.control_force[:, entry]
+    alike = np.append((a == b) & is_saturated(a, one.effort_limit[entry]), False)
+    count = int(alike.argmin())  # leading samples with the same clipped effort
+    if count == 0:
+        return "The two runs were not clipped to the same effort at the start."
+    speeds = [float(trace.qd[count - 1, entry]) for trace in (one, other)]
+    values = " and ".join(
         f"{name} {format_value(v, 'rad/s')}" for name, v in zip(names, speeds, strict=True)
     )
-    time = format_value(float(one.t_step[alike - 1]), "s")
+    time = format_value(float(one.t_step[count - 1]), "s")
     lead = f"Up to {time} both were clipped to the same effort at each sample"
     if abs(speeds[0] - speeds[1]) <= resolution["rad/s"]:
-        what = " and ".join(f"`{entry}`" for entry in changed) or "nothing"
-        return f"{lead}, and they moved alike ({told}): there a change of {what} does not show."
-    if not (len(changed) == 1 and changed[0].startswith("kv[")):
+        what = " and ".join(f"`{name}`" for name in changed) or "nothing"
         return (
-            f"{lead}, and yet they differ in speed there ({told}). The effort cannot be the "
-            f"reason, and KV is not the one factor that changed. {INSPECT}"
+            f"{lead}, and both moved at the same speed ({values}): up to there, the change of "
+            f"{what} had no visible effect."
         )
+    lead += f", but their speeds differ there ({values}). The effort cannot be the reason"
+    if not (len(changed) == 1 and changed[0].startswith("kv[")):
+        return f"{lead}, and KV is not the only entry that changed. {INSPECT}"
     return (
-        f"{lead}, and yet they differ in speed there ({told}). The effort cannot be the reason: "
-        "the engine's implicit integrator adds substep length × KV to the inertia of a position-"
-        "controlled DOF, clipped or not. That part of the difference is numerical, and a smaller "
-        "substep would shrink it."
+        f"{lead}: the engine's implicit integrator adds substep length × KV to the inertia of a "
+        "position-controlled DOF, even while its effort is clipped. This part of the difference is "
+        "numerical, and a smaller substep would shrink it."
     )
-
-
-def _clipped_alike(one: Trace, other: Trace, entry: int) -> int:
-    """Count the leading samples in which both traces have one and the same saturated effort."""
-    a, b = one.control_force[:, entry], other.control_force[:, entry]
-    alike = (a == b) & (np.abs(a) >= SATURATION_THRESHOLD * one.effort_limit[entry])
-    return int(alike.argmin()) if not alike.all() else len(alike)
 
 
 def cost_sentence(
-    names: tuple[str, str], metrics: Mapping[str, StepMetrics], resolution: Mapping
+    names: tuple[str, str], metrics: Mapping[str, StepMetrics], resolution: Mapping[str, float]
 ) -> str:
-    """Name what the second case pays in response time, or that it pays nothing here."""
+    """State the second case's cost in response time, if there is one."""
     comparison = compare("rise_time", metrics[names[0]], metrics[names[1]], resolution)
-    if comparison.order is None:
-        return "What the change costs in response time cannot be told: no rise was observed."
-    if comparison.second is None:
-        return f"The cost in response time: {names[1]} did not reach 90 % in this window."
-    if comparison.first is None:
+    first, second = comparison.first, comparison.second
+    if first is None and second is None:
+        return "The cost in response time is unknown: no rise was observed."
+    if second is None:
+        return f"The change costs response time: {names[1]} did not reach 90 % in this window."
+    if first is None:
         return f"No cost in response time here: {names[1]} reaches 90 %, {names[0]} does not."
-    delay = comparison.second - comparison.first
-    if comparison.order == "higher":
-        return (
-            f"The cost in response time: {names[1]} reaches 90 % {format_value(delay, 's')} later."
-        )
-    if comparison.order == "lower":
-        return f"No cost in response time here: {names[1]} is {format_value(-delay, 's')} earlier."
-    return "No cost in response time is visible at this sampling: both rise at the same sample."
+    if comparison.order == "equal":
+        return "No cost in response time is visible at this sampling: both rise at the same sample."
+    delay = format_value(abs(second - first), "s")
+    if second > first:
+        return f"The change costs response time: {names[1]} reaches 90 % {delay} later."
+    return f"No cost in response time here: {names[1]} is {delay} earlier."
 
 
 def final_error_block(metrics: Mapping[str, StepMetrics]) -> Block:
-    """Read each final error beside final velocity and settling, and say where that ends."""
+    """Read each final error together with final velocity and settling, and state the limits."""
     sentences = [final_error_sentence(name, m) for name, m in metrics.items()]
     sentences.append(
-        "A small error that stays would be consistent with a controller without an integral term "
-        "that holds the arm against gravity; the last sample of a finite window does not prove it."
+        "A small remaining error would be consistent with a controller without an integral term "
+        "that holds the arm against gravity. The last sample of a finite window does not prove it."
     )
-    return Block("3. What the final error says, and where that ends", tuple(sentences))
+    return Block("3. The final error, and its limits as evidence", tuple(sentences))
 
 
 def final_error_sentence(name: str, m: StepMetrics) -> str:
@@ -151,25 +146,21 @@ def final_error_sentence(name: str, m: StepMetrics) -> str:
         f"{name} ends {format_value(m.final_error, 'rad')} from its target, {motion} at "
         f"{format_value(m.final_velocity, 'rad/s')}"
     )
-    if m.settling_time is None and at_rest:
-        return (
-            f"{ends}; settling into ±{SETTLING_BAND:g} rad was not observed: it stands outside the "
-            "band, and only a longer window would tell a steady error from a slow approach."
-        )
-    if m.settling_time is None:
-        return (
-            f"{ends}; settling into ±{SETTLING_BAND:g} rad was not observed, so its last sample "
-            "is a moment of the transient, no steady error."
-        )
-    settled = format_value(m.settling_time, "s")
-    tail = f"{ends}; it stays within ±{SETTLING_BAND:g} rad from {settled} on"
+    if m.settling_time is not None:
+        settled = format_value(m.settling_time, "s")
+        tail = "" if at_rest else ", but its speed shows that the error is not final"
+        return f"{ends}; it stays within ±{SETTLING_BAND:g} rad from {settled} on{tail}."
+    ends = f"{ends}; settling into ±{SETTLING_BAND:g} rad was not observed"
     if at_rest:
-        return f"{tail}."
-    return f"{tail}, yet its speed says that the error is not final."
+        return (
+            f"{ends}. The joint is outside the band, and only a longer window can distinguish a "
+            "steady error from a slow approach."
+        )
+    return f"{ends}, so its last sample belongs to the transient and is not a steady error."
 
 
 def actuator_block(metrics: Mapping[str, StepMetrics], limit: float) -> Block:
-    """Report the limits case by case; clipping, where found, ends ideal PD reasoning.
+    """Report saturation case by case. Where an effort is clipped, ideal PD reasoning ends.
 
     Args:
         metrics: by case name.
@@ -178,26 +169,24 @@ def actuator_block(metrics: Mapping[str, StepMetrics], limit: float) -> Block:
     sentences = []
     for name, m in metrics.items():
         peak = f"peak control {format_value(m.peak_control, 'N·m')} of {format_value(limit, 'N·m')}"
-        if m.saturated:
-            sentences.append(
-                f"{name}: {format_value(m.saturation_samples, '1')} "
-                f"({format_value(m.saturation_duration, 's')}) at or above "
-                f"{SATURATION_SHARE} of the limit; {peak}. While the effort is clipped, a "
-                "higher gain cannot add effort, and the ideal second-order picture does not apply."
+        count, effect = "no sample", "Nothing was clipped at these samples."
+        if m.saturation_samples:
+            seconds = format_value(m.saturation_duration, "s")
+            count = f"{format_value(m.saturation_samples, '1')} ({seconds})"
+            effect = (
+                "While the effort is clipped, a higher gain cannot add effort, and the ideal "
+                "second-order model does not apply."
             )
-        else:
-            sentences.append(
-                f"{name}: no sample at or above {SATURATION_SHARE} of the limit; {peak}. "
-                "At these stamps nothing was clipped."
-            )
-    return Block("4. What the actuator limit did", tuple(sentences))
+        share = f"{100 * SATURATION_THRESHOLD:.0f} %"
+        sentences.append(f"{name}: {count} at or above {share} of the limit; {peak}. {effect}")
+    return Block("4. The actuator limit", tuple(sentences))
 
 
 def interpret(
     metrics: Mapping[str, StepMetrics],
     changed: Mapping[tuple[str, str], list[str]],
     predictions: Mapping[tuple[str, str], tuple[tuple[str, str], ...]],
-    resolution: Mapping,
+    resolution: Mapping[str, float],
     traces: Mapping[str, Trace],
     entry: int,
 ) -> tuple[Block, ...]:
@@ -205,28 +194,97 @@ def interpret(
 
     Args:
         metrics: by case name, the three cases in order.
-        changed: by pair, what their configurations differ in; two pairs in order (KP, KV).
+        changed: by pair, the entries in which its configurations differ; first KP's pair.
         predictions: by pair, (metric, order) written down before the runs.
         resolution: by unit, the difference that counts as none.
-        traces: by case name, what the metrics were computed from.
+        traces: by case name, the runs of the metrics.
         entry: column of the stepped joint.
     """
-    (kp_pair, kp_changed), (kv_pair, kv_changed) = changed.items()
-    kp = pair_block(
-        f"1. {kp_pair[0]} → {kp_pair[1]}: what KP did",
-        kp_pair, metrics, kp_changed, predictions[kp_pair], resolution,
-    )  # fmt: skip
-    kp_start = start_sentence(kp_pair, traces, kp_changed, entry, resolution)
-    kv = pair_block(
-        f"2. {kv_pair[0]} → {kv_pair[1]}: what KV did, and its cost",
-        kv_pair, metrics, kv_changed, predictions[kv_pair], resolution,
-    )  # fmt: skip
-    kv_start = start_sentence(kv_pair, traces, kv_changed, entry, resolution)
-    cost = cost_sentence(kv_pair, metrics, resolution)
-    limit = float(traces[kp_pair[0]].effort_limit[entry])
+    blocks = []
+    effects = ("1. {} → {}: the effect of KP", "2. {} → {}: the effect of KV, and its cost")
+    for effect, (pair, entries) in zip(effects, changed.items(), strict=True):
+        sentences = pair_sentences(pair, metrics, entries, predictions[pair], resolution)
+        if "cost" in effect:
+            sentences.append(cost_sentence(pair, metrics, resolution))
+        sentences.append(start_sentence(pair, traces, entries, entry, resolution))
+        blocks.append(Block(effect.format(*pair), tuple(sentences)))
+    limit = float(next(iter(traces.values())).effort_limit[entry])
+    return (*blocks, final_error_block(metrics), actuator_block(metrics, limit))
+
+
+def same_beginning(short: Trace, long: Trace) -> bool:
+    """Return whether the longer run begins with exactly the samples of the shorter one."""
+    n = short.steps
     return (
-        Block(kp.title, (*kp.sentences, kp_start)),
-        Block(kv.title, (*kv.sentences, cost, kv_start)),
-        final_error_block(metrics),
-        actuator_block(metrics, limit),
+        long.steps > n
+        and np.array_equal(short.q, long.q[: n + 1])
+        and np.array_equal(short.qd, long.qd[:n])
+        and np.array_equal(short.control_force, long.control_force[:n])
     )
+
+
+def longer_window(short: tuple[Trace, StepMetrics], long: tuple[Trace, StepMetrics]) -> str:
+    """List the metrics that changed because a record is longer, as Markdown.
+
+    `short` are trace and metrics of a case, `long` those of the same case with more steps.
+    """
+    (a, of_a), (b, of_b) = short, long
+    seconds = [format_value(float(trace.t[-1]), "s") for trace in (a, b)]
+    if not same_beginning(a, b):
+        return (
+            f"The record of {seconds[1]} does not begin with the samples of the record of "
+            f"{seconds[0]}. It is another experiment, so no change can be attributed to the "
+            "window. Find the state that was not reset."
+        )
+    labels, kept = of_a.about("label"), []
+    lines = [
+        f"- The first {seconds[0]} of both records are bit-identical: the physics did not change."
+    ]
+    for (name, x, unit), (_, y, _) in zip(of_a.items(), of_b.items(), strict=True):
+        before, after = format_value(x, unit), format_value(y, unit)
+        if before != after:
+            lines.append(f"- The {labels[name]} went from {before} to {after}. {_why(name, x, y)}")
+        elif name != "initial_error":
+            kept.append(labels[name])
+    observed = of_a.rise_time is not None
+    lines += [
+        f"- Unchanged in the digits written here: {'; '.join(kept)}."
+        if kept
+        else "- No metric stayed the same.",
+        "- Could not change: the initial error, which depends only on the first sample"
+        + (", and the rise time, which had already been observed." if observed else "."),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _why(name: str, short: float | None, long: float | None) -> str:
+    """Explain how a longer record alone can change this metric."""
+    if name in ("final_error", "final_velocity"):
+        return "The last sample is another one."
+    if short is None:
+        return "It happened after the shorter record had ended."
+    if name == "settling_time":
+        return "The response left the band again after the shorter record had ended."
+    if long is not None:
+        return "A larger value, or further samples, came later."
+    return "A longer record cannot undo an observation: inspect the definition."
+
+
+def saturated_stretches(trace: Trace, entry: int) -> list[str]:
+    """Describe each stretch of saturated samples of the joint in column `entry` of a run.
+
+    A force with the sign of the velocity drives the motion; with the opposite sign it brakes.
+    """
+    force, speed = trace.control_force[:, entry], trace.qd[:, entry]
+    effects = [
+        f"{'positive' if f > 0 else 'negative'} and {'drives' if f * v > 0 else 'brakes'}"
+        for f, v in zip(force, speed, strict=True)
+    ]
+    hits = is_saturated(force, trace.effort_limit[entry])
+    stretches = []
+    for (hit, effect), group in groupby(range(trace.steps), lambda n: (hits[n], effects[n])):
+        if hit:
+            samples = list(group)
+            times = [format_value(float(trace.t_step[n]), "s") for n in (samples[0], samples[-1])]
+            stretches.append(f"{times[0]} to {times[1]}: the force is {effect} the motion.")
+    return stretches or ["No sample was at the limit."]

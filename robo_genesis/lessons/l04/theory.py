@@ -1,4 +1,4 @@
-"""The ideal second-order joint, and the sample at which a measured response leaves it."""
+"""The ideal second-order joint, and where a measured response leaves it."""
 
 from dataclasses import dataclass
 
@@ -6,10 +6,10 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04.metrics import SATURATION_THRESHOLD
+from robo_genesis.lessons.l04.metrics import is_saturated
 
 CRITICAL = 1e-9
-"""Distance from one below which a damping ratio counts as critical."""
+"""A damping ratio this close to one counts as critical."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class IdealJoint:
         if not (self.inertia > 0 and self.kp > 0 and self.damping >= 0):
             raise ValueError(
                 f"inertia={self.inertia}, kp={self.kp}, damping={self.damping}: inertia and KP "
-                "must be positive, damping zero or more. Give them in SI units."
+                "must be positive, damping must not be negative. Give them in SI units."
             )
 
     @property
@@ -49,7 +49,7 @@ class IdealJoint:
 
     @property
     def overshoot(self) -> float:
-        """Overshoot as a share of the step: exp(−π ζ / √(1 − ζ²)), zero from ζ = 1 on."""
+        """Overshoot as a share of the step: exp(−π ζ / √(1 − ζ²)), zero for ζ ≥ 1."""
         if self.zeta >= 1:
             return 0.0
         return float(np.exp(-np.pi * self.zeta / np.sqrt(1 - self.zeta**2)))
@@ -78,13 +78,13 @@ class Parting:
 
     | field | meaning |
     |---|---|
-    | `time` | first sample further away than the threshold [s], None where there is none |
-    | `apart` | largest distance of the whole record, in the responses' unit |
-    | `clipped`, `efforts` | efforts before that sample (all, without one): clipped ones, count |
+    | `time` | first sample beyond the threshold [s], None where there is none |
+    | `distance` | largest distance in the whole record, in the responses' unit |
+    | `clipped`, `efforts` | number of clipped and of all efforts before that sample or the end |
     """
 
     time: float | None
-    apart: float
+    distance: float
     clipped: int
     efforts: int
 
@@ -107,36 +107,32 @@ def parting(
     distance = np.abs(measured - ideal)
     beyond = np.flatnonzero(distance > threshold)
     k = int(beyond[0]) if beyond.size else trace.steps
-    effort = np.append(trace.start_control_force[entry], trace.control_force[:, entry])[:k]
-    clipped = np.abs(effort) >= SATURATION_THRESHOLD * trace.effort_limit[entry]
-    return Parting(
-        time=float(trace.t[k]) if beyond.size else None,
-        apart=float(distance.max()),
-        clipped=int(clipped.sum()),
-        efforts=k,
-    )
+    efforts = np.append(trace.start_control_force[entry], trace.control_force[:, entry])[:k]
+    clipped = int(is_saturated(efforts, trace.effort_limit[entry]).sum())
+    time = float(trace.t[k]) if beyond.size else None
+    return Parting(time, float(distance.max()), clipped, k)
 
 
 def step_share(step: Trace, hold: Trace, entry: int) -> FloatArray:
-    """Return (q_step − q_hold) / step (n+1,): a response freed of what acts on both runs alike.
+    """Return (q_step − q_hold) / step (n+1,): a response without the effects common to both runs.
 
-    For a linear joint the two motions add up, so subtracting the run that is told to stay where it
-    starts takes gravity out.
+    For a linear joint the two motions add up. Subtracting the run that holds its start therefore
+    removes gravity.
 
     Raises:
         ValueError: the runs differ in start or time, or the command does not differ.
     """
     if step.t.shape != hold.t.shape or not (step.t == hold.t).all():
-        raise ValueError("The two runs have other time stamps: run both with one dt and window.")
+        raise ValueError("The two runs have different times: run both with the same dt and window.")
     if not (step.q[0] == hold.q[0]).all():
-        raise ValueError("The two runs start elsewhere: reset both to one state.")
+        raise ValueError("The two runs start in different states: reset both to the same state.")
     height = float(step.target[0, entry]) - float(hold.target[0, entry])
     if height <= 0:
-        raise ValueError(f"The step is {height:g} above the held target; expected a positive one.")
-    apart = step.q[:, entry].astype(np.float64) - hold.q[:, entry].astype(np.float64)
-    return np.asarray(apart / height)
+        raise ValueError(f"The step is {height:g} above the held target, expected more than 0.")
+    difference = step.q[:, entry].astype(np.float64) - hold.q[:, entry].astype(np.float64)
+    return np.asarray(difference / height)
 
 
 def overshoot_share(share: FloatArray) -> float:
-    """Return by how much a response to a unit step passes one, as a share of the step."""
+    """Return the overshoot of a response to a unit step, as a share of the step."""
     return float(max(0.0, share.max() - 1))

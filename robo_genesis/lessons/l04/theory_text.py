@@ -1,4 +1,4 @@
-"""Theory and gravity beside the measurement of L04: rows and sentences from what was measured."""
+"""Theory and gravity compared with the measurement of L04: rows and sentences."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -25,7 +25,7 @@ def damping_word(zeta: float) -> str:
 
 
 def ideal_rows(run: Studies) -> list[dict[str, Any]]:
-    """Return for each compared case what the linear joint would do."""
+    """Return the linear joint's parameters and overshoot for each compared case."""
     return [
         {
             "case": case,
@@ -41,49 +41,45 @@ def ideal_rows(run: Studies) -> list[dict[str, Any]]:
 
 
 def part(run: Studies, case: str) -> Parting:
-    """Find where a compared case's position leaves the ideal joint's, gravity left out."""
-    trace, configured = run.traces[case], study_spec.COMPARED[case]
+    """Find where a compared case's position leaves the ideal joint's, which has no gravity."""
+    trace = run.traces[case]
     q = trace.q[:, run.entry].astype(float)
-    step = float(configured.q_target[run.entry]) - q[0]
+    step = float(study_spec.COMPARED[case].q_target[run.entry]) - q[0]
     ideal = q[0] + step * run.ideal(case).response(trace.t)
     return parting(trace, q, ideal, run.entry, study_spec.PARTING_THRESHOLD)
 
 
-def parting_sentence(case: str, ideal: IdealJoint, found: Parting, threshold: float) -> str:
-    """Say where measurement and ideal joint part, and whether the effort was clipped until there.
+def parting_sentence(case: str, ideal: IdealJoint, found: Parting) -> str:
+    """Say where measurement and ideal joint part, and whether the effort was clipped before.
 
     Args:
         case: its name.
         ideal: the linear joint with its gains.
-        found: from `theory.parting`.
-        threshold: the distance that counts as parting [rad].
+        found: from `theory.parting`, with the lesson's threshold.
     """
+    within = f"{study_spec.PARTING_THRESHOLD:g} rad"
     lead = f"{case} (ζ = {ideal.zeta:.2f}, {damping_word(ideal.zeta)})"
-    apart = f"at most {format_value(found.apart, 'rad')} apart"
+    largest = f"The largest distance in this window is {format_value(found.distance, 'rad')}."
     if found.time is None:
-        return f"{lead} stays within {threshold:g} rad of the ideal joint: {apart} in this window."
+        return f"{lead} stays within {within} of the ideal joint. {largest}"
     lead = (
-        f"{lead} first leaves the ideal joint by more than {threshold:g} rad at "
-        f"{format_value(found.time, 's')}, and is {apart} in this window."
+        f"{lead} first leaves the ideal joint by more than {within} at "
+        f"{format_value(found.time, 's')}. {largest}"
     )
     if found.clipped == 0:
         return (
-            f"{lead} Clipped efforts up to there: none of {found.efforts}, so saturation is not "
-            "the reason. Look at gravity, coupling and the solver's step."
+            f"{lead} None of the {found.efforts} efforts before that was clipped, so saturation is "
+            "not the reason. Look at gravity, coupling and the solver's step."
         )
     return (
-        f"{lead} Clipped efforts up to there: {found.clipped} of {found.efforts}. The joint got "
-        "less than the formula assumes, and a higher gain could not change that."
+        f"{lead} Before that, {found.clipped} of {found.efforts} efforts were clipped. The joint "
+        "got less effort than the formula assumes, and a higher gain could not change that."
     )
 
 
 def parting_sentences(run: Studies) -> list[str]:
     """Return one sentence for each compared case."""
-    threshold = study_spec.PARTING_THRESHOLD
-    return [
-        parting_sentence(case, run.ideal(case), part(run, case), threshold)
-        for case in study_spec.COMPARED
-    ]
+    return [parting_sentence(c, run.ideal(c), part(run, c)) for c in study_spec.COMPARED]
 
 
 def step_size_rows(run: Studies) -> list[dict[str, Any]]:
@@ -102,35 +98,23 @@ def step_size_rows(run: Studies) -> list[dict[str, Any]]:
     return rows
 
 
-def step_size_sentence(
-    case: str, ideal: float, small: float, large: float, tolerance: float
-) -> str:
-    """Say how far theory's overshoot is from that of a small and of a large step.
-
-    Args:
-        case: its name.
-        ideal: overshoot of the linear joint, as a share of the step.
-        small: overshoot of the small step, likewise.
-        large: overshoot of the lesson's step, likewise.
-        tolerance: what theory and the small step may differ by, declared beforehand.
-    """
-    off, far = abs(small - ideal), abs(large - ideal)
-    told = (
+def step_size_sentence(case: str, ideal: float, small: float, large: float) -> str:
+    """Compare the overshoots [share of the step] of theory, a small step and the lesson's step."""
+    tolerance = study_spec.SMALL_STEP_TOLERANCE
+    declared = f"the declared {share_text(tolerance)} of the step"
+    lead = (
         f"{case}: the ideal joint overshoots by {share_text(ideal)} of its step, the small step by "
-        f"{share_text(small)}, the large one by {share_text(large)}."
+        f"{share_text(small)}, the large step by {share_text(large)}."
     )
-    if off > tolerance:
+    if abs(small - ideal) > tolerance:
+        return f"{lead} Even the small step differs from theory by more than {declared}."
+    lead += f" The small step agrees with theory within {declared}."
+    if abs(large - ideal) <= tolerance:
         return (
-            f"{told} Even the small step is off by more than the declared {share_text(tolerance)} "
-            "of the step."
+            f"{lead} The large step's overshoot agrees as well, but one number can agree by "
+            "accident: see how far its curve lies from the ideal one."
         )
-    told += f" For the small step that is within the declared {share_text(tolerance)} of the step."
-    if far <= tolerance:
-        return (
-            f"{told} So is the large step's, but one number can agree by accident: see how far its "
-            "curve lies from the ideal one."
-        )
-    return f"{told} The large step's is not."
+    return f"{lead} The large step does not."
 
 
 def step_size_sentences(run: Studies) -> list[str]:
@@ -141,33 +125,37 @@ def step_size_sentences(run: Studies) -> list[str]:
             run.ideal(case).overshoot,
             overshoot_share(run.share(case, "small")),
             overshoot_share(run.share(case)),
-            study_spec.SMALL_STEP_TOLERANCE,
         )
         for case in study_spec.SMALL_STEPPED
     ]
 
 
+def disagreement(support: float, effort: float) -> float:
+    """Return the difference between support and gravity effort as a share of the effort."""
+    return abs(support - effort) / abs(effort)
+
+
 def gravity_rows(
     kp: Mapping[str, float], metrics: Mapping[str, StepMetrics], gravity: Mapping[str, float]
 ) -> list[dict[str, Any]]:
-    """Return for each case its support at the last sample beside gravity, and how it ended.
+    """Return for each case its support at the last sample, the gravity effort, and how it ended.
 
     Args:
         kp: by case [N·m/rad].
         metrics: by case.
-        gravity: by case, the effort that holds its final posture [N·m].
+        gravity: by case, the effort that holds its end state [N·m].
     """
     return [
         {
             "case": name,
-            "KP × final error": format_value(kp[name] * m.final_error, "N·m"),
+            "KP × final error": format_value(support, "N·m"),
             "gravity, engine": format_value(effort, "N·m"),
-            "apart": share_text(abs(kp[name] * m.final_error - effort) / abs(effort)),
-            "final velocity": format_value(m.final_velocity, "rad/s"),
-            "settled from": format_value(m.settling_time, "s"),
+            "apart": share_text(disagreement(support, effort)),
+            "final velocity": format_value(metrics[name].final_velocity, "rad/s"),
+            "settled from": format_value(metrics[name].settling_time, "s"),
         }
         for name, effort in gravity.items()
-        for m in [metrics[name]]
+        for support in [kp[name] * metrics[name].final_error]
     ]
 
 
@@ -175,37 +163,35 @@ def gravity_sentences(
     kp: Mapping[str, float], metrics: Mapping[str, StepMetrics], gravity: Mapping[str, float]
 ) -> list[str]:
     """Say what the table of `gravity_rows` supports, and what it does not prove."""
-    agree: list[str] = []
-    differ: list[str] = []
-    moving: list[str] = []
-    for name, effort in gravity.items():
-        m = metrics[name]
-        if abs(m.final_velocity) > AT_REST:
-            moving.append(name)
-            continue
-        share = abs(kp[name] * m.final_error - effort) / abs(effort)
-        (agree if share <= study_spec.GRAVITY_AGREEMENT else differ).append(name)
-    within = share_text(study_spec.GRAVITY_AGREEMENT)
-    told = []
+    moving = [name for name in gravity if abs(metrics[name].final_velocity) > AT_REST]
+    agree = [
+        name
+        for name, effort in gravity.items()
+        if disagreement(kp[name] * metrics[name].final_error, effort)
+        <= study_spec.GRAVITY_AGREEMENT
+        and name not in moving
+    ]
+    differ = [name for name in gravity if name not in (*agree, *moving)]
+    limit = share_text(study_spec.GRAVITY_AGREEMENT)
+    sentences = []
     if agree:
-        told.append(
-            f"Nearly at rest, with a support within {within} of gravity: {listed(agree)}. That is "
-            "what a balance of the two would look like, without an integral term in the controller."
+        sentences.append(
+            f"{listed(agree)} ended nearly at rest, with a support within {limit} of gravity. A "
+            "balance of the two would look like this, without an integral term in the controller."
         )
     if differ:
-        told.append(
-            f"Nearly at rest, with a support more than {within} off gravity: {listed(differ)}. So "
-            "gravity alone does not explain the error. Look at tail, saturation, "
-            "contacts."
+        sentences.append(
+            f"{listed(differ)} ended nearly at rest, with a support more than {limit} off gravity. "
+            "Gravity alone does not explain the error. Look at tail, saturation, contacts."
         )
     if moving:
-        told.append(
-            f"Still moving at the last sample: {listed(moving)}. The error there is a moment of "
-            "the transient and supports nothing about gravity."
+        sentences.append(
+            f"{listed(moving)} still moved at the last sample. The error there belongs to the "
+            "transient and supports nothing about gravity."
         )
     if agree or differ:
-        told.append(
-            "Not proved: that the error would stay beyond this window, that nothing else "
+        sentences.append(
+            "This does not prove that the error would remain beyond this window, that nothing else "
             "contributes to it within the tolerance, or that another pose would leave the same one."
         )
-    return told
+    return sentences

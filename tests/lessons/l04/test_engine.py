@@ -3,7 +3,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from robo_genesis.core import checks, project
+from robo_genesis.core import project
 from robo_genesis.core.scene import DT, JOINT_NAMES, SUBSTEPS
 from robo_genesis.core.trace import Trace
 from robo_genesis.evidence.bundle import read_arrays
@@ -15,7 +15,7 @@ from robo_genesis.lessons.l04 import checks as step_checks
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import measure, metric_records
 from robo_genesis.sim import session
-from robo_genesis.sim.joint_control import CaseError, differences, reset, run_case
+from robo_genesis.sim.joint_control import CaseError, reset, run_case
 from robo_genesis.sim.joints import JointError, one_dof_joint, resolve_joints, to_numpy
 
 pytestmark = pytest.mark.engine
@@ -47,7 +47,7 @@ def measured_run(lab, run):
         cases=spec.CASES,
         traces=traces,
         metrics=measure(traces, spec.CASES, lab.joints.entry(spec.STEPPED_JOINT)),
-        posture="camera",
+        end_state="camera",
         frames=frames,
     )
 
@@ -92,22 +92,9 @@ def same(one, other):
     )
 
 
-def test_the_inventory_is_the_expected_one(measured_run):
-    assert measured_run.model == {"links": 11, "joints": 9, "dofs": 9, "qpos": 9}
-
-
-def test_types_and_limits_are_the_models(lab, joints):
-    assert lab.joints.types == joints.types
+def test_the_map_is_what_each_joint_owns(lab, joints):
     assert lab.joints.lower == pytest.approx(joints.lower, abs=1e-6)
     assert lab.joints.upper == pytest.approx(joints.upper, abs=1e-6)
-
-
-def test_dofs_and_qpos_are_nine_each(lab):
-    assert sorted(lab.joints.dofs_idx_local.tolist()) == list(range(9))
-    assert sorted(lab.joints.qs_idx_local.tolist()) == list(range(9))
-
-
-def test_the_map_is_what_each_joint_owns(lab):
     for k, name in enumerate(JOINT_NAMES):
         joint = lab.franka.get_joint(name)
         assert list(joint.dofs_idx_local) == [lab.joints.dofs_idx_local[k]]
@@ -154,21 +141,6 @@ def test_the_backend_is_the_one_asked_for(lab):
 def test_importer_warnings_are_kept(lab):
     assert any("tendon" in warning for warning in lab.engine.log.warnings)
     assert not any("~<" in text for _, text in lab.engine.log.lines)
-
-
-def test_force_ranges_read_back_as_set(measured_run):
-    for name, case in spec.CASES.items():
-        assert measured_run.traces[name].effort_limit == pytest.approx(case.effort_limit)
-
-
-def test_every_check_of_the_lesson_passes(measured_run):
-    assert checks.require("l04", step_checks.run_checks(measured_run)) == "L04 CHECK: PASSED"
-
-
-@pytest.mark.parametrize("pair", list(spec.ONE_FACTOR))
-def test_compared_cases_differ_in_one_entry_of_the_robot(lab, pair):
-    one, other = (spec.CASES[name] for name in pair)
-    assert differences(one, other, lab.joints) == spec.ONE_FACTOR[pair]
 
 
 @pytest.mark.parametrize("order", [("G1", "G2", "G3"), ("G3", "G1", "G2")])
@@ -226,23 +198,14 @@ def test_the_two_force_getters_differ(measured_run):
     assert abs(trace.internal_force[-1, k]) < 1 < abs(trace.control_force[-1, k])
 
 
-def test_a_camera_frame_is_a_usable_picture(lab):
-    frame = session.capture(lab.camera)
-    session.require_frame(frame)
-    assert frame.dtype == np.uint8
-
-
-def test_the_renderer_names_itself(lab):
-    renderer = session.read_renderer(lab.scene)
-    assert renderer.vendor
-    assert renderer.name
-
-
 def test_a_recorded_run_is_accepted(bundle_folder, lab):
     predicate = verify_bundle(bundle_folder).predicate
     assert predicate.source.page == page_digest("l04", "lab", project.BOOK)
     assert predicate.engine.files_match_wheel
     assert predicate.render.mode == "camera"
+    renderer = session.read_renderer(lab.scene)
+    assert renderer.vendor
+    assert renderer.name
     assert predicate.warnings == lab.engine.log.warnings
 
 

@@ -7,14 +7,14 @@ import pytest
 
 from robo_genesis.core.scene import DT, FRANKA_MJCF, JOINT_NAMES, SUBSTEPS
 from robo_genesis.lessons.l04 import batch as sweep
-from robo_genesis.lessons.l04 import grid_checks, grid_spec, spec
+from robo_genesis.lessons.l04 import spec, study_checks, study_spec
 from robo_genesis.sim.joint_control import CaseError, run_case
 from robo_genesis.sim.joints import resolve_joints
 
 pytestmark = pytest.mark.engine
 
-SMALL = grid_spec.GridPoint(0.02, 3500.0, 300.0)
-POINTS = (SMALL, *grid_spec.CASE_POINTS.values())
+SMALL = study_spec.GridPoint(0.02, 3500.0, 300.0)
+POINTS = (SMALL, *study_spec.CASE_POINTS.values())
 
 
 @pytest.fixture(scope="module")
@@ -41,13 +41,13 @@ def found(batch):
 def test_the_batch_gives_what_each_case_gives_alone(lab, found):
     alone = {
         name: run_case(lab.scene, lab.franka, lab.joints, spec.CASES[name])
-        for name in grid_spec.CASE_POINTS
+        for name in study_spec.CASE_POINTS
     }
-    outcomes = grid_checks.run_checks(grid_checks.Grid(found, alone, lab.joints))
+    outcomes = study_checks.run_grid_checks(study_checks.Grid(found, alone, lab.joints))
     assert [check.detail for check in outcomes if not check.passed] == []
     small = run_case(lab.scene, lab.franka, lab.joints, SMALL.case)
     k = lab.joints.entry(spec.STEPPED_JOINT)
-    assert np.abs(found.q[0] - small.q[:, k]).max() <= grid_spec.AGREEMENT["rad"]
+    assert np.abs(found.q[0] - small.q[:, k]).max() <= study_spec.AGREEMENT["rad"]
 
 
 def test_environments_differ_as_their_cases_do(found):

@@ -1,5 +1,6 @@
 """Each failure shows its symptom on the real engine, and is not found where nothing is wrong."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -9,19 +10,18 @@ from robo_genesis.core import checks
 from robo_genesis.core.mistakes import Failure
 from robo_genesis.core.scene import DT, FRANKA_MJCF, JOINT_NAMES, SUBSTEPS
 from robo_genesis.lessons.l04 import spec
-from robo_genesis.lessons.l04.backend_mistake import absent_backend, judge
+from robo_genesis.lessons.l04.backend_mistake import absent_backend, absent_backend_failure
 from robo_genesis.lessons.l04.mistakes import (
+    assigned_each_step,
     fingers_without_gains,
+    gains_without_reset,
     lengths_differ,
     past_a_limit,
-    wrong_index,
-)
-from robo_genesis.lessons.l04.reading_mistakes import time_shift, wrong_getter
-from robo_genesis.lessons.l04.reset_mistakes import (
-    assigned_each_step,
-    gains_without_reset,
     stale_target,
-)
+    time_shift,
+    wrong_getter,
+    wrong_index,
+)  # fmt: skip
 from robo_genesis.sim.joints import resolve_joints
 
 JOINT = spec.STEPPED_JOINT
@@ -59,20 +59,10 @@ def robot(lab):
     return lab.scene, lab.franka, lab.joints
 
 
-def end(failure: Failure, label: str) -> float:
-    return float(failure.curves[label][1][-1])
-
-
 @pytest.mark.engine
-def test_fingers_close_whatever_is_commanded_until_gains_are_set(fingers):
+def test_fingers_close_whatever_is_commanded_until_gains_are_set(crowded, fingers):
     assert fingers.shown
-    assert end(fingers, "before gains are set") == pytest.approx(0, abs=1e-4)
-    assert end(fingers, "with gains set") == pytest.approx(0.02, abs=1e-4)
     assert "ended at 0.0000 m before gains were set and at 0.0200 m" in fingers.evidence
-
-
-@pytest.mark.engine
-def test_fingers_with_gains_show_no_symptom(crowded, fingers):
     again = fingers_without_gains(*crowded, spec.BASELINE, opening=0.02)
     assert not again.shown
     assert "ended at 0.0200 m before" in again.evidence
@@ -158,15 +148,15 @@ FALLS = ["WARNING", "Backend ~~<gs.gpu>~~ not available on this machine. Falling
     ("answer", "shown", "words"),
     [
         ((GONE, "cpu", [FALLS]), True, "Backend <gs.cuda> not available"),
-        ((GONE, "amdgpu", []), True, "started on `amdgpu`; its warnings (0): nothing"),
-        ((GONE, "cpu", []), False, "its warnings (0): nothing"),
+        ((GONE, "amdgpu", []), True, "started on `amdgpu`; its warnings (0): none"),
+        ((GONE, "cpu", []), False, "its warnings (0): none"),
         ((GONE, "cpu", [FALLS, FALLS]), False, "its warnings (2)"),
         ((["ValueError", "not available"], "cpu", [FALLS]), False, "`ValueError`"),
         ((None, None, []), False, "`gs.init(backend=gs.cuda)` raised nothing."),
     ],
 )
-def test_the_answers_for_an_absent_backend_are_judged(answer, shown, words):
-    found = judge("cuda", *answer)
+def test_an_absent_backend_is_shown_where_it_raises_and_falls_back(answer, shown, words):
+    found = absent_backend_failure("cuda", *answer)
     assert found.shown is shown
     assert words in found.evidence
     assert "~" not in found.evidence
@@ -185,16 +175,12 @@ def test_the_net_force_at_rest_is_no_motor_torque(joints, traces):
 
 
 def test_a_shift_by_one_sample_shifts_both_times_by_dt(joints, traces):
-    found = time_shift(traces["G1"], joints, JOINT)
+    trace = traces["G1"]
+    found = time_shift(trace, joints, JOINT)
     assert found.shown
-    assert "rise time 0." in found.evidence
-    assert "instead of 0." in found.evidence
-
-
-def test_times_that_were_not_observed_show_no_shift(joints, traces):
-    still = traces["G1"]
-    q = np.tile(still.q[0], (len(still.t), 1))
-    found = time_shift(replace(still, q=q), joints, JOINT)
+    assert re.search(r"give rise time 0\.\d\d s instead of 0\.\d\d s and", found.evidence)
+    unobserved = replace(trace, q=np.tile(trace.q[0], (len(trace.t), 1)))
+    found = time_shift(unobserved, joints, JOINT)
     assert not found.shown
     assert "rise time not observed instead of not observed" in found.evidence
 

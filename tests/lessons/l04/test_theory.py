@@ -83,7 +83,7 @@ def test_parting_is_the_first_sample_beyond_the_threshold(run):
     trace = run([0.0, 0.15, 0.3, 0.8, 1.0])
     found = parting(trace, trace.q[:, 0], IDEAL, 0, 0.1)
     assert found.time == pytest.approx(0.02)
-    assert found.apart == pytest.approx(0.2)
+    assert found.distance == pytest.approx(0.2)
     # State 2 follows from the efforts at t[0], not clipped in this trace, and t[1].
     assert (found.clipped, found.efforts) == (1, 2)
 
@@ -98,7 +98,7 @@ def test_a_response_that_stays_near_does_not_part(run):
     trace = run(IDEAL + 0.05)
     found = parting(trace, trace.q[:, 0], IDEAL, 0, 0.1)
     assert found.time is None
-    assert found.apart == pytest.approx(0.05)
+    assert found.distance == pytest.approx(0.05)
     assert (found.clipped, found.efforts) == (2, 4)
 
 
@@ -119,8 +119,8 @@ def test_what_acts_on_both_runs_is_gone_from_the_share(run):
 @pytest.mark.parametrize(
     ("step", "hold", "says"),
     [
-        (([0.0, 1.0], 1.0), ([0.0, 0.0, 0.0], 0.0), "time stamps"),
-        (([0.1, 1.0], 1.0), ([0.0, 0.0], 0.0), "start elsewhere"),
+        (([0.0, 1.0], 1.0), ([0.0, 0.0, 0.0], 0.0), "different times"),
+        (([0.1, 1.0], 1.0), ([0.0, 0.0], 0.0), "different states"),
         (([0.0, 1.0], 1.0), ([0.0, 0.0], 1.0), "step is 0"),
     ],
 )
