@@ -1,18 +1,18 @@
 """Runs of a joint as channels: position, velocity, control force, target and effort limit."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.channels import Channel, Level, Runs, View, farthest_link
-from robo_genesis.core.orderings import Measured
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import listed, said
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.joints import JointMap
 
-Metrics = Mapping[str, Mapping[str, Measured]]
-"""By case, by name."""
+Metrics = Mapping[str, Mapping[str, Any]]
+"""By case and name, each with `value` and `unit`."""
 
 CREDIT = (
     "Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from franka_description, "
@@ -48,24 +48,14 @@ def levels(traces: Mapping[str, Trace], joints: JointMap, joint: str, band: floa
     unit, effort = joints.position_units[k], joints.effort_units[k]
     target = {case: float(trace.target[0, k]) for case, trace in traces.items()}
     limit = {case: float(trace.effort_limit[k]) for case, trace in traces.items()}
+    values = {case: (value,) for case, value in target.items()}
+    texts = {case: said(value, unit) for case, value in target.items()}
+    limits = {case: (-value, value) for case, value in limit.items()}
+    limit_texts = {case: f"±{said(value, effort, 0)}" for case, value in limit.items()}
+    legend = "Short dashes, at the edges of the control force: its limits."
     return [
-        Level(
-            name="target",
-            channel="position",
-            mark="target",
-            legend="Dotted: the target.",
-            values={case: (value,) for case, value in target.items()},
-            said={case: said(value, unit) for case, value in target.items()},
-            band=band,
-        ),
-        Level(
-            name="force limit",
-            channel="control force",
-            mark="limit",
-            legend="Short dashes, at the edges of the control force: its limits.",
-            values={case: (-value, value) for case, value in limit.items()},
-            said={case: f"±{said(value, effort, 0)}" for case, value in limit.items()},
-        ),
+        Level("target", "position", "target", "Dotted: the target.", values, texts, band),
+        Level("force limit", "control force", "limit", legend, limits, limit_texts),
     ]
 
 

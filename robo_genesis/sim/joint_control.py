@@ -1,5 +1,6 @@
 """Position control of a robot's joints: reset, command a target, step, record."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -186,9 +187,9 @@ def assign_path(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> 
 
 def assemble(
     case: ControlCase,
-    states: list[tuple[FloatArray, FloatArray, FloatArray]],
-    steps: list[tuple[FloatArray, FloatArray, FloatArray]],
-    targets: list[FloatArray],
+    states: Sequence[tuple[FloatArray, ...]],
+    steps: Sequence[tuple[FloatArray, ...]],
+    targets: Sequence[FloatArray],
     start_qd: FloatArray,
     start_control_force: FloatArray,
     effort_limit: FloatArray,

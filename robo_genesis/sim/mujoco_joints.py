@@ -80,21 +80,18 @@ def run_case(
     bodies = [model.body(name).id for name in links]
     data.qpos[q_at], data.ctrl[:] = case.q_start, case.q_target
 
-    def state() -> tuple[FloatArray, FloatArray, FloatArray]:
+    def read() -> tuple[FloatArray, ...]:
         mujoco.mj_forward(model, data)  # poses and forces of the state as it is now
-        return _kept(data.qpos[q_at]), _kept(data.xpos[bodies]), _kept(data.xquat[bodies])
+        net = (data.qfrc_smooth + data.qfrc_constraint)[dof_at]
+        state = (data.qpos[q_at], data.xpos[bodies], data.xquat[bodies])
+        return tuple(map(_kept, (*state, data.qvel[dof_at], data.actuator_force, net)))
 
-    def step_reading() -> tuple[FloatArray, FloatArray, FloatArray]:
-        net = data.qfrc_smooth + data.qfrc_constraint
-        return _kept(data.qvel[dof_at]), _kept(data.actuator_force), _kept(net[dof_at])
-
-    states = [state()]
-    start_qd, start_control_force, _ = step_reading()
-    steps = []
+    readings = [read()]
     for _ in range(case.steps):
         mujoco.mj_step(model, data, nstep=round(case.dt / timestep))
-        states.append(state())
-        steps.append(step_reading())
+        readings.append(read())
+    states, steps = [r[:3] for r in readings], [r[3:] for r in readings[1:]]
+    start_qd, start_control_force = readings[0][3:5]
     targets = [case.q_target] * case.steps
     effort_limit = _kept(model.actuator_forcerange[:, 1])
     return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)

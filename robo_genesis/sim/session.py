@@ -18,8 +18,9 @@ import numpy as np
 from robo_genesis.core import project
 from robo_genesis.core.scene import FRAME_SHAPE, SEED
 
-BACKENDS = ("auto", "cpu")
-RENDER_CHOICES = ("0", "1")
+CHOICES = {"ROBO_GENESIS_BACKEND": ("cpu", "auto"), "ROBO_GENESIS_RENDER": ("1", "0")}
+"""Valid values of the variables of the contract; the first is the default."""
+
 PRECISION = "32"
 INSTALL = "Install it again: pip install --force-reinstall -r requirements.lock."
 
@@ -54,8 +55,11 @@ def read_contract(environ: Mapping[str, str] | None = None) -> Contract:
         ContractError: naming the variable, its value and the choices.
     """
     environ = os.environ if environ is None else environ
-    backend = _choice(environ, "ROBO_GENESIS_BACKEND", "cpu", BACKENDS)
-    render = _choice(environ, "ROBO_GENESIS_RENDER", "1", RENDER_CHOICES)
+    values = {name: environ.get(name, choices[0]) for name, choices in CHOICES.items()}
+    for name, value in values.items():
+        if value not in CHOICES[name]:
+            choices = ", ".join(sorted(CHOICES[name]))
+            raise ContractError(f"{name}={value!r} is not valid. Choose one of: {choices}.")
     outputs = Path(environ.get("ROBO_GENESIS_OUTPUTS_DIR") or "outputs").resolve()
     try:
         outputs.mkdir(parents=True, exist_ok=True)
@@ -66,18 +70,8 @@ def read_contract(environ: Mapping[str, str] | None = None) -> Contract:
             f"ROBO_GENESIS_OUTPUTS_DIR={str(outputs)!r} cannot be written: {error.strerror}. "
             "Name a folder that you may create and write."
         ) from error
+    backend, render = values.values()
     return Contract(backend, render == "1", outputs)
-
-
-def _choice(
-    environ: Mapping[str, str], variable: str, default: str, choices: tuple[str, ...]
-) -> str:
-    value = environ.get(variable, default)
-    if value not in choices:
-        raise ContractError(
-            f"{variable}={value!r} is not valid. Choose one of: {', '.join(choices)}."
-        )
-    return value
 
 
 @dataclass(frozen=True, slots=True)
