@@ -20,7 +20,7 @@ from collections.abc import Sequence
 from robo_genesis.core import project
 from robo_genesis.sim.diagnosis import STEPS, Bench, Finding, examine, shareable
 
-WIDTH = 72  # fits a terminal of 80 columns, and the column of a page
+WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
 REPORT_FORMAT = 1
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 

@@ -10,16 +10,16 @@ from typing import Any
 Record = dict[str, Any]
 
 ENGINE = ["engine"]
-"""The source of a value that the engine reported and no array holds."""
+"""The source of a value that the engine reported and that is in no array."""
 
 
 def metric(unit: str, label: str, *sources: str, noun: str = "") -> Any:
     """Return a dataclass field for one metric.
 
     Args:
-        unit: as written for a reader; "1" for counts.
+        unit: as readers see it; "1" for counts.
         label: in the head of a table.
-        sources: the arrays that it is computed from, by their names in a bundle.
+        sources: names of the arrays in a bundle that it is computed from.
         noun: its name in a sentence, by default the label.
     """
     about = {"unit": unit, "label": label, "sources": sources, "noun": noun or label}
