@@ -73,27 +73,15 @@ def make_trace() -> Callable[..., Trace]:
     """Build a run of one joint from its positions; arrays that are not given are zero."""
 
     def build(
-        q: Any,
-        target: Any,
-        *,
-        dt: float = DT,
-        qd: Any = 0.0,
-        control_force: Any = 0.0,
-        effort_limit: float = 87.0,
+        q: Any, target: Any, *, dt: float = DT, effort_limit: float = 87.0, **given: Any
     ) -> Trace:
-        q = np.asarray(q)[:, None]
         n = len(q) - 1
-
-        def column(values: Any) -> np.ndarray:
-            return np.full((n, 1), np.reshape(values, (-1, 1)), dtype=float)
-
+        steps = {"qd": 0.0, "control_force": 0.0, "internal_force": 0.0} | given
         return Trace(
             t=np.arange(n + 1) * dt,
-            q=q,
-            qd=column(qd),
-            target=column(target),
-            control_force=column(control_force),
-            internal_force=column(0.0),
+            q=np.reshape(q, (-1, 1)),
+            target=np.full((n, 1), np.reshape(target, (-1, 1)), float),
+            **{name: np.full((n, 1), np.reshape(v, (-1, 1)), float) for name, v in steps.items()},
             start_control_force=np.zeros(1),
             start_qd=np.zeros(1),
             effort_limit=np.array([effort_limit]),

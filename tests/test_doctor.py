@@ -235,10 +235,3 @@ def test_the_table_is_aligned_and_fits_80_columns():
     texts = [line for line in lines if "word" in line or "Choose" in line]
     assert all(line[25] == " " != line[26] for line in texts)
     assert lines[-1] == "DOCTOR: step 2, longer_name, is broken; fix it and run this again"
-
-
-def test_an_unknown_option_is_refused_with_usage(capsys):
-    with pytest.raises(SystemExit) as stopped:
-        main(["--verbose"])
-    assert stopped.value.code == 2
-    assert "robo_genesis.doctor" in capsys.readouterr().err
