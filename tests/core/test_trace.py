@@ -54,9 +54,7 @@ def test_a_wrong_length_and_a_missing_axis_are_refused(trace, name):
 
 
 def test_a_state_before_the_first_step_is_required(trace):
-    states = {"t": trace.t[:-1]} | {
-        n: getattr(trace, n)[1:] for n in ("q", "link_pos", "link_quat")
-    }
+    later = {name: getattr(trace, name)[1:] for name in ("q", "link_pos", "link_quat")}
     with pytest.raises(TraceError, match=r"qd has shape .* a run of 119 steps has 120 states"):
         replace(trace, t=trace.t[:-1], **later)
 
