@@ -115,7 +115,7 @@ def require_pinned_engine(root: Path = ROOT) -> str:
     pin, installed = engine_pin(root), installed_version(ENGINE)
     if installed != pin:
         raise ProjectError(
-            f"{ENGINE} {installed or '(none)'} is installed, pyproject.toml pins {pin}. "
+            f"Installed is {ENGINE} {installed or '(none)'}, pinned in pyproject.toml is {pin}. "
             "Install the lock (pip install -r requirements.lock), or change pin and lock together."
         )
     return pin
