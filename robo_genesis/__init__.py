@@ -1,5 +1,5 @@
 """Lessons on robot simulation with Genesis: experiments, metrics and their evidence.
 
-Importing the package or any of its modules does not import the engine. Only
-`runtime`, `robot_model` and `joint_control` do that, inside functions.
+Importing the package or any of its modules does not import the engine. Only modules of `sim` import
+it, inside functions.
 """

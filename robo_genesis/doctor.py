@@ -1,9 +1,9 @@
-"""Walk the lesson's diagnostic order on this machine and stop at the first broken link.
+"""Run the steps of the diagnosis on this machine and stop at the first that is broken.
 
     python -m robo_genesis.doctor           a table for the terminal
     python -m robo_genesis.doctor --json    the same facts for a bug report
 
-Exit status: 0 all links hold, 1 one is broken, 2 the command was not understood.
+Exit status: 0 all steps pass, 1 one is broken, 2 the command was not understood.
 """
 
 import argparse
@@ -16,22 +16,21 @@ import sys
 import tempfile
 import textwrap
 from collections.abc import Sequence
-from dataclasses import asdict
 
 from robo_genesis.core import project
-from robo_genesis.sim.diagnosis import LINKS, Bench, Finding, examine, shareable
+from robo_genesis.sim.diagnosis import STEPS, Bench, Finding, examine, shareable
 
-WIDTH = 72  # fits a terminal of 80 columns, and the column of a page
+WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
 REPORT_FORMAT = 1
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 
 
 def table(findings: Sequence[Finding]) -> str:
     """Return the findings as an aligned table, no line longer than `WIDTH`."""
-    indent = max(len(f.link) for f in findings) + 15
+    indent = max(len(f.step) for f in findings) + 15
     lines = []
     for number, f in enumerate(findings, start=1):
-        head = f"{number:2}  {f.link:{indent - 15}}  {f.state:7}  "
+        head = f"{number:2}  {f.step:{indent - 15}}  {f.state:7}  "
         lines.append(
             textwrap.fill(f.found, WIDTH, initial_indent=head, subsequent_indent=" " * indent)
             if f.found
@@ -41,22 +40,22 @@ def table(findings: Sequence[Finding]) -> str:
 
 
 def verdict(findings: Sequence[Finding]) -> str:
-    """Return the last line: that all links hold, or which is broken."""
-    broken = [f"{number}, {f.link}" for number, f in enumerate(findings, 1) if f.state == "broken"]
+    """Return the last line: all steps pass, or which one is broken."""
+    broken = [f"{number}, {f.step}" for number, f in enumerate(findings, 1) if f.state == "broken"]
     if not broken:
-        return f"DOCTOR: all {len(findings)} links hold"
-    return f"DOCTOR: link {broken[0]}, is broken; mend it and run this again"
+        return f"DOCTOR: all {len(findings)} steps pass"
+    return f"DOCTOR: step {broken[0]}, is broken; fix it and run this again"
 
 
 def report(findings: Sequence[Finding], bench: Bench) -> str:
-    """Return the findings as JSON, with versions and platform and without anything private."""
+    """Return the findings as JSON, with versions and platform and without private paths."""
     warnings = bench.engine.log.warnings if bench.engine else []
     contract = project.environment_contract(bench.environ)
     facts = {
         "format": REPORT_FORMAT,
         "ok": all(f.state == "ok" for f in findings),
-        "broken": next((f.link for f in findings if f.state == "broken"), None),
-        "links": [asdict(f) for f in findings],
+        "broken": next((f.step for f in findings if f.state == "broken"), None),
+        "links": [{"link": f.step, "state": f.state, "found": f.found} for f in findings],
         "versions": {"python": platform.python_version()}
         | {name: project.installed_version(name) for name in PACKAGES},
         "platform": {
@@ -79,14 +78,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--json", action="store_true", help="a report for a bug, on stdout")
-    asked = parser.parse_args(arguments)
-    print(
-        f"{len(LINKS)} links; the engine's first start on a machine takes minutes", file=sys.stderr
-    )
+    options = parser.parse_args(arguments)
+    print(f"{len(STEPS)} steps; the first start of the engine takes minutes", file=sys.stderr)
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
-        bench = Bench({"ROBO_GENESIS_OUTPUTS_DIR": folder} | os.environ)  # else `outputs`, here
+        bench = Bench(
+            {"ROBO_GENESIS_OUTPUTS_DIR": folder} | os.environ
+        )  # by default `outputs` in the working directory
         findings = examine(bench)
-    print(report(findings, bench) if asked.json else table(findings))
+    print(report(findings, bench) if options.json else table(findings))
     return 0 if all(f.state == "ok" for f in findings) else 1
 
 

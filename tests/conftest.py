@@ -1,50 +1,38 @@
 """Runs without the engine for most tests; one real engine and one built scene for the rest."""
 
-import io
 import os
 import signal
-import sys
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 from hypothesis import settings
-from matplotlib.figure import Figure
 
 from robo_genesis.build import stages
-from robo_genesis.core import plotting, project
-from robo_genesis.core.free_fall import summed_drop
+from robo_genesis.core import project
 from robo_genesis.core.scene import (
     CAMERA,
     DT,
     FRAME_SHAPE,
     FRANKA_MJCF,
     JOINT_NAMES,
-    Q_START,
     SUBSTEPS,
     per_joint,
 )
-from robo_genesis.core.trace import BodyTrace, ContactTrace, Trace
-from robo_genesis.lessons.l03 import spec as l03
+from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import checks as step_checks
-from robo_genesis.lessons.l04 import plots, study_spec
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.lessons.l04 import study as studies
 from robo_genesis.lessons.l04.metrics import measure
 from robo_genesis.sim import joints as robot_model
-from robo_genesis.sim import mujoco_contacts, mujoco_joints, session
-from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim import session
 from robo_genesis.sim.joints import JointMap
-from robo_genesis.sim.rigid_bodies import Drop
 
 pytest_plugins = ("bundles",)
 
-# Tests send it to the commands they start; a shell that starts pytest with & has it ignored.
+# Tests send SIGINT to the commands that they start; a shell that starts pytest with & ignores it.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # The same examples each time, and no time limit: shared machines stall.
@@ -53,11 +41,11 @@ settings.load_profile("course")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave the real change of the pin out unless `-m` names it; no other `-m` may start it."""
+    """Deselect the real change of the pin unless `-m` names it."""
     if "repin" not in config.option.markexpr:
-        left_out = [item for item in items if item.get_closest_marker("repin")]
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in left_out]
+        deselected = [item for item in items if item.get_closest_marker("repin")]
+        config.hook.pytest_deselected(items=deselected)
+        items[:] = [item for item in items if item not in deselected]
 
 
 LINKS = ("link0", "link4", "hand")
@@ -82,30 +70,18 @@ def second_order() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
 
 @pytest.fixture(scope="session")
 def make_trace() -> Callable[..., Trace]:
-    """Build a run of one joint from its positions; what is not given is zero."""
+    """Build a run of one joint from its positions; arrays that are not given are zero."""
 
     def build(
-        q: Any,
-        target: Any,
-        *,
-        dt: float = DT,
-        qd: Any = 0.0,
-        control_force: Any = 0.0,
-        effort_limit: float = 87.0,
+        q: Any, target: Any, *, dt: float = DT, effort_limit: float = 87.0, **given: Any
     ) -> Trace:
-        q = np.asarray(q)[:, None]
         n = len(q) - 1
-
-        def column(values: Any) -> np.ndarray:
-            return np.broadcast_to(np.asarray(values, dtype=float), (n,))[:, None]
-
+        steps = {"qd": 0.0, "control_force": 0.0, "internal_force": 0.0} | given
         return Trace(
             t=np.arange(n + 1) * dt,
-            q=q,
-            qd=column(qd),
-            target=column(target),
-            control_force=column(control_force),
-            internal_force=column(0.0),
+            q=np.reshape(q, (-1, 1)),
+            target=np.full((n, 1), np.reshape(target, (-1, 1)), float),
+            **{name: np.full((n, 1), np.reshape(v, (-1, 1)), float) for name, v in steps.items()},
             start_control_force=np.zeros(1),
             start_qd=np.zeros(1),
             effort_limit=np.array([effort_limit]),
@@ -168,56 +144,6 @@ def traces(make_run) -> dict[str, Trace]:
 
 
 @pytest.fixture(scope="session")
-def make_drop() -> Callable[[Drop], BodyTrace]:
-    """Build a dropped box that follows the stepped formula in float32."""
-
-    def build(case: Drop) -> BodyTrace:
-        t = np.arange(case.steps + 1) * case.dt
-        position = np.zeros((len(t), 1, 3), np.float32)
-        n = case.substeps * np.arange(len(t))
-        position[:, 0, 2] = case.height - summed_drop(case.h, n, case.gravity)
-        velocity = np.zeros_like(position)
-        velocity[:, 0, 2] = -case.gravity * t
-        upright = np.zeros((len(t), 1, 4), np.float32)
-        upright[..., 0] = 1
-        return BodyTrace(t, position, upright, velocity, np.zeros_like(position))
-
-    return build
-
-
-@pytest.fixture(scope="session")
-def slide_on_corners() -> Callable[[ContactCase], ContactTrace]:
-    """Build a cube that slides on four corners as semi-implicit Euler has Coulomb's friction."""
-
-    def build(case: ContactCase) -> ContactTrace:
-        states, friction = case.steps + 1, max(case.friction, case.surface_friction)
-        speed = case.speed - friction * case.gravity * case.h * np.arange(states * case.substeps)
-        speed = np.maximum(speed, 0)
-        x = np.concatenate([[0], np.cumsum(case.h * speed[1:])])[:: case.substeps]
-        position, velocity = (np.zeros((states, 1, 3), np.float32) for _ in range(2))
-        position[:, 0] = case.start
-        position[:, 0, 0] += x
-        velocity[:, 0, 0] = speed[:: case.substeps]
-        upright = np.zeros((states, 1, 4), np.float32)
-        upright[..., 0] = 1
-        t, corners = np.arange(states) * case.dt, np.full((states, 1), 4, np.int32)
-        still, depth = np.zeros_like(position), np.zeros((states, 1), np.float32)
-        return ContactTrace(t, position, upright, velocity, still, corners, depth)
-
-    return build
-
-
-@pytest.fixture(scope="session")
-def contact_traces(slide_on_corners) -> dict[str, ContactTrace]:
-    """The runs of L03, of lab and lecture, with MuJoCo in the place of both engines."""
-    traces = {
-        name: mujoco_contacts.run_case(case, own_defaults=name == l03.OWN_DEFAULTS)
-        for name, case in (l03.CASES | l03.STUDY_CASES).items()
-    }
-    return traces | {name: slide_on_corners(case) for name, case in l03.CLEAN_SLIDES.items()}
-
-
-@pytest.fixture(scope="session")
 def frames() -> dict[str, np.ndarray]:
     """Two different pictures of the course's shape."""
     initial = np.arange(np.prod(FRAME_SHAPE), dtype=np.uint32).astype(np.uint8).reshape(FRAME_SHAPE)
@@ -240,43 +166,12 @@ def experiment(joints, traces, frames) -> step_checks.StepExperiment:
     )
 
 
-@pytest.fixture(scope="session")
-def study_runs(joints) -> studies.Studies:
-    """The studies of L04 in order, with MuJoCo in the place of both engines.
-
-    Genesis is played at a fine step, and G2's overshoot is made to fall with the substeps.
-    """
-    k = joints.entry(l04.STEPPED_JOINT)
-    cases = l04.CASES | study_spec.STEP_CASES
-    traces = {name: mujoco_joints.run_case(case, LINKS, 0.0005) for name, case in cases.items()}
-    for name, run in study_spec.SECOND_RUNS.items():
-        case = l04.CASES[run.case]
-        traces[name] = mujoco_joints.run_case(case, LINKS, run.timestep, run.integrator)
-    falling = (0.06, 0.05, 0.04, 0.03, 0.025, 0.023)
-    for n, overshoot in zip(study_spec.SUBSTEPS_STUDIED, falling, strict=True):
-        q = np.array(traces["G2"].q)
-        q[q[:, k].argmax(), k] = traces["G2"].target[0, k] + overshoot
-        traces[studies.run_name("Genesis", "G2", n)] = replace(traces["G2"], q=q)
-    inertia, gravity = (float(v[k]) for v in mujoco_joints.at_rest(l04.G1, Q_START))
-    return studies.Studies(
-        joints=joints,
-        traces=traces,
-        inertia=dict.fromkeys(("Genesis", "MuJoCo"), inertia),
-        gravity_at_start=dict.fromkeys(("Genesis", "MuJoCo"), gravity),
-        passive_damping=1.0,
-        gravity={
-            name: float(mujoco_joints.at_rest(case, traces[name].q[-1])[1][k])
-            for name, case in l04.CASES.items()
-        },
-    )
-
-
 @pytest.fixture(scope="module")
 def real_engine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
     """Real engine, started in this process.
 
-    It holds the lock of builds: one that starts meanwhile would take the engine's lock files for
-    stale. Module scope gives the lock back before the tests of the site build theirs.
+    It holds the lock of builds, because a build would remove the lock files of the engine as stale.
+    Module scope releases the lock before the tests of the site build it.
     """
     contract = session.Contract("cpu", True, tmp_path_factory.mktemp("outputs"))
     with stages.only_build(project.CACHE), pytest.MonkeyPatch.context() as patch:
@@ -291,7 +186,7 @@ def real_engine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleName
 
 @pytest.fixture(scope="module")
 def lab(real_engine: SimpleNamespace) -> SimpleNamespace:
-    """The scene of L04's lab, built once."""
+    """The scene of the lab of L04, built once."""
     gs = real_engine.gs
     scene = gs.Scene(sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS), show_viewer=False)
     scene.add_entity(gs.morphs.Plane())
@@ -305,22 +200,6 @@ def lab(real_engine: SimpleNamespace) -> SimpleNamespace:
         camera=camera,
         joints=robot_model.resolve_joints(franka, JOINT_NAMES),
     )
-
-
-@pytest.fixture
-def draw_svg(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., bytes]]:
-    """Draw the response of joint4 in the course's style, as the bytes of an SVG file."""
-    monkeypatch.setitem(sys.modules, "matplotlib_inline.backend_inline", None)
-
-    def draw(traces: dict[str, Trace], joints: JointMap) -> bytes:
-        figure, stream = Figure(), io.BytesIO()
-        plots.response(figure.subplots(3, 1), traces, joints, l04.STEPPED_JOINT)
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-        return stream.getvalue()
-
-    with mpl.rc_context():
-        plotting.use_course_style()
-        yield draw
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Every link of the doctor's chain broken in turn, and the whole chain on the real engine."""
+"""Every step of the doctor broken in turn, and all steps on the real engine."""
 
 import ctypes
 import functools
@@ -12,89 +12,85 @@ import pytest
 
 from robo_genesis import doctor
 from robo_genesis.core import project
+from robo_genesis.core import scene as course
 from robo_genesis.doctor import main, table
-from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.sim import diagnosis, joint_control, session
-from robo_genesis.sim.diagnosis import LINKS, Finding, shareable
+from robo_genesis.sim.diagnosis import BASELINE, STEPS, Finding, shareable
 
-NAMES = [link.__name__ for link in LINKS]
+NAMES = [step.__name__ for step in STEPS]
 
 
-def refuse(*args, **kwargs):
+def fail(*args):
     raise OSError("no such library")
 
 
 @pytest.fixture
-def looked_at(monkeypatch):
-    """Names of the links that really ran, in order."""
+def steps_run(monkeypatch):
+    """Names of the steps that really ran, in order."""
     ran: list[str] = []
 
-    def counted(link):
-        @functools.wraps(link)
+    def counted(step):
+        @functools.wraps(step)
         def run(bench):
-            ran.append(link.__name__)
-            return link(bench)
+            ran.append(step.__name__)
+            return step(bench)
 
         return run
 
-    monkeypatch.setattr(diagnosis, "LINKS", tuple(counted(link) for link in LINKS))
+    monkeypatch.setattr(diagnosis, "STEPS", tuple(counted(step) for step in STEPS))
     monkeypatch.setattr(project, "engine_cache_environment", dict)  # no variable outlives a test
     for variable in ("ROBO_GENESIS_BACKEND", "ROBO_GENESIS_RENDER", "ROBO_GENESIS_OUTPUTS_DIR"):
         monkeypatch.delenv(variable, raising=False)
     return ran
 
 
-def assert_broken(ran, capsys, link, *words):
-    """The command stops at `link`, says `words`, runs nothing later and exits with 1."""
-    place = NAMES.index(link)
+def assert_broken(steps_run, capsys, step, *words):
+    """The command stops at `step`, says `words`, runs nothing later and exits with 1."""
+    place = NAMES.index(step)
     assert main(["--json"]) == 1
     found = json.loads(capsys.readouterr().out)
-    assert ran == NAMES[: place + 1]
-    assert found["broken"] == link
-    assert [f["link"] for f in found["links"]] == NAMES
+    assert steps_run == NAMES[: place + 1]
+    assert found["broken"] == step
     states = ["ok"] * place + ["broken"] + ["not run"] * (len(NAMES) - place - 1)
-    assert [f["state"] for f in found["links"]] == states
+    assert [(f["link"], f["state"]) for f in found["links"]] == [*zip(NAMES, states, strict=True)]
     assert [word for word in words if word not in found["links"][place]["found"]] == []
 
 
-def test_another_engine_version_is_found(looked_at, capsys, monkeypatch):
-    monkeypatch.setattr(project, "installed_version", lambda package: "0.0.1")
-    assert_broken(looked_at, capsys, "version", "genesis-world 0.0.1", "pip install -r")
-
-
-def test_a_missing_library_is_found(looked_at, capsys, monkeypatch):
-    monkeypatch.setattr(ctypes, "CDLL", refuse)
-    assert_broken(looked_at, capsys, "libraries", "libEGL.so.1", "apt install libegl1")
+@pytest.mark.parametrize(
+    ("step", "module", "name", "value", "words"),
+    [
+        ("version", project, "installed_version", lambda package: "0.0.1",
+         ("genesis-world 0.0.1", "pip install -r")),
+        ("libraries", ctypes, "CDLL", fail, ("libEGL.so.1", "apt install libegl1")),
+        ("model_file", course, "FRANKA_MJCF", "xml/no_robot.xml",
+         ("genesis/assets/xml/no_robot.xml", "pip install")),
+    ],
+)  # fmt: skip
+def test_a_broken_installation_is_found(
+    steps_run, capsys, monkeypatch, step, module, name, value, words
+):
+    backend = SimpleNamespace(requested="cpu", actual="cpu", device_name="a processor")
+    engine = SimpleNamespace(backend=backend, log=session.EngineLog())
+    monkeypatch.setattr(session, "start", lambda contract: engine)
+    monkeypatch.setattr(module, name, value)
+    assert_broken(steps_run, capsys, step, *words)
 
 
 @pytest.mark.parametrize(
     ("variable", "value", "words"),
     [
-        ("ROBO_GENESIS_BACKEND", "banana", "Choose one of: auto, cpu."),
-        ("ROBO_GENESIS_RENDER", "yes", "Choose one of: 0, 1."),
+        ("ROBO_GENESIS_BACKEND", "banana", "='banana' is not valid. Choose one of: auto, cpu."),
+        ("ROBO_GENESIS_RENDER", "yes", "='yes' is not valid. Choose one of: 0, 1."),
+        ("ROBO_GENESIS_OUTPUTS_DIR", "no_file", "below' cannot be"),
     ],
 )
-def test_a_wrong_variable_is_found(looked_at, capsys, monkeypatch, variable, value, words):
-    monkeypatch.setenv(variable, value)
-    assert_broken(looked_at, capsys, "backend", f"{variable}={value!r}", words)
-
-
-def test_an_outputs_folder_that_cannot_be_written_is_found(looked_at, capsys, monkeypatch, no_file):
-    monkeypatch.setenv("ROBO_GENESIS_OUTPUTS_DIR", str(no_file))
-    assert_broken(looked_at, capsys, "backend", "ROBO_GENESIS_OUTPUTS_DIR", "below' cannot be")
-
-
-def test_a_missing_model_is_found(looked_at, capsys, monkeypatch):
-    backend = SimpleNamespace(requested="cpu", actual="cpu", device_name="a processor")
-    log = session.EngineLog()
-    started = SimpleNamespace(backend=backend, log=log)
-    monkeypatch.setattr(session, "start", lambda contract: started)
-    monkeypatch.setattr(diagnosis, "FRANKA_MJCF", "xml/no_robot.xml")
-    assert_broken(looked_at, capsys, "model_file", "genesis/assets/xml/no_robot.xml", "pip install")
+def test_a_wrong_variable_is_found(steps_run, capsys, monkeypatch, no_file, variable, value, words):
+    monkeypatch.setenv(variable, str(no_file) if value == "no_file" else value)
+    assert_broken(steps_run, capsys, "backend", variable, words)
 
 
 class StandIn:
-    """The lab's built scene where the doctor would build its own."""
+    """The built scene of the lab, in place of the one that the doctor would build."""
 
     def __init__(self, lab):
         self.lab = lab
@@ -117,7 +113,7 @@ class StandIn:
 
 @pytest.fixture
 def scene(lab, monkeypatch):
-    """A chain that starts no second engine and builds no second scene."""
+    """The lab's scene for steps that start no second engine and build no second scene."""
     scene = StandIn(lab)
     gs = SimpleNamespace(
         Scene=lambda **options: scene, options=lab.gs.options, morphs=lab.gs.morphs
@@ -127,85 +123,51 @@ def scene(lab, monkeypatch):
     return scene
 
 
-@pytest.mark.engine
-def test_an_error_of_the_engine_is_named_with_what_to_do(looked_at, capsys, monkeypatch, scene):
-    def build():
-        raise RuntimeError("EGL is required")
-
-    monkeypatch.setattr(scene, "build", build)
-    assert_broken(looked_at, capsys, "build", "RuntimeError: EGL is required", "--json")
+BLIND = SimpleNamespace(render=lambda: [np.zeros(course.FRAME_SHAPE, np.uint8)])
+UNREACHABLE = np.where(np.equal(course.JOINT_NAMES, "joint4"), 1.0, course.Q_START)
+NOT_FINITE = (np.full(9, np.nan),) * 3
 
 
 @pytest.mark.engine
-def test_a_scene_that_is_not_built_is_found(looked_at, capsys, scene):
-    scene.is_built = False
-    assert_broken(looked_at, capsys, "build", "is not built", "Restart")
+@pytest.mark.parametrize(
+    ("step", "module", "name", "value", "words"),
+    [
+        ("build", None, "build", fail, ("OSError: no such library", "--json")),
+        ("build", None, "is_built", False, ("is not built", "Restart")),
+        ("render", None, "camera", BLIND, ("empty picture",)),
+        ("names", course, "JOINT_NAMES", ("joint1", "elbw"),
+         ("Joint 'elbw'", "Available: joint1")),
+        ("names", course, "FRANKA_MODEL", course.FRANKA_MODEL | {"links": 12},
+         ("'links': 11", "'links': 12")),
+        ("target", diagnosis, "BASELINE", replace(BASELINE, q_target=UNREACHABLE),
+         ("q_target[joint4] is 1 rad", "none is clipped")),
+        ("reset", diagnosis, "BASELINE", replace(BASELINE, dt=0.02), ("dt=0.02", "Restart")),
+        ("stamps", joint_control, "read_step", lambda robot, dofs: NOT_FINITE,
+         ("qd is not finite", "reset")),
+        ("saturation", diagnosis, "BASELINE", replace(BASELINE, effort_limit=np.full(9, 0.5)),
+         ("120 of 120 samples", "Check limit")),
+    ],
+)  # fmt: skip
+def test_a_broken_step_is_found(
+    steps_run, capsys, monkeypatch, scene, step, module, name, value, words
+):
+    monkeypatch.setattr(module or scene, name, value)
+    assert_broken(steps_run, capsys, step, *words)
 
 
 @pytest.mark.engine
-def test_an_empty_picture_is_found(looked_at, capsys, scene):
-    empty = np.zeros(session.FRAME_SHAPE, np.uint8)
-    scene.camera = SimpleNamespace(render=lambda: [empty])
-    assert_broken(looked_at, capsys, "render", "empty picture")
-
-
-@pytest.mark.engine
-def test_an_unknown_joint_is_found(looked_at, capsys, monkeypatch, scene):
-    monkeypatch.setattr(diagnosis, "JOINT_NAMES", ("joint1", "elbw"))
-    assert_broken(looked_at, capsys, "names", "Joint 'elbw'", "Available: joint1")
-
-
-@pytest.mark.engine
-def test_another_model_is_found(looked_at, capsys, monkeypatch, scene):
-    monkeypatch.setattr(diagnosis, "FRANKA_MODEL", {"links": 12, "joints": 9, "dofs": 9, "qpos": 9})
-    assert_broken(looked_at, capsys, "names", "'links': 11", "'links': 12")
-
-
-@pytest.mark.engine
-def test_a_target_past_its_limit_is_found(looked_at, capsys, monkeypatch, scene):
-    monkeypatch.setattr(
-        diagnosis,
-        "BASELINE",
-        replace(diagnosis.BASELINE, q_target=l04.with_entry(l04.Q_START, 1.0)),
-    )
-    assert_broken(looked_at, capsys, "target", "q_target[joint4] is 1 rad", "none is clipped")
-
-
-@pytest.mark.engine
-def test_a_reset_that_does_not_fit_the_scene_is_found(looked_at, capsys, monkeypatch, scene):
-    monkeypatch.setattr(diagnosis, "BASELINE", replace(diagnosis.BASELINE, dt=0.02))
-    assert_broken(looked_at, capsys, "reset", "dt=0.02", "Restart")
-
-
-@pytest.mark.engine
-def test_values_that_are_not_finite_are_found(looked_at, capsys, monkeypatch, scene):
-    nothing = np.full(9, np.nan)
-    monkeypatch.setattr(joint_control, "read_step", lambda robot, dofs: (nothing,) * 3)
-    assert_broken(looked_at, capsys, "stamps", "qd is not finite", "reset")
-
-
-@pytest.mark.engine
-def test_a_joint_that_does_not_come_nearer_is_found(looked_at, capsys, monkeypatch, scene):
-    weak = np.full(9, 0.5)
-    monkeypatch.setattr(diagnosis, "BASELINE", replace(diagnosis.BASELINE, effort_limit=weak))
-    assert_broken(looked_at, capsys, "saturation", "120 of 120 samples", "look at limit")
-
-
-@pytest.mark.engine
-def test_a_healthy_machine_passes_with_a_scene_of_its_own(looked_at, capsys, monkeypatch, lab):
+def test_a_healthy_machine_passes_with_a_scene_of_its_own(steps_run, capsys, monkeypatch, lab):
     monkeypatch.setattr(session, "start", lambda contract: lab.engine)
     assert main([]) == 0
     output = capsys.readouterr().out
-    assert looked_at == NAMES
+    assert steps_run == NAMES
     assert output.count("  ok  ") == len(NAMES)
     assert f"genesis-world {lab.engine.version}, as pinned" in output
-    assert output.splitlines()[-1] == f"DOCTOR: all {len(NAMES)} links hold"
+    assert output.splitlines()[-1] == f"DOCTOR: all {len(NAMES)} steps pass"
 
 
 @pytest.mark.engine
-def test_without_rendering_the_picture_is_skipped_and_said_so(
-    looked_at, capsys, monkeypatch, scene
-):
+def test_without_rendering_the_picture_is_skipped(steps_run, capsys, monkeypatch, scene):
     monkeypatch.setenv("ROBO_GENESIS_RENDER", "0")
     assert main(["--json"]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -216,7 +178,7 @@ def test_without_rendering_the_picture_is_skipped_and_said_so(
     assert found["environment"]["ROBO_GENESIS_RENDER"] == "0"
 
 
-def test_the_report_has_stable_fields_and_versions(looked_at, capsys, monkeypatch):
+def test_the_report_has_stable_fields_and_versions(steps_run, capsys, monkeypatch):
     monkeypatch.setattr(project, "installed_version", lambda package: "0.0.1")
     main(["--json"])
     found = json.loads(capsys.readouterr().out)
@@ -227,7 +189,7 @@ def test_the_report_has_stable_fields_and_versions(looked_at, capsys, monkeypatc
     assert set(found["platform"]) == {"system", "release", "machine", "cpus"}
 
 
-def test_the_report_names_no_user(looked_at, capsys, monkeypatch, tmp_path):
+def test_the_report_names_no_user(steps_run, capsys, monkeypatch, tmp_path):
     monkeypatch.setenv("HOME", "/home/alice")
     monkeypatch.setenv("USER", "alice")
     monkeypatch.setenv("GS_CACHE_FILE_PATH", "/home/alice/cache")
@@ -272,11 +234,4 @@ def test_the_table_is_aligned_and_fits_80_columns():
     assert max(map(len, lines)) <= doctor.WIDTH <= 80
     texts = [line for line in lines if "word" in line or "Choose" in line]
     assert all(line[25] == " " != line[26] for line in texts)
-    assert lines[-1] == "DOCTOR: link 2, longer_name, is broken; mend it and run this again"
-
-
-def test_an_unknown_option_is_refused_with_usage(capsys):
-    with pytest.raises(SystemExit) as stopped:
-        main(["--verbose"])
-    assert stopped.value.code == 2
-    assert "robo_genesis.doctor" in capsys.readouterr().err
+    assert lines[-1] == "DOCTOR: step 2, longer_name, is broken; fix it and run this again"

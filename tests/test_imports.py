@@ -1,4 +1,4 @@
-"""Engines are imported in `sim` alone, and Genesis there only inside functions."""
+"""Only `sim` imports engines, and Genesis only inside functions."""
 
 import ast
 import json
@@ -22,9 +22,9 @@ def imported(node):
             return [alias.name for alias in node.names]
         case ast.ImportFrom(module=str(module), level=0):
             return [module]
-        case ast.Call(func=ast.Attribute(attr="import_module") | ast.Name(id="import_module")):
-            return [a.value for a in node.args if isinstance(a, ast.Constant)]
-        case ast.Call(func=ast.Name(id="__import__")):
+        case ast.Call(
+            func=ast.Attribute(attr="import_module") | ast.Name(id="import_module" | "__import__")
+        ):
             return [a.value for a in node.args if isinstance(a, ast.Constant)]
     return []
 

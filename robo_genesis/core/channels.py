@@ -1,4 +1,4 @@
-"""Runs of one bundle as channels: what pictures draw and replays play, whatever moved."""
+"""Runs of one bundle as channels, which pictures draw and replays show."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -13,10 +13,10 @@ Run = Trace | BodyTrace
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """One quantity of several runs, a value at each state.
+    """One quantity of several runs, with a value at each state.
 
-    `head` names it in the head of a table and at an axis; `digits` stand after the point where a
-    value is read out. `values` by case have shape (n+1,) [unit].
+    `head` is its name in the head of a table and at an axis; `digits` is the number of digits after
+    the point in a readout. `values` by case have shape (n+1,) [unit].
     """
 
     name: str
@@ -28,10 +28,10 @@ class Channel:
 
 @dataclass(frozen=True, slots=True)
 class Level:
-    """What a channel is held against: lines across its plot.
+    """A reference for a channel, such as a target, drawn as lines across its plot.
 
-    `mark` is the line's in the palette, `legend` the sentence of a replay about it. `values` by
-    case, in the channel's unit, are drawn; `said` by case is their text. `band` is the half width
+    `mark` is the mark of the line in the palette, `legend` its sentence in a replay. `values` by
+    case are in the unit of the channel; `said` by case is their text. `band` is the half width
     of an area around each line, 0 for none.
     """
 
@@ -46,11 +46,11 @@ class Level:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """How runs are shown in 3D.
+    """The 3D view of runs.
 
-    `thing` is what a button shows: "robot". `alt` describes it. `orbit` and `target` are those of
-    the viewer's camera, in its own notation and frame (y up); empty, it chooses.
-    `credit` names whose the shape is, None where it is the scene's own.
+    `thing` is the name of what moves: "robot". `alt` describes the view. `orbit` and `target` set
+    the camera of the viewer in its notation and frame (y up); the viewer chooses empty ones.
+    `credit` names the authors of the shape, None for a shape of the scene itself.
     """
 
     thing: str
@@ -62,10 +62,10 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Runs:
-    """Runs on one grid of times; `subject` is whose channels they are: `joint4`, `the box`.
+    """Runs with the same times; `subject` is the joint or body of the channels: `the box`.
 
-    `moves` says by case, as Markdown, what a viewer would see move. `alt` and `caption` stand with
-    a picture of the first channel.
+    `moves` describes by case, as Markdown, the motion. `alt` and `caption` belong to a picture of
+    the first channel.
 
     Raises:
         ValueError: there are no runs or no channels, or the runs differ in their times.
@@ -101,5 +101,12 @@ class Runs:
         return next(iter(self.traces.values())).t
 
     def levels_of(self, channel: Channel) -> list[Level]:
-        """Return what a channel is held against."""
+        """Return the levels of a channel."""
         return [level for level in self.levels if level.channel == channel.name]
+
+
+def farthest_link(links: Sequence[str], trace: Run) -> str:
+    """Return a sentence about the link that moves farthest from its start."""
+    distances = np.linalg.norm(trace.link_pos - trace.link_pos[0], axis=2).max(axis=0)  # (l,)
+    name, distance = links[distances.argmax()], 100 * distances.max()
+    return f"The link `{name}` moves farthest, by up to {distance:.1f} cm."

@@ -1,8 +1,8 @@
-"""Named checks: all pass, or the exact invariant that failed is named."""
+"""Named checks, and the error that names each check that failed."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -14,25 +14,13 @@ MASS_SHARE = 1e-5
 """Relative tolerance of an engine's mass against density times volume: float32."""
 
 
-class Asked(Protocol):
-    """What a case says of its time."""
-
-    @property
-    def steps(self) -> int:
-        """Outer steps."""
-
-    @property
-    def dt(self) -> float:
-        """Length of one [s]."""
-
-
 class CheckFailed(AssertionError):  # noqa: N818 - read aloud: check failed
     """At least one named check did not pass."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """Outcome of one check; `detail` says what was found where it failed, else what was held."""
+    """Outcome of one check; `detail` says what was found if it failed, else what it requires."""
 
     name: str
     passed: bool
@@ -40,29 +28,29 @@ class Check:
 
 
 def evaluate(named: Sequence[Callable[[Subject], list[str]]], run: Subject) -> tuple[Check, ...]:
-    """Run checks on what they look at; each function's name and docstring are the check's own."""
+    """Run checks on a subject; the name and docstring of a function are those of its check."""
     outcomes = []
     for check in named:
         try:
             problems = check(run)
         except (ValueError, KeyError, IndexError) as error:  # arrays that do not fit together
             problems = [f"cannot be evaluated: {error!r}"]
-        held = (check.__doc__ or "").strip()
-        outcomes.append(Check(check.__name__, not problems, "; ".join(problems) or held))
+        requirement = (check.__doc__ or "").strip()
+        outcomes.append(Check(check.__name__, not problems, "; ".join(problems) or requirement))
     return tuple(outcomes)
 
 
-def wrong_stamps(cases: Mapping[str, Asked], traces: Mapping[str, TimeSeries]) -> list[str]:
-    """Return which runs have not a state for t = 0 and one for each outer step, stamped k · dt.
+def wrong_stamps(cases: Mapping[str, Any], traces: Mapping[str, TimeSeries]) -> list[str]:
+    """Return which runs do not have a state for t = 0 and one for each outer step, at k · dt.
 
     Args:
-        cases: how many steps of which length each asks for.
+        cases: by name, with their outer `steps` and `dt` [s].
         traces: by case.
     """
     problems = []
     for name, case in cases.items():
-        t, asked = traces[name].t, np.arange(case.steps + 1) * case.dt
-        if len(t) != len(asked) or not np.allclose(t, asked, rtol=0, atol=1e-9):
+        t, expected = traces[name].t, np.arange(case.steps + 1) * case.dt
+        if len(t) != len(expected) or not np.allclose(t, expected, rtol=0, atol=1e-9):
             problems.append(
                 f"{name} has {len(t) - 1} steps to {t[-1]:g} s, asked for {case.steps} steps of "
                 f"{case.dt:g} s"
@@ -91,10 +79,10 @@ def wrong_masses(found: Mapping[str, float], expected: Mapping[str, float]) -> l
 
 
 def require(lesson: str, outcomes: Sequence[Check]) -> str:
-    """Return the line that says that all passed.
+    """Return the line that says that all checks passed.
 
     Raises:
-        CheckFailed: naming every check that did not, with what it found.
+        CheckFailed: naming every check that failed, with what it found.
     """
     failed = [f"[{c.name}] {c.detail}" for c in outcomes if not c.passed]
     if failed or not outcomes:

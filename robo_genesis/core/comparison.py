@@ -1,4 +1,4 @@
-"""One metric of two cases: its order, the sentence about it, and a prediction held against it."""
+"""One metric of two cases: its order, a sentence about it, and the outcome of a prediction."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ INSPECT = (
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One metric of two cases. `order` ranks the second relative to the first.
+    """One metric of two cases. `order` is that of the second relative to the first.
 
-    It is lower, equal or higher, and None where the values cannot be ranked.
+    It is lower, equal or higher, and None if the values cannot be ranked.
     """
 
     label: str
@@ -43,7 +43,7 @@ def compare_values(
 
 
 def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
-    """Say how one metric of two cases compares."""
+    """Return a sentence that compares one metric of two cases."""
     label, unit = comparison.label, comparison.unit
     first, second = (format_value(v, unit) for v in (comparison.first, comparison.second))
     values = f"{names[0]} {first}, {names[1]} {second}"
@@ -60,7 +60,7 @@ def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
 
 
 def prediction_sentence(names: tuple[str, str], comparison: Comparison, predicted: str) -> str:
-    """Hold one prediction against the measured order; one that fails says what to inspect."""
+    """Return the outcome of a prediction; after a failed one, the sentence says what to inspect."""
     label = comparison.label
     claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
     if comparison.order is None:

@@ -1,4 +1,4 @@
-"""Files that follow from their inputs alone: made once, then taken from the cache by content."""
+"""A cache of files that depend only on their inputs: each is made once."""
 
 import hashlib
 import json
@@ -15,19 +15,19 @@ from robo_genesis.core.project import CACHE, installed, lock_digest
 
 DIGEST = hashlib.sha256().digest_size
 KEPT = 30 * 24 * 3600
-"""Seconds for which a file stays that no build asked for."""
+"""Seconds until an unused file is removed."""
 
 
 def derived(
     kind: str, inputs: Iterable[bytes], make: Callable[[], bytes], cache: Path = CACHE
 ) -> bytes:
-    """Return what `make` makes; only where the same inputs and lock were not met before.
+    """Return the result of `make`, from the cache if inputs, lock and environment are the same.
 
     Args:
-        kind: a word for what it is.
-        inputs: everything that decides it, the sources of the code that makes it included; lock,
-            Python and installed packages are added.
-        make: called where the cache has no such file.
+        kind: name of the subfolder.
+        inputs: everything that decides the result, including the source of the code that makes
+            it; lock, Python and installed packages are added.
+        make: called if the cache has no such file.
         cache: the cache folder.
     """
     key = hashlib.sha256(json.dumps([lock_digest(), sys.version, _installed()]).encode())
@@ -37,7 +37,7 @@ def derived(
     content = _get(file)
     if content is None:
         content = make()
-        with suppress(OSError):  # a cache that cannot be written costs time alone
+        with suppress(OSError):  # without a writable cache the result is made again each time
             write_whole(file, hashlib.sha256(content).digest() + content)
             _forget(file.parent)
     return content
@@ -49,7 +49,7 @@ def _installed() -> list[tuple[str, str, int]]:
 
 
 def _get(file: Path) -> bytes | None:
-    """Return what a file keeps, None if there is none, or not all of it."""
+    """Return the content of a file, None if it is missing or incomplete."""
     try:
         os.utime(file)
         stored = file.read_bytes()

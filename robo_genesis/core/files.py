@@ -1,4 +1,4 @@
-"""Files that processes share: a lock, and files and folders that are replaced in one move."""
+"""Files that processes share: a lock, and atomic replacement of files and folders."""
 
 import fcntl
 import os
@@ -12,10 +12,10 @@ NEXT, OLD = ".next", ".old"
 
 @contextmanager
 def locked(path: Path, refusal: Callable[[str], Exception]) -> Iterator[None]:
-    """Hold a lock file that names this process; the lock of a killed process is free.
+    """Lock a file that names this process; the operating system frees the lock of a killed process.
 
     Args:
-        path: the lock file; its folder is made where it is missing.
+        path: the lock file; its folder is made if it is missing.
         refusal: returns the exception to raise while another process holds the lock. Its argument
             is the id of that process, or `unknown`.
     """
@@ -33,7 +33,7 @@ def locked(path: Path, refusal: Callable[[str], Exception]) -> Iterator[None]:
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Write a file in one move: a killed process leaves no part of it in its place."""
+    """Write a file atomically: a killed process leaves no partial file at `path`."""
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
     try:
@@ -44,13 +44,13 @@ def write_whole(path: Path, content: bytes) -> None:
 
 
 def settle(folder: Path, prefix: str = "") -> None:
-    """Bring a folder that is swapped in whole into order, after a kill at any point.
+    """Repair a folder after a process was killed while it replaced the folder with `swap`.
 
-    Killed between the two renames, the old folder lies aside: it comes back. Killed later, it is
-    only rubbish, as is a next one that was never swapped in.
+    If the old folder was already moved aside and there is no new one, it is restored. Otherwise
+    the old folder and an unused next one are removed.
 
     Args:
-        folder: what `swap` exchanges; it need not exist.
+        folder: the argument of `swap`; it need not exist.
         prefix: see `beside`.
     """
     aside = beside(folder, OLD, prefix)
@@ -62,11 +62,10 @@ def settle(folder: Path, prefix: str = "") -> None:
 
 
 def swap(folder: Path, prefix: str = "") -> None:
-    """Put the complete next folder, which lies beside, in the place of a folder.
+    """Replace a folder with the complete next folder beside it; the old one is moved aside.
 
     Args:
-        folder: `settle` repairs what a kill between the two renames leaves, and removes the old
-            one.
+        folder: `settle` removes its old state, and repairs an interrupted replacement.
         prefix: see `beside`.
     """
     if folder.exists():
@@ -75,5 +74,5 @@ def swap(folder: Path, prefix: str = "") -> None:
 
 
 def beside(folder: Path, suffix: str, prefix: str = "") -> Path:
-    """Return where the next or the old state of a folder lies; a prefix `.` hides it there."""
+    """Return the path of the next or the old state of a folder; a prefix `.` hides it."""
     return folder.with_name(f"{prefix}{folder.name}{suffix}")

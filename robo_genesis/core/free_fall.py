@@ -1,6 +1,6 @@
-"""Free fall from rest, three ways: as calculus has it, as a solver steps it, and as one formula.
+"""Free fall from rest: continuous, stepped as a solver does, and the sum of the steps.
 
-Nothing here knows an engine. Heights are distances fallen, so down is positive [m].
+The module does not use an engine. Results are distances fallen [m], so down is positive.
 """
 
 import numpy as np
@@ -18,11 +18,11 @@ def continuous_drop(t: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
 
 
 def stepped_drop(h: float, steps: int, gravity: float = GRAVITY) -> FloatArray:
-    """Step free fall from rest as semi-implicit Euler does: velocity first, then position with it.
+    """Step free fall from rest by semi-implicit Euler: first the velocity, then the position.
 
     Args:
         h: length of one solver step [s].
-        steps: how many are taken, n.
+        steps: number of steps n.
         gravity: acceleration of gravity [m/s²].
 
     Returns:
@@ -37,7 +37,7 @@ def stepped_drop(h: float, steps: int, gravity: float = GRAVITY) -> FloatArray:
 
 
 def summed_drop(h: float, steps: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
-    """Return g h² n (n + 1) / 2, what `stepped_drop` adds up to after n = `steps` steps [m].
+    """Return g h² n (n + 1) / 2, the result of `stepped_drop` after n = `steps` steps [m].
 
     The velocity after step k is k g h, so step k moves by k g h²; 1 + 2 + … + n is n (n + 1) / 2.
     """

@@ -1,4 +1,4 @@
-"""What git says of a checkout."""
+"""Queries of a git checkout."""
 
 import subprocess
 from pathlib import Path
@@ -6,14 +6,14 @@ from pathlib import Path
 from robo_genesis.core.project import ProjectError
 
 SHOWN = 5
-"""How many changed files a message names."""
+"""Number of changed files that a message names."""
 
 
 def git(root: Path, *arguments: str) -> str:
-    """Return what git prints in a folder; a query never rewrites the user's index.
+    """Return the output of git in a folder; a query does not rewrite the user's index.
 
     Raises:
-        ProjectError: git is not installed, or it failed; the message holds what it said.
+        ProjectError: git is not installed, or it failed; the message contains its output.
     """
     command = ["git", "--no-optional-locks", "-C", str(root), *arguments]
     try:
@@ -23,13 +23,13 @@ def git(root: Path, *arguments: str) -> str:
     except OSError as error:
         raise ProjectError("Git is not installed. Install it: apt install git.") from error
     if done.returncode:
-        said = done.stderr.strip() or f"exit status {done.returncode}"
-        raise ProjectError(f"git {arguments[0]} failed in {root}: {said}")
+        output = done.stderr.strip() or f"exit status {done.returncode}"
+        raise ProjectError(f"git {arguments[0]} failed in {root}: {output}")
     return done.stdout
 
 
 def git_or_none(root: Path, *arguments: str) -> str | None:
-    """Return what `git` returns, None where it fails or is not installed."""
+    """Return the output of `git`, None if it fails or is not installed."""
     try:
         return git(root, *arguments)
     except ProjectError:
@@ -37,11 +37,11 @@ def git_or_none(root: Path, *arguments: str) -> str | None:
 
 
 def unclean(root: Path, reason: str = "A release is built from one commit") -> list[str]:
-    """Return why a checkout is not exactly one commit; nothing where it is.
+    """Return why a checkout differs from its commit, nothing if it does not.
 
     Args:
         root: the checkout.
-        reason: why it must be one, as the messages say it.
+        reason: why it must not differ, as the messages say it.
     """
     try:
         changed = git(root, "status", "--porcelain", "--untracked-files=all").splitlines()

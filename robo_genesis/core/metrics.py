@@ -1,25 +1,25 @@
-"""What a metric is: a field of a case's results, with unit, label and the arrays it comes from.
+"""Metrics as dataclass fields with unit, label and source arrays.
 
-Its form in `metrics.json` is value, unit, class and source. A value that was not observed is None.
+A record in `metrics.json` has value, unit, class and source. A value that was not observed is None.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import Field, field, fields
 from typing import Any
 
 Record = dict[str, Any]
 
 ENGINE = ["engine"]
-"""The source of a value that the engine reported and no array holds."""
+"""The source of a value that the engine reported and that is in no array."""
 
 
 def metric(unit: str, label: str, *sources: str, noun: str = "") -> Any:
     """Return a dataclass field for one metric.
 
     Args:
-        unit: as written for a reader; "1" for counts.
+        unit: as readers see it; "1" for counts.
         label: in the head of a table.
-        sources: the arrays that it is computed from, by their names in a bundle.
+        sources: names of the arrays in a bundle that it is computed from.
         noun: its name in a sentence, by default the label.
     """
     about = {"unit": unit, "label": label, "sources": sources, "noun": noun or label}
@@ -44,31 +44,26 @@ class CaseMetrics:
 
 def count_records(found: Mapping[str, int]) -> dict[str, Record]:
     """Return counts that the engine reported; another run must report the same ones."""
-    return {
-        name: {"value": count, "unit": "1", "class": "exact", "from": ENGINE}
-        for name, count in found.items()
-    }
+    return {name: _record(count, "1", "exact", ENGINE) for name, count in found.items()}
 
 
 def reading_records(found: Mapping[str, float], unit: str) -> dict[str, Record]:
     """Return values in one unit that the engine reported."""
-    return {
-        name: {"value": value, "unit": unit, "class": "value", "from": ENGINE}
-        for name, value in found.items()
-    }
+    return {name: _record(value, unit, "value", ENGINE) for name, value in found.items()}
 
 
 def case_records(metrics: Mapping[str, CaseMetrics]) -> dict[str, dict[str, Record]]:
     """Return the metrics of each case with class and source."""
+    return {case: _case_record(found) for case, found in metrics.items()}
+
+
+def _case_record(found: CaseMetrics) -> dict[str, Record]:
+    sources = found.about("sources")
     return {
-        case: {
-            name: {
-                "value": value,
-                "unit": unit,
-                "class": "exact" if unit == "1" else "value",
-                "from": list(of.about("sources")[name]),
-            }
-            for name, value, unit in of.items()
-        }
-        for case, of in metrics.items()
+        name: _record(value, unit, "exact" if unit == "1" else "value", sources[name])
+        for name, value, unit in found.items()
     }
+
+
+def _record(value: float | None, unit: str, kind: str, sources: Sequence[str]) -> Record:
+    return {"value": value, "unit": unit, "class": kind, "from": list(sources)}

@@ -1,4 +1,4 @@
-"""What a mistake made on purpose leaves: its measured symptom and the curves that show it."""
+"""Deliberate mistakes: the measured symptom of each, and the curves that show it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -12,10 +12,10 @@ Curves = Mapping[str, tuple[FloatArray, FloatArray]]
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """One failure as it was produced.
+    """The result of one deliberate mistake.
 
-    `shown` says whether its symptom appeared; `evidence` tells what was measured, whichever it is;
-    `curves` are its traces, label → (time [s], position), both (n,).
+    `shown` is whether its symptom appeared; `evidence` describes the measurement in either case;
+    `curves` by label are time [s] and position, both (n,).
     """
 
     name: str
@@ -25,7 +25,7 @@ class Failure:
 
     @property
     def check(self) -> Check:
-        """The named check that a page fails by if the symptom did not appear."""
+        """The named check that fails if the symptom did not appear."""
         return Check(f"gallery_{self.name}", self.shown, self.evidence)
 
 
@@ -33,7 +33,7 @@ def refused(call: Callable[[], Any]) -> Exception | None:
     """Return the exception that a call raises, None if it raises none."""
     try:
         call()
-    except Exception as error:  # which one it is decides the check
+    except Exception as error:  # the caller checks its type
         return error
     return None
 

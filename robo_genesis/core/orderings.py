@@ -1,7 +1,7 @@
-"""Orderings between two cases that a lesson claims: whether one run shows them."""
+"""Claimed orderings of two cases, and whether one run confirms them."""
 
 from collections.abc import Mapping
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 from robo_genesis.core.quantities import six_digits
 
@@ -11,20 +11,8 @@ Relation = tuple[tuple[str, str], str, str, float]
 """A claimed ordering: (first case, second case), metric, order, margin."""
 
 
-class Measured(Protocol):
-    """One metric of one case; None where it was not observed."""
-
-    @property
-    def value(self) -> int | float | None:
-        """In the unit."""
-
-    @property
-    def unit(self) -> str:
-        """As written for a reader."""
-
-
 class Value(NamedTuple):
-    """A `Measured` value."""
+    """One metric of one case; `value` is None if it was not observed."""
 
     value: float | None
     unit: str
@@ -51,11 +39,11 @@ def order(a: float | None, b: float | None, resolution: float) -> str | None:
     return "higher" if b > a else "lower"
 
 
-def outcome(numbers: Mapping[str, Measured], relation: Relation) -> tuple[str, str]:
-    """Return whether one run shows an ordering, and the two values it is read from.
+def outcome(numbers: Mapping[str, Any], relation: Relation) -> tuple[str, str]:
+    """Return whether one run confirms an ordering, and the two values as text.
 
-    Two values within the margin of each other show nothing, unless the claim is "no later" and the
-    second is not later at all.
+    `numbers` has metrics with `value` and `unit` by `case.name`. A difference within the margin
+    confirms nothing, unless the claim is "no later" and the second value is not later at all.
     """
     (first, second), metric, claim, margin = relation
     a, b = (numbers.get(f"{case}.{metric}") for case in (first, second))

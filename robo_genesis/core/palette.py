@@ -1,21 +1,21 @@
-"""Colour and line style of each case, of targets and of limits: the one home for plots and pages.
+"""Colour and line style of each mark: of cases, targets and limits, in plots and on pages.
 
-Hues follow Okabe and Ito's palette, darkened or lightened until each reads as text on its ground.
-Dashes tell the lines apart without colour; no two marks share a pattern.
+The hues follow the palette of Okabe and Ito, darkened or lightened until each is readable as text.
+Dashes distinguish the lines without colour; no two marks share a pattern.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 GROUNDS = {"light": ("#ffffff", "#f3f4f5"), "dark": ("#14181e", "#222832", "#29313d")}
-"""What the marks stand on in each theme: page, panels and tables."""
+"""Backgrounds in each theme: page, panels and tables."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mark:
     """Colours in the light and the dark theme, and dashes.
 
-    `dashes` are lengths drawn and left out in turn, in line widths; empty means solid.
+    `dashes` are lengths of dashes and gaps in turn, in line widths; empty means solid.
     """
 
     light: str
@@ -25,39 +25,46 @@ class Mark:
 
 MARKS = {
     "baseline": Mark("#4d4d4d", "#b8c0cc"),
-    "G1": Mark("#0072b2", "#6cb8ff", (14, 2)),
-    "G2": Mark("#b84d00", "#ff9f4a", (6, 2)),
-    "G3": Mark("#00795c", "#3fcf9f", (6, 2, 1.5, 2)),
+    "first": Mark("#0072b2", "#6cb8ff", (14, 2)),
+    "second": Mark("#b84d00", "#ff9f4a", (6, 2)),
+    "third": Mark("#00795c", "#3fcf9f", (6, 2, 1.5, 2)),
     "target": Mark("#222222", "#e6e6e6", (1, 1.65)),
     "limit": Mark("#a8003d", "#ff8fa9", (1.5, 1.5)),
     "other": Mark("#7a3e9d", "#c9a2f2", (3, 1.5)),
     "further": Mark("#6f6200", "#d6c65a", (10, 2, 3, 2)),
 }
-"""`other` is what is held against a case: a mistake, another getter, another engine. `further` is a
-run that is none of these: a point of a grid between the cases, a third one in a comparison."""
+"""`other` is compared with a case: a mistake, another getter, another engine. `further` is any
+additional run, such as a point of a grid."""
 
-CASES = ("baseline", "G1", "G2", "G3")
+CASE_CLASSES = {
+    "baseline": "case-baseline", "first": "case-g1", "second": "case-g2", "third": "case-g3",
+}  # fmt: skip
+"""The marks that cases take, with their classes in style sheets."""
+
+CASES = {"baseline": "baseline"}
+"""Mark of each case that has one of its own. A lesson adds its cases when it is imported."""
 
 
 def marks_of(cases: Sequence[str]) -> dict[str, str]:
     """Return the mark of each case: its own, or one that no other case here has.
 
     Raises:
-        ValueError: there are more cases than marks that tell cases apart.
+        ValueError: there are more cases than marks for cases.
     """
-    if len(cases) > len(CASES):
+    if len(cases) > len(CASE_CLASSES):
         raise ValueError(
-            f"{', '.join(cases)} are {len(cases)} cases; the palette tells {len(CASES)} apart. "
-            "Draw fewer of them over each other, or add marks to CASES in this module."
+            f"{', '.join(cases)} are {len(cases)} cases; the palette tells {len(CASE_CLASSES)} "
+            "apart. Draw fewer cases in one plot, or add marks to CASE_CLASSES in this module."
         )
-    coloured = (*CASES[1:], CASES[0])  # the baseline's grey last
-    free = iter([name for name in coloured if name not in cases])
-    return {case: case if case in CASES else next(free) for case in cases}
+    own = {case: CASES[case] for case in cases if case in CASES}
+    baseline, *coloured = CASE_CLASSES
+    free = iter([mark for mark in (*coloured, baseline) if mark not in own.values()])
+    return {case: own.get(case) or next(free) for case in cases}
 
 
-def css_name(name: str) -> str:
-    """Return a mark's name in style sheets: `case-g1`, `target`."""
-    return f"case-{name.lower()}" if name in CASES else name
+def css_name(mark: str) -> str:
+    """Return the name of a mark in style sheets: `case-g1`, `target`."""
+    return CASE_CLASSES.get(mark, mark)
 
 
 def contrast(one: str, other: str) -> float:

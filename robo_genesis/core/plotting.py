@@ -1,4 +1,4 @@
-"""Figures of the course: axes in, axes out; no numerics, no show()."""
+"""Figures of the course. Functions draw on axes and return them; none computes or shows."""
 
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,8 +16,8 @@ from robo_genesis.core.trace import Trace
 
 
 def look(name: str, **more: Any) -> dict[str, Any]:
-    """Return how Matplotlib draws a mark of the palette, on the light ground of its figures."""
-    mark = MARKS[name]
+    """Return the line style of a mark, or of a case with a mark of its own, in the light theme."""
+    mark = MARKS[CASES.get(name, name)]
     return {"color": mark.light, "linestyle": (0, mark.dashes) if mark.dashes else "-", **more}
 
 
@@ -53,7 +53,7 @@ def use_course_style() -> None:
 
 @contextmanager
 def course_style() -> Iterator[None]:
-    """Draw in the course's style whatever a user's Matplotlib settings say, and restore them."""
+    """Draw in the course's style, independent of a user's Matplotlib settings, and restore them."""
     with mpl.rc_context():
         mpl.rcdefaults()
         use_course_style()
@@ -61,20 +61,20 @@ def course_style() -> Iterator[None]:
 
 
 def style(name: str) -> dict[str, Any]:
-    """Return the line style of a case; an unknown name gets the baseline's."""
-    return look(name if name in CASES else "baseline")
+    """Return the line style of a case; a case without a mark of its own has the baseline's."""
+    return look(CASES.get(name, "baseline"))
 
 
 def channel(
     ax: Axes, t: FloatArray, drawn: Channel, subject: str, levels: Sequence[Level] = ()
 ) -> Axes:
-    """Draw one channel of each case, and what it is held against.
+    """Draw one channel of each case with its levels.
 
     Args:
         ax: where to draw.
         t: times of the states (n+1,) [s].
         drawn: the channel.
-        subject: whose it is.
+        subject: the joint or body that it belongs to.
         levels: of this channel; equal ones of several cases are drawn once.
     """
     for level in levels:
@@ -92,7 +92,7 @@ def channel(
 
 
 def first_channel(ax: Axes, runs: Runs) -> Axes:
-    """Draw the channel that stands for the runs where there is room for one."""
+    """Draw the first channel, which represents the runs in small pictures."""
     first = runs.channels[0]
     return channel(ax, runs.t, first, runs.subject, runs.levels_of(first))
 
@@ -150,7 +150,7 @@ def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
 
 
 def legend_above(ax: Axes) -> None:
-    """Put the legend on the title's line, clear of curves and limits."""
+    """Put the legend on the line of the title, outside the axes."""
     ax.legend(
         fontsize="small", columnspacing=1.0, borderaxespad=0.2, loc="lower right",
         bbox_to_anchor=(1.01, 0.99), ncols=len(ax.get_legend_handles_labels()[1]),

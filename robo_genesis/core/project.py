@@ -29,14 +29,14 @@ CACHE_FOLDERS = {
     "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
     "NUMBA_CACHE_DIR": "numba",
     "MESA_SHADER_CACHE_DIR": "mesa",
-    "MPLCONFIGDIR": "matplotlib",  # its font list; also keeps a user's matplotlibrc out
+    "MPLCONFIGDIR": "matplotlib",  # its font list; also ignores a user's matplotlibrc
 }
-# The engine's own limit of 100 MB throws out what it just compiled.
+# With its default limit of 100 MB the engine removes kernels that it has just compiled.
 CACHE_LIMIT = {"QD_OFFLINE_CACHE_MAX_SIZE_OF_FILES": "2000000000"}
 
 
 class ProjectError(Exception):
-    """The checkout or the environment is not fit for a build; the message says what to do."""
+    """The checkout or the environment is not ready for a build; the message says what to do."""
 
 
 def engine_pin(root: Path = ROOT) -> str:
@@ -58,20 +58,20 @@ def engine_pin(root: Path = ROOT) -> str:
     except (KeyError, ValueError) as error:  # InvalidRequirement is a ValueError
         raise ProjectError(
             f"{root / 'pyproject.toml'} cannot be read: {error}\n"
-            'Valid lines of project.dependencies are like "numpy>=2.0"; mend that one.'
+            'Valid lines of project.dependencies are like "numpy>=2.0". Fix the invalid line.'
         ) from error
-    found = [str(line) for line in requirements if line.name == ENGINE]
-    pins = [spec for line in requirements if line.name == ENGINE for spec in line.specifier]
+    found = [line for line in requirements if line.name == ENGINE]
+    pins = [spec for line in found for spec in line.specifier]
     if len(pins) != 1 or pins[0].operator != "==" or pins[0].version.endswith("*"):
         raise ProjectError(
-            f"pyproject.toml declares {found or 'no engine'}; "
-            f'exactly one line "{ENGINE}==X" must stand in project.dependencies.'
+            f"pyproject.toml declares {', '.join(map(str, found)) or 'no engine'}. Write exactly "
+            f'one line "{ENGINE}==X" in project.dependencies.'
         )
     return pins[0].version
 
 
 def installed_version(package: str) -> str | None:
-    """Return the installed version of a package, None where it is not installed."""
+    """Return the installed version of a package, None if it is not installed."""
     try:
         return version(package)
     except PackageNotFoundError:
@@ -79,31 +79,28 @@ def installed_version(package: str) -> str | None:
 
 
 def installed_packages() -> list[str]:
-    """Return `name==version` of everything that is installed for this interpreter, sorted.
+    """Return `name==version` of each package that is installed for this interpreter, sorted.
 
-    The course itself is left out: what of it counts is read from the checkout, and what pip leaves
-    there when it looks at a checkout is no installation.
+    The course itself is excluded: pip leaves its metadata in a checkout, and the build reads the
+    sources of the checkout.
     """
     found = {f"{package.name}=={package.version}" for package in distributions()}
     return sorted(name for name in found if not name.startswith(f"{COURSE}=="))
 
 
 def installed(places: Sequence[str]) -> list[tuple[str, str, int]]:
-    """Return each installed package by folder, name with version, and when it was installed.
+    """Return each installed package by folder, name with version, and time of installation.
 
-    The course itself is left out: pip leaves its metadata in a checkout that it has looked at.
+    The course itself is excluded: pip leaves its metadata in a checkout.
     """
-    found = []
-    for place in places:
-        folder = Path(place or ".")
-        if folder.is_dir():
-            found += [
-                (str(folder), path.name, path.stat().st_mtime_ns)
-                for path in folder.iterdir()
-                if path.suffix in (".dist-info", ".egg-info", ".egg-link", ".pth")
-                and not path.name.startswith(f"{COURSE.replace('-', '_')}.")
-            ]
-    return sorted(found)
+    suffixes, course = (".dist-info", ".egg-info", ".egg-link", ".pth"), COURSE.replace("-", "_")
+    return sorted(
+        (str(folder), path.name, path.stat().st_mtime_ns)
+        for folder in (Path(place or ".") for place in places)
+        if folder.is_dir()
+        for path in folder.iterdir()
+        if path.suffix in suffixes and not path.name.startswith(f"{course}.")
+    )
 
 
 def require_pinned_engine(root: Path = ROOT) -> str:
@@ -151,11 +148,11 @@ def page_cache_folder(fingerprint: str, cache: Path = CACHE) -> Path:
 
 
 def forget_old_pages(current: Path, keep: int = 4) -> None:
-    """Remove the page caches of fingerprints that were not built for long.
+    """Remove the oldest page caches.
 
     Args:
         current: the page cache folder of this build.
-        keep: how many to keep, this one included; RENDER=0 and RENDER=1 have one each.
+        keep: how many to keep, including `current`; RENDER=0 and RENDER=1 have one each.
     """
     current.touch()
     folders = sorted(current.parent.iterdir(), key=lambda path: path.stat().st_mtime)
@@ -181,10 +178,10 @@ def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> di
 
 
 def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:
-    """Remove lock files that killed engine processes left in the kernel caches.
+    """Remove lock files of killed engine processes from the kernel caches.
 
-    The file names no owner, so nobody can tell a stale one from a live one: call this only at the
-    start of a build, while the build lock says that no other build runs.
+    A lock file does not name its process, so a stale one looks like a live one. Call this only at
+    the start of a build, while the build lock excludes other builds.
 
     Returns:
         The removed files.
@@ -202,24 +199,24 @@ def environment_contract(environment: Mapping[str, str] | None = None) -> dict[s
         environment: variables, by default those of this process.
 
     Returns:
-        Backend and render with their defaults filled in, and the engine's switches that are set;
-        where the engine keeps compiled code is not among them.
+        Backend and render, with defaults if they are not set, and the engine's switches that are
+        set; the folders of compiled code are not included.
     """
     given = os.environ if environment is None else environment
     defaults = {"ROBO_GENESIS_BACKEND": BUILD_BACKEND, "ROBO_GENESIS_RENDER": "1"}
-    asked = {name: given.get(name) or default for name, default in defaults.items()}
-    return asked | engine_switches(given)
+    requested = {name: given.get(name) or default for name, default in defaults.items()}
+    return requested | engine_switches(given)
 
 
 def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return the variables among some that switch the engine, its compiler or its drivers."""
-    elsewhere = CACHE_FOLDERS.keys() | CACHE_LIMIT.keys()
-    switches = {name for name in environment if name.startswith(ENGINE_PREFIXES)} - elsewhere
+    """Return the variables that switch the engine, its compiler or its drivers."""
+    switches = {name for name in environment if name.startswith(ENGINE_PREFIXES)}
+    switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys()
     return {name: environment[name] for name in sorted(switches)}
 
 
 def without_home(text: str) -> str:
-    """Return a text with each home folder in it written `~`: its name is nobody else's business."""
+    """Return a text with `~` for each home folder, whose name is private."""
     own = re.escape(os.path.expanduser("~"))
     text = re.sub(rf"{own}(?![\w.-])", "~", text) if own != "/" else text
     return HOME_FOLDER.sub("~", text)

@@ -1,15 +1,15 @@
-"""Measured values as text: digits by unit, and what was not observed."""
+"""Measured values as text, with the digits of each unit."""
 
 NOT_OBSERVED = "not observed"
 
 DIGITS = {
     "s": 2, "rad": 4, "m": 4, "rad/s": 3, "m/s": 3, "N·m": 2, "N": 2, "kg": 3, "J": 4, "%": 1,
 }  # fmt: skip
-"""Digits after the point, by unit, where a value is written for a reader."""
+"""Digits after the point by unit, in texts for readers."""
 
 
 def format_value(value: float | None, unit: str) -> str:
-    """Write a metric for a reader: `0.0447 rad`, `19 samples`, `not observed`."""
+    """Return a metric as text for readers: `0.0447 rad`, `19 samples`, `not observed`."""
     if value is None:
         return NOT_OBSERVED
     if unit == "1":
@@ -20,7 +20,7 @@ def format_value(value: float | None, unit: str) -> str:
 
 
 def six_digits(value: float | None, unit: str) -> str:
-    """Write a value with up to six significant digits and its unit."""
+    """Return a value with up to six significant digits and its unit."""
     if value is None:
         return NOT_OBSERVED
     text = str(value) if isinstance(value, int) else f"{value:.6g}"

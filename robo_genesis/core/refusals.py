@@ -7,7 +7,7 @@ LONGEST_SHOWN = 160
 
 
 class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepted or refused
-    """A bundle that must not become evidence. `code` is stable; the message says what to do."""
+    """A bundle is not valid evidence. `code` is stable; the message says what to do."""
 
     def __init__(self, code: str, message: str) -> None:
         super().__init__(f"{code}: {message}")
@@ -15,7 +15,7 @@ class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepte
 
 
 def shown(value: object) -> str:
-    """Return a value as Python writes it, cut where it is long: a message is read by people."""
+    """Return the repr of a value, shortened for a message."""
     text = repr(value)
     if re.fullmatch("'[0-9a-f]{64}'", text):
         return f"{text[:13]}…'"
@@ -29,11 +29,11 @@ def expect(
 
     Args:
         code: stable name of the refusal.
-        file: where in the bundle the value stands.
+        file: the file of the bundle that contains the value.
         what: the value's name.
-        found: the bundle's.
-        expected: the right one.
-        remedy: what to do about it.
+        found: the value in the bundle.
+        expected: the valid value.
+        remedy: what to do.
     """
     if found != expected:
         raise BundleRefused(

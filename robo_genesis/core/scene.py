@@ -1,4 +1,4 @@
-"""Constants of the course scene, with units. Pages and experiments read them here."""
+"""Constants of the course scene, with units."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ SUBSTEPS = 2
 """Solver steps inside one outer step; one lasts DT / SUBSTEPS."""
 
 SEED = 0
-"""Seed of every run. It is part of the key of compiled kernels: one value for all pages."""
+"""Seed of every run. It is part of the key of compiled kernels, so all pages use one value."""
 
 CAMERA_RES = (720, 540)
 """Width and height of a camera frame [pixel]."""
@@ -39,7 +39,7 @@ JOINT_NAMES = ARM_JOINTS + FINGER_JOINTS
 
 
 FRANKA_MODEL = {"links": 11, "joints": 9, "dofs": 9, "qpos": 9}
-"""What the engine counts in the robot's model."""
+"""Counts of the robot's model, as the engine reports them."""
 
 FRANKA_TYPES = ("REVOLUTE",) * 7 + ("PRISMATIC",) * 2
 """Type of each joint of `JOINT_NAMES`."""

@@ -1,4 +1,4 @@
-"""Measured values as pages display them: Markdown tables, lists in prose, signed numbers."""
+"""Markdown tables of measured values, metrics and checks."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -10,13 +10,15 @@ from robo_genesis.core.quantities import format_value
 
 
 def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return rows of equal keys as a Markdown table; numbers to the right, floats shortened.
+    """Return rows of equal keys as a Markdown table: numbers right-aligned, floats shortened.
 
     Raises:
         ValueError: no rows are given, or their keys differ.
     """
     if not rows or any(list(row) != list(rows[0]) for row in rows):
-        raise ValueError("A table takes at least one row, and rows of equal keys in equal order.")
+        raise ValueError(
+            f"Rows {rows!r} form no table. Give at least one row, with equal keys in equal order."
+        )
     head = list(rows[0])
     numeric = [isinstance(rows[0][key], int | float) for key in head]
     lines = [head, ["---:" if right else ":---" for right in numeric]]
@@ -31,23 +33,20 @@ def _cell(value: Any) -> str:
     return str(value)
 
 
-def metric_table(metrics: Mapping[str, CaseMetrics]) -> str:
-    """Return metrics as rows and cases as columns, each value with its unit."""
-    return _metric_rows(metrics, format_value)
-
-
 def six_digits(metrics: Mapping[str, CaseMetrics]) -> str:
-    """Return metrics as rows and cases as columns, six digits of each value.
+    """Return metrics as rows and cases as columns, each value with six digits and its unit."""
+    return metric_table(metrics, lambda *value: quantities.six_digits(*value).replace("-", "−"))
+
+
+def metric_table(
+    metrics: Mapping[str, CaseMetrics], write: Callable[[float | None, str], str] = format_value
+) -> str:
+    """Return metrics as rows and cases as columns, each value with its unit.
 
     Args:
-        metrics: of cases that have the same ones.
+        metrics: by case; all cases have the same metrics.
+        write: returns the text of a value and its unit.
     """
-    return _metric_rows(metrics, _six_digits)
-
-
-def _metric_rows(
-    metrics: Mapping[str, CaseMetrics], write: Callable[[float | None, str], str]
-) -> str:
     labels = next(iter(metrics.values())).about("label")
     found = {case: {n: write(v, unit) for n, v, unit in m.items()} for case, m in metrics.items()}
     return markdown(
@@ -58,19 +57,9 @@ def _metric_rows(
     )
 
 
-def _six_digits(value: float | None, unit: str) -> str:
-    return quantities.six_digits(value, unit).replace("-", "−")
-
-
 def check_table(outcomes: Sequence[Check]) -> str:
-    """Return one row a check: its name, its outcome and what it found or held."""
+    """Return one row per check with its name, its outcome and its detail."""
+    words = {True: "passed", False: "**FAILED**"}
     return markdown(
-        [
-            {
-                "check": f"`{check.name}`",
-                "outcome": "passed" if check.passed else "**FAILED**",
-                "what": check.detail,
-            }
-            for check in outcomes
-        ]
+        [{"check": f"`{c.name}`", "outcome": words[c.passed], "what": c.detail} for c in outcomes]
     )

@@ -1,4 +1,4 @@
-"""Words shared by generated sentences: lists, signed numbers, and blocks of sentences."""
+"""Parts of generated sentences: lists, signed numbers, values with units, blocks of sentences."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """One block of the interpretation: a title and its sentences, in order."""
+    """A title and its sentences."""
 
     title: str
     sentences: tuple[str, ...]
@@ -17,7 +17,7 @@ class Block:
 
 
 def listed(words: Sequence[str]) -> str:
-    """Return words as a list in prose: `G1, G2 and G3`."""
+    """Return words as a list in prose: `a, b and c`."""
     *others, last = words
     return f"{', '.join(others)} and {last}" if others else last
 
@@ -28,12 +28,12 @@ def signed(value: float, digits: int) -> str:
 
 
 def said(value: float, unit: str, digits: int = 4) -> str:
-    """Return a value as text, with a minus sign that is one, and none before a zero."""
+    """Return a value with its unit; the minus sign is U+2212, and zero has no sign."""
     text = f"{value:.{digits}f}"
     text = text.removeprefix("-") if float(text) == 0 else text.replace("-", "−")
     return f"{text} {unit}"
 
 
 def time_digits(dt: float) -> int:
-    """Return how many digits after the point a time takes on a grid of `dt` [s], at least two."""
+    """Return the number of digits after the point of times k · `dt` [s], at least two."""
     return next((n for n in (2, 3, 4, 5) if abs(round(dt, n) - dt) < 1e-9), 6)

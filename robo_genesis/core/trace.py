@@ -1,4 +1,4 @@
-"""The arrays of one measured run, of joints or of free bodies: checked, read-only ever after."""
+"""The arrays of one measured run of joints or of free bodies, validated and read-only."""
 
 from dataclasses import dataclass, fields
 
@@ -8,14 +8,14 @@ from robo_genesis.core.scene import FloatArray
 
 
 class TraceError(ValueError):
-    """Arrays that do not form one run: a wrong shape, a wrong stamp, or a value not finite."""
+    """Arrays do not form one run: a shape or time is wrong, or a value is not finite."""
 
 
 @dataclass(frozen=True, slots=True)
 class TimeSeries:
     """The states of one run at t[k] = k · dt; t[0] is the state before the first step.
 
-    What `scene.step()` produces is stamped with the time that it ends at. `t` has shape (n+1,) [s].
+    A value that `scene.step()` produces has the time at which the step ends. `t`: (n+1,) [s].
     """
 
     t: FloatArray
@@ -29,24 +29,13 @@ class TimeSeries:
             array.setflags(write=False)
             object.__setattr__(self, field.name, array)
         states = self.t.shape[0] if self.t.ndim == 1 else 0
-        self._check_shapes(states)
-        self._check_stamps()
-
-    def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
-        """Return the shape of each array of a run with so many states."""
-        return {"t": (states,)}
-
-    def _check_shapes(self, states: int) -> None:
-        steps = states - 1
         for name, shape in self._expected(states).items():
             found = getattr(self, name).shape
-            if found != shape or steps < 1:
+            if found != shape or states < 2:
                 raise TraceError(
-                    f"{name} has shape {found}, expected {shape}: a run of {steps} steps has "
-                    f"{states} states (t = 0 included) and {steps} values stamped after a step."
+                    f"{name} has shape {found}, expected {shape}: a run of {states - 1} steps has "
+                    f"{states} states (t = 0 included) and {states - 1} values after a step."
                 )
-
-    def _check_stamps(self) -> None:
         if self.t[0] != 0.0:
             raise TraceError(
                 f"t starts at {self.t[0]} s, expected 0: the state before the first step."
@@ -54,7 +43,11 @@ class TimeSeries:
         expected = np.arange(len(self.t)) * self.t[1]
         if self.t[1] <= 0 or not np.allclose(self.t, expected, rtol=0, atol=1e-9):
             k = int(np.argmax(np.abs(self.t - expected)))
-            raise TraceError(f"t[{k}] is {self.t[k]} s, expected {expected[k]} s: stamps k · dt.")
+            raise TraceError(f"t[{k}] is {self.t[k]} s, expected {expected[k]} s: k · dt.")
+
+    def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
+        """Return the shape of each array of a run with a number of states."""
+        return {"t": (states,)}
 
     @property
     def dt(self) -> float:
@@ -68,16 +61,13 @@ class TimeSeries:
 
     @property
     def t_step(self) -> FloatArray:
-        """Stamps of what a step produces, t[1] … t[n], shape (n,) [s]."""
+        """Times of the values after each step, t[1] … t[n], shape (n,) [s]."""
         return self.t[1:]
 
 
 @dataclass(frozen=True, slots=True)
 class Trace(TimeSeries):
     """One run of n steps on d DOFs and l links.
-
-    State at t[0] is the state before the first step. What `scene.step()` produces is stamped with
-    the time that it ends at, so steps carry t[1] … t[n].
 
     | field | shape | meaning |
     |---|---|---|
@@ -121,7 +111,7 @@ class Trace(TimeSeries):
 
 @dataclass(frozen=True, slots=True)
 class BodyTrace(TimeSeries):
-    """One run of n steps of free bodies with l links in all: nothing commands them.
+    """One run of n steps of free bodies with l links in total.
 
     | field | shape | meaning |
     |---|---|---|
@@ -139,39 +129,34 @@ class BodyTrace(TimeSeries):
 
     def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
         links = self.link_pos.shape[1] if self.link_pos.ndim == 3 else 0
-        return {
-            "t": (states,),
-            "link_pos": (states, links, 3),
-            "link_quat": (states, links, 4),
-            "link_vel": (states, links, 3),
-            "link_ang": (states, links, 3),
-        }
+        shapes = dict.fromkeys(("link_pos", "link_vel", "link_ang"), (states, links, 3))
+        return {"t": (states,), "link_quat": (states, links, 4)} | shapes
 
 
 @dataclass(frozen=True, slots=True)
 class ContactTrace(BodyTrace):
-    """One run of free bodies on a surface: the arrays of `BodyTrace`, and what was touched.
+    """One run of free bodies on a surface: the arrays of `BodyTrace` and those of the contacts.
 
     | field | shape | meaning |
     |---|---|---|
     | `contacts` | (n+1, l) | number of contact points with the surface |
-    | `penetration` | (n+1, l) | depth of the deepest of them [m], 0 where there is none |
+    | `penetration` | (n+1, l) | depth of the deepest contact [m], 0 without contact |
 
-    Contacts are looked for at the beginning of a solver step. What is read after `scene.step()` is
-    of the beginning of the last one in it: a solver step older than the positions beside it.
+    The engine detects contacts at the beginning of a solver step. The contacts after `scene.step()`
+    are those of the beginning of its last solver step: one solver step older than the positions.
     """
 
     contacts: np.ndarray
     penetration: FloatArray
 
     def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
-        of_bodies = BodyTrace._expected(self, states)
-        links = of_bodies["link_pos"][1]
-        return of_bodies | dict.fromkeys(("contacts", "penetration"), (states, links))
+        shapes = BodyTrace._expected(self, states)
+        links = shapes["link_pos"][1]
+        return shapes | dict.fromkeys(("contacts", "penetration"), (states, links))
 
 
 def first_time(t: np.ndarray, reached: np.ndarray) -> float | None:
-    """Return the first t (n,) [s] at which `reached` (n,) is true, None where it never is."""
+    """Return the first t (n,) [s] at which `reached` (n,) is true, None if it never is."""
     return float(t[int(reached.argmax())]) if reached.any() else None
 
 

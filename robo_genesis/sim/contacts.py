@@ -1,4 +1,4 @@
-"""The experiments that students read: bodies on a surface, let go or pushed, and recorded."""
+"""Bodies that land, slide and bounce on a surface: build the scene, run it, record the contacts."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,10 +10,10 @@ from robo_genesis.core.free_fall import GRAVITY
 from robo_genesis.core.scene import DT, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.joints import to_numpy
-from robo_genesis.sim.rigid_bodies import read_body
+from robo_genesis.sim.rigid_bodies import read_body, record_states, stacked, times
 
 SURFACE_SIZE = (2.0, 0.8, 0.05)
-"""Length, width and thickness of the fixed box that everything lands on [m]."""
+"""Length, width and thickness of the fixed box under the bodies [m]."""
 
 TOP = 0.725
 """Height of its upper face [m]."""
@@ -28,10 +28,10 @@ SHARED = (
     "surface_friction", "duration", "settle", "dt", "substeps", "cone", "resolution", "impratio",
     "gravity",
 )  # fmt: skip
-"""What cases that share one scene must agree in."""
+"""Settings that cases in one scene have in common."""
 
 SETTINGS = ("friction", "surface_friction", "substeps")
-"""What no array shows of a run, and is read back from the scene that made it."""
+"""Settings that no array of a run shows; they are read back from the scene."""
 
 LANDING, SLIDE, BOUNCE = "landing", "slide", "bounce"
 
@@ -39,20 +39,20 @@ State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatA
 
 
 class ContactError(ValueError):
-    """A run that must not be made; the message says what was found, and what is valid."""
+    """A case is not valid; the message says what was found and what is valid."""
 
 
 @dataclass(frozen=True, slots=True)
 class ContactCase:
-    """Everything that decides one run of a body above or on the surface.
+    """All settings of one run of a body above or on the surface.
 
-    `start` is the place of its centre [m]; `size` the edge of a cube or the diameter of a ball [m];
-    `density` [kg/m³]; `friction` its own coefficient, `surface_friction` that of the surface.
-    After `settle` seconds of steps it gets `speed` along x [m/s], and `duration` seconds are
-    recorded. `cone` is the engine's shape of friction, `resolution` how it weighs a contact's push
-    and friction against each other, `impratio` how much stiffer friction is than the push; the
-    last two are None for what the engine chooses with the cone. `spring` are time constant [s] and
-    damping ratio of the contact, None for the engine's own. `gravity` is a magnitude [m/s²].
+    `start` is the position of its centre [m]; `size` the edge of a cube or the diameter of a ball
+    [m]; `density` [kg/m³]; `friction` its own coefficient, `surface_friction` that of the surface.
+    After `settle` seconds it gets `speed` along x [m/s], and `duration` seconds are recorded.
+    `cone` is the shape of the friction cone, `resolution` the engine's scheme for normal force and
+    friction, `impratio` the ratio of frictional to normal impedance; for None the engine chooses
+    the last two by the cone. `spring` are time constant [s] and damping ratio of the contact, None
+    for the engine's defaults. `gravity` is a magnitude [m/s²].
     """
 
     start: tuple[float, float, float]
@@ -81,7 +81,7 @@ class ContactCase:
             if abs(round(seconds / self.dt) * self.dt - seconds) > 1e-9:
                 raise ContactError(
                     f"{name} is {seconds} s, no whole number of outer steps of {self.dt} s. "
-                    "Cases are compared over equal simulated time: choose one that divides it."
+                    "Cases are compared over equal simulated time. Choose a dt that divides it."
                 )
 
     @property
@@ -96,23 +96,23 @@ class ContactCase:
 
     @property
     def mass(self) -> float:
-        """What the body weighs if it is solid [kg]."""
+        """Mass of the solid body [kg]."""
         volume = self.size**3 * (1.0 if self.shape == "cube" else np.pi / 6)
         return float(self.density * volume)
 
     @property
     def inertia(self) -> float:
-        """Its moment of inertia about any axis through the centre [kg·m²]."""
+        """Moment of inertia about any axis through the centre [kg·m²]."""
         return self.mass * self.size**2 * (1 / 6 if self.shape == "cube" else 1 / 10)
 
     @property
     def rest_height(self) -> float:
-        """Height of the centre when it lies on the surface and does not sink in [m]."""
+        """Height of the centre of a body on the surface without penetration [m]."""
         return TOP + self.size / 2
 
     @property
     def kind(self) -> str:
-        """What is asked of it: how it lands, slides or bounces."""
+        """The motion that the case studies: landing, slide or bounce."""
         if self.spring:
             return BOUNCE
         return SLIDE if self.speed else LANDING
@@ -120,7 +120,7 @@ class ContactCase:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """A built scene: the surface, one body for each case, and a camera if one was asked for."""
+    """A built scene with the surface, one body for each case, and a camera or None."""
 
     scene: Any
     surface: Any
@@ -135,12 +135,12 @@ def build_world(
     """Declare a scene with the surface and a body for each case, and build it.
 
     Args:
-        gs: the engine, started.
-        cases: by name; in one scene they share surface, time and step.
-        view: of a camera, None for none.
+        gs: the engine after `gs.init`.
+        cases: by name; cases in one scene have the fields of `SHARED` in common.
+        view: settings of the camera, None for no camera.
 
     Raises:
-        ContactError: there are no cases, or they do not agree in what a scene has once.
+        ContactError: there are no cases, or they differ in a field of `SHARED`.
     """
     common = shared_case(cases)
     scene = gs.Scene(
@@ -181,7 +181,7 @@ def build_world(
 
 
 def friction_options(gs: Any, case: ContactCase) -> dict[str, Any]:
-    """Return a case's model of friction as options of the engine; what is None stays its own."""
+    """Return the friction model of a case as options of the engine; None is its default."""
     resolution = gs.contact_resolution[case.resolution] if case.resolution else None
     return {
         "friction_cone": gs.friction_cone[case.cone],
@@ -191,20 +191,20 @@ def friction_options(gs: Any, case: ContactCase) -> dict[str, Any]:
 
 
 def contact_constants(scene: Any, geom: Any) -> FloatArray:
-    """Return the solver's seven numbers of a geom's contacts; the first is the time constant [s].
+    """Return the seven contact parameters of a geom; the first is the time constant [s].
 
-    Damping ratio and impedance follow. What a contact uses is no shorter than two solver steps.
+    Damping ratio and impedance follow. The solver uses at least two solver steps as time constant.
     """
     return to_numpy(scene.rigid_solver.get_sol_params(geoms_idx=[geom.idx]))[0]
 
 
 def time_constant(world: World) -> float:
-    """Return the time constant that the solver has of the surface's contacts [s]."""
+    """Return the time constant of the contacts of the surface [s]."""
     return float(contact_constants(world.scene, world.surface.geoms[0])[0])
 
 
 def read_settings(world: World) -> dict[str, dict[str, float]]:
-    """Return what the built scene has of `SETTINGS`, by case."""
+    """Return the values of `SETTINGS` in the built scene, by case."""
     solver, substeps = world.scene.rigid_solver, float(world.scene.substeps)
 
     def friction(body: Any) -> float:
@@ -223,14 +223,14 @@ def record_world(
     traces: dict[str, ContactTrace],
     settings: dict[str, dict[str, float]],
 ) -> None:
-    """Run a world, and add its traces and what was read of its settings to those of others."""
+    """Run a world; add its traces and its settings, which are read back, to those of others."""
     traces |= run_world(world)
     for name, found in read_settings(world).items():
         settings.setdefault(name, {}).update(found)
 
 
 def run_world(world: World) -> dict[str, ContactTrace]:
-    """Bring the scene back to its start, settle, push, step; record every state of each body."""
+    """Reset the scene, settle, set the speeds, step; record every state of each body."""
     common = shared_case(world.cases)
     world.scene.reset()
     for _ in range(round(common.settle / common.dt)):
@@ -238,21 +238,17 @@ def run_world(world: World) -> dict[str, ContactTrace]:
     for name, case in world.cases.items():
         if case.speed:
             world.bodies[name].set_dofs_velocity(np.array([case.speed, 0, 0, 0, 0, 0]))
-    states = [read_world(world)]
-    for _ in range(common.steps):
-        world.scene.step()
-        states.append(read_world(world))
-    t = np.arange(common.steps + 1) * common.dt
+    states = record_states(world.scene.step, common.steps, lambda: read_world(world))
     return {
-        name: ContactTrace(t, *(np.stack(c) for c in zip(*(s[name] for s in states), strict=True)))
-        for name in world.cases
+        name: ContactTrace(times(case), *stacked([state[name] for state in states]))
+        for name, case in world.cases.items()
     }
 
 
 def read_world(world: World) -> dict[str, State]:
-    """Return each body's place, orientation, velocity, angular velocity now, and its contacts.
+    """Return position, orientation, velocities, contact count and penetration of each body, now.
 
-    Contacts are counted, and the deepest measured; the engine found them when it last looked.
+    The contacts are those of the beginning of the latest solver step.
     """
     states = {}
     for name, body in world.bodies.items():
@@ -264,19 +260,19 @@ def read_world(world: World) -> dict[str, State]:
 
 
 def shared_case(cases: Mapping[str, ContactCase]) -> ContactCase:
-    """Return the first case, for what all of them share.
+    """Return the first case, whose fields of `SHARED` are those of all cases.
 
     Raises:
-        ContactError: there are none, or they differ in what one scene has once.
+        ContactError: there are no cases, or they differ in a field of `SHARED`.
     """
     if not cases:
-        raise ContactError("No cases were given; a scene takes at least one.")
+        raise ContactError("No cases were given; a scene takes at least one. Name a case.")
     first = next(iter(cases.values()))
     for name, case in cases.items():
         for field in SHARED:
             if getattr(case, field) != getattr(first, field):
                 raise ContactError(
                     f"{name} asks for {field}={getattr(case, field)}, another case of the scene "
-                    f"for {getattr(first, field)}. Give it a scene of its own."
+                    f"for {getattr(first, field)}. Build a separate scene for it."
                 )
     return first

@@ -1,4 +1,4 @@
-"""What the engine says about a posture at rest: gravity's effort and each joint's inertia."""
+"""Gravity effort and effective inertia of each joint in a posture at rest."""
 
 from typing import Any
 
@@ -11,8 +11,8 @@ from robo_genesis.sim.joints import JointMap, to_numpy
 def let_go(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> list[int]:
     """Assign posture `q` (d,) [rad or m] at rest and take one step without any effort.
 
-    What the engine's getters report about forces and masses stems from its latest step; without
-    one it would be another posture's. Returns the local DOFs, in the map's order.
+    The engine's getters of forces and masses return values of the latest step, so without a step
+    they would belong to an earlier posture. Returns the local DOFs, in the order of the map.
     """
     dofs: list[int] = joints.dofs_idx_local.tolist()
     scene.reset()
@@ -25,9 +25,9 @@ def let_go(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> list[int]
 def gravity_effort(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> FloatArray:
     """Return the effort (d,) [N·m or N] that would hold posture `q` (d,) against gravity.
 
-    Without effort `get_dofs_force` reports gravity's pull and the passive damping at the speed with
-    which the latest substep began; the damping is taken off. No gain enters, so the result can be
-    held against KP × error.
+    Without effort `get_dofs_force` returns gravity and the passive damping at the velocity before
+    the latest substep; the damping is subtracted. The result does not depend on the gains, so it
+    can be compared with KP × error.
     """
     dofs = let_go(scene, robot, joints, q)
     fallen = to_numpy(robot.get_dofs_velocity(dofs)) * (scene.substeps - 1) / scene.substeps
@@ -35,10 +35,10 @@ def gravity_effort(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> F
 
 
 def effective_inertia(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -> FloatArray:
-    """Return the inertia that each joint's motor has to move at posture `q` (d,), the others held.
+    """Return the inertia of each joint at posture `q` (d,) while the other joints do not move.
 
-    That is the diagonal (d,) of the mass matrix [kg·m² or kg], freed of the term that the engine's
-    implicit integrator adds: substep · passive damping here, where no position is commanded.
+    This is the diagonal (d,) of the mass matrix [kg·m² or kg] without the term that the implicit
+    integrator of the engine adds: substep · passive damping here, without a position command.
     """
     dofs = let_go(scene, robot, joints, q)
     return mass_diagonal(robot, dofs) - substep(scene) * passive_damping(robot, dofs)
@@ -50,7 +50,7 @@ def mass_diagonal(robot: Any, dofs: list[int]) -> FloatArray:
 
 
 def passive_damping(robot: Any, dofs: list[int]) -> FloatArray:
-    """Return the model's own joint damping (d,) [N·m·s/rad or N·s/m]: no gain is in it."""
+    """Return the joint damping (d,) of the model [N·m·s/rad or N·s/m], without gains."""
     return to_numpy(robot.get_dofs_damping(dofs)).astype(np.float64)
 
 

@@ -1,4 +1,4 @@
-"""What shows where a run began and ended: two camera frames, or a schematic of measured links."""
+"""Evidence of the first and last state of a run: camera frames or a schematic of its links."""
 
 from collections.abc import Mapping
 
@@ -11,10 +11,10 @@ POSTURES = ("camera", "schematic")
 
 
 def problems(posture: str, frames: Mapping[str, np.ndarray], links: FloatArray) -> list[str]:
-    """Return what is wrong with the evidence of a posture, nothing where it holds.
+    """Return the problems of the evidence of the first and last state, none if it is valid.
 
     Args:
-        posture: what it is called, one of `POSTURES`.
+        posture: the kind of evidence, one of `POSTURES`.
         frames: the camera's pictures by name.
         links: (n+1, l, 3) link positions of the run [m], which a schematic draws.
     """

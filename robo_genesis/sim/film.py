@@ -1,4 +1,4 @@
-"""A run on film: camera frames of chosen samples, taken while the run is stepped."""
+"""Camera frames of chosen samples, taken during a run."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -11,22 +11,22 @@ from matplotlib.figure import Figure
 from robo_genesis.sim import session
 
 QUALITY = 70
-"""Of the JPEG: high enough that no blocks are seen at the printed size."""
+"""JPEG quality: high enough that no blocks are visible at the printed size."""
 
 VIEW = (slice(140, 420), slice(270, 550))
-"""Rows and columns of a frame that hold the robot [pixel]; the rest is floor and sky."""
+"""Rows and columns of a frame that show the robot [pixel]."""
 
 
 class Filmed:
-    """A scene that is filmed at some samples; everything else about it is the scene's own.
+    """A scene with camera frames of some samples; everything else is delegated to the scene.
 
-    Sample 0 is taken just before the first step. A camera reads the state and changes nothing; the
-    page still compares the filmed run with one that was not filmed.
+    Sample 0 is the state before the first step. A camera only reads the state; the page still
+    compares this run with one without frames.
 
     Args:
-        scene: as built.
+        scene: the built scene.
         camera: of that scene.
-        samples: the numbers of the samples to take.
+        samples: the numbers of the samples.
     """
 
     def __init__(self, scene: Any, camera: Any, samples: Sequence[int]) -> None:
@@ -59,7 +59,7 @@ def strip(axes: Sequence[Axes], frames: Mapping[int, np.ndarray], dt: float) -> 
 
 
 def jpeg(figure: Figure) -> bytes:
-    """Return a figure of photographs as JPEG: as SVG it would weigh ten times as much."""
+    """Return a figure of photographs as JPEG: an SVG file would be ten times as large."""
     stream = io.BytesIO()
     figure.savefig(stream, format="jpeg", dpi=90, pil_kwargs={"quality": QUALITY})
     return stream.getvalue()

@@ -1,18 +1,18 @@
-"""Runs of a robot's joint as channels: position, velocity and control force, target and limit."""
+"""Runs of a joint as channels: position, velocity, control force, target and effort limit."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.channels import Channel, Level, Runs, View
-from robo_genesis.core.orderings import Measured
+from robo_genesis.core.channels import Channel, Level, Runs, View, farthest_link
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import listed, said
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.joints import JointMap
 
-Metrics = Mapping[str, Mapping[str, Measured]]
-"""By case, by name."""
+Metrics = Mapping[str, Mapping[str, Any]]
+"""By case and name, each with `value` and `unit`."""
 
 CREDIT = (
     "Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from franka_description, "
@@ -24,8 +24,8 @@ CREDIT = (
 def channels(traces: Mapping[str, Trace], joints: JointMap, joint: str) -> list[Channel]:
     """Return position, velocity and control force of one joint.
 
-    The force of the first state, before the first step, is what the controller asks for once the
-    target has been set.
+    The force of the first state is that of the controller after the target has been set and before
+    the first step.
     """
     k = joints.entry(joint)
     unit, effort = joints.position_units[k], joints.effort_units[k]
@@ -48,24 +48,14 @@ def levels(traces: Mapping[str, Trace], joints: JointMap, joint: str, band: floa
     unit, effort = joints.position_units[k], joints.effort_units[k]
     target = {case: float(trace.target[0, k]) for case, trace in traces.items()}
     limit = {case: float(trace.effort_limit[k]) for case, trace in traces.items()}
+    values = {case: (value,) for case, value in target.items()}
+    texts = {case: said(value, unit) for case, value in target.items()}
+    limits = {case: (-value, value) for case, value in limit.items()}
+    limit_texts = {case: f"±{said(value, effort, 0)}" for case, value in limit.items()}
+    legend = "Short dashes, at the edges of the control force: its limits."
     return [
-        Level(
-            name="target",
-            channel="position",
-            mark="target",
-            legend="Dotted: the target.",
-            values={case: (value,) for case, value in target.items()},
-            said={case: said(value, unit) for case, value in target.items()},
-            band=band,
-        ),
-        Level(
-            name="force limit",
-            channel="control force",
-            mark="limit",
-            legend="Short dashes, at the edges of the control force: its limits.",
-            values={case: (-value, value) for case, value in limit.items()},
-            said={case: f"±{said(value, effort, 0)}" for case, value in limit.items()},
-        ),
+        Level("target", "position", "target", "Dotted: the target.", values, texts, band),
+        Level("force limit", "control force", "limit", legend, limits, limit_texts),
     ]
 
 
@@ -77,13 +67,13 @@ def runs(
     metrics: Metrics,
     band: float,
 ) -> Runs:
-    """Return the runs of one joint with all that is said of them.
+    """Return the runs of one joint with their descriptions.
 
     Args:
         traces: by case.
         links: names, in the order of the traces' arrays.
         joints: the map of the traces' arrays.
-        joint: whose runs they are.
+        joint: the joint of the channels.
         metrics: of each case.
         band: half width of the settling band, in the joint's unit.
 
@@ -97,7 +87,11 @@ def runs(
         links=links,
         channels=channels(traces, joints, joint),
         levels=levels(traces, joints, joint, band),
-        moves=moving(traces, links, joints, joint, metrics),
+        moves={
+            case: f"**{case}**: {_motion(trace, joints, joint)} {farthest_link(links, trace)} "
+            + _quality({name: format_value(m.value, m.unit) for name, m in metrics[case].items()})
+            for case, trace in traces.items()
+        },
         view=View(
             thing="robot",
             alt=f"The robot in 3D, in the posture of the sample that is shown. {joint} moves.",
@@ -111,24 +105,14 @@ def runs(
     )
 
 
-def moving(
-    traces: Mapping[str, Trace],
-    links: Sequence[str],
-    joints: JointMap,
-    joint: str,
-    metrics: Metrics,
-) -> dict[str, str]:
-    """Say for each case, as Markdown, what a viewer would see move, and how it goes."""
+def _motion(trace: Trace, joints: JointMap, joint: str) -> str:
     k = joints.entry(joint)
-    unit, words = joints.position_units[k], {}
-    for case, trace in traces.items():
-        far = np.linalg.norm(trace.link_pos - trace.link_pos[0], axis=2).max(axis=0)
-        value = {name: format_value(m.value, m.unit) for name, m in metrics[case].items()}
-        words[case] = (
-            f"**{case}**: `{joint}` starts at {said(trace.q[0, k], unit)} and is told "
-            f"to go to {said(trace.target[0, k], unit)}. The link "
-            f"`{links[far.argmax()]}` moves farthest, by up to {100 * far.max():.1f} cm. "
-            f"Rise time {value['rise_time']}, overshoot {value['overshoot']}, final error "
-            f"{value['final_error']}; at the force limit: {value['saturation_samples']}."
-        )
-    return words
+    start, target = (said(q, joints.position_units[k]) for q in (trace.q[0, k], trace.target[0, k]))
+    return f"`{joint}` starts at {start} and is told to go to {target}."
+
+
+def _quality(metrics: Mapping[str, str]) -> str:
+    return (
+        f"Rise time {metrics['rise_time']}, overshoot {metrics['overshoot']}, final error "
+        f"{metrics['final_error']}; at the force limit: {metrics['saturation_samples']}."
+    )

@@ -1,5 +1,6 @@
-"""The experiment that students read: reset, command a target, step, record."""
+"""Position control of a robot's joints: reset, command a target, step, record."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -8,18 +9,19 @@ import numpy as np
 from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.joints import JointMap, to_numpy
+from robo_genesis.sim.session import require_built
 
 LIMIT_TOLERANCE = 1e-6
-"""Room for float32 when a position is compared with a model limit [rad or m]."""
+"""Allowance for float32 when a position is compared with a model limit [rad or m]."""
 
 
 class CaseError(ValueError):
-    """A control case that must not be run; the message says which entry, and what is valid."""
+    """A control case is not valid; the message names the entry and the valid values."""
 
 
 @dataclass(frozen=True, slots=True)
 class ControlCase:
-    """Everything that decides one run. Arrays have one entry a joint, in the map's order.
+    """All settings of one run. Arrays have one entry for each joint, in the order of the map.
 
     `q_start`, `q_target` [rad or m]; `kp` [N·m/rad or N/m]; `kv` [N·m·s/rad or N·s/m];
     `effort_limit` [N·m or N], symmetric; `dt` [s]; `steps` counts outer steps.
@@ -49,7 +51,7 @@ def differences(one: ControlCase, other: ControlCase, joints: JointMap) -> list[
 
 
 def validate(case: ControlCase, joints: JointMap) -> None:
-    """Refuse a case that cannot be run as it is written; nothing is clipped or broadcast.
+    """Refuse a case that is not valid as written; nothing is clipped or broadcast.
 
     Raises:
         CaseError: naming the field, the joint, the value and what is valid.
@@ -65,7 +67,14 @@ def validate(case: ControlCase, joints: JointMap) -> None:
         for k in np.flatnonzero(~np.isfinite(values)):
             raise CaseError(f"{name}[{joints.names[k]}] is {values[k]}, expected a finite number.")
     for name in ("q_start", "q_target"):
-        _within_limits(name, getattr(case, name), joints)
+        q = getattr(case, name)
+        outside = (q < joints.lower - LIMIT_TOLERANCE) | (q > joints.upper + LIMIT_TOLERANCE)
+        for k in np.flatnonzero(outside):
+            raise CaseError(
+                f"{name}[{joints.names[k]}] is {q[k]:g} {joints.position_units[k]}, outside its "
+                f"range [{joints.lower[k]:g}, {joints.upper[k]:g}]. Choose a value inside; none is "
+                "clipped."
+            )
     for name in ("kp", "kv", "effort_limit"):
         for k in np.flatnonzero(np.asarray(getattr(case, name)) < 0):
             value = getattr(case, name)[k]
@@ -73,15 +82,6 @@ def validate(case: ControlCase, joints: JointMap) -> None:
     if case.steps < 1 or not case.dt > 0 or case.substeps < 1:
         raise CaseError(
             f"steps={case.steps}, dt={case.dt}, substeps={case.substeps}: all must be positive."
-        )
-
-
-def _within_limits(name: str, q: FloatArray, joints: JointMap) -> None:
-    outside = (q < joints.lower - LIMIT_TOLERANCE) | (q > joints.upper + LIMIT_TOLERANCE)
-    for k in np.flatnonzero(outside):
-        raise CaseError(
-            f"{name}[{joints.names[k]}] is {q[k]:g} {joints.position_units[k]}, outside its range "
-            f"[{joints.lower[k]:g}, {joints.upper[k]:g}]. Choose a value inside; none is clipped."
         )
 
 
@@ -95,13 +95,7 @@ def reset(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> None:
         CaseError: the scene is not built yet or has another time step, or what the engine reads
             back differs from what was asked for.
     """
-    if not scene.is_built:
-        raise CaseError("The scene is not built: call scene.build() before any joint call.")
-    if (scene.dt, scene.substeps) != (case.dt, case.substeps):
-        raise CaseError(
-            f"The scene was built with dt={scene.dt}, substeps={scene.substeps}; the case asks for "
-            f"dt={case.dt}, substeps={case.substeps}. Restart and build the scene for this case."
-        )
+    require_built(scene, case, CaseError)
     validate(case, joints)
     dofs = joints.dofs_idx_local.tolist()
     scene.reset()
@@ -135,8 +129,8 @@ def run_case(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Tra
     """Reset, then command the constant target and step; record every state.
 
     Position, link poses: before the first step and after each. Velocity and both forces: after
-    each step, stamped with the time that it ends at. `get_dofs_control_force` is computed when it
-    is called, from the state at that moment; read after a step it belongs to the new state.
+    each step, with the time at which the step ends. `get_dofs_control_force` computes
+    its value from the state at the call, so after a step it belongs to the new state.
 
     Returns:
         A trace of `case.steps` steps.
@@ -160,20 +154,20 @@ def run_case(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Tra
     if not np.isclose(passed, case.steps * case.dt, rtol=1e-5, atol=0):
         raise CaseError(
             f"The engine's clock advanced {passed:g} s in {case.steps} steps of {case.dt:g} s: the "
-            "stamps k · dt would be wrong. Build the scene with the case's dt."
+            "times k · dt would be wrong. Build the scene with the dt of the case."
         )
     return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)
 
 
 def engine_time(scene: Any) -> float:
-    """Return the time that the engine's own clock shows [s]."""
+    """Return the time of the engine's clock [s]."""
     return float(scene.get_time() if hasattr(scene, "get_time") else scene.t * scene.dt)
 
 
 def assign_path(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Trace:
-    """Overwrite the state along a straight line from start to target; nothing is controlled.
+    """Assign the states of a straight line from start to target, without control and steps.
 
-    No step is taken: this is what a sequence of resets looks like, for contrast with `run_case`.
+    This sequence of resets is the contrast to `run_case`.
 
     Returns:
         A trace of the assigned positions. Its time is nominal: none passed.
@@ -193,9 +187,9 @@ def assign_path(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> 
 
 def assemble(
     case: ControlCase,
-    states: list[tuple[FloatArray, FloatArray, FloatArray]],
-    steps: list[tuple[FloatArray, FloatArray, FloatArray]],
-    targets: list[FloatArray],
+    states: Sequence[tuple[FloatArray, ...]],
+    steps: Sequence[tuple[FloatArray, ...]],
+    targets: Sequence[FloatArray],
     start_qd: FloatArray,
     start_control_force: FloatArray,
     effort_limit: FloatArray,

@@ -1,4 +1,4 @@
-"""From names in a model file to entity-local DOFs, with types, units and limits."""
+"""The map from joint names to entity-local DOFs, with types, units and limits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ EFFORT_UNIT = {"REVOLUTE": "N·m", "PRISMATIC": "N"}
 
 
 class JointError(LookupError):
-    """A joint that was asked for by name cannot be used as one scalar DOF."""
+    """A joint does not exist, or is not one scalar DOF."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class JointMap:
         return tuple(EFFORT_UNIT[kind] for kind in self.types)
 
     def entry(self, name: str) -> int:
-        """Return where `name` stands in this map's arrays.
+        """Return the index of joint `name` in the arrays of this map.
 
         Raises:
             JointError: the map has no such joint; the message lists those it has.
@@ -57,7 +57,7 @@ class JointMap:
         return self.names.index(name)
 
     def rows(self) -> list[dict[str, Any]]:
-        """Return the name-to-DOF table, one dict a joint, for display and for evidence."""
+        """Return the name-to-DOF table, one dict per joint."""
         return [
             {
                 "name": name,
@@ -73,7 +73,7 @@ class JointMap:
 
 
 def resolve_joints(robot: Any, names: Sequence[str]) -> JointMap:
-    """Ask a built entity which local DOF each named joint owns.
+    """Return the map of the named joints of a built entity.
 
     Args:
         robot: rigid entity of a built scene.
@@ -110,8 +110,8 @@ def one_dof_joint(robot: Any, name: str) -> Any:
     joint = robot.get_joint(name)
     if (joint.n_dofs, joint.n_qs) != (1, 1):
         raise JointError(
-            f"Joint {name!r} has {joint.n_dofs} DOFs and {joint.n_qs} qpos; this course's control "
-            "arrays take joints with one of each. Control it through its own DOF slice instead."
+            f"Joint {name!r} has {joint.n_dofs} DOFs and {joint.n_qs} qpos; the control arrays "
+            "of this course take joints with one of each. Control it through its own DOF slice."
         )
     return joint
 
@@ -123,7 +123,7 @@ def link_parents(robot: Any) -> list[int]:
 
 
 def to_numpy(values: Any) -> FloatArray:
-    """Return an engine tensor as a NumPy array of its own, on the host, same shape."""
+    """Return a copy of an engine tensor as a NumPy array of the same shape."""
     if hasattr(values, "detach"):
         values = values.detach().cpu().numpy()
     return np.array(values)

@@ -1,26 +1,27 @@
-"""Landings and slides in MuJoCo with the engine's own contact settings: a second engine's word."""
+"""Contact cases in MuJoCo with the contact parameters of Genesis, for comparison."""
 
 import mujoco
 import numpy as np
 
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.contacts import SURFACE_SIZE, TOP, ContactCase
+from robo_genesis.sim.rigid_bodies import record_states, stacked, times
 from robo_genesis.sim.visual_shape import rotate
 
 VERSION = str(mujoco.__version__)
 
 DEFAULT_TIME_CONSTANT = 0.01
-"""Genesis' own default for contacts, where two solver steps are not longer [s]."""
+"""Default of Genesis for contacts, unless two solver steps are longer [s]."""
 
 OWN_TIME_CONSTANT = 0.02
 """MuJoCo's default [s]."""
 
 IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
-"""Depth-dependent rigidity of a contact, the default of both engines."""
+"""Impedance of a contact as a function of depth, the default of both engines."""
 
 
 def time_constant(h: float) -> float:
-    """Return the time constant that Genesis gives a contact at solver step `h` [s]."""
+    """Return the time constant of a contact in Genesis at solver step `h` [s]."""
     return max(DEFAULT_TIME_CONSTANT, 2 * h)
 
 
@@ -29,7 +30,7 @@ def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
 
     Args:
         case: of a cube or a ball.
-        own_defaults: take MuJoCo's time constant for contacts instead of Genesis'.
+        own_defaults: use the default time constant of MuJoCo instead of that of Genesis.
     """
     spec = mujoco.MjSpec()
     spec.option.timestep = case.h
@@ -64,10 +65,9 @@ def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
 
 
 def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
-    """Run a case as `contacts.run_world` does, computed in float64, kept in float32.
+    """Run a case as `contacts.run_world` does, computed in float64, stored in float32.
 
-    Contacts are those that MuJoCo found when it last looked, at the beginning of the last solver
-    step, as in Genesis.
+    The contacts are those of the beginning of the latest solver step, as in Genesis.
 
     Args:
         case: of a cube or a ball.
@@ -79,22 +79,20 @@ def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
     if settle:
         mujoco.mj_step(model, data, nstep=settle)
     data.qvel[0] += case.speed
-    states = [_state(data)]
-    for _ in range(case.steps):
-        mujoco.mj_step(model, data, nstep=case.substeps)
-        states.append(_state(data))
-    t = np.arange(case.steps + 1) * case.dt
-    return ContactTrace(t, *(np.stack(column) for column in zip(*states, strict=True)))
+    states = record_states(
+        lambda: mujoco.mj_step(model, data, nstep=case.substeps), case.steps, lambda: _state(data)
+    )
+    return ContactTrace(times(case), *stacked(states))
 
 
 def _state(data: mujoco.MjData) -> tuple[np.ndarray, ...]:
     """Return position, orientation, velocity, angular velocity in the world's axes, contacts."""
     quat = data.qpos[3:7]
-    turning = rotate(quat, data.qvel[None, 3:6])  # MuJoCo has it in the body's axes
+    angular_velocity = rotate(quat, data.qvel[None, 3:6])  # MuJoCo has it in the body's axes
     deepest = max((-contact.dist for contact in data.contact), default=0.0)
-    kept = (data.qpos[None, :3], quat[None], data.qvel[None, :3], turning)
+    state = (data.qpos[None, :3], quat[None], data.qvel[None, :3], angular_velocity)
     return (
-        *(np.array(values, np.float32) for values in kept),
+        *(np.array(values, np.float32) for values in state),
         np.array([data.ncon], np.int32),
         np.array([max(deepest, 0.0)], np.float32),
     )

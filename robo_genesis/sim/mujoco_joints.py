@@ -1,8 +1,6 @@
-"""The lesson's cases in MuJoCo, on the same model file: a second engine's word on each number."""
+"""Control cases in MuJoCo, on the model file that Genesis bundles, for comparison."""
 
 from collections.abc import Sequence
-from importlib.util import find_spec
-from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -11,6 +9,7 @@ import numpy as np
 from robo_genesis.core.scene import FRANKA_MJCF, JOINT_NAMES, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.joint_control import CaseError, ControlCase, assemble
+from robo_genesis.sim.session import asset
 
 VERSION = str(mujoco.__version__)
 
@@ -20,39 +19,22 @@ INTEGRATORS = {
 }
 
 
-def model_file() -> Path:
-    """Return where the bundled Franka lies; the engine is found, not imported.
-
-    Raises:
-        FileNotFoundError: genesis-world is not installed, or bundles no such file.
-    """
-    found = find_spec("genesis")
-    root = Path(found.origin).parent if found and found.origin else None
-    path = root / "assets" / FRANKA_MJCF if root else None
-    if path is None or not path.is_file():
-        raise FileNotFoundError(
-            f"{path or FRANKA_MJCF} is not there; expected it in the assets of genesis-world. "
-            "Install requirements.lock."
-        )
-    return path
-
-
 def load(case: ControlCase, timestep: float, integrator: str) -> Any:
-    """Compile the bundled Franka with one bounded PD actuator a joint, in place of the file's.
+    """Compile the bundled Franka with one bounded PD actuator per joint and no others.
 
     An affine actuator's force is gain · ctrl + bias[1] · q + bias[2] · q̇, clipped to its range.
-    With (KP, −KP, −KV) and the target as ctrl that is the lesson's controller.
+    With (KP, −KP, −KV) and the target as ctrl, it is the PD law of the course.
 
     Raises:
-        CaseError: the integrator is unknown, or the time step is no whole part of the case's dt.
+        CaseError: the integrator is unknown, or the time step does not divide the dt of the case.
     """
     substeps = round(case.dt / timestep)
     if integrator not in INTEGRATORS or not np.isclose(substeps * timestep, case.dt, rtol=1e-9):
         raise CaseError(
             f"integrator={integrator!r}, timestep={timestep:g} s: expected one of "
-            f"{', '.join(INTEGRATORS)}, and a whole part of dt={case.dt:g} s."
+            f"{', '.join(INTEGRATORS)}, and a time step that divides dt={case.dt:g} s."
         )
-    spec = mujoco.MjSpec.from_file(str(model_file()))
+    spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
     for actuator in list(spec.actuators):
         spec.delete(actuator)
     for k, name in enumerate(JOINT_NAMES):
@@ -82,12 +64,12 @@ def run_case(
 ) -> Trace:
     """Run a case from rest as `joint_control.run_case` does, in MuJoCo.
 
-    After each outer step the forces are computed again from the new state, so they carry the same
-    stamps as those of Genesis: the clipped control force, and the net force along each DOF. The run
-    is computed in float64 and kept in float32, as every trace of the course.
+    After each outer step the forces are computed again from the new state, so they have the same
+    times as those of Genesis: the clipped control force, and the net force along each DOF. The run
+    is computed in float64 and stored in float32, like every trace of the course.
 
     Args:
-        case: its `substeps` is not used, `timestep` takes its place.
+        case: its `substeps` is not used; `timestep` replaces it.
         links: bodies whose poses the trace holds, in this order.
         timestep: length of one solver step [s].
         integrator: one of `INTEGRATORS`.
@@ -98,21 +80,18 @@ def run_case(
     bodies = [model.body(name).id for name in links]
     data.qpos[q_at], data.ctrl[:] = case.q_start, case.q_target
 
-    def state() -> tuple[FloatArray, FloatArray, FloatArray]:
+    def read() -> tuple[FloatArray, ...]:
         mujoco.mj_forward(model, data)  # poses and forces of the state as it is now
-        return _kept(data.qpos[q_at]), _kept(data.xpos[bodies]), _kept(data.xquat[bodies])
+        net = (data.qfrc_smooth + data.qfrc_constraint)[dof_at]
+        state = (data.qpos[q_at], data.xpos[bodies], data.xquat[bodies])
+        return tuple(map(_kept, (*state, data.qvel[dof_at], data.actuator_force, net)))
 
-    def step_reading() -> tuple[FloatArray, FloatArray, FloatArray]:
-        net = data.qfrc_smooth + data.qfrc_constraint
-        return _kept(data.qvel[dof_at]), _kept(data.actuator_force), _kept(net[dof_at])
-
-    states = [state()]
-    start_qd, start_control_force, _ = step_reading()
-    steps = []
+    readings = [read()]
     for _ in range(case.steps):
         mujoco.mj_step(model, data, nstep=round(case.dt / timestep))
-        states.append(state())
-        steps.append(step_reading())
+        readings.append(read())
+    states, steps = [r[:3] for r in readings], [r[3:] for r in readings[1:]]
+    start_qd, start_control_force = readings[0][3:5]
     targets = [case.q_target] * case.steps
     effort_limit = _kept(model.actuator_forcerange[:, 1])
     return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)
@@ -126,7 +105,7 @@ def _kept(values: FloatArray) -> FloatArray:
 def at_rest(case: ControlCase, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the mass matrix's diagonal (d,) and the effort (d,) that holds posture `q` (d,).
 
-    Diagonal: [kg·m² or kg]; effort: [N·m or N]. No integrator's term is in either.
+    Diagonal: [kg·m² or kg]; effort: [N·m or N]. Neither contains a term of the integrator.
     """
     model = load(case, case.dt, "implicitfast")
     data = mujoco.MjData(model)
@@ -140,6 +119,6 @@ def at_rest(case: ControlCase, q: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _addresses(model: Any) -> tuple[list[int], list[int]]:
-    """Return where the course's joints stand in qpos and among the DOFs."""
+    """Return the indices of the course's joints in qpos and among the DOFs."""
     joints = [model.joint(name) for name in JOINT_NAMES]
     return [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]

@@ -1,7 +1,8 @@
-"""The experiment that students read: let a free body go, step, record."""
+"""Free rigid bodies: read their states, record a run, drop a cube from rest."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -9,22 +10,25 @@ from robo_genesis.core.free_fall import GRAVITY
 from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.joints import to_numpy
+from robo_genesis.sim.session import require_built
+
+Read = TypeVar("Read")
 
 START_TOLERANCE = 1e-6
-"""Room for float32 when the start is read back [m]."""
+"""Allowance for float32 when the start is read back [m]."""
 
 
 class DropError(ValueError):
-    """A drop that must not be run; the message says what was found, and what is valid."""
+    """A drop is not valid; the message says what was found and what is valid."""
 
 
 @dataclass(frozen=True, slots=True)
 class Drop:
-    """Everything that decides one drop of a cube from rest.
+    """All settings of one drop of a cube from rest.
 
     `size` is the cube's edge [m], `density` [kg/m³], `height` that of its centre at the start [m],
-    `gravity` the magnitude of the acceleration downwards [m/s²]; `dt` [s]; `steps` counts outer
-    steps.
+    `gravity` the magnitude of the acceleration downwards [m/s²], `dt` the outer step [s], `steps`
+    the number of outer steps.
     """
 
     size: float
@@ -43,7 +47,7 @@ class Drop:
 
     @property
     def mass(self) -> float:
-        """What the cube weighs if it is solid [kg]."""
+        """Mass of the solid cube [kg]."""
         return self.density * self.size**3
 
     @property
@@ -53,30 +57,42 @@ class Drop:
 
 
 def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:
-    """Bring the scene back to its start, let go, step, and record every state.
+    """Reset the scene, step, and record every state.
 
     Raises:
-        DropError: the scene is not built yet or has another time step, or the box is not at rest
+        DropError: the scene is not built or has another time step, or the box is not at rest
             at the height that the case asks for.
     """
-    if not scene.is_built:
-        raise DropError("The scene is not built: call scene.build() before anything is dropped.")
-    if (scene.dt, scene.substeps) != (case.dt, case.substeps):
-        raise DropError(
-            f"The scene was built with dt={scene.dt}, substeps={scene.substeps}; the case asks for "
-            f"dt={case.dt}, substeps={case.substeps}. Restart and build the scene for this case."
-        )
+    require_built(scene, case, DropError)
     scene.reset()
-    states = [read_body(box)]
-    _check_start(states[0], case)
-    for _ in range(case.steps):
-        scene.step()
-        states.append(read_body(box))
-    link_pos, link_quat, link_vel, link_ang = (
-        np.stack(column) for column in zip(*states, strict=True)
-    )
-    t = np.arange(case.steps + 1) * case.dt
-    return BodyTrace(t, link_pos, link_quat, link_vel, link_ang)
+    _check_start(read_body(box), case)
+    states = record_states(scene.step, case.steps, lambda: read_body(box))
+    return BodyTrace(times(case), *stacked(states))
+
+
+def record_states(step: Callable[[], object], steps: int, read: Callable[[], Read]) -> list[Read]:
+    """Read the state, then step and read again, `steps` times; return the steps + 1 states.
+
+    Args:
+        step: advances the simulation by one outer step.
+        steps: number of outer steps.
+        read: returns the state now.
+    """
+    states = [read()]
+    for _ in range(steps):
+        step()
+        states.append(read())
+    return states
+
+
+def stacked(states: Sequence[tuple[FloatArray, ...]]) -> tuple[FloatArray, ...]:
+    """Return each array of a state for all states, with the states along a new first axis."""
+    return tuple(np.stack(column) for column in zip(*states, strict=True))
+
+
+def times(case: Any) -> FloatArray:
+    """Return the times k · dt of the states of a case, (steps+1,) [s]."""
+    return np.arange(case.steps + 1) * case.dt
 
 
 def read_model(scene: Any, body: Any) -> dict[str, int]:
@@ -102,10 +118,10 @@ def read_body(body: Any) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray
 
 
 def _check_start(state: tuple[FloatArray, ...], case: Drop) -> None:
-    position, _, velocity, turning = state
+    position, _, velocity, angular_velocity = state
     height = float(position[0, 2])
-    if abs(height - case.height) > START_TOLERANCE or velocity.any() or turning.any():
+    if abs(height - case.height) > START_TOLERANCE or velocity.any() or angular_velocity.any():
         raise DropError(
             f"The box starts at a height of {height:g} m with velocity {velocity[0].tolist()} m/s; "
-            f"the case asks for {case.height:g} m, at rest. Place it so before scene.build()."
+            f"the case asks for {case.height:g} m, at rest. Set its position before scene.build()."
         )

@@ -1,4 +1,4 @@
-"""Environment contract, the one `gs.init` of a process, actual backend, kept engine warnings."""
+"""The environment contract, the one `gs.init` of a process, its backend, its log, its frames."""
 
 import ctypes
 import importlib
@@ -9,6 +9,7 @@ import sys
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +18,11 @@ import numpy as np
 from robo_genesis.core import project
 from robo_genesis.core.scene import FRAME_SHAPE, SEED
 
-BACKENDS = ("auto", "cpu")
-RENDER_CHOICES = ("0", "1")
+CHOICES = {"ROBO_GENESIS_BACKEND": ("cpu", "auto"), "ROBO_GENESIS_RENDER": ("1", "0")}
+"""Valid values of the variables of the contract; the first is the default."""
+
 PRECISION = "32"
+INSTALL = "Install it again: pip install --force-reinstall -r requirements.lock."
 
 
 class ContractError(ValueError):
@@ -27,16 +30,16 @@ class ContractError(ValueError):
 
 
 class EngineError(RuntimeError):
-    """The engine cannot be started, is started twice, or contradicts itself."""
+    """The engine is missing or incomplete, is started twice, or contradicts itself."""
 
 
 class FrameError(ValueError):
-    """A camera was asked for and what it returned is no usable RGB frame."""
+    """A camera returned something else than a usable RGB frame."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contract:
-    """What the environment asks of a page: backend, camera or none, and where it may write."""
+    """The settings that the environment gives a page: backend, camera or none, output folder."""
 
     backend: str
     render: bool
@@ -52,8 +55,11 @@ def read_contract(environ: Mapping[str, str] | None = None) -> Contract:
         ContractError: naming the variable, its value and the choices.
     """
     environ = os.environ if environ is None else environ
-    backend = _choice(environ, "ROBO_GENESIS_BACKEND", "cpu", BACKENDS)
-    render = _choice(environ, "ROBO_GENESIS_RENDER", "1", RENDER_CHOICES)
+    values = {name: environ.get(name, choices[0]) for name, choices in CHOICES.items()}
+    for name, value in values.items():
+        if value not in CHOICES[name]:
+            choices = ", ".join(sorted(CHOICES[name]))
+            raise ContractError(f"{name}={value!r} is not valid. Choose one of: {choices}.")
     outputs = Path(environ.get("ROBO_GENESIS_OUTPUTS_DIR") or "outputs").resolve()
     try:
         outputs.mkdir(parents=True, exist_ok=True)
@@ -64,23 +70,13 @@ def read_contract(environ: Mapping[str, str] | None = None) -> Contract:
             f"ROBO_GENESIS_OUTPUTS_DIR={str(outputs)!r} cannot be written: {error.strerror}. "
             "Name a folder that you may create and write."
         ) from error
+    backend, render = values.values()
     return Contract(backend, render == "1", outputs)
-
-
-def _choice(
-    environ: Mapping[str, str], variable: str, default: str, choices: tuple[str, ...]
-) -> str:
-    value = environ.get(variable, default)
-    if value not in choices:
-        raise ContractError(
-            f"{variable}={value!r} is not valid. Choose one of: {', '.join(choices)}."
-        )
-    return value
 
 
 @dataclass(frozen=True, slots=True)
 class Backend:
-    """Where the engine really computes, read after `gs.init` from engine, Quadrants and Torch."""
+    """The backend in use, read after `gs.init` from Genesis, Quadrants and Torch."""
 
     requested: str
     actual: str
@@ -113,19 +109,16 @@ class EngineLog(logging.Handler):
         return "".join(f"{level} {text}\n" for level, text in self.lines)
 
 
-class WithoutPrivatePaths(logging.Filter):
-    """Takes the folders of packages and of the user out of the engine's lines: both are private."""
-
-    def filter(self, record: logging.LogRecord) -> bool:
-        """Rewrite the message; keep every record."""
-        installed = Path(importlib.import_module("genesis").__file__ or "").parents[1]
-        record.msg = project.without_home(str(record.msg).replace(str(installed), "site-packages"))
-        return True
+def remove_private_paths(record: logging.LogRecord) -> bool:
+    """Remove the folders of packages and of the user from a line of the log; keep every record."""
+    installed = Path(importlib.import_module("genesis").__file__ or "").parents[1]
+    record.msg = project.without_home(str(record.msg).replace(str(installed), "site-packages"))
+    return True
 
 
 @dataclass(frozen=True, slots=True)
 class Engine:
-    """The started engine: its versions, its backend, its log.
+    """The started engine with its versions, its backend and its log.
 
     `switches` are the variables that were set for engine, compiler or drivers before the start.
     """
@@ -146,7 +139,7 @@ def start(contract: Contract, seed: int = SEED) -> Engine:
         EngineError: Genesis is missing or already initialised, a graphics library is missing, or
             engine, Quadrants and Torch disagree on the backend.
     """
-    switches = project.engine_switches(os.environ)  # now: importing the engine sets some itself
+    switches = project.engine_switches(os.environ)  # before the import, which sets some itself
     gs = import_engine()
     if getattr(gs, "_initialized", False):
         raise EngineError(
@@ -154,7 +147,7 @@ def start(contract: Contract, seed: int = SEED) -> Engine:
             "backend, seed or precision cannot be changed afterwards: restart the kernel."
         )
     log = EngineLog()
-    logging.getLogger("genesis").addFilter(WithoutPrivatePaths())
+    logging.getLogger("genesis").addFilter(remove_private_paths)
     logging.getLogger("genesis").addHandler(log)
     gs.init(
         backend=gs.cpu if contract.backend == "cpu" else gs.gpu,
@@ -186,9 +179,31 @@ def import_engine() -> Any:
     try:
         return importlib.import_module("genesis")
     except ImportError as error:
-        raise EngineError(
-            f"Genesis cannot be imported: {error}. Install what requirements.lock names."
-        ) from error
+        raise EngineError(f"Genesis cannot be imported: {error}. {INSTALL}") from error
+
+
+def asset(name: str) -> Path:
+    """Return the path of a file that Genesis bundles; the engine is found, not imported.
+
+    Raises:
+        EngineError: genesis-world is not installed, or does not have the file.
+    """
+    found = find_spec("genesis")
+    path = Path(found.origin if found and found.origin else "genesis").parent / "assets" / name
+    if not path.is_file():
+        raise EngineError(f"{project.ENGINE} has no file genesis/assets/{name}. {INSTALL}")
+    return path
+
+
+def require_built(scene: Any, case: Any, error: type[Exception]) -> None:
+    """Raise `error` unless a scene is built with the `dt` and `substeps` of a case."""
+    if not scene.is_built:
+        raise error("The scene is not built: call scene.build() before any joint call or step.")
+    if (scene.dt, scene.substeps) != (case.dt, case.substeps):
+        raise error(
+            f"The scene was built with dt={scene.dt}, substeps={scene.substeps}; the case asks for "
+            f"dt={case.dt}, substeps={case.substeps}. Restart and build the scene for this case."
+        )
 
 
 def require_libraries(*names: str) -> None:
@@ -204,7 +219,7 @@ def require_libraries(*names: str) -> None:
 
 
 def probe(requested: str) -> Backend:
-    """Read the actual backend from engine, Quadrants and Torch, and require that they agree."""
+    """Read the backend in use from Genesis, Quadrants and Torch, and require that they agree."""
     gs = importlib.import_module("genesis")
     torch = importlib.import_module("torch")
     quadrants = importlib.import_module("quadrants")
@@ -223,9 +238,9 @@ def probe(requested: str) -> Backend:
 
 
 def require_agreement(found: Backend) -> None:
-    """Raise EngineError where engine, Quadrants and Torch do not name one and the same backend.
+    """Raise EngineError unless Genesis, Quadrants and Torch use the same backend.
 
-    ROCm and CUDA both call their Torch device `cuda`; only `torch.version` tells them apart.
+    ROCm and CUDA both call their Torch device `cuda`; only `torch.version` distinguishes them.
     """
     expected = {
         "cpu": (("x64", "arm64"), "cpu"),
@@ -236,37 +251,34 @@ def require_agreement(found: Backend) -> None:
     if found.actual not in expected:
         raise EngineError(f"Backend {found.actual!r} is unknown. Known: {', '.join(expected)}.")
     archs, device = expected[found.actual]
+    hip, cuda = found.hip_version is not None, found.cuda_version is not None
+    torch_build = {"amdgpu": hip, "cuda": cuda and not hip}.get(found.actual, True)
+    as_requested = found.requested != "cpu" or found.actual == "cpu"
     agree = found.arch in archs and found.torch_device == device
-    if found.actual == "amdgpu":
-        agree = agree and found.hip_version is not None
-    if found.actual == "cuda":
-        agree = agree and found.cuda_version is not None and found.hip_version is None
-    if found.requested == "cpu":
-        agree = agree and found.actual == "cpu"
-    if not agree:
+    if not (agree and torch_build and as_requested):
         raise EngineError(
-            f"The backend is not one thing here: {found}. Unset QD_ARCH and "
+            f"Genesis, Quadrants and Torch disagree about the backend: {found}. Unset QD_ARCH and "
             "GS_TORCH_FORCE_CPU_DEVICE, check the Torch build, and restart the kernel."
         )
 
 
 @dataclass(frozen=True, slots=True)
 class Renderer:
-    """The OpenGL implementation that draws, and whether it draws in software."""
+    """The OpenGL implementation that renders."""
 
     vendor: str
     name: str
 
     @property
     def software(self) -> bool:
-        """Whether Mesa's software rasteriser draws."""
+        """Whether it is Mesa's software rasteriser."""
         return any(word in self.name.lower() for word in ("llvmpipe", "softpipe", "swrast"))
 
 
 def read_renderer(scene: Any) -> Renderer:
-    """Ask the scene's OpenGL context for GL_VENDOR and GL_RENDERER."""
+    """Read GL_VENDOR and GL_RENDERER from the scene's OpenGL context."""
     gl = importlib.import_module("OpenGL.GL")
-    context = scene.visualizer._rasterizer._renderer  # Genesis offers no public way to it
+    context = scene.visualizer._rasterizer._renderer  # Genesis has no public access to it
     context.make_current()
     try:
         vendor, name = (gl.glGetString(item).decode() for item in (gl.GL_VENDOR, gl.GL_RENDERER))
@@ -276,7 +288,11 @@ def read_renderer(scene: Any) -> Renderer:
 
 
 def capture(camera: Any) -> np.ndarray:
-    """Render one frame, shape (540, 720, 3), uint8; a frame that is not usable is an error."""
+    """Render one frame, shape (540, 720, 3), uint8.
+
+    Raises:
+        FrameError: the frame is not usable.
+    """
     rgb = camera.render()[0]
     require_frame(rgb)
     return np.array(rgb)
@@ -293,5 +309,5 @@ def require_frame(rgb: Any) -> None:
     if (picture == picture[0, 0]).all():
         raise FrameError(
             f"The camera returned an empty picture: every pixel is {picture[0, 0].tolist()}. "
-            "It shows nothing but the background: look at its place and at what it looks at."
+            "It shows only the background. Check the camera's `pos` and `lookat`."
         )

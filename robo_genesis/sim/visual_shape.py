@@ -1,4 +1,4 @@
-"""What moves looks like: the engine's own visual meshes, in the frames of their links."""
+"""The visual meshes of the engine, each in the frame of its link."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from robo_genesis.core.scene import FloatArray
 FILE = "shape.npz"
 
 WORLD = "world"
-"""The link of parts that stand still; their frame is the record's, z up."""
+"""The link of fixed parts; their frame is that of the record, z up."""
 
 FLOOR_RGB = (205, 205, 205)
 
@@ -35,16 +35,16 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
 
     Args:
         entity: a robot, or a single body such as a box.
-        names: of its links in the record, where they are not the engine's: two boxes have one name.
+        names: of its links in the record, if they differ from those of the engine.
 
     Raises:
-        ValueError: there are not as many names as links.
+        ValueError: the number of names is not that of the links.
     """
     names = [link.name for link in entity.links] if names is None else names
     if len(names) != len(entity.links):
         raise ValueError(
             f"{len(names)} names given for {len(entity.links)} links: "
-            f"{', '.join(link.name for link in entity.links)}. Give one a link, in this order."
+            f"{', '.join(link.name for link in entity.links)}. Give one per link, in this order."
         )
     parts = []
     for name, link in zip(names, entity.links, strict=True):
@@ -61,7 +61,7 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
 def floor(width: float) -> Part:
     """Return a square of the plane z = 0 around the origin, seen from above.
 
-    The engine's plane has no end; a viewer frames what there is.
+    The plane of the engine is infinite, and a viewer fits its camera to the shape.
 
     Args:
         width: of the square [m].
@@ -73,7 +73,7 @@ def floor(width: float) -> Part:
 
 
 def slab(size: Sequence[float], top: float) -> Part:
-    """Return a box that stands still, its upper face at a height above the origin.
+    """Return a fixed box.
 
     Args:
         size: length, width and thickness [m].
@@ -86,13 +86,13 @@ def slab(size: Sequence[float], top: float) -> Part:
     sides = [(k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k) for k in range(4)]
     faces = [(0, 3, 2, 1), (4, 5, 6, 7), *sides]
     triangles = [half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))]
-    apart = [corners[k] for half in triangles for k in half]  # flat faces share no corner
+    apart = [corners[k] for half in triangles for k in half]  # flat faces do not share corners
     indices = np.arange(len(apart), dtype=np.int32).reshape(-1, 3)
     return Part(WORLD, FLOOR_RGB, np.array(apart, np.float32), indices)
 
 
 def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
-    """Require that each part moves as one link of the record, or stands still.
+    """Require that each part belongs to one link of the record, or to the world.
 
     Raises:
         ValueError: a part belongs to a link that is not in the record, or two links have one name.
@@ -100,8 +100,9 @@ def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
     twice = sorted({link for link in links if links.count(link) > 1 or link == WORLD})
     if twice:
         raise ValueError(
-            f"The record has links of one name, or of that of the world: {', '.join(twice)}. Give "
-            "each a name of its own when the bundle is written, and the same to read_shape."
+            "The record has two links of one name, or one with the name of the world: "
+            f"{', '.join(twice)}. Give each a name of its own when the bundle is written, and the "
+            "same to read_shape."
         )
     unknown = sorted({part.link for part in shape} - {*links, WORLD})
     if unknown:
@@ -127,30 +128,21 @@ def joined(meshes: Sequence[tuple[FloatArray, np.ndarray]]) -> tuple[FloatArray,
 
 
 def write_shape(folder: Path, parts: Sequence[Part]) -> Path:
-    """Write the parts to a file in `folder`, which is made where it is missing."""
+    """Write the parts to a file in `folder`, which is made if it is missing."""
     folder.mkdir(parents=True, exist_ok=True)
-    vertices, faces = joined([(part.vertices, part.faces) for part in parts])
-    np.savez_compressed(
-        folder / FILE,
-        link=[part.link for part in parts],
-        rgb=np.array([part.rgb for part in parts], np.uint8),
-        sizes=[(len(part.vertices), len(part.faces)) for part in parts],
-        vertices_m=vertices,
-        faces=faces,
-    )
+    meshes = {f"vertices_m_{k}": part.vertices for k, part in enumerate(parts)}
+    meshes |= {f"faces_{k}": part.faces for k, part in enumerate(parts)}
+    links, rgb = [part.link for part in parts], [part.rgb for part in parts]
+    np.savez_compressed(folder / FILE, allow_pickle=False, link=links, rgb=rgb, **meshes)
     return folder / FILE
 
 
 def load_shape(file: Path) -> list[Part]:
     """Return the parts that `write_shape` wrote."""
     with np.load(file, allow_pickle=False) as stored:
-        links, colours, vertices, faces = (
-            stored[k] for k in ("link", "rgb", "vertices_m", "faces")
-        )
-        ends = np.cumsum(stored["sizes"], axis=0)
-    parts, begin = [], (0, 0)
-    for link, (red, green, blue), end in zip(links.tolist(), colours.tolist(), ends, strict=True):
-        own = vertices[begin[0] : end[0]], faces[begin[1] : end[1]] - begin[0]
-        parts.append(Part(link, (red, green, blue), *own))
-        begin = end
-    return parts
+        return [
+            Part(link, (red, green, blue), stored[f"vertices_m_{k}"], stored[f"faces_{k}"])
+            for k, (link, (red, green, blue)) in enumerate(
+                zip(stored["link"].tolist(), stored["rgb"].tolist(), strict=True)
+            )
+        ]

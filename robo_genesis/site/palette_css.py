@@ -12,7 +12,8 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
-from robo_genesis.core.palette import CASES, MARKS, Mark, css_name
+from robo_genesis.core.palette import CASE_CLASSES, CASES, MARKS, Mark, css_name
+from robo_genesis.lessons import registry  # noqa: F401 - each lesson adds its cases to CASES
 
 THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
 STROKE = 2
@@ -35,10 +36,13 @@ def css() -> str:
     rules.insert(1, _rule(":root", dashes))
     rules += [_rule(f".time-plot .{css_name(name)}", _ink(name)) for name in MARKS]
     rules += [
-        _rule(f".case-name.{css_name(name)}", {"color": f"var(--{css_name(name)})"})
-        for name in CASES
+        _rule(f".case-name.{css_class}", {"color": f"var(--{css_class})"})
+        for css_class in CASE_CLASSES.values()
     ]
-    rules += [_rule(f".case-mark.{css_name(name)}::before", _stripe(name)) for name in CASES]
+    rules += [
+        _rule(f".case-mark.{css_class}::before", _stripe(mark))
+        for mark, css_class in CASE_CLASSES.items()
+    ]
     return "\n".join(["/* Written from robo_genesis/core/palette.py. */", *rules, ""])
 
 
@@ -89,7 +93,7 @@ class MarkCases(SphinxPostTransform):
             name = entry.astext()
             paragraph = entry.next_node(nodes.paragraph)
             if name in CASES and paragraph is not None:
-                paragraph["classes"] += ["case-mark", css_name(name)]
+                paragraph["classes"] += ["case-mark", css_name(CASES[name])]
         for text in list(self.document.findall(nodes.Text)):
             if NAME.search(text) and _is_running(text):
                 text.parent.replace(text, _named(text))
@@ -110,7 +114,7 @@ def _named(text: nodes.Text) -> list[nodes.Node]:
     parts: list[nodes.Node] = []
     for number, part in enumerate(NAME.split(text)):
         if number % 2:
-            parts.append(nodes.inline(part, part, classes=["case-name", css_name(part)]))
+            parts.append(nodes.inline(part, part, classes=["case-name", css_name(CASES[part])]))
         elif part:
             parts.append(nodes.Text(part))
     return parts

@@ -1,4 +1,4 @@
-"""What follows from its inputs is made once for the same ones, and anew for any other."""
+"""A result is made once for the same inputs, and again for any other."""
 
 import os
 import time
@@ -38,12 +38,14 @@ def test_any_other_inputs_are_made_anew(made, other):
     assert len(made.calls) == 2
 
 
-def test_another_lock_and_another_kind_are_made_anew(made, monkeypatch):
+def test_another_kind_another_lock_and_another_environment_are_made_anew(made, monkeypatch):
     made(b"one")
     made(b"one", kind="b")
     monkeypatch.setattr(module, "lock_digest", lambda: "another")
     made(b"one")
-    assert len(made.calls) == 3
+    monkeypatch.setattr(module, "_installed", lambda: [("place", "trimesh-0.dist-info", 0)])
+    made(b"one")
+    assert len(made.calls) == 4
 
 
 def test_a_failure_leaves_nothing_and_the_next_one_makes_it(tmp_path, made):
@@ -83,10 +85,3 @@ def test_a_file_that_is_not_whole_is_made_anew(tmp_path, made, spoil):
     assert made.calls == [(b"whole",)]
     assert made(b"whole") == b"whole"
     assert len(made.calls) == 1
-
-
-def test_another_environment_makes_anew(made, monkeypatch):
-    made(b"same")
-    monkeypatch.setattr(module, "_installed", lambda: [("place", "trimesh-0.dist-info", 0)])
-    made(b"same")
-    assert len(made.calls) == 2

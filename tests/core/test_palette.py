@@ -1,4 +1,4 @@
-"""The palette is legible in both themes, and the same in plots and on pages."""
+"""The palette is readable in both themes, and the same in plots and on pages."""
 
 import re
 
@@ -29,38 +29,33 @@ def test_each_mark_reads_as_text_on_each_ground(name, theme):
     assert min(contrast(colour, ground) for ground in GROUNDS[theme]) >= TEXT
 
 
-@pytest.mark.parametrize("field", ["light", "dark"])
-def test_no_two_marks_share_a_colour(field):
+@pytest.mark.parametrize("field", ["light", "dark", "dashes"])
+def test_no_two_marks_share_colour_or_dashes(field):
     assert len({getattr(mark, field) for mark in MARKS.values()}) == len(MARKS)
 
 
-def test_no_two_marks_share_dashes():
-    dashes = [mark.dashes for mark in MARKS.values()]
-    assert len(set(dashes)) == len(dashes)
-    assert all(len(pattern) % 2 == 0 for pattern in dashes)
+def test_dashes_and_gaps_alternate():
+    assert all(len(mark.dashes) % 2 == 0 for mark in MARKS.values())
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_plots_draw_the_palette_s_light_colours(name):
-    drawn = plotting.style(name)
-    assert drawn["color"] == MARKS[name].light
-    assert drawn["linestyle"] == ((0, MARKS[name].dashes) if MARKS[name].dashes else "-")
+@pytest.mark.parametrize(
+    ("case", "mark"), [*CASES.items(), ("another", "baseline"), ("target", "baseline")]
+)
+def test_plots_draw_the_palette_s_light_colours(case, mark):
+    dashes = MARKS[mark].dashes
+    drawn = {"color": MARKS[mark].light, "linestyle": (0, dashes) if dashes else "-"}
+    assert plotting.style(case) == plotting.look(mark) == drawn
 
 
 def test_each_case_drawn_with_others_has_a_mark_of_its_own():
-    assert marks_of(("G2", "baseline")) == {"G2": "G2", "baseline": "baseline"}
-    assert marks_of(("slow", "G1", "fast")) == {"slow": "G2", "G1": "G1", "fast": "G3"}
-    four = marks_of(("a", "b", "c", "d"))
-    assert sorted(four.values()) == sorted(CASES)
+    assert marks_of(("G2", "baseline")) == {"G2": "second", "baseline": "baseline"}
+    assert marks_of(("slow", "G1", "fast")) == {"slow": "second", "G1": "first", "fast": "third"}
+    assert [*marks_of("abcd").values()] == ["first", "second", "third", "baseline"]
 
 
 def test_more_cases_than_marks_are_refused():
     with pytest.raises(ValueError, match=r"a, b, c, d, e are 5 cases; the palette tells 4 apart"):
         marks_of("abcde")
-
-
-def test_a_name_that_is_no_case_is_drawn_as_the_baseline():
-    assert plotting.style("target") == plotting.style("baseline")
 
 
 def rules() -> dict[str, list[dict[str, str]]]:
@@ -80,9 +75,8 @@ def test_the_style_sheet_declares_each_colour_for_both_themes():
     assert dark == {f"--{css_name(name)}": mark.dark for name, mark in MARKS.items()}
     assert dashes["--case-g2-dash"] == "12 4"
     assert dashes["--case-baseline-dash"] == "none"
-    assert {"--case-baseline", "--case-g1", "--case-g2", "--case-g3", "--target", "--limit"} < {
-        *light
-    }
+    cases = {"--case-baseline", "--case-g1", "--case-g2", "--case-g3"}
+    assert {*light} == cases | {"--target", "--limit", "--other", "--further"}
 
 
 def test_the_mark_in_a_table_repeats_the_dashes_of_the_plot_whole():

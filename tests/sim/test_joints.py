@@ -46,16 +46,12 @@ def robot():
 def test_the_map_follows_the_names_and_not_the_model(robot):
     joints = resolve_joints(robot, ("slider", "shoulder"))
     assert joints.names == ("slider", "shoulder")
+    assert joints.position_units == ("m", "rad")
+    assert joints.effort_units == ("N", "N·m")
     assert joints.dofs_idx_local.tolist() == [10, 6]
     assert joints.qs_idx_local.tolist() == [12, 7]
     assert joints.upper.tolist() == [20, 16]
     assert joints.lower.tolist() == [-20, -16]
-
-
-def test_units_follow_the_type(robot):
-    joints = resolve_joints(robot, ("slider", "shoulder"))
-    assert joints.position_units == ("m", "rad")
-    assert joints.effort_units == ("N", "N·m")
 
 
 def test_rows_are_the_table(robot):
@@ -94,12 +90,9 @@ def test_a_joint_that_is_no_scalar_gives_both_counts(robot, name, dofs, qpos):
         resolve_joints(robot, (name,))
 
 
-def test_shared_dofs_are_refused(robot):
+def test_joints_that_share_a_dof_are_refused(robot):
     with pytest.raises(JointError, match=r"share DOFs: \[6, 6\]"):
         resolve_joints(robot, ("shoulder", "shoulder"))
-
-
-def test_two_joints_of_the_model_that_share_a_dof_are_refused():
     robot = FakeRobot(("one", "REVOLUTE", [0], [0]), ("two", "REVOLUTE", [0], [1]))
     with pytest.raises(JointError, match="one, two share DOFs"):
         resolve_joints(robot, ("one", "two"))

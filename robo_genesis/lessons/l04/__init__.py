@@ -1,5 +1,6 @@
 """L04, robot models, degrees of freedom, and joint control."""
 
+from robo_genesis.core.palette import CASES
 from robo_genesis.lessons.declaration import COMMON_MODULES, Compared, Filmed, Lesson, MeasuringPage
 from robo_genesis.lessons.l04 import recompute, spec, study_spec
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
@@ -9,6 +10,8 @@ STUDY_MODULES = (
     "core.orderings", "lessons.l04.study", "lessons.l04.study_checks", "lessons.l04.theory",
     "sim.dynamics", "sim.mujoco_joints",
 )  # fmt: skip
+
+CASES.update(G1="first", G2="second", G3="third")
 
 LESSON = Lesson(
     spec=spec,
