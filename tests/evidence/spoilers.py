@@ -20,7 +20,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from robo_genesis.evidence import bundle, bundle_files, trace_files
 from robo_genesis.evidence.npz_archive import UNPACKED_LIMIT
-from robo_genesis.evidence.recompute import Reader
+from robo_genesis.evidence.reader import Reader
 from robo_genesis.lessons.l04 import checks as step_checks
 from robo_genesis.lessons.l04 import recompute as step_runs
 from robo_genesis.lessons.l04 import spec as l04
