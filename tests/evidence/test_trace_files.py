@@ -86,12 +86,13 @@ def test_a_limit_that_is_no_number_is_not_written(joints):
         joint_records(replace(joints, lower=lower))
 
 
-UNITS = {"q": ("rad", "m"), "qd": ("rad/s", "m/s"), "force": ("N·m", "N")}
-UNITS |= {"target": UNITS["q"], "start_qd": UNITS["qd"], "control_force": UNITS["force"]}
-UNITS |= dict.fromkeys(("internal_force", "start_control_force", "effort_limit"), UNITS["force"])
+POSITION, SPEED, EFFORT = ("rad", "m"), ("rad/s", "m/s"), ("N·m", "N")
+UNITS = {"q": POSITION, "target": POSITION, "qd": SPEED, "start_qd": SPEED}
+UNITS |= dict.fromkeys(("control_force", "internal_force"), EFFORT)
+UNITS |= dict.fromkeys(("start_control_force", "effort_limit"), EFFORT)
 
 
-@pytest.mark.parametrize("field", UNITS.keys() & FIELDS.keys())
+@pytest.mark.parametrize("field", UNITS)
 def test_each_dof_has_its_own_unit(joints, written, field):
     name, (arm, finger) = FIELDS[field][0], UNITS[field]
     assert dof_units(name, joints.types) == [arm] * 7 + [finger] * 2
