@@ -1,14 +1,15 @@
 """The state of evidence; only this module decides it."""
 
 import os
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.core.orderings import HELD, outcome
+from robo_genesis.core.orderings import HELD, Relation, outcome
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence import bundle, evidence_key
-from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.compare import specification
 from robo_genesis.evidence.manifest_rules import AGREEMENT
 from robo_genesis.evidence.verify import verify_bundle
@@ -135,18 +136,18 @@ def bundle_status(
             summary = why_stale(bundle.read_manifest(folder), book, root)
         state = STATE_OF_CODE.get(code, "refused")
         return Status(state, backend, str(refusal), None, code, summary)
-    open_claims = _open_claims(folder, manifest)
-    if not open_claims:
+    claims = specification(manifest.predicate.lesson, manifest.predicate.page).relations
+    lines = not_shown(bundle.by_full_name(bundle.read_metrics(folder)), claims)
+    if not lines:
         return Status("verified", backend, "", manifest)
-    reason = f"Not shown of what the lesson claims: {'; '.join(open_claims)}."
+    reason = f"Not shown of what the lesson claims: {'; '.join(lines)}."
     return Status("inconclusive", backend, reason, manifest, summary=reason)
 
 
-def _open_claims(folder: Path, manifest: Manifest) -> list[str]:
-    """Return a line for each ordering that the lesson claims and the bundle does not show."""
-    numbers = bundle.by_full_name(bundle.read_metrics(folder))
+def not_shown(numbers: Mapping[str, Metric], claims: Sequence[Relation]) -> list[str]:
+    """Return a line for each claimed ordering that the metrics of a run do not show."""
     lines = []
-    for claimed in specification(manifest.predicate.lesson, manifest.predicate.page).relations:
+    for claimed in claims:
         (first, second), metric, claim, _ = claimed
         held, values = outcome(numbers, claimed)
         if held != HELD:
