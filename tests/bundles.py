@@ -55,7 +55,7 @@ def measured(experiment):
 
 @contextmanager
 def without_engine(backend):
-    """Keep the recorder from asking an engine that is not there, and from hashing its wheel."""
+    """Replace the engine that the recorder probes, and the digests of its wheel."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(session, "probe", lambda requested: backend)
         patch.setattr(record, "files_match_wheel", lambda *names: True)
@@ -71,20 +71,20 @@ def quiet(backend):
 
 
 @pytest.fixture
-def recorder(quiet, tmp_path, engine, monkeypatch):
-    monkeypatch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
-    monkeypatch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lab", project.BOOK))
-    contract = session.Contract("cpu", True, tmp_path / "outputs")
-    return Recorder("l04", "lab", contract, engine)
+def recorder(quiet, tmp_path, engine):
+    return recorder_of(quiet, engine, tmp_path / "outputs", "l04", "lab")
+
+
+def recorder_of(patch, engine, outputs: Path, lesson: str, page: str) -> Recorder:
+    patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
+    patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest(lesson, page, project.BOOK))
+    return Recorder(lesson, page, session.Contract("cpu", True, outputs), engine)
 
 
 def written(engine, outputs: Path, lesson: str, page: str, measured: Measured) -> Path:
-    """Write a page's bundle below a folder without a real engine, and return where it stands."""
+    """Write the bundle of a page below a folder without a real engine, and return its folder."""
     with without_engine(engine.backend) as patch:
-        patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
-        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest(lesson, page, project.BOOK))
-        contract = session.Contract("cpu", True, outputs)
-        return Recorder(lesson, page, contract, engine).write(measured)
+        return recorder_of(patch, engine, outputs, lesson, page).write(measured)
 
 
 @pytest.fixture(scope="session")
@@ -94,13 +94,13 @@ def pristine(tmp_path_factory, engine, measured) -> Path:
 
 @pytest.fixture
 def folder(pristine, tmp_path) -> Path:
-    """A bundle of one's own, to spoil."""
+    """A copy of the bundle that a test may spoil."""
     return Path(shutil.copytree(pristine, tmp_path / "l04" / "lab" / "cpu"))
 
 
 @pytest.fixture
 def courses_pages(monkeypatch):
-    """Let a made-up book be verified against the course's own pages."""
+    """Verify bundles of a synthetic book against the pages of the course."""
     monkeypatch.setattr(
         evidence_key, "page_digest", lambda le, p, book: page_digest(le, p, project.BOOK)
     )

@@ -1,4 +1,4 @@
-"""The evidence bundle: one folder with everything that one page measured on one backend.
+"""The evidence bundle: one folder with all that a page measured on one backend.
 
 manifest.json   in-toto Statement: every other file with its sha256, one strict predicate
 metrics.json    value, unit, class and source array of each metric; null = not observed
@@ -10,18 +10,21 @@ log.txt         the engine's own log
 
 import hashlib
 import re
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import rfc8785
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
-from robo_genesis.evidence.strict_json import parse_strict
+from robo_genesis.evidence.strict_json import read_json
 
 STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
 PREDICATE_TYPE = "urn:robo-genesis:evidence:v1"
 SCHEMA_VERSION = 1
+KEYED = ("schema_version", "lesson", "page", "source", "parameters", "seed")
+KEYED_OF_ENGINE = ("version", "quadrants_version", "precision")
 
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
@@ -30,26 +33,26 @@ Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+
 
 
 class Strict(BaseModel):
-    """A record that refuses unknown fields, converted types and later changes."""
+    """A frozen record that refuses unknown fields and converts no types."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
 class Digest(Strict):
-    """Digests of one file."""
+    """The digest of one file."""
 
     sha256: Sha256
 
 
 class Subject(Strict):
-    """One file of the bundle, path relative to its folder."""
+    """One file of the bundle; the name is relative to the folder of the bundle."""
 
     name: str
     digest: Digest
 
 
 class EngineRecord(Strict):
-    """The engine that computed."""
+    """The engine that computed the runs."""
 
     version: str
     quadrants_version: str
@@ -58,7 +61,7 @@ class EngineRecord(Strict):
 
 
 class BackendRecord(Strict):
-    """Where it computed: asked for, found after init, found again at the end."""
+    """The backend: requested, found after `gs.init`, and found again at the end of the run."""
 
     requested: Literal["auto", "cpu"]
     actual: Literal["cpu", "cuda", "amdgpu", "metal"]
@@ -73,7 +76,7 @@ class BackendRecord(Strict):
 
 
 class RenderRecord(Strict):
-    """Who drew the frames, or that none were asked for."""
+    """The renderer of the frames; with mode `skip`, the other fields are None."""
 
     mode: Literal["camera", "skip"]
     vendor: str | None
@@ -93,14 +96,14 @@ class HostRecord(Strict):
 
 
 class GitRecord(Strict):
-    """State of the checkout, where there is one."""
+    """State of the checkout."""
 
     commit: str
     dirty: bool
 
 
 class SourceRecord(Strict):
-    """Digests of the code that computed: the page's code cells and the package's modules."""
+    """Digests of the code that computed: code cells of the page, modules of the package."""
 
     page: Sha256 | None
     modules: dict[str, Sha256]
@@ -115,7 +118,7 @@ class CheckRecord(Strict):
 
 
 class Predicate(Strict):
-    """What is said about the files."""
+    """The circumstances and outcomes of the run."""
 
     schema_version: int
     lesson: str
@@ -148,7 +151,7 @@ class Manifest(Strict):
 
 
 class Metric(Strict):
-    """One number of `metrics.json`; null where it was not observed."""
+    """One number of `metrics.json`; null means not observed."""
 
     value: int | float | None
     unit: str
@@ -157,7 +160,7 @@ class Metric(Strict):
 
 
 class Variable(Strict):
-    """One array of `arrays.json`. `unit` has one entry a DOF where DOFs have different units."""
+    """One array of `arrays.json`. `unit` is a list if each DOF has its own unit."""
 
     dims: list[str]
     shape: list[int]
@@ -175,7 +178,7 @@ class CaseArrays(Strict):
 
 
 class JointRecord(Strict):
-    """The joint behind one DOF of the arrays; a limit is null where the model has none."""
+    """The joint of one DOF of the arrays; a limit is null if the model has none."""
 
     name: str
     type_: str = Field(alias="type")
@@ -187,7 +190,7 @@ class JointRecord(Strict):
 
 
 class Arrays(Strict):
-    """`arrays.json`: labels of the dimensions, the joints, and every array of every case."""
+    """`arrays.json`: labels of the dimensions, the joints, and the arrays of each case."""
 
     coords: dict[str, list[str]]
     joints: list[JointRecord]
@@ -199,47 +202,38 @@ def sha256(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+def module_digests(names: Iterable[str], package: Path) -> dict[str, str]:
+    """Return the digest of each module, such as `core.trace`, of a package folder."""
+    return {name: sha256(package / f"{name.replace('.', '/')}.py") for name in names}
+
+
 def canonical_sha256(value: Any) -> str:
-    """Return the SHA-256 of a value's canonical JSON (RFC 8785)."""
+    """Return the SHA-256 of the canonical JSON of a value (RFC 8785)."""
     try:
         return hashlib.sha256(rfc8785.dumps(value)).hexdigest()
     except (rfc8785.CanonicalizationError, RecursionError) as error:
         raise BundleRefused(
-            "bad-json", f"manifest.json: {error}, expected numbers that JSON can carry. {AGAIN}"
+            "bad-json", f"manifest.json: {error}, expected numbers that JSON can represent. {AGAIN}"
         ) from error
 
 
 def evidence_key(predicate: dict[str, Any]) -> str:
-    """Return the key that says which question a bundle answers.
+    """Return the digest of everything that decides the results of a bundle.
 
     It covers schema, lesson and page, the code that computes, engine versions, parameters, seed
-    and precision; not commit, time, host, driver or prose.
+    and precision. It does not cover commit, time, host, driver or prose.
     """
-    engine = predicate["engine"]
-    keyed = {name: predicate[name] for name in ("schema_version", "lesson", "page", "source")}
-    keyed |= {name: predicate[name] for name in ("parameters", "seed")}
-    keyed["engine"] = {n: engine[n] for n in ("version", "quadrants_version", "precision")}
-    return canonical_sha256(keyed)
-
-
-def read_json(folder: Path, name: str) -> Any:
-    """Return the strictly parsed content of one JSON file of a bundle."""
-    path = folder / name
-    if not path.is_file():
-        raise BundleRefused("missing-file", f"{name} is not in {folder.name}. {AGAIN}")
-    try:
-        return parse_strict(path.read_text(encoding="utf-8"), name)
-    except UnicodeDecodeError as error:
-        raise BundleRefused("bad-json", f"{name} is not UTF-8: {error}. {AGAIN}") from error
+    engine = {name: predicate["engine"][name] for name in KEYED_OF_ENGINE}
+    return canonical_sha256({name: predicate[name] for name in KEYED} | {"engine": engine})
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Return a bundle's manifest after checking its form, and its form only.
+    """Return the manifest of a bundle; only its form is checked.
 
     Raises:
-        BundleRefused: for another version of the form, which comes before all else, since what its
-            fields mean is not known here: `older-schema` for one that this form followed, `schema`
-            for any other.
+        BundleRefused: `older-schema` for a version that this form replaced, `schema` for any other
+            version; both are raised first, because the fields of another version are unknown.
+            `missing-file`, `bad-json` or `bad-schema` otherwise.
     """
     found = read_json(folder, "manifest.json")
     _check_version(found)
@@ -247,52 +241,50 @@ def read_manifest(folder: Path) -> Manifest:
 
 
 def _check_version(found: Any) -> None:
-    """What an older version of the course wrote is honest; any other form is unknown here."""
-    predicate = found.get("predicate") if isinstance(found, dict) else None
-    kind = found.get("predicateType") if isinstance(found, dict) else None
+    """Refuse another version of the form. An older one is `stale`, any other is unknown."""
+    statement = found if isinstance(found, dict) else {}
+    predicate = statement.get("predicate")
     version = predicate.get("schema_version") if isinstance(predicate, dict) else None
-    stated: list[tuple[str, str | int, str | int]] = []
-    if isinstance(kind, str):
-        stated.append(("predicateType", kind, PREDICATE_TYPE))
-    if type(version) is int:  # True is no version
-        stated.append(("schema_version", version, SCHEMA_VERSION))
-    for field, value, today in stated:
-        if _version(value) not in range(_version(today)):
-            expect("schema", "manifest.json", field, value, today)
-    for field, value, today in stated:
-        expect("older-schema", "manifest.json", field, value, today)
+    fields = (
+        ("predicateType", statement.get("predicateType"), PREDICATE_TYPE),
+        ("schema_version", version, SCHEMA_VERSION),
+    )
+    given = [each for each in fields if type(each[1]) is type(each[2])]  # True is not a version
+    for field, value, current in given:
+        if _version(value) not in range(_version(current)):
+            expect("schema", "manifest.json", field, value, current)
+    for field, value, current in given:
+        expect("older-schema", "manifest.json", field, value, current)
 
 
-def _version(stated: str | int) -> int:
-    """Return the number of a version or of a predicate type, -1 where it has none."""
-    if isinstance(stated, int):
-        return stated
-    match = re.fullmatch(r"urn:robo-genesis:evidence:v(\d{1,9})", stated)
+def _version(value: Any) -> int:
+    """Return the number of a version or of a predicate type, -1 if it has none."""
+    if isinstance(value, int):
+        return value
+    match = re.fullmatch(r"urn:robo-genesis:evidence:v(\d{1,9})", value)
     return int(match[1]) if match else -1
 
 
 def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
     """Return metrics by group (a case, or `model`) and name."""
-    found = read_json(folder, "metrics.json")
-    if not isinstance(found, dict) or not all(isinstance(v, dict) for v in found.values()):
-        raise BundleRefused("bad-schema", f"metrics.json is not groups of metrics. {AGAIN}")
-    return {
-        group: {
-            n: _validated(Metric, value, f"metrics.json {group}.{n}") for n, value in items.items()
-        }
-        for group, items in found.items()
-    }
+    content = read_json(folder, "metrics.json")
+    return _validated(dict[str, dict[str, Metric]], content, "metrics.json")
+
+
+def by_full_name(metrics: Mapping[str, Mapping[str, Metric]]) -> dict[str, Metric]:
+    """Return metrics by `group.name`."""
+    return {f"{group}.{name}": m for group, of in metrics.items() for name, m in of.items()}
 
 
 def read_arrays(folder: Path) -> Arrays:
-    """Return the description of a bundle's arrays."""
+    """Return the description of the arrays of a bundle."""
     return _validated(Arrays, read_json(folder, "arrays.json"), "arrays.json")
 
 
-def _validated(model: type, value: Any, where: str) -> Any:
+def _validated(form: Any, value: Any, file: str) -> Any:
     try:
-        return model.model_validate(value)  # type: ignore[attr-defined]
+        return TypeAdapter(form).validate_python(value)
     except ValidationError as error:
         first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"])
-        raise BundleRefused("bad-schema", f"{where}: {place}: {first['msg']}. {AGAIN}") from error
+        place = ".".join(map(str, (file, *first["loc"])))
+        raise BundleRefused("bad-schema", f"{place}: {first['msg']}. {AGAIN}") from error

@@ -3,11 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from robo_genesis.evidence import bundle, sections
-from robo_genesis.evidence.bundle import BundleRefused, Predicate
-from robo_genesis.evidence.claims import relations
+from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, shown
+from robo_genesis.evidence import bundle, findings
+from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.findings import (
     EQUAL,
     NOT_COMPARABLE,
@@ -20,18 +19,20 @@ from robo_genesis.evidence.findings import (
     section,
     worst,
 )
+from robo_genesis.evidence.strict_json import differences
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons.registry import find_lesson, find_page
 
 LARGEST = 2**53
+"""The largest magnitude of a metric: up to here, a float holds every integer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What two bundles say of one another.
+    """The result of a comparison.
 
-    `axis` says in what they differ, `repeat` where in nothing; `obstacles` why they cannot be
-    compared, and then there are no sections. Sections stand worst first.
+    `axis` names what differs, or is `repeat`. `obstacles` are the reasons why the two cannot be
+    compared; there are no sections then. Sections are sorted, worst first.
     """
 
     old: Predicate
@@ -43,46 +44,51 @@ class Comparison:
     sections: tuple[Section, ...]
 
     @property
+    def remarks(self) -> tuple[str, ...]:
+        """Obstacles and notes."""
+        return self.obstacles + self.notes
+
+    @property
     def state(self) -> str:
         """The verdict: equal, within tolerance, inconclusive, differs or not comparable."""
         if self.obstacles:
             return NOT_COMPARABLE
         found = worst([f.state for s in self.sections for f in s.findings if f.state != SHOWN])
-        moved = any(s.title == "Arrays" and s.state == SHOWN for s in self.sections)
-        return WITHIN if found == EQUAL and moved else found
+        arrays_differ = any(s.title == "Arrays" and s.state == SHOWN for s in self.sections)
+        return WITHIN if found == EQUAL and arrays_differ else found
 
 
 def specification(lesson: str, page: str = "lab") -> Specification:
-    """Return what a lesson of this checkout declares of the cases that a page of it runs.
+    """Return what this checkout declares about the cases of a page.
 
     Raises:
-        BundleRefused: there is no such lesson or page.
+        BundleRefused: `lesson`, there is no such lesson or page.
     """
     try:
         found, run = find_lesson(lesson), find_page(lesson, page)
     except LookupError as error:
         raise BundleRefused("lesson", str(error)) from error
-    spec = found.spec
-    cases = tuple(spec.CASES) if run.cases is None else run.cases
+    cases = tuple(found.spec.CASES) if run.cases is None else run.cases
     metrics = {case: tuple(found.metrics[case].about("unit")) for case in cases}
-    relations = tuple(claim for claim in spec.RELATIONS if {*claim[0]} <= {*cases})
-    return Specification(lesson, metrics, spec.TOLERANCES, relations)
+    relations = tuple(claim for claim in found.spec.RELATIONS if {*claim[0]} <= {*cases})
+    return Specification(lesson, metrics, found.spec.TOLERANCES, relations)
 
 
 def specification_of(folder: Path) -> Specification:
-    """Return what this checkout declares of the page that a bundle comes from.
+    """Return what this checkout declares about the page of a bundle.
 
     Raises:
-        BundleRefused: its manifest cannot be read, or there is no such lesson or page.
+        BundleRefused: the manifest cannot be read, or there is no such lesson or page.
     """
     run = bundle.read_manifest(folder).predicate
     return specification(run.lesson, run.page)
 
 
 def compare(old: Path, new: Path, spec: Specification) -> Comparison:
-    """Hold two bundles one against the other.
+    """Compare two bundles.
 
-    Nothing is recomputed: an old bundle's code and engine are gone. Their digests must be right.
+    Nothing is recomputed, because the code and the engine of an old bundle are not installed.
+    The digests of both must be right.
 
     Raises:
         BundleRefused: a bundle cannot be read.
@@ -102,54 +108,49 @@ def compare(old: Path, new: Path, spec: Specification) -> Comparison:
 
 
 def _sections(old: Side, new: Side, spec: Specification) -> tuple[Section, ...]:
-    none = "No performance is recorded yet."
+    def of_class(title: str, kind: str, empty: str) -> Section:
+        tolerances = spec.tolerances if kind == "value" else {}
+        return section(title, findings.values(old, new, kind, tolerances), empty)
+
+    claims = findings.relations(old, new, spec)
     every = (
-        section("Coverage", sections.coverage(old, new, spec)),
-        section("Invariants", sections.invariants(old, new)),
-        section("Relations", relations(old, new, spec), "The lesson claims no ordering."),
-        section("Exact counts", sections.exact(old, new), "There are no counts."),
-        section("Values", sections.values(old, new, spec), "There are no values."),
-        section("Arrays", sections.arrays(old, new), "There are no arrays."),
-        section("Performance", sections.performance(old, new), none),
+        section("Coverage", findings.coverage(old, new, spec)),
+        section("Invariants", findings.invariants(old, new)),
+        section("Relations", claims, "The lesson claims no ordering."),
+        of_class("Exact counts", "exact", "There are no counts."),
+        of_class("Values", "value", "There are no values."),
+        section("Arrays", findings.arrays(old, new), "There are no arrays."),
+        of_class("Performance", "performance", "No performance is recorded yet."),
     )
     return tuple(sorted(every, key=lambda s: -SEVERITY.index(s.state)))
 
 
 def read_side(folder: Path) -> Side:
-    """Read one bundle strictly, and hold what is read against its listed digests.
+    """Read one bundle strictly, each file after its digest was compared with the listed one.
 
     Raises:
-        BundleRefused: a file is missing, spoiled, or not the one that the manifest lists.
+        BundleRefused: a file is missing, damaged, or differs from the one that was listed.
     """
     manifest = bundle.read_manifest(folder)
     listed = {subject.name: subject.digest.sha256 for subject in manifest.subject}
-    _hold_digest(folder, "metrics.json", listed)
-    _hold_digest(folder, "arrays.json", listed)
-    metrics, arrays = bundle.read_metrics(folder), bundle.read_arrays(folder)
-    for group, items in metrics.items():
-        for name, metric in items.items():
-            if abs(metric.value or 0) > LARGEST:
-                raise BundleRefused("bad-schema", f"{group}.{name} is larger than 2⁵³.")
-    traces = {}
+    _check_digest(folder, "metrics.json", listed)
+    _check_digest(folder, "arrays.json", listed)
+    metrics, arrays, traces = bundle.read_metrics(folder), bundle.read_arrays(folder), {}
+    for name, metric in bundle.by_full_name(metrics).items():
+        if abs(metric.value or 0) > LARGEST:
+            value = f"{name} is {shown(metric.value)}, expected at most 2⁵³"
+            raise BundleRefused("bad-schema", f"metrics.json: {value}. {AGAIN}")
     for case in arrays.cases:
-        _hold_digest(folder, f"arrays/{case}.npz", listed)
-        try:
-            traces[case] = read_any_trace(folder, arrays, case)
-        except TypeError as error:
-            raise BundleRefused("bad-array", f"arrays/{case}.npz holds no numbers.") from error
+        _check_digest(folder, f"arrays/{case}.npz", listed)
+        traces[case] = read_any_trace(folder, arrays, case)
     return Side(str(folder), manifest, metrics, arrays, traces)
 
 
-def _hold_digest(folder: Path, name: str, listed: dict[str, str]) -> None:
-    if name not in listed or not (folder / name).is_file():
-        raise BundleRefused(
-            "files", f"{name} must stand in {folder} and in its manifest. Record it again."
-        )
-    if bundle.sha256(folder / name) != listed[name]:
-        raise BundleRefused(
-            "digest",
-            f"{name} of {folder} is not what its manifest lists. Record it again.",
-        )
+def _check_digest(folder: Path, name: str, listed: dict[str, str]) -> None:
+    file = f"{name} of {folder}"
+    present = name in listed, (folder / name).is_file()
+    expect("files", file, "whether it is listed and exists", present, (True, True))
+    expect("digest", file, "sha256", bundle.sha256(folder / name), listed[name])
 
 
 def axes(old: Predicate, new: Predicate) -> list[str]:
@@ -170,44 +171,36 @@ def _obstacles(old: Predicate, new: Predicate, spec: Specification) -> Iterator[
     for what, was, now in required:
         if was != now:
             yield f"The {what} differs: {was!r} and {now!r}."
-    for path, was, now in _unlike(old.parameters, new.parameters, "parameters"):
+    for path, was, now in differences(old.parameters, new.parameters, "parameters"):
         yield f"{path} differs: {was} and {now}."
     for word, side in (("old", old), ("new", new)):
         if side.lesson != spec.lesson:
-            yield f"The {word} bundle is of {side.lesson!r}, not of {spec.lesson!r}."
+            yield f"The {word} bundle belongs to {side.lesson!r}, not to {spec.lesson!r}."
         if side.backend.actual != side.backend.actual_at_end:
-            actual, end = side.backend.actual, side.backend.actual_at_end
-            yield f"The {word} bundle's backend was {actual} at first and {end} at the end."
-
-
-def _unlike(old: Any, new: Any, path: str) -> Iterator[tuple[str, Any, Any]]:
-    if isinstance(old, dict) and isinstance(new, dict):
-        for key in sorted(old.keys() | new.keys()):
-            yield from _unlike(old.get(key, "absent"), new.get(key, "absent"), f"{path}.{key}")
-    elif old != new:
-        yield path, old, new
+            change = f"from {side.backend.actual} to {side.backend.actual_at_end}"
+            yield f"The backend of the {word} bundle changed during the run, {change}."
 
 
 def _notes(old: Predicate, new: Predicate) -> Iterator[str]:
     if old.run_id == new.run_id:
-        yield "Both have one run id: one is a copy of the other, or was edited."
+        yield "Both have the same run id. One is a copy of the other, or was edited."
     modules = old.source.modules, new.source.modules
     names = sorted(modules[0].keys() | modules[1].keys())
     changed = [name for name in names if modules[0].get(name) != modules[1].get(name)]
     changed += ["the page's cells"] if old.source.page != new.source.page else []
     if changed:
-        yield f"The code is not the same, so it may be the cause: {', '.join(changed)}."
+        yield f"The code differs and may be the cause: {', '.join(changed)}."
     for word, side in (("old", old), ("new", new)):
         if side.git is None or side.git.dirty:
             yield f"The {word} bundle was not recorded from a clean checkout."
     if old.backend.device_name != new.backend.device_name or old.host.cpu != new.host.cpu:
-        yield "The devices are not the same."
+        yield "The devices differ."
     if old.environment != new.environment:
         was, now = (
             ", ".join(f"{name}={value}" for name, value in p.environment.items()) or "none"
             for p in (old, new)
         )
-        yield f"The engine's switches are not the same: {was}; {now}."
+        yield f"The switches of the engine differ: {was}; {now}."
     for word, one, other in (("gained", new, old), ("lost", old, new)):
         for warning in dict.fromkeys(one.warnings):
             if warning not in other.warnings:

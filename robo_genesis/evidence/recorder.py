@@ -1,4 +1,4 @@
-"""Write what a page measured as one bundle: whole, or not at all."""
+"""Write the measurements of a page as one bundle, completely or not at all."""
 
 import base64
 import hashlib
@@ -22,6 +22,7 @@ from PIL.PngImagePlugin import PngInfo
 from robo_genesis.core import project
 from robo_genesis.core.checks import Check
 from robo_genesis.core.git import git_or_none
+from robo_genesis.core.metrics import Record
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import write_traces
@@ -35,17 +36,21 @@ ENGINE, COMPILER = project.ENGINE, "quadrants"
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """What a page hands over.
+    """The measurements of a page.
 
-    `joints` is None for runs of free bodies. `metrics` is group → name → {value, unit, class,
-    from}; `frames` name → RGB, empty without a camera; `parameters` must be JSON values; `notes`
-    says by case what its arrays are where they are no ordinary run.
+    | field | meaning |
+    |---|---|
+    | `joints` | of the DOFs, None for runs of free bodies |
+    | `metrics` | group → name → {value, unit, class, from} |
+    | `frames` | name → RGB, empty without a camera |
+    | `parameters` | JSON values |
+    | `notes` | by case, how its arrays differ from an ordinary run |
     """
 
     joints: JointMap | None
     links: Sequence[str]
     traces: Mapping[str, TimeSeries]
-    metrics: Mapping[str, Mapping[str, Mapping[str, Any]]]
+    metrics: Mapping[str, Mapping[str, Record]]
     checks: Sequence[Check]
     frames: Mapping[str, np.ndarray]
     parameters: Mapping[str, Any]
@@ -54,10 +59,10 @@ class Measured:
 
 
 class Recorder:
-    """Notes when a page starts and writes its bundle when it has measured.
+    """Notes when a page starts, and writes its bundle at the end.
 
     Args:
-        lesson, page: whose bundle it is; with the actual backend they name its folder.
+        lesson, page: of the bundle; with the actual backend they name its folder.
         contract: names the folder of all outputs.
         engine: as started.
     """
@@ -68,17 +73,17 @@ class Recorder:
         self.lesson, self.page, self.contract, self.engine = lesson, page, contract, engine
         self.started = _now()
         self.run_id = os.environ.get("ROBO_GENESIS_RUN_ID") or uuid.uuid4().hex
-        reader = ThreadPoolExecutor(1)  # the engine's files are many; the page goes on meanwhile
+        reader = ThreadPoolExecutor(1)  # the engine has many files; the page continues meanwhile
         self._match = reader.submit(files_match_wheel, ENGINE, COMPILER)
         reader.shutdown(wait=False)
 
     @property
     def folder(self) -> Path:
-        """Where the bundle will stand."""
+        """The folder of the bundle."""
         return self.contract.outputs / self.lesson / self.page / self.engine.backend.actual
 
     def facts(self) -> list[dict[str, str]]:
-        """Return what the run is made of as rows of a table: engine, backend, rendering, folder."""
+        """Return engine, backend, rendering and folder of the run as rows of a table."""
         engine, backend = self.engine, self.engine.backend
         found = {
             "Genesis": engine.version,
@@ -93,10 +98,10 @@ class Recorder:
         return [{"what": name, "value": value} for name, value in found.items()]
 
     def write(self, measured: Measured) -> Path:
-        """Write the bundle beside its place, then move it there in one step.
+        """Write the bundle to a temporary folder, then move it to its place in one step.
 
         Raises:
-            ContractError: a camera was asked for and none was used, or the other way round.
+            ContractError: the page rendered although it should not, or the reverse.
 
         Returns:
             Its folder. An earlier bundle of the same page and backend is replaced.
@@ -104,8 +109,8 @@ class Recorder:
         if self.contract.render != (measured.renderer is not None):
             raise session.ContractError(
                 f"ROBO_GENESIS_RENDER asks for {'a camera' if self.contract.render else 'none'}, "
-                f"but the page hands over {'a' if measured.renderer else 'no'} renderer. A page "
-                "follows the contract: it renders where it was asked to, and says SKIP elsewhere."
+                f"but the page used {'a' if measured.renderer else 'no'} renderer. Render exactly "
+                "if the contract asks for it."
             )
         partial = self.contract.outputs / f".{self.lesson}-{self.page}-{self.run_id}.partial"
         shutil.rmtree(partial, ignore_errors=True)
@@ -113,26 +118,23 @@ class Recorder:
         try:
             self._write_files(partial, measured)
             self.folder.parent.mkdir(parents=True, exist_ok=True)
-            if self.folder.exists():
-                shutil.rmtree(self.folder)
+            shutil.rmtree(self.folder, ignore_errors=True)
             partial.rename(self.folder)
         finally:
             shutil.rmtree(partial, ignore_errors=True)
         return self.folder
 
     def _write_files(self, folder: Path, measured: Measured) -> None:
-        arrays = write_traces(
-            folder, measured.traces, measured.joints, list(measured.links), measured.notes
-        )
+        traces, links = measured.traces, list(measured.links)
+        arrays = write_traces(folder, traces, measured.joints, links, measured.notes)
         _write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
         _write_json(folder / "metrics.json", measured.metrics)
         for name, frame in measured.frames.items():
             (folder / "frames").mkdir(exist_ok=True)
-            stamp = PngInfo()
-            stamp.add_text("run_id", self.run_id)
-            Image.fromarray(frame).save(folder / "frames" / f"{name}.png", pnginfo=stamp)
+            text = PngInfo()
+            text.add_text("run_id", self.run_id)
+            Image.fromarray(frame).save(folder / "frames" / f"{name}.png", pnginfo=text)
         (folder / "log.txt").write_text(self.engine.log.text(), encoding="utf-8")
-        files = sorted(path for path in folder.rglob("*") if path.is_file())
         statement = {
             "_type": bundle.STATEMENT_TYPE,
             "subject": [
@@ -140,7 +142,8 @@ class Recorder:
                     "name": path.relative_to(folder).as_posix(),
                     "digest": {"sha256": bundle.sha256(path)},
                 }
-                for path in files
+                for path in sorted(folder.rglob("*"))
+                if path.is_file()
             ],
             "predicateType": bundle.PREDICATE_TYPE,
             "predicate": self._predicate(measured),
@@ -150,6 +153,11 @@ class Recorder:
 
     def _predicate(self, measured: Measured) -> dict[str, Any]:
         backend, renderer = self.engine.backend, measured.renderer
+        modules = bundle.module_digests(find_page(self.lesson, self.page).modules, PACKAGE)
+        at_end = {
+            "actual_at_end": session.probe(backend.requested).actual,
+            "driver": driver_version(),
+        }
         predicate: dict[str, Any] = {
             "schema_version": bundle.SCHEMA_VERSION,
             "lesson": self.lesson,
@@ -164,11 +172,7 @@ class Recorder:
                 "precision": self.engine.precision,
                 "files_match_wheel": self._match.result(),
             },
-            "backend": asdict(backend)
-            | {
-                "actual_at_end": session.probe(backend.requested).actual,
-                "driver": driver_version(),
-            },
+            "backend": asdict(backend) | at_end,
             "render": {
                 "mode": "camera" if renderer else "skip",
                 "vendor": renderer.vendor if renderer else None,
@@ -184,20 +188,9 @@ class Recorder:
             "checks": [asdict(check) for check in measured.checks],
             "warnings": self.engine.log.warnings,
             "git": git_record(),
-            "source": source_record(self.lesson, self.page),
+            "source": {"page": os.environ.get("ROBO_GENESIS_PAGE_SHA256"), "modules": modules},
         }
         return predicate | {"evidence_key": bundle.evidence_key(predicate)}
-
-
-def source_record(lesson: str, page: str) -> dict[str, Any]:
-    """Digest the code that computes: the page's code cells (where known) and the modules."""
-    return {
-        "page": os.environ.get("ROBO_GENESIS_PAGE_SHA256"),
-        "modules": {
-            name: bundle.sha256(PACKAGE / f"{name.replace('.', '/')}.py")
-            for name in find_page(lesson, page).modules
-        },
-    }
 
 
 def files_match_wheel(*distributions: str) -> bool:
@@ -206,20 +199,18 @@ def files_match_wheel(*distributions: str) -> bool:
     A package without recorded digests, such as an editable one, does not match.
     """
     for name in distributions:
-        compared = 0
-        for file in importlib.metadata.distribution(name).files or []:
-            if file.hash is None:
-                continue
-            path = Path(str(file.locate()))
-            if not path.is_file():
-                return False
-            digest = hashlib.new(file.hash.mode, path.read_bytes()).digest()
-            if base64.urlsafe_b64encode(digest).rstrip(b"=").decode() != file.hash.value:
-                return False
-            compared += path.suffix == ".py"
-        if not compared:
+        files = [f for f in importlib.metadata.distribution(name).files or [] if f.hash]
+        if not any(f.suffix == ".py" for f in files) or not all(map(_is_unchanged, files)):
             return False
     return True
+
+
+def _is_unchanged(file: importlib.metadata.PackagePath) -> bool:
+    path = Path(str(file.locate()))
+    if file.hash is None or not path.is_file():
+        return False
+    digest = hashlib.new(file.hash.mode, path.read_bytes()).digest()
+    return base64.urlsafe_b64encode(digest).rstrip(b"=").decode() == file.hash.value
 
 
 def host_record(cpu: str | None) -> dict[str, Any]:
@@ -236,7 +227,7 @@ def host_record(cpu: str | None) -> dict[str, Any]:
 
 
 def driver_version() -> str | None:
-    """Return the accelerator's kernel driver version, None where there is none."""
+    """Return the version of the kernel driver of the accelerator, None if there is none."""
     for path in ("/sys/module/amdgpu/version", "/sys/module/nvidia/version"):
         if Path(path).is_file():
             return Path(path).read_text().strip()
@@ -244,7 +235,7 @@ def driver_version() -> str | None:
 
 
 def git_record() -> dict[str, Any] | None:
-    """Return commit and dirty flag of the checkout, None outside one."""
+    """Return commit and dirty flag of the checkout, None outside a checkout."""
     commit = git_or_none(PACKAGE.parent, "rev-parse", "HEAD")
     status = git_or_none(PACKAGE.parent, "status", "--porcelain", "--untracked-files=normal")
     if commit is None or status is None:

@@ -1,4 +1,4 @@
-"""The runs of a bundle as its lesson declares them: what is drawn and played, of either kind."""
+"""The runs of a bundle that a lesson draws and replays."""
 
 from pathlib import Path
 
@@ -10,14 +10,14 @@ from robo_genesis.sim import body_channels, joint_channels
 
 
 def read_runs(folder: Path, drawn: Compared | Moving) -> Runs:
-    """Return the runs of a lesson's cases, read from one bundle.
+    """Return the runs of some cases of one bundle.
 
     Args:
         folder: of the bundle.
-        drawn: the cases, and the joint or the link that is followed.
+        drawn: the cases, and their joint or link.
 
     Raises:
-        BundleRefused: the bundle cannot be read, or its runs are of the other kind.
+        BundleRefused: the bundle cannot be read, or has no runs of this kind.
         ValueError: it has no such joint, link or axis, or the runs differ in their times.
     """
     arrays = bundle.read_arrays(folder)

@@ -1,15 +1,14 @@
-"""A comparison for readers: a summary, a Markdown page, an HTML page that fetches nothing."""
+"""The report of a comparison: a summary, a Markdown page and an HTML page that fetches nothing."""
 
-from collections.abc import Iterator
+from collections import Counter
 from html import escape
-from itertools import groupby
 from pathlib import Path
 
 from robo_genesis.core import tables
 from robo_genesis.core.files import write_whole
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import Comparison
-from robo_genesis.evidence.findings import SEVERITY, Section
+from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, SEVERITY, Section
 
 COLUMNS = ("result", "what", "old", "new", "Δ", "allowed")
 Row = tuple[str, ...]
@@ -41,35 +40,30 @@ def title(comparison: Comparison) -> str:
 
 
 def verdict(comparison: Comparison) -> str:
-    """Say the result in one sentence, with how many rows stand behind it."""
+    """Return the result in one sentence, and the number of rows in each state."""
     if comparison.obstacles:
         return "Not comparable."
-    states = sorted(
-        (f.state for s in comparison.sections for f in s.findings), key=SEVERITY.index, reverse=True
-    )
-    counts = ", ".join(f"{len(list(group))} {state}" for state, group in groupby(states))
+    rows = Counter(f.state for s in comparison.sections for f in s.findings)
+    counts = ", ".join(f"{rows[state]} {state}" for state in reversed(SEVERITY) if state in rows)
     return f"{comparison.state.capitalize()}. Rows: {counts}."
 
 
 def summary(comparison: Comparison) -> str:
-    """Return the report in a few lines: verdict, obstacles or one line a section, notes."""
+    """Return the report in a few lines: verdict, obstacles or sections, notes."""
     lines = [title(comparison), verdict(comparison), *comparison.obstacles]
     for part in comparison.sections:
         state = part.state if part.findings else part.empty
         lines.append(f"  {part.title.lower()}: {state}")
-        lines += [
-            f"    {f.what}: {f.old} → {f.new}"
-            for f in part.findings
-            if f.state in ("differs", "inconclusive")
-        ]
+        worst = [f for f in part.findings if f.state in (DIFFERS, INCONCLUSIVE)]
+        lines += [f"    {f.what}: {f.old} → {f.new}" for f in worst]
     return "\n".join([*lines, *comparison.notes])
 
 
 def markdown(comparison: Comparison, level: int = 1) -> str:
-    """Return the report as Markdown, its heading at a level."""
+    """Return the report as Markdown; its heading has the given level."""
     mark = "#" * level
     parts = [f"{mark} {plain(title(comparison))}", f"**{verdict(comparison)}**"]
-    parts += ["\n".join(f"- {plain(line)}" for line in _remarks(comparison))]
+    parts += ["\n".join(f"- {plain(line)}" for line in comparison.remarks)]
     for part in comparison.sections:
         state = f": {part.state}" if part.findings else ""
         parts.append(f"{mark}# {part.title}{state}")
@@ -84,25 +78,24 @@ def html(comparison: Comparison) -> str:
 
 
 def html_body(comparison: Comparison, level: int = 1) -> list[str]:
-    """Return the report's elements, its heading at a level."""
+    """Return the HTML elements of the report; its heading has the given level."""
     top, below = f"h{level}", f"h{level + 1}"
     body = [f"<{top}>{escape(title(comparison))}</{top}>"]
     state = _css(comparison.state)
     body.append(f'<p class="verdict {state}">{escape(verdict(comparison))}</p>')
-    remarks = "".join(f"<li>{escape(line)}</li>\n" for line in _remarks(comparison))
+    remarks = "".join(f"<li>{escape(line)}</li>\n" for line in comparison.remarks)
     body += [f"<ul>\n{remarks}</ul>"] if remarks else []
     for part in comparison.sections:
         mark = f': <span class="{_css(part.state)}">{part.state}</span>' if part.findings else ""
         body.append(f"<{below}>{part.title}{mark}</{below}>")
-        body.append(
-            html_table(part.title, _table(part)) if part.findings else f"<p>{part.empty}</p>"
-        )
+        content = html_table(part.title, _table(part)) if part.findings else f"<p>{part.empty}</p>"
+        body.append(content)
     table = html_table("The two bundles", _origin(comparison))
     return [*body, f"<{below}>The two bundles</{below}>", table]
 
 
 def html_page(name: str, body: list[str]) -> str:
-    """Return a whole page in the reports' look."""
+    """Return a whole page in the style of the reports."""
     head = (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
@@ -112,20 +105,15 @@ def html_page(name: str, body: list[str]) -> str:
 
 
 def write(folder: Path, markdown_text: str, html_text: str) -> list[Path]:
-    """Write both pages of a report, each in one move; return their paths."""
+    """Write both pages of a report and return their paths."""
     pages = {"report.md": markdown_text, "report.html": html_text}
     for name, text in pages.items():
         write_whole(folder / name, text.encode())
     return [folder / name for name in pages]
 
 
-def _remarks(comparison: Comparison) -> Iterator[str]:
-    yield from comparison.obstacles
-    yield from comparison.notes
-
-
 def _table(part: Section) -> list[Row]:
-    """Return head and rows of one section, without columns that no row fills."""
+    """Return head and rows of one section, without empty columns."""
     rows = [(f.state, f.what, f.old, f.new, f.delta, f.allowed) for f in part.findings]
     kept = [k for k in range(len(COLUMNS)) if any(row[k] for row in rows)]
     return [tuple(row[k] for k in kept) for row in [COLUMNS, *rows]]
@@ -143,7 +131,7 @@ def _facts(predicate: Predicate) -> dict[str, str]:
     return {
         "engine": f"{engine.version}, quadrants {engine.quadrants_version}",
         "precision": engine.precision,
-        "backend": f"{backend.actual} (asked for {backend.requested})",
+        "backend": f"{backend.actual} (requested: {backend.requested})",
         "device": backend.device_name,
         "torch": backend.torch_version,
         "host": f"{predicate.host.os}, {predicate.host.cpu}",
@@ -154,7 +142,7 @@ def _facts(predicate: Predicate) -> dict[str, str]:
 
 
 def markdown_table(rows: list[Row]) -> str:
-    """Return rows of text as a Markdown table, the first as its head."""
+    """Return rows of text as a Markdown table; the first row is the head."""
     head = [plain(cell) for cell in rows[0]]
     return tables.markdown(
         [dict(zip(head, map(plain, row), strict=True)) for row in rows[1:]]
@@ -162,10 +150,9 @@ def markdown_table(rows: list[Row]) -> str:
 
 
 def html_table(label: str, rows: list[Row]) -> str:
-    """Return rows of text as a table that scrolls by itself, the first row as its head."""
+    """Return rows of text as a table in a scroll box; the first row is the head."""
     head = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in rows[0])
-    lines = ["".join(map(_cell, row)) for row in rows[1:]]
-    body = "".join(f"<tr>{line}</tr>\n" for line in lines)
+    body = "".join(f"<tr>{''.join(map(_cell, row))}</tr>\n" for row in rows[1:])
     return (
         f'<div class="box" role="region" aria-label="{escape(label)}" tabindex="0">\n'
         f"<table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody>\n</table>\n</div>"
@@ -183,6 +170,6 @@ def _css(state: str) -> str:
 
 
 def plain(text: str) -> str:
-    """Keep a bundle's or a page's words from acting as Markdown."""
+    """Return text with the characters escaped that have a meaning in Markdown."""
     one_line = " ".join(text.split())
     return "".join(f"\\{c}" if c in "\\`*_|[]<>#" else c for c in one_line)

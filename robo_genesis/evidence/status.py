@@ -1,29 +1,34 @@
-"""The state of a lesson's evidence, computed in this one place and nowhere set by hand."""
+"""The state of evidence; only this module decides it."""
 
 import os
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.core import project
+from robo_genesis.core.orderings import HELD, Relation, outcome
+from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence import bundle, evidence_key
-from robo_genesis.evidence.bundle import BundleRefused, Manifest
-from robo_genesis.evidence.claims import not_shown
+from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.compare import specification
 from robo_genesis.evidence.manifest_rules import AGREEMENT
 from robo_genesis.evidence.verify import verify_bundle
 
 RECORDED_PAGE = "lab"
-"""Only labs are recorded on accelerators and kept in the repository."""
+"""The page whose bundles are recorded on accelerators and kept in the repository."""
 
 STATE_OF_CODE = {"stale": "stale", "older-schema": "stale", "failed": "failed"}
-"""Refusals that are a state of their own; every other code is `refused`."""
-
-STATES = ("verified", "inconclusive", "missing", "stale", "failed", "refused")
+"""State by the code of a refusal; every other code is `refused`."""
 
 PASSING = ("verified", "inconclusive", "missing", "stale")
-"""States that a build goes on with; without a manifest a panel stands in the figures' place."""
+"""States with which a build continues; without a manifest, a panel replaces the figures."""
 
-UNREADABLE = "The bundle was refused; `make verify` says what it found and what it expected."
+UNREADABLE = "The bundle was refused. `make verify` shows the found and the expected value."
+SUMMARIES = {
+    "older-schema": "It was recorded in an older form of the bundle.",
+    "failed": "Its own checks did not all pass.",
+}
+"""What a reader of the site learns about a refusal, by its code."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,13 +39,13 @@ class Status:
     |---|---|
     | `verified` | accepted; `manifest` is given |
     | `inconclusive` | accepted, but it does not show every ordering that the lesson claims |
-    | `missing` | no bundle stands there |
-    | `stale` | honest, but of an older form, or the answer to an older question |
-    | `failed` | sound, and its own checks did not pass |
+    | `missing` | there is no bundle |
+    | `stale` | sound, but of an older form, or the answer to an older question |
+    | `failed` | sound, but its own checks did not all pass |
     | `refused` | damaged, mislabelled, incomplete or of an unknown form |
 
-    `code` is that of the refusal, None where there was none; `reason` names expected and found,
-    `summary` says the same to a reader of the site.
+    `code` is the code of the refusal, None without one. `reason` names the found and the expected
+    value; `summary` is the short form for a reader of the site.
     """
 
     state: str
@@ -52,21 +57,17 @@ class Status:
 
     @property
     def badge(self) -> str:
-        """The one word that the site shows: backend and state."""
+        """The text of the badge: backend and state."""
         return f"{self.backend}-{self.state}"
 
     @property
     def sentence(self) -> str:
-        """Say what was run, for a reader who sees the badge beside it."""
+        """The text beside the badge: how the bundle was made, or why there is none."""
         if self.manifest is None:
             return self.summary or self.reason
-        predicate = self.manifest.predicate
-        render = predicate.render
-        kernel = (
-            "Lab in a clean notebook kernel"
-            if predicate.command.startswith("make ")
-            else "Lab run by hand"
-        )
+        predicate, render = self.manifest.predicate, self.manifest.predicate.render
+        by_make = predicate.command.startswith("make ")
+        kernel = "Lab in a clean notebook kernel" if by_make else "Lab run by hand"
         passed = sum(check.passed for check in predicate.checks)
         camera = f"camera frames by {render.renderer}" if render.mode == "camera" else "camera SKIP"
         more = f" {self.summary}" if self.summary else ""
@@ -86,17 +87,17 @@ def page_status(
     *,
     root: Path = project.ROOT,
 ) -> Status:
-    """Return the state of one bundle below the outputs folder of a build of a book."""
+    """Return the state of one bundle below the outputs folder of a build."""
     absent = f"No bundle was recorded for {lesson}/{page}."
     return bundle_status(outputs / lesson / page / backend, lesson, page, absent, book, root=root)
 
 
 def recorded_status(book: Path, lesson: str, backend: str, *, root: Path = project.ROOT) -> Status:
-    """Return the state of the lab's bundle that was recorded on a backend and committed."""
+    """Return the state of the recorded bundle of a lab on a backend."""
     absent = f"No run on this backend is recorded for Genesis {project.engine_pin(root)}."
     folder = book / "evidence" / lesson / backend
     if folder.parent.is_symlink():
-        reason = f"evidence/{lesson} is a link, expected the folder itself. Put the folder there."
+        reason = f"evidence/{lesson} is a link, expected a folder. Replace the link."
         return Status("refused", backend, reason, None, "path", UNREADABLE)
     return bundle_status(folder, lesson, RECORDED_PAGE, absent, book, root=root)
 
@@ -110,92 +111,94 @@ def bundle_status(
     *,
     root: Path = project.ROOT,
 ) -> Status:
-    """Return the state of the bundle in a folder that is named by its backend.
+    """Return the state of the bundle in a folder that is named after its backend.
 
     Args:
-        folder: where the bundle stands, or would.
-        lesson: whose it must be, where that is known.
-        page: the page that it must come from, where that is known.
-        absent: the reason that is given where there is none.
-        book: the pages that it must come from.
+        folder: of the bundle, which may be missing.
+        lesson: the required lesson, None for any.
+        page: the required page, None for any.
+        absent: the reason if there is no bundle.
+        book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
 
     Raises:
         ProjectError, PageError: the checkout itself cannot be read.
     """
+    backend = folder.name
     if not os.path.lexists(folder):
-        return Status("missing", folder.name, absent, None)
+        return Status("missing", backend, absent, None)
     try:
         manifest = verify_bundle(folder, lesson=lesson, page=page, root=root, book=book)
     except BundleRefused as refusal:
-        state = STATE_OF_CODE.get(refusal.code, "refused")
-        summary = {
-            "stale": lambda: why_stale(bundle.read_manifest(folder), book, root),
-            "older-schema": lambda: "It was recorded in an older form of the bundle.",
-            "failed": lambda: "Its own checks did not all pass.",
-        }.get(refusal.code, lambda: UNREADABLE)()
-        return Status(state, folder.name, str(refusal), None, refusal.code, summary)
-    return _shown(folder, manifest)
+        code = refusal.code
+        summary = SUMMARIES.get(code, UNREADABLE)
+        if code == "stale":
+            summary = why_stale(bundle.read_manifest(folder), book, root)
+        state = STATE_OF_CODE.get(code, "refused")
+        return Status(state, backend, str(refusal), None, code, summary)
+    claims = specification(manifest.predicate.lesson, manifest.predicate.page).relations
+    lines = not_shown(bundle.by_full_name(bundle.read_metrics(folder)), claims)
+    if not lines:
+        return Status("verified", backend, "", manifest)
+    reason = f"Not shown of what the lesson claims: {'; '.join(lines)}."
+    return Status("inconclusive", backend, reason, manifest, summary=reason)
 
 
-def _shown(folder: Path, manifest: Manifest) -> Status:
-    """Return the state of an accepted bundle: whether it shows what its lesson claims."""
-    metrics = bundle.read_metrics(folder)
-    numbers = {f"{group}.{name}": m for group, of in metrics.items() for name, m in of.items()}
-    run = manifest.predicate
-    open_ones = not_shown(numbers, specification(run.lesson, run.page).relations)
-    if not open_ones:
-        return Status("verified", folder.name, "", manifest)
-    reason = f"Not shown of what the lesson claims: {'; '.join(open_ones)}."
-    return Status("inconclusive", folder.name, reason, manifest, summary=reason)
+def not_shown(numbers: Mapping[str, Metric], claims: Sequence[Relation]) -> list[str]:
+    """Return a line for each claimed ordering that the metrics of a run do not show."""
+    lines = []
+    for claimed in claims:
+        (first, second), metric, claim, _ = claimed
+        held, values = outcome(numbers, claimed)
+        if held != HELD:
+            lines.append(f"{metric} {claim} in {second} than in {first} is {held} ({values})")
+    return lines
 
 
 def why_stale(manifest: Manifest, book: Path, root: Path = project.ROOT) -> str:
-    """Say to a reader what changed since a bundle was recorded.
+    """Return, for a reader of the site, what changed since a stale bundle was recorded.
 
     Args:
         manifest: of a bundle that was refused as stale.
-        book: the pages of this checkout.
+        book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
     """
     found = manifest.predicate.model_dump()
-    asked = evidence_key.question(found["lesson"], found["page"], root, book)
-    versions = (("Genesis", "version"), ("Quadrants", "quadrants_version"))
+    now = evidence_key.question(found["lesson"], found["page"], root, book)
     changed = [
-        f"it was recorded with {name} {found['engine'][key]}; this site uses {asked['engine'][key]}"
-        for name, key in versions
-        if found["engine"][key] != asked["engine"][key]
+        f"it was recorded with {name} {found['engine'][key]}; this site uses {now['engine'][key]}"
+        for name, key in (("Genesis", "version"), ("Quadrants", "quadrants_version"))
+        if found["engine"][key] != now["engine"][key]
     ]
-    for what, here, there in (
-        (f"the {found['page']}'s code", found["source"]["page"], asked["source"]["page"]),
-        ("the course's code", found["source"]["modules"], asked["source"]["modules"]),
-        ("the parameters", found["parameters"], asked["parameters"]),
-        ("the seed", found["seed"], asked["seed"]),
-    ):
-        changed += [f"{what} changed since"] if here != there else []
+    changed += [
+        f"{what} changed since"
+        for what, before, after in (
+            (f"the {found['page']}'s code", found["source"]["page"], now["source"]["page"]),
+            ("the course's code", found["source"]["modules"], now["source"]["modules"]),
+            ("the parameters", found["parameters"], now["parameters"]),
+            ("the seed", found["seed"], now["seed"]),
+        )
+        if before != after
+    ]
     text = "; ".join(changed) or "it answers an older question"
     return f"{text[0].upper()}{text[1:]}."
 
 
 def recorded_folders(book: Path) -> list[Path]:
-    """Return what stands where recorded bundles do: `evidence/<lesson>/<backend>` of a book.
+    """Return the recorded bundles of a book: `evidence/<lesson>/<backend>`.
 
-    A backend's name on something that is no folder counts: it must be refused, not overlooked.
+    Anything with the name of a backend counts, so that a file or link is refused rather than
+    overlooked.
     """
     return [
         path
-        for path in sorted((book / "evidence").glob("*/*"))
-        if (path.is_dir() or path.is_symlink() or path.name in AGREEMENT)
-        and not path.name.startswith(".")
+        for path in sorted((book / "evidence").glob("*/[!.]*"))
+        if path.is_dir() or path.is_symlink() or path.name in AGREEMENT
     ]
 
 
 def refused_records(book: Path) -> list[str]:
-    """Return a line for each recorded bundle that a build must not go on with.
-
-    Args:
-        book: the folder that holds `evidence`.
-    """
+    """Return a line for each recorded bundle of a book with which a build must not continue."""
     found = [(path, recorded_status(book, *path.parts[-2:])) for path in recorded_folders(book)]
     return [
         f"{path.relative_to(book)}: the recorded bundle is {status.state}: {status.reason}"

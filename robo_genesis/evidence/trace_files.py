@@ -1,30 +1,24 @@
-"""Traces and joints as files and back: npz with units in the names, described in `arrays.json`.
+"""Write traces and joints to npz files and `arrays.json`, and read them back.
 
-A bundle holds runs of one kind: of joints, or, where it has no joints, of free bodies.
+The names of stored arrays end with their unit. A bundle holds runs of joints, or, if it has no
+joints, of free bodies.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
-from robo_genesis.core.refusals import AGAIN, expect
+from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.core.trace import BodyTrace, ContactTrace, TimeSeries, Trace, TraceError
-from robo_genesis.evidence.bundle import (
-    Arrays,
-    BundleRefused,
-    CaseArrays,
-    JointRecord,
-    Variable,
-    read_arrays,
-)
+from robo_genesis.evidence.bundle import Arrays, CaseArrays, JointRecord, Variable
 from robo_genesis.evidence.npz_archive import read_archive
 from robo_genesis.sim.joints import EFFORT_UNIT, POSITION_UNIT, JointMap
 
 Field = tuple[str, list[str], str | None, str]
 
-# Trace field → name in the file, dimensions, unit (None: that of each DOF), long name.
+# Trace field → name in the file, dimensions, unit (None if each DOF has its own), long name.
 FIELDS: dict[str, Field] = {
     "t": ("t_s", ["state"], "s", "time of each state, the first before any step"),
     "q": ("q_rad_or_m", ["state", "dof"], None, "position"),
@@ -62,6 +56,10 @@ KINDS: dict[type[TimeSeries], dict[str, Field]] = {
     BodyTrace: BODY_FIELDS,
     ContactTrace: CONTACT_FIELDS,
 }
+DTYPES = {"t": "float64", "target": "float64", "contacts": "int32"}
+"""Types of fields; all others are float32, in which the engine computes."""
+
+Kind = TypeVar("Kind", bound=TimeSeries)
 
 
 def fields_of(trace: TimeSeries) -> dict[str, Field]:
@@ -69,12 +67,8 @@ def fields_of(trace: TimeSeries) -> dict[str, Field]:
     return KINDS[type(trace)]
 
 
-DTYPES = {"t": "float64", "target": "float64", "contacts": "int32"}
-"""Fields that are no values of the engine in float32, in which it computes."""
-
-
 def dof_units(name: str, types: Sequence[str]) -> list[str]:
-    """Return the unit of each DOF, by its joint's type, for one array name of `FIELDS`."""
+    """Return the unit of each DOF in one array of `FIELDS`, from the types of the joints."""
     positions = [POSITION_UNIT[kind] for kind in types]
     if name.startswith(("q_", "target")):
         return positions
@@ -90,42 +84,38 @@ def write_traces(
     links: list[str],
     notes: Mapping[str, str] | None = None,
 ) -> Arrays:
-    """Write `arrays/<case>.npz` for every trace and return their description, with the joints.
+    """Write `arrays/<case>.npz` for every trace and return the content of `arrays.json`.
 
-    Runs of free bodies have none, and their arrays no axis of DOFs.
-
-    `notes` says by case in what its arrays differ from the long names; most cases need none.
+    Args:
+        folder: of the bundle.
+        traces: by case.
+        joints: of the DOFs, None for free bodies.
+        links: the labels of the axis of links.
+        notes: by case, how its arrays differ from their long names; most cases need none.
     """
     (folder / "arrays").mkdir()
     types = joints.types if joints else ()
     cases = {}
     for case, trace in traces.items():
-        described = fields_of(trace)
-        values = {name: getattr(trace, field) for field, (name, *_) in described.items()}
-        np.savez_compressed(folder / "arrays" / f"{case}.npz", **values)
-        variables = {
-            name: Variable(
+        file, values, variables = f"arrays/{case}.npz", {}, {}
+        for field, (name, dims, unit, long_name) in fields_of(trace).items():
+            array = values[name] = getattr(trace, field)
+            variables[name] = Variable(
                 dims=dims,
-                shape=list(values[name].shape),
-                dtype=str(values[name].dtype),
+                shape=list(array.shape),
+                dtype=str(array.dtype),
                 unit=dof_units(name, types) if unit is None else unit,
                 long_name=long_name,
             )
-            for name, dims, unit, long_name in described.values()
-        }
-        cases[case] = CaseArrays(
-            file=f"arrays/{case}.npz", note=(notes or {}).get(case, ""), variables=variables
-        )
-    dofs = {"dof": list(joints.names)} if joints else {}
-    return Arrays(
-        coords=dofs | {"link": links},
-        joints=joint_records(joints) if joints else [],
-        cases=cases,
-    )
+        np.savez_compressed(folder / file, **values)
+        cases[case] = CaseArrays(file=file, note=(notes or {}).get(case, ""), variables=variables)
+    coords = {"dof": list(joints.names)} if joints else {}
+    records = joint_records(joints) if joints else []
+    return Arrays(coords=coords | {"link": links}, joints=records, cases=cases)
 
 
 def joint_records(joints: JointMap) -> list[JointRecord]:
-    """Return a record of each joint, in the map's order.
+    """Return a record of each joint, in the order of the map.
 
     Raises:
         ValueError: a limit is not a number.
@@ -145,10 +135,10 @@ def joint_records(joints: JointMap) -> list[JointRecord]:
 
 
 def read_joints(arrays: Arrays) -> JointMap:
-    """Return the joint map of a run as it was recorded, held against the labels of its arrays.
+    """Return the recorded joint map after comparing it with the labels of the arrays.
 
     Raises:
-        BundleRefused: `labels`, where names, types or units contradict each other.
+        BundleRefused: `labels` if names, types or units contradict each other.
     """
     joints, file = arrays.joints, "arrays.json joints"
     expect("labels", file, "list of names", [j.name for j in joints], arrays.coords.get("dof", []))
@@ -167,74 +157,49 @@ def read_joints(arrays: Arrays) -> JointMap:
 
 
 def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
-    """Return one case's run of joints after holding its arrays against their description.
-
-    Raises:
-        BundleRefused: `labels`, `too-big` or `bad-array`; `bad-trace` where its arrays do not form
-            one run.
-    """
-    return _read(folder, arrays, case, Trace)
+    """Return one run of joints; see `read_run`."""
+    return read_run(folder, arrays, case, Trace)
 
 
 def read_body_trace(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
-    """Return one case's run of free bodies; as `read_trace`."""
-    expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
-    return _read(folder, arrays, case, BodyTrace)
+    """Return one run of free bodies; see `read_run`."""
+    return read_run(folder, arrays, case, BodyTrace)
 
 
 def read_contact_trace(folder: Path, arrays: Arrays, case: str) -> ContactTrace:
-    """Return one case's run of free bodies on a surface; as `read_trace`."""
-    expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
-    return _read(folder, arrays, case, ContactTrace)
-
-
-Body = TypeVar("Body", bound=BodyTrace)
+    """Return one run of free bodies on a surface; see `read_run`."""
+    return read_run(folder, arrays, case, ContactTrace)
 
 
 def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Trace | BodyTrace:
-    """Return one case's run, of joints if the bundle has any, else of free bodies."""
+    """Return one run of joints if the bundle has any, else of free bodies; see `read_run`."""
     return read_trace(folder, arrays, case) if arrays.joints else any_bodies(folder, arrays, case)
 
 
 def any_bodies(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
-    """Return one case's run of free bodies, with contacts if it is described as one that has them.
+    """Return one run of free bodies, with contacts if they are described; see `read_run`.
 
-    What may be judged says which of both it must be: `read_body_trace`, `read_contact_trace`.
+    Verification does not use it, because a bundle must not choose the kind of its own runs.
     """
-    touched = "contacts" in arrays.cases[case].variables
-    return (read_contact_trace if touched else read_body_trace)(folder, arrays, case)
+    has_contacts = "contacts" in arrays.cases[case].variables
+    return read_run(folder, arrays, case, ContactTrace if has_contacts else BodyTrace)
 
 
-def read_bodies(
-    folder: Path,
-    cases: Iterable[str],
-    link: str,
-    read: Callable[[Path, Arrays, str], Body],
-) -> dict[str, Body]:
-    """Return all runs of a bundle by case, each of one body.
+def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
+    """Return one run of a kind after comparing its arrays with their description.
 
     Args:
-        folder: the bundle.
-        cases: those that it must hold, and no others.
-        link: what the body is called in it.
-        read: reads one of them.
+        folder: of the bundle.
+        arrays: its description.
+        case: the name of the run.
+        kind: `Trace`, `BodyTrace` or `ContactTrace`.
 
     Raises:
-        BundleRefused: `cases`, `labels`, or as `read_trace`.
+        BundleRefused: `labels`, `path`, `too-big` or `bad-array`; `bad-trace` if the arrays do not
+            form one run.
     """
-    expected, arrays = sorted(cases), read_arrays(folder)
-    expect("cases", "arrays.json", "list of cases", sorted(arrays.cases), expected)
-    present = sorted(path.stem for path in (folder / "arrays").glob("*.npz"))
-    expect("cases", "arrays/", "list of archives", present, expected)
-    expect("labels", "arrays.json", "names of coords", sorted(arrays.coords), ["link"])
-    expect("labels", "arrays.json", "list of links", arrays.coords["link"], [link])
-    return {case: read(folder, arrays, case) for case in expected}
-
-
-Kind = TypeVar("Kind", bound=TimeSeries)
-
-
-def _read(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
+    if kind is not Trace:
+        expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
     described, known = arrays.cases[case], KINDS[kind]
     expect("path", "arrays.json", f"file of case {case}", described.file, f"arrays/{case}.npz")
     _check_labels(arrays, case, known)
@@ -250,7 +215,7 @@ def _read(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
 
 
 def _check_labels(arrays: Arrays, case: str, known: Mapping[str, Field]) -> None:
-    """Require that names, dimensions, units and types are those that `write_traces` gives."""
+    """Require the names, dimensions, units and types that `write_traces` gives."""
     variables = arrays.cases[case].variables
     types = read_joints(arrays).types if arrays.joints else ()
     names = sorted(name for name, *_ in known.values())

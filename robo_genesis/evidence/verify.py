@@ -1,13 +1,17 @@
-"""Accept or refuse a bundle: its own words are not believed where they can be recomputed."""
+"""Accept or refuse a bundle: whatever can be recomputed from its arrays is recomputed."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.evidence import bundle, bundle_files, evidence_key, manifest_rules, recompute
-from robo_genesis.evidence.bundle import BundleRefused, Manifest
+from robo_genesis.core.checks import Check
+from robo_genesis.core.metrics import Record
+from robo_genesis.core.refusals import BundleRefused, expect
+from robo_genesis.evidence import bundle, bundle_files, evidence_key, manifest_rules
+from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.evidence.reader import Reader
+from robo_genesis.evidence.strict_json import differences
 from robo_genesis.lessons.registry import find_lesson
-
-__all__ = ["BundleRefused", "verify_bundle"]
 
 
 def verify_bundle(
@@ -21,13 +25,13 @@ def verify_bundle(
 ) -> Manifest:
     """Check one bundle against its files, the checkout and the pin.
 
-    What lies and what is damaged is refused before what is old: a stale bundle is an honest one.
+    Damaged and false bundles are refused before `stale`, so that a stale bundle is sound.
 
     Args:
-        folder: the bundle, named by its actual backend.
-        run_id: the run that it must belong to, where that is known.
-        lesson: whose it must be, where that is known.
-        page: the page that it must come from, where that is known.
+        folder: the bundle, named after its actual backend.
+        run_id: the required run, None for any.
+        lesson: the required lesson, None for any.
+        page: the required page, None for any.
         root: the checkout, for pin, lock and modules.
         book: the folder of the pages.
 
@@ -35,7 +39,7 @@ def verify_bundle(
         The accepted manifest.
 
     Raises:
-        BundleRefused: with a code, and a message that names what was expected and found.
+        BundleRefused: with a code, and a message that names the found and the expected value.
         ProjectError, PageError: the checkout itself cannot be read.
     """
     present = bundle_files.scan(folder)
@@ -48,7 +52,44 @@ def verify_bundle(
     manifest_rules.check_log(folder, manifest)
     manifest_rules.check_engine_files(manifest)
     evidence_key.check_current(manifest, root, book)
-    again = find_lesson(manifest.predicate.lesson).recompute(recompute.Reader(folder, manifest))
-    recompute.check_metrics(folder, again.metrics)
-    recompute.check_outcomes(manifest, again.outcomes)
+    reader = Reader(folder, manifest)
+    recomputed = find_lesson(manifest.predicate.lesson).recompute(reader)
+    check_metrics(reader, recomputed.metrics)
+    check_outcomes(manifest, recomputed.outcomes)
     return manifest
+
+
+def check_metrics(reader: Reader, expected: Mapping[str, Mapping[str, Record]]) -> None:
+    """Require that metrics.json has the values, units, classes and sources of the runs.
+
+    Raises:
+        BundleRefused: `metrics`.
+    """
+    found = {
+        group: {name: metric.model_dump(by_alias=True) for name, metric in metrics.items()}
+        for group, metrics in reader.metrics.items()
+    }
+    for name, recorded, computed in differences(found, expected):
+        expect("metrics", "metrics.json", name, recorded, computed)
+
+
+def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:
+    """Require that the recorded outcomes are those of the runs, and that all checks passed.
+
+    Raises:
+        BundleRefused: `checks` if they differ; `failed` if they agree and a check failed.
+    """
+    recorded, file = manifest.predicate.checks, "manifest.json"
+    names = [check.name for check in outcomes]
+    expect("checks", file, "list of checks", [check.name for check in recorded], names)
+    for check, computed in zip(recorded, outcomes, strict=True):
+        what = f"outcome of check {check.name}, recomputed as '{computed.detail}',"
+        expect("checks", file, what, check.passed, computed.passed)
+        expect("checks", file, f"detail of check {check.name}", check.detail, computed.detail)
+    failed = [f"[{check.name}] {check.detail}" for check in recorded if not check.passed]
+    if failed:
+        raise BundleRefused(
+            "failed",
+            f"{file}: failed checks {' '.join(failed)}, expected none. Correct the lesson or "
+            "report the cause to the engine's developers, then record the bundle again.",
+        )

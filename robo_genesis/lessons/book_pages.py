@@ -1,4 +1,4 @@
-"""Which pages are executed, which modules they import, and the fingerprint of both."""
+"""The executed pages of the book, the modules that they import, and the fingerprint of both."""
 
 import ast
 import hashlib
@@ -8,6 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib.util import resolve_name
+from itertools import accumulate
 from pathlib import Path
 
 import yaml
@@ -29,7 +31,7 @@ DATA_SUFFIXES = (".json", ".toml", ".yaml", ".yml", ".csv")
 
 
 class PageError(ProjectError):
-    """A page or the table of contents is written in a way that the build cannot use."""
+    """A page or the table of contents cannot be read, or is not valid."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,10 +85,10 @@ def docnames(toc: Path) -> list[str]:
         site_map = parse_toc_yaml(toc)
     except (OSError, ValueError, yaml.YAMLError, MalformedError) as error:
         raise PageError(
-            f"The table of contents {toc} cannot be read: {error}\nMend it there."
+            f"The table of contents {toc} cannot be read: {error}\nCorrect that file."
         ) from error
     if site_map.globs():
-        raise PageError(f"_toc.yml uses globs {sorted(site_map.globs())}; name every page instead.")
+        raise PageError(f"_toc.yml uses globs {sorted(site_map.globs())}. List every page instead.")
     return [str(docname) for docname in site_map]
 
 
@@ -103,54 +105,54 @@ def _read(book: Path, docname: str) -> Iterator[Page]:
         raise PageError(f"{name}: front matter needs `kernelspec: {{name: python3}}`.")
     if notebook.metadata.get("execution", {}).get("allow_errors"):
         raise PageError(
-            f"{name}: `execution: allow_errors` would publish failing cells; "
-            "tag the one cell `raises-exception` and say what it `expects`."
+            f"{name}: `execution: allow_errors` would publish failing cells. Tag the one cell "
+            "`raises-exception`, and name the exception with `expects`."
         )
     yield Page(name, path, notebook, *_declared(name, notebook))
 
 
 def _notebook(name: str, path: Path) -> NotebookNode | None:
-    """Return the parsed page, None for one of text alone."""
+    """Return the parsed page, None if it has no code cells."""
     try:
         text = path.read_text("utf8")
-        # Read first: a front matter that does not parse makes MyST-NB take a notebook for text.
+        # Parse first: MyST-NB mistakes a notebook with a broken front matter for plain text.
         notebook = deepcopy(_parsed(path, text)) if text.startswith("---") else None
-    except Exception as error:  # the reader has no exception of its own for half of its complaints
+    except Exception as error:  # the parser raises exceptions of many types
         raise PageError(
-            f"{name}: the page cannot be read: {error}\n"
-            f"Mend {path}; front matter and the options of cells (`:name: value`) are YAML."
+            f"{name}: the page cannot be read: {error}\nCorrect {path}. Front matter and the "
+            "options of cells (`:name: value`) are YAML."
         ) from error
     return notebook if is_myst_markdown_notebook(text) else None
 
 
 @lru_cache(maxsize=64)
 def _parsed(path: Path, text: str) -> NotebookNode:
-    """Return a page as a notebook; a build asks for each of them several times."""
+    """Return a page as a notebook; a build needs each page several times."""
     return myst_nb_reader_plugin(str(path))
 
 
 def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None]:
-    """Return lesson and page of the front matter, both None if it declares none."""
+    """Return lesson and page from the front matter, both None without a declaration."""
     declared = notebook.metadata.get(PACKAGE)
     if declared is None:
         return None, None
     parts = [declared.get(key) for key in ("lesson", "page")] if isinstance(declared, dict) else []
     if not parts or not all(isinstance(part, str) and part.isidentifier() for part in parts):
         raise PageError(
-            f"{name}: front matter has `{PACKAGE}: {declared!r}`; "
-            f"valid is `{PACKAGE}: {{lesson: l04, page: lab}}`, both plain words."
+            f"{name}: front matter has `{PACKAGE}: {declared!r}`. "
+            f"Valid is `{PACKAGE}: {{lesson: l04, page: lab}}`, both plain words."
         )
     return parts[0], parts[1]
 
 
 def cell_sources(page: Page) -> list[str]:
-    """Return the page's code cells as plain Python, IPython's magics translated."""
+    """Return the code cells of a page as plain Python; magics of IPython are translated."""
     transform = TransformerManager().transform_cell
     return [transform(cell.source) for cell in page.notebook.cells if cell.cell_type == "code"]
 
 
 def code_digest(page: Page) -> str:
-    """Return the sha256 of the page's code cells as they are written; prose does not count."""
+    """Return the sha256 of the code cells of a page; its text is not covered."""
     cells = [cell.source for cell in page.notebook.cells if cell.cell_type == "code"]
     return hashlib.sha256(json.dumps(cells).encode()).hexdigest()
 
@@ -159,8 +161,8 @@ def imported_modules(sources: Iterable[str], root: Path = ROOT) -> dict[str, Pat
     """Return the package's modules that some sources import, directly or through others.
 
     Args:
-        sources: Python sources; one that does not parse counts as importing nothing, its page
-            fails when it is executed.
+        sources: Python sources. One that does not parse counts as importing nothing, because its
+            page fails when it is executed.
         root: the folder that holds the package.
 
     Returns:
@@ -169,44 +171,33 @@ def imported_modules(sources: Iterable[str], root: Path = ROOT) -> dict[str, Pat
     found: dict[str, Path] = {}
     waiting = [name for source in sources for name in _imports(source, "")]
     while waiting:
-        for name in _with_parents(waiting.pop()):
+        for name in accumulate(waiting.pop().split("."), "{}.{}".format):
             path = _module_file(root, name)
             if path is None or name in found:
                 continue
             found[name] = path
-            is_package = path.name == "__init__.py"
-            waiting += _imports(path.read_text("utf8"), name if is_package else _parent(name))
+            package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+            waiting += _imports(path.read_text("utf8"), package)
     return found
 
 
 def _imports(source: str, package: str) -> list[str]:
     """Return the dotted names below the course package that a source imports anywhere."""
-    try:
-        tree = ast.parse(source)
-    except SyntaxError:
-        return []
     names: list[str] = []
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            names += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            above = package.split(".")[: len(package.split(".")) - node.level + 1]
-            base = ".".join([*(above if node.level else []), *filter(None, [node.module])])
-            names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
+    try:
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.Import):
+                names += [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                base = resolve_name("." * node.level + (node.module or ""), package)
+                names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
+    except (SyntaxError, ImportError):
+        return []
     return [name for name in names if name.split(".")[0] == PACKAGE]
 
 
-def _parent(name: str) -> str:
-    return name.rpartition(".")[0]
-
-
-def _with_parents(name: str) -> list[str]:
-    parts = name.split(".")
-    return [".".join(parts[: count + 1]) for count in range(len(parts))]
-
-
 def _module_file(root: Path, name: str) -> Path | None:
-    """Return the file of a module; None for a dotted name that is an attribute of one."""
+    """Return the file of a module, None if the name is not a module."""
     base = root.joinpath(*name.split("."))
     candidates = (base.with_name(base.name + ".py"), base / "__init__.py")
     return next((path for path in candidates if path.is_file()), None)
@@ -215,11 +206,11 @@ def _module_file(root: Path, name: str) -> Path | None:
 def fingerprint(
     pages: Iterable[Page], root: Path = ROOT, environment: Mapping[str, str] | None = None
 ) -> str:
-    """Return the name of everything, apart from the pages' own code, that decides their outputs.
+    """Return a digest of everything, except the code of the pages, that decides their outputs.
 
-    jupyter-cache compares code cells alone; so its folder is named by this digest of the lock, all
-    installed versions, the package modules that the pages import, the package's data files, the
-    environment contract and the Python version.
+    jupyter-cache compares code cells only. So its folder is named after this digest of the lock,
+    all installed versions, the package modules that the pages import, the data files of the
+    package, the environment contract and the Python version.
 
     Args:
         pages: the executed pages.

@@ -1,4 +1,4 @@
-"""What a lesson declares in its `__init__.py` for the evidence, the build and the site."""
+"""The form of a lesson's declaration in its `__init__.py`."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ COMMON_MODULES = (
     "core.checks", "core.metrics", "core.quantities", "core.scene", "core.trace",
     "sim.end_state", "sim.joints", "sim.session",
 )  # fmt: skip
-"""Modules that decide what any page measures."""
+"""Modules that affect the measurements of every page."""
 
 
 class Specification(Protocol):
@@ -29,11 +29,11 @@ class Specification(Protocol):
 
     @property
     def CASES(self) -> Mapping[str, Any]:  # noqa: N802
-        """The runs of its lab by name."""
+        """The runs of the lab by name."""
 
     @property
     def RESOLUTION(self) -> Mapping[str, float]:  # noqa: N802
-        """By unit, the difference below which two measured values are called equal."""
+        """By unit, the difference below which two values count as equal."""
 
     @property
     def TOLERANCES(self) -> Mapping[str, tuple[float, float]]:  # noqa: N802
@@ -41,13 +41,13 @@ class Specification(Protocol):
 
     @property
     def RELATIONS(self) -> tuple[Relation, ...]:  # noqa: N802
-        """The orderings that it claims."""
+        """The orderings that the lesson claims."""
 
 
 class BundleReader(Protocol):
-    """The files of one bundle, as the evidence hands them to a lesson's `recompute`.
+    """The files of one bundle, as the `recompute` of a lesson reads them.
 
-    Every method raises BundleRefused where a file is damaged or not what the arguments ask for.
+    Every method raises BundleRefused if a file is damaged or does not match the arguments.
     """
 
     @property
@@ -56,38 +56,38 @@ class BundleReader(Protocol):
 
     @property
     def end_state(self) -> str:
-        """`camera` where the run was rendered, else `schematic`."""
+        """`camera` if the run was rendered, else `schematic`."""
 
     def frames(self) -> dict[str, np.ndarray]:
         """Return the camera frames by name, each (height, width, 3)."""
 
     def joints(self) -> JointMap:
-        """Return the joint behind each DOF of the arrays."""
+        """Return the joint of each DOF of the arrays."""
 
     def traces(
         self, required: Iterable[str], check_coords: Callable[[Mapping[str, list[str]]], None]
     ) -> dict[str, Trace]:
-        """Return all runs of joints by case, once their labels have passed `check_coords`."""
+        """Return all runs of joints by case, after `check_coords` has accepted their labels."""
 
     def bodies(self, cases: Iterable[str], link: str) -> dict[str, BodyTrace]:
-        """Return the runs of one free body by case; the bundle holds no others."""
+        """Return the runs of one free body by case; the bundle has no other runs."""
 
     def contacts(self, cases: Iterable[str], link: str) -> dict[str, ContactTrace]:
-        """Return the runs of one free body with its contacts by case; it holds no others."""
+        """Return the runs of one free body with its contacts by case; there are no other runs."""
 
     def counts(self, group: str, names: Iterable[str]) -> dict[str, int]:
-        """Return counts that the engine reported; the group holds no others."""
+        """Return counts that the engine reported; the group has no others."""
 
     def recorded(self, group: str) -> dict[str, float]:
-        """Return whatever values a group of metrics.json has, those observed."""
+        """Return the observed values of a group of metrics.json."""
 
     def readings(self, group: str, names: Iterable[str]) -> dict[str, float]:
-        """Return values that the engine reported; the group holds no others."""
+        """Return values that the engine reported; the group has no others."""
 
 
 @dataclass(frozen=True, slots=True)
 class Recomputed:
-    """What the runs of a bundle give: `metrics.json` and the outcomes of the named checks."""
+    """Recomputed content of a bundle: `metrics.json` and the outcomes of the named checks."""
 
     metrics: Mapping[str, Mapping[str, Record]]
     outcomes: Sequence[Check]
@@ -95,12 +95,12 @@ class Recomputed:
 
 @dataclass(frozen=True, slots=True)
 class MeasuringPage:
-    """A page that runs the engine and leaves a bundle.
+    """A page that runs the engine and writes a bundle.
 
-    `parameters` returns every configured input as JSON values. `modules` are those whose source
-    decides what is measured, as `core.trace`: a change in one makes evidence stale. A lesson's
-    `spec` is not among them, because its `parameters` cover it. `cases` are those of the lesson's
-    cases that the page runs, None for all.
+    `parameters` returns every configured input as JSON values. `modules` are the modules whose
+    source affects the measurements, such as `core.trace`: a change in one makes evidence stale.
+    The `spec` of a lesson is not among them, because `parameters` covers it. `cases` are the cases
+    of the lesson that the page runs, None for all.
     """
 
     parameters: Callable[[], dict[str, Any]]
@@ -112,7 +112,7 @@ class MeasuringPage:
 class Drawn:
     """Cases that share one plot and one replay.
 
-    `until` ends the time axis of the small plot [s], where the rest is one flat line.
+    `until` is the end of the time axis of the small plot [s], None for the end of the runs.
     """
 
     cases: tuple[str, ...]
@@ -126,7 +126,7 @@ class Drawn:
 
 @dataclass(frozen=True, slots=True)
 class Compared(Drawn):
-    """Cases of a robot that move one joint; `band` is the half width of its settling band."""
+    """Cases that move one joint of a robot; `band` is the half width of its settling band."""
 
     joint: str
     band: float
@@ -134,10 +134,10 @@ class Compared(Drawn):
 
 @dataclass(frozen=True, slots=True)
 class Moving(Drawn):
-    """Cases of free bodies: the link that curves follow, by its name in the record, and its axes.
+    """Cases of free bodies, plotted as position and velocity of one link.
 
-    `thing` is what a reader sees move: "box". `axes` are of the world; each gives two curves,
-    position and velocity. The first position represents the lesson in small pictures.
+    `link` is its name in the arrays, and `thing` its name for a reader, such as "box". `axes` are
+    axes of the world. The position along the first axis is the curve of the small pictures.
     """
 
     link: str
@@ -147,7 +147,7 @@ class Moving(Drawn):
 
 @dataclass(frozen=True, slots=True)
 class Filmed:
-    """What camera frames show, in the words of their captions, and in which run."""
+    """The subject of the camera frames in the words of their captions, and their run."""
 
     thing: str
     case: str = "the baseline"
@@ -161,10 +161,10 @@ class Lesson:
     |---|---|
     | `spec` | its module of data |
     | `metrics` | by case, the class of its metrics |
-    | `pages` | those that measure, by name |
-    | `recompute` | metrics and checks from the files of a bundle |
-    | `filmed` | what its camera frames show |
-    | `compared` | the cases that its pictures and its replay show; None for none |
+    | `pages` | the measuring pages by name |
+    | `recompute` | returns metrics and checks from the files of a bundle |
+    | `filmed` | the subject of its camera frames |
+    | `compared` | the cases of its pictures and its replay, None for no replay |
     | `further` | further replays by name |
     """
 

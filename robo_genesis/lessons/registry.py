@@ -1,4 +1,4 @@
-"""The lessons of the course: each folder of this sub-package that has an `__init__.py`."""
+"""The lessons of the course: each folder of this sub-package with an `__init__.py`."""
 
 from importlib import import_module
 from pathlib import Path
@@ -12,14 +12,14 @@ def _discovered() -> dict[str, Lesson]:
 
 
 LESSONS: dict[str, Lesson] = _discovered()
-"""By name, in the order in which a reader meets them."""
+"""By name, in the order of the course."""
 
 
 def find_lesson(name: str) -> Lesson:
     """Return a lesson by its name.
 
     Raises:
-        LookupError: there is none; the message lists the lessons that exist.
+        LookupError: it does not exist; the message lists the lessons.
     """
     if name not in LESSONS:
         raise LookupError(f"Lesson {name!r} does not exist. Choices: {', '.join(LESSONS)}.")
@@ -27,15 +27,15 @@ def find_lesson(name: str) -> Lesson:
 
 
 def compared_cases(lesson: str) -> Compared | Moving | None:
-    """Return the cases that a lesson's pictures show, None where it declares none."""
+    """Return the cases in the pictures of a lesson, None if it declares none."""
     return LESSONS[lesson].compared if lesson in LESSONS else None
 
 
 def drawn_cases(lesson: str, name: str = "") -> Compared | Moving:
-    """Return the cases of a replay: the compared ones, or further ones by their name.
+    """Return the cases of a replay: the compared cases, or further cases by their name.
 
     Raises:
-        LookupError: the lesson has none of that name; the message says which it has.
+        LookupError: the lesson declares no such cases; the message lists the declared names.
     """
     compared = compared_cases(lesson)
     if compared is None:
@@ -51,7 +51,7 @@ def drawn_cases(lesson: str, name: str = "") -> Compared | Moving:
 
 
 def filmed(lesson: str) -> Filmed:
-    """Return what a lesson's camera frames show, `the scene` for an unknown lesson."""
+    """Return the subject of the camera frames, `the scene` for an unknown lesson."""
     return LESSONS[lesson].filmed if lesson in LESSONS else Filmed("the scene")
 
 
@@ -59,7 +59,7 @@ def find_page(lesson: str, page: str) -> MeasuringPage:
     """Return a page that measures.
 
     Raises:
-        LookupError: the lesson has none of that name; the message lists its measuring pages.
+        LookupError: it does not exist; the message lists the measuring pages of the lesson.
     """
     pages = find_lesson(lesson).pages
     if page not in pages:

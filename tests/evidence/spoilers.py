@@ -20,7 +20,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from robo_genesis.evidence import bundle, bundle_files, trace_files
 from robo_genesis.evidence.npz_archive import UNPACKED_LIMIT
-from robo_genesis.evidence.recompute import Reader
+from robo_genesis.evidence.reader import Reader
 from robo_genesis.lessons.l04 import checks as step_checks
 from robo_genesis.lessons.l04 import recompute as step_runs
 from robo_genesis.lessons.l04 import spec as l04
@@ -216,13 +216,17 @@ def checked_again(folder):
     predicate(checks=[asdict(outcome) for outcome in step_checks.run_checks(run)])(folder)
 
 
+def arrays(change):
+    return lambda folder: edit(folder, "arrays.json", change)
+
+
 def joint(index, **values):
     """Change one record of the joint map."""
-    return lambda folder: edit(folder, "arrays.json", lambda a: a["joints"][index].update(values))
+    return arrays(lambda a: a["joints"][index].update(values))
 
 
 def joints(change):
-    return lambda folder: edit(folder, "arrays.json", lambda a: change(a["joints"]))
+    return arrays(lambda a: change(a["joints"]))
 
 
 def as_revolute(folder):
@@ -300,11 +304,7 @@ def drop_case(folder):
 
 
 def variable(**values):
-    return lambda folder: edit(
-        folder,
-        "arrays.json",
-        lambda a: a["cases"]["G2"]["variables"]["q_rad_or_m"].update(values),
-    )
+    return arrays(lambda a: a["cases"]["G2"]["variables"]["q_rad_or_m"].update(values))
 
 
 # --- metrics, checks, frames ----------------------------------------------------------------
@@ -425,8 +425,7 @@ SPOILED = {
         on("amdgpu"), part("backend", requested="cpu"))),
     "cuda filed as amdgpu": ("backend", "backend", both(
         on("cuda"), lambda f: f.rename(f.with_name("amdgpu")))),
-    "amdgpu without HIP": ("torch", "torch", both(on("amdgpu"), part(
-        "backend", hip_version=None))),
+    "amdgpu without HIP": ("torch", "torch", both(on("amdgpu"), part("backend", hip_version=None))),
     "amdgpu with an empty HIP": ("torch", "torch", both(on("amdgpu"), part(
         "backend", hip_version=""))),
     "cuda with HIP": ("torch", "torch", both(on("cuda"), part("backend", hip_version="7.1"))),
@@ -450,8 +449,7 @@ SPOILED = {
     "a camera without a renderer": ("render", "render", part("render", renderer=None)),
     "a renderer without a camera": ("render", "render", part("render", mode="skip")),
     "a log of another backend": ("digest", "log", log("gs.cpu", "gs.cuda")),
-    "a CPU's log under amdgpu": ("digest", "log", both(
-        on("amdgpu"), log("gs.amdgpu", "gs.cpu"))),
+    "a CPU's log under amdgpu": ("digest", "log", both(on("amdgpu"), log("gs.amdgpu", "gs.cpu"))),
     "a log of another device": ("digest", "log", log("[a CPU]", "[a GPU]")),
     "a log of another engine": ("digest", "log", log("version: ", "version: 0.")),
     "a log of another seed": ("digest", "log", log("seed: 0", "seed: 1")),
@@ -481,24 +479,20 @@ SPOILED = {
         rise_fraction=str(m["predicate"]["parameters"]["rise_fraction"])))),
     # Arrays.
     "a dropped case": ("files", "cases", drop_case),
-    "a case without its archive": ("digest", "cases", lambda f: edit(
-        f, "arrays.json", lambda a: a["cases"].pop("G3"))),
-    "arrays outside the bundle": ("digest", "path", lambda f: edit(
-        f, "arrays.json", lambda a: a["cases"]["G1"].update(file="../elsewhere/G1.npz"))),
+    "a case without its archive": ("digest", "cases", arrays(lambda a: a["cases"].pop("G3"))),
+    "arrays outside the bundle": ("digest", "path", arrays(
+        lambda a: a["cases"]["G1"].update(file="../elsewhere/G1.npz"))),
     "a wrong unit": ("digest", "labels", variable(unit=["deg"] * 9)),
     "other dimensions": ("digest", "labels", variable(dims=["dof", "state"])),
     "another long name": ("digest", "labels", variable(long_name="velocity")),
     "another type described": ("digest", "labels", variable(dtype="float64")),
     "one dimension too few": ("digest", "labels", variable(shape=[121])),
     "another number of joints": ("digest", "labels", variable(shape=[121, 8])),
-    "DOF names left out": ("digest", "labels", lambda f: edit(
-        f, "arrays.json", lambda a: a["coords"].pop("dof"))),
-    "DOF names in another order": ("digest", "labels", lambda f: edit(
-        f, "arrays.json", lambda a: a["coords"]["dof"].reverse())),
-    "one link twice": ("digest", "labels", lambda f: edit(
-        f, "arrays.json", lambda a: a["coords"].update(link=["hand"] * 3))),
-    "no joints": ("digest", "bad-schema", lambda f: edit(
-        f, "arrays.json", lambda a: a.pop("joints"))),
+    "DOF names left out": ("digest", "labels", arrays(lambda a: a["coords"].pop("dof"))),
+    "DOF names in another order": ("digest", "labels", arrays(
+        lambda a: a["coords"]["dof"].reverse())),
+    "one link twice": ("digest", "labels", arrays(lambda a: a["coords"].update(link=["hand"] * 3))),
+    "no joints": ("digest", "bad-schema", arrays(lambda a: a.pop("joints"))),
     "a joint without its limits": ("digest", "bad-schema", joints(lambda j: j[0].pop("lower"))),
     "a joint before the first DOF": ("digest", "bad-schema", joint(0, dof_idx_local=-1)),
     "a limit that is no number": ("digest", "bad-json", joint(0, lower=float("nan"))),
@@ -512,8 +506,8 @@ SPOILED = {
     "a finger called revolute throughout": ("digest", "checks", as_revolute),
     "a DOF that the model lacks": ("digest", "checks", joint(8, dof_idx_local=9)),
     "a qpos that the model lacks": ("digest", "checks", joint(8, q_idx_local=9)),
-    "an undescribed array": ("digest", "labels", lambda f: edit(
-        f, "arrays.json", lambda a: a["cases"]["G1"]["variables"].pop("t_s"))),
+    "an undescribed array": ("digest", "labels", arrays(
+        lambda a: a["cases"]["G1"]["variables"].pop("t_s"))),
     "another shape described": ("digest", "bad-array", variable(shape=[120, 9])),
     "a cut archive": ("digest", "bad-array", cut_archive),
     "pickled objects": ("digest", "bad-array", pickled),
@@ -525,8 +519,7 @@ SPOILED = {
     "arrays of another type": ("digest", "bad-array", rewrite(q=np.float64)),
     "arrays in Fortran's order": ("digest", "bad-array", rewrite(q=np.asfortranarray)),
     "a zip bomb": ("digest", "too-big", bomb),
-    "arrays that are not finite": ("digest", "bad-trace", rewrite(
-        q=changed_at((-1, 0), np.nan))),
+    "arrays that are not finite": ("digest", "bad-trace", rewrite(q=changed_at((-1, 0), np.nan))),
     "a shifted time axis": ("digest", "bad-trace", rewrite(t=lambda t: t + 0.01)),
     "a target that wanders": ("digest", "bad-trace", rewrite(target=changed_at((5, 3), 0.0))),
     "stamps of another dt": ("digest", "stamps", rewrite(t=lambda t: t * 2)),

@@ -42,11 +42,12 @@ def test_every_field_of_a_trace_is_written():
     assert list(FIELDS) == [field.name for field in fields(Trace)]
 
 
-@pytest.mark.parametrize("field", FIELDS)
-def test_arrays_come_back_bit_for_bit(written, traces, field):
-    before, after = getattr(traces["G1"], field), getattr(read_trace(*written, "G1"), field)
-    assert (after.dtype, after.shape) == (before.dtype, before.shape)
-    assert after.tobytes() == before.tobytes()
+def test_arrays_come_back_bit_for_bit(written, traces):
+    found = read_trace(*written, "G1")
+    for field in FIELDS:
+        before, after = getattr(traces["G1"], field), getattr(found, field)
+        assert (after.dtype, after.shape) == (before.dtype, before.shape)
+        assert after.tobytes() == before.tobytes()
 
 
 def test_the_description_comes_back(pristine, traces, joints, tmp_path):
@@ -85,40 +86,33 @@ def test_a_limit_that_is_no_number_is_not_written(joints):
         joint_records(replace(joints, lower=lower))
 
 
-@pytest.mark.parametrize(
-    ("name", "arm", "finger"),
-    [
-        ("q_rad_or_m", "rad", "m"),
-        ("target_rad_or_m", "rad", "m"),
-        ("qd_rad_s_or_m_s", "rad/s", "m/s"),
-        ("start_qd_rad_s_or_m_s", "rad/s", "m/s"),
-        ("control_force_Nm_or_N", "N·m", "N"),
-        ("internal_force_Nm_or_N", "N·m", "N"),
-        ("start_control_force_Nm_or_N", "N·m", "N"),
-        ("effort_limit_Nm_or_N", "N·m", "N"),
-    ],
-)
-def test_each_dof_has_its_own_unit(joints, written, name, arm, finger):
+POSITION, SPEED, EFFORT = ("rad", "m"), ("rad/s", "m/s"), ("N·m", "N")
+UNITS = {"q": POSITION, "target": POSITION, "qd": SPEED, "start_qd": SPEED}
+UNITS |= dict.fromkeys(("control_force", "internal_force"), EFFORT)
+UNITS |= dict.fromkeys(("start_control_force", "effort_limit"), EFFORT)
+
+
+@pytest.mark.parametrize("field", UNITS)
+def test_each_dof_has_its_own_unit(joints, written, field):
+    name, (arm, finger) = FIELDS[field][0], UNITS[field]
     assert dof_units(name, joints.types) == [arm] * 7 + [finger] * 2
     assert written[1].cases["G1"].variables[name].unit == [arm] * 7 + [finger] * 2
 
 
-def test_an_array_that_is_not_described_is_refused(spoil):
-    with pytest.raises(BundleRefused, match=r"^bad-array: .*list of arrays"):
-        read_trace(*spoil(extra=np.zeros(1)), "G1")
-
-
-def test_a_described_array_that_is_absent_is_refused(spoil):
-    with pytest.raises(BundleRefused, match=r"^bad-array: .*list of arrays"):
-        read_trace(*spoil(q_rad_or_m=None), "G1")
-
-
 @pytest.mark.parametrize(
-    "array", [np.zeros((121, 9)), np.zeros((120, 9), np.float32), np.zeros((121, 9), np.float16)]
+    ("changed", "message"),
+    [
+        ({"extra": np.zeros(1)}, "list of arrays"),
+        ({"q_rad_or_m": None}, "list of arrays"),
+        ({"q_rad_or_m": np.zeros((121, 9))}, r"q_rad_or_m is .*float64"),
+        ({"q_rad_or_m": np.zeros((120, 9), np.float32)}, r"q_rad_or_m is .*120, 9"),
+        ({"q_rad_or_m": np.zeros((121, 9), np.float16)}, r"q_rad_or_m\.npy is <f2"),
+        ({"q_rad_or_m": np.full((121, 9), None)}, r"q_rad_or_m\.npy is \|O"),
+    ],
 )
-def test_another_shape_or_type_than_described_is_refused(spoil, array):
-    with pytest.raises(BundleRefused, match=r"^bad-array: .*q_rad_or_m.* is .*"):
-        read_trace(*spoil(q_rad_or_m=array), "G1")
+def test_other_arrays_than_the_described_ones_are_refused(spoil, changed, message):
+    with pytest.raises(BundleRefused, match=rf"^bad-array: .*{message}"):
+        read_trace(*spoil(**changed), "G1")
 
 
 def test_arrays_that_form_no_run_are_refused(spoil, traces):
@@ -126,12 +120,6 @@ def test_arrays_that_form_no_run_are_refused(spoil, traces):
     q[3, 3] = np.nan
     with pytest.raises(BundleRefused, match=r"^bad-trace: arrays/G1.npz: q is not finite"):
         read_trace(*spoil(q_rad_or_m=q), "G1")
-
-
-def test_pickled_objects_are_refused(spoil):
-    pickled = np.full((121, 9), None)
-    with pytest.raises(BundleRefused, match=r"^bad-array: "):
-        read_trace(*spoil(q_rad_or_m=pickled), "G1")
 
 
 @pytest.mark.parametrize(
@@ -152,14 +140,12 @@ def test_a_file_that_cannot_be_read_is_refused(written, broken):
         read_trace(*written, "G1")
 
 
-def test_a_missing_file_is_refused(written):
-    (written[0] / "arrays" / "G1.npz").unlink()
+def test_a_missing_file_and_a_single_array_are_refused(written):
+    path = written[0] / "arrays" / "G1.npz"
+    path.unlink()
     with pytest.raises(BundleRefused, match=r"^bad-array: "):
         read_trace(*written, "G1")
-
-
-def test_a_single_array_is_no_archive(written):
-    with (written[0] / "arrays" / "G1.npz").open("wb") as file:
+    with path.open("wb") as file:
         np.save(file, np.zeros(3))
     with pytest.raises(BundleRefused, match=r"^bad-array: "):
         read_trace(*written, "G1")

@@ -37,11 +37,8 @@ def test_every_code_has_a_spoiler():
     assert reached | {"run-id"} == codes()
 
 
-def test_a_sound_bundle_is_accepted(folder):
+def test_a_sound_bundle_is_accepted_also_when_sealed_again(folder):
     assert verify_bundle(folder) == bundle.read_manifest(folder)
-
-
-def test_sealing_alone_changes_nothing(folder):
     seal(folder)
     verify_bundle(folder)
 
@@ -86,27 +83,20 @@ def test_digests_and_key_made_right_again_do_not_help(folder, how):
 
 
 def test_the_run_is_the_expected_one(folder):
-    run_id = bundle.read_manifest(folder).predicate.run_id
-    verify_bundle(folder, run_id)
+    verify_bundle(folder, bundle.read_manifest(folder).predicate.run_id)
     with pytest.raises(BundleRefused, match=r"^run-id: .*Execute the page again"):
         verify_bundle(folder, "f" * 32)
 
 
 def test_the_page_is_the_expected_one(folder):
-    verify_bundle(folder, page="lab")
+    verify_bundle(folder, lesson="l04", page="lab")
     with pytest.raises(BundleRefused, match=r"^lesson: .*page is 'lab', expected 'lecture'"):
         verify_bundle(folder, page="lecture")
 
 
-@pytest.mark.parametrize("name", ["cuda", "amdgpu", "CPU"])
-def test_a_renamed_folder_relabels_nothing(folder, name):
-    with pytest.raises(BundleRefused, match=r"^backend: "):
-        verify_bundle(folder.rename(folder.with_name(name)))
-
-
 @pytest.fixture
 def checkout(tmp_path):
-    """A copy of what a bundle's question is read from."""
+    """A copy of the files that decide the evidence key."""
     root = tmp_path / "checkout"
     for name in ("book", "robo_genesis"):
         ignored = shutil.ignore_patterns("_build*", "__pycache__")
@@ -148,24 +138,22 @@ LESSON, METRICS = "robo_genesis/lessons/l04/spec.py", "robo_genesis/lessons/l04/
 
 
 def test_an_edit_of_the_lesson_makes_stale_what_it_decides_and_nothing_else(folder, checkout):
-    """The bundle is verified by the edited checkout itself, in a process of its own."""
+    """The edited checkout itself verifies the bundle, in a process of its own."""
 
-    def state(*edits):
-        kept = {name: (checkout / name).read_text("utf8") for name in (LESSON, METRICS)}
-        for name, old, new in edits:
-            assert kept[name].count(old) == 1
-            (checkout / name).write_text(kept[name].replace(old, new), "utf8")
+    def state(name, old, new):
+        source = (checkout / name).read_text("utf8")
+        assert source.count(old) == 1
+        (checkout / name).write_text(source.replace(old, new), "utf8")
         command = [sys.executable, "-B", "-c", VERIFY, str(folder)]
         environment = {**os.environ, "PYTHONPATH": str(checkout)}
         done = subprocess.run(
             command, cwd=checkout, env=environment, capture_output=True, text=True, check=True
         )
-        for name, text in kept.items():
-            (checkout / name).write_text(text, "utf8")
+        (checkout / name).write_text(source, "utf8")
         return done.stdout.strip()
 
     found = {
-        what: state(edit)
+        what: state(*edit)
         for what, edit in {
             "tolerance": (LESSON, '"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'),
             "margin": (LESSON, '"overshoot": 1e-3', '"overshoot": 1e-2'),

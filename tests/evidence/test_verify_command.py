@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 from loading import ENGINE, JUPYTER, run_watched
-from spoilers import on, part, seal
+from spoilers import both, on, part, seal
 
 from robo_genesis.core.project import ROOT, engine_pin
 from robo_genesis.lessons.l04 import spec as l04
@@ -48,9 +48,7 @@ def test_each_bundle_has_a_line(command, recorded, built, capsys):
     assert all(line[4].endswith(f"Genesis {engine_pin()}") for line in lines)
 
 
-def stale(folder):
-    part("engine", quadrants_version="1.2.9")(folder)
-    seal(folder)
+stale = both(part("engine", quadrants_version="1.2.9"), seal)
 
 
 @pytest.mark.parametrize(
@@ -76,14 +74,11 @@ def test_what_does_not_show_the_claims_is_status_1(command, recorded, monkeypatc
     assert "inconclusive Not shown of what the lesson claims: peak_speed" in capsys.readouterr().out
 
 
-def test_one_folder_is_checked_alone(command, recorded, folder, monkeypatch, capsys):
+def test_one_folder_is_checked_alone(command, recorded, folder, tmp_path, monkeypatch, capsys):
     stale(recorded)
     monkeypatch.setenv("BUNDLE", str(folder))
     assert command.main() == 0
     assert len(capsys.readouterr().out.splitlines()) == 1
-
-
-def test_a_folder_that_is_not_there_is_status_1(command, tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("BUNDLE", str(tmp_path / "cpu"))
     assert command.main() == 1
     assert "missing      There is no such folder." in capsys.readouterr().out

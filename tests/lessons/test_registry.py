@@ -2,6 +2,7 @@
 
 import pytest
 
+from robo_genesis.core.orderings import HELD_BY
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons import registry
 from robo_genesis.lessons.book_pages import find_pages
@@ -14,7 +15,7 @@ def test_the_pages_that_measure_are_those_of_the_book():
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_what_a_lesson_names_is_there(name):
+def test_modules_cases_and_metrics_of_a_lesson_exist(name):
     lesson = LESSONS[name]
     for page in lesson.pages.values():
         assert all(
@@ -27,12 +28,14 @@ def test_what_a_lesson_names_is_there(name):
     assert lesson.metrics.keys() == lesson.spec.CASES.keys()
     for (first, second), metric, order, margin in lesson.spec.RELATIONS:
         assert {first, second} <= {*lesson.spec.CASES}
-        assert all(metric in lesson.metrics[case].about("unit") for case in (first, second))
-        assert order in ("higher", "lower", "later", "no later")
-        assert margin > 0
+        units = {lesson.metrics[case].about("unit")[metric] for case in (first, second)}
+        assert order in HELD_BY
+        assert margin > lesson.spec.RESOLUTION[units.pop()]
+        assert not units
+    assert {*lesson.about_metrics("unit").values()} - {"1"} <= lesson.spec.TOLERANCES.keys()
 
 
-def test_unknown_names_are_answered_with_those_there_are():
+def test_a_lookup_error_lists_the_choices():
     with pytest.raises(LookupError, match=r"Lesson 'l99' does not exist\. Choices: l02, l03, l04"):
         find_lesson("l99")
     with pytest.raises(LookupError, match=r"l04/exam does not measure anything\. Choices: l04/lab"):
