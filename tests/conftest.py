@@ -42,7 +42,7 @@ from robo_genesis.sim.contacts import ContactCase
 from robo_genesis.sim.joints import JointMap
 from robo_genesis.sim.rigid_bodies import Drop
 
-pytest_plugins = ("bundles",)
+pytest_plugins = ("bundles", "built_site")
 
 # Tests send it to the commands they start; a shell that starts pytest with & has it ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -53,11 +53,15 @@ settings.load_profile("course")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave the real change of the pin out unless `-m` names it; no other `-m` may start it."""
-    if "repin" not in config.option.markexpr:
-        left_out = [item for item in items if item.get_closest_marker("repin")]
-        config.hook.pytest_deselected(items=left_out)
-        items[:] = [item for item in items if item not in left_out]
+    """Leave tests of more than half an hour out unless `-m` names their marker."""
+    named = config.option.markexpr
+    left_out = [
+        item
+        for item in items
+        if any(mark not in named and item.get_closest_marker(mark) for mark in ("repin", "slow"))
+    ]
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if item not in left_out]
 
 
 LINKS = ("link0", "link4", "hand")

@@ -103,7 +103,7 @@ Four was measured.
 def test_lessons_that_are_absent_leave_words_and_no_content(tmp_path):
     article = text_page(tmp_path, MAP, FEATURED)
     _, first, second, *_ = article.select("section > p")
-    assert first.get_text() == "The second and the\nthird."
+    assert first.get_text() == "The second and the third."
     assert [a["href"] for a in first.select("a")] == ["lessons/l02-two/lecture.html"]
     assert second.get_text() == "Four was measured."
     assert [b.get_text() for b in article.select("section > p > strong")] == ["L04"]
