@@ -359,7 +359,7 @@ def test_numbers_beyond_measure_and_arrays_of_words_are_refused(folder, other):
 
 def test_an_unknown_lesson_is_refused():
     with pytest.raises(
-        BundleRefused, match=r"^lesson: Lesson 'l99' does not exist. Choices: l02, l03, l04\."
+        BundleRefused, match=r"^lesson: Lesson 'l99' does not exist. Choices: l02, .*l04\."
     ):
         specification("l99")
 

@@ -39,7 +39,7 @@ def test_prose_types_no_measured_number(page: Path):
 
 
 def test_a_typed_measurement_is_found():
-    assert typed_numbers("G2 overshoots by 0.0447 rad, of a step of 0.25 rad.") == {"0.0447"}
+    assert typed_numbers("G2 overshoots by 0.0447 rad, under 9.81 m/s².") == {"0.0447"}
     assert typed_numbers("Overshoot 3.5 %.") == {"3.5"}
     assert typed_numbers("| 87.0 | N·m |") == {"87.0"}
 
