@@ -15,6 +15,7 @@ from browsers import chromium
 
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons.book_pages import docnames
+from robo_genesis.lessons.registry import LESSONS
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -28,6 +29,9 @@ LESSON_PAGES = {
     if name.startswith("lessons/")
 }
 """The pages of lessons by lesson and page."""
+
+MEASURING_PAGES = [(name, page) for name, lesson in LESSONS.items() for page in lesson.pages]
+"""Lesson and page of each page that leaves a bundle."""
 
 
 class QuietHandler(SimpleHTTPRequestHandler):

@@ -34,8 +34,8 @@ def test_what_a_lesson_names_is_there(name):
 
 def test_unknown_names_are_answered_with_those_there_are():
     choices = ", ".join(LESSONS)
-    with pytest.raises(LookupError, match=rf"Lesson 'l99' does not exist\. Choices: {choices}\."):
-        find_lesson("l99")
+    with pytest.raises(LookupError, match=rf"Lesson 'l00' does not exist\. Choices: {choices}\."):
+        find_lesson("l00")
     with pytest.raises(LookupError, match=r"l04/exam does not measure anything\. Choices: l04/lab"):
         find_page("l04", "exam")
 

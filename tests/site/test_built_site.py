@@ -4,7 +4,7 @@ from importlib import import_module
 
 import pytest
 from bs4 import BeautifulSoup
-from built_site import LESSON_PAGES
+from built_site import LESSON_PAGES, MEASURING_PAGES
 
 from robo_genesis.core import project
 from robo_genesis.evidence.verify import verify_bundle
@@ -18,7 +18,7 @@ def page(site, name: str) -> BeautifulSoup:
     return BeautifulSoup((site / f"{name}.html").read_text(), "html.parser")
 
 
-@pytest.mark.parametrize(("lesson", "name"), LESSON_PAGES)
+@pytest.mark.parametrize(("lesson", "name"), MEASURING_PAGES)
 def test_pages_show_executed_outputs_and_their_verdict(site, lesson, name):
     found = page(site, LESSON_PAGES[lesson, name])
     assert f"{lesson.upper()} CHECK: PASSED" in found.get_text()

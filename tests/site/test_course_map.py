@@ -3,11 +3,12 @@
 import pytest
 import yaml
 from bs4 import BeautifulSoup
+from built_site import LESSON_PAGES
 from tiny_book import make_book
 
 from robo_genesis.build.render import RenderError, render
 from robo_genesis.core.project import BOOK
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.site.course_map import FILE, CourseMapError, Lesson, read_map
 
 MAP = [
@@ -23,7 +24,7 @@ def write(book, rows):
 
 def test_the_course_s_map_names_the_lessons_that_are_published():
     published = {lesson.id: lesson.page for lesson in read_map(BOOK) if lesson.page}
-    lectures = {p.lesson.upper(): p.docname for p in find_pages(BOOK) if p.page == "lecture"}
+    lectures = {name.upper(): LESSON_PAGES[name, "lecture"] for name in LESSONS}
     assert published == lectures
 
 

@@ -1,6 +1,7 @@
 """Each measured figure on a page is what its cell draws from the arrays of the page's bundle.
 
-`redraw.py` beside a lesson's tests gives the names that its figure cells use.
+The cells see the page's imports and its `traces`. `redraw.py` beside a lesson's tests gives the
+further names that they use.
 """
 
 import ast
@@ -9,7 +10,7 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from built_site import LESSON_PAGES
+from built_site import MEASURING_PAGES
 from nbclient import NotebookClient
 
 from robo_genesis.build.page_cache import PageCache, notebooks_folder, outputs_folder
@@ -24,12 +25,16 @@ import runpy
 from pathlib import Path
 import numpy as np
 from PIL import Image
+from robo_genesis.evidence.bundle import read_arrays
+from robo_genesis.evidence.trace_files import read_any_trace
 
 plotting.use_course_style()
 folder, camera = Path({folder!r}), True
 frames = {{n: np.array(Image.open(folder / "frames" / f"{{n}}.png")) for n in ("initial", "final")}}
-globals().update(runpy.run_path({script!r})["names"](folder))
+arrays = read_arrays(folder)
+traces = {{case: read_any_trace(folder, arrays, case) for case in arrays.cases}}
 """
+FURTHER = "globals().update(runpy.run_path({script!r})['names'](folder))"
 
 
 def imports(page: Page) -> str:
@@ -53,7 +58,7 @@ def svgs(cells) -> list[str]:
     return [o["data"]["image/svg+xml"] for o in outputs if "image/svg+xml" in o.get("data", {})]
 
 
-@pytest.mark.parametrize(("lesson", "name"), LESSON_PAGES)
+@pytest.mark.parametrize(("lesson", "name"), MEASURING_PAGES)
 def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, lesson, name):
     for variable, value in (("ROBO_GENESIS_RENDER", "1"), ("ROBO_GENESIS_BACKEND", "cpu")):
         monkeypatch.setenv(variable, value)
@@ -63,7 +68,7 @@ def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, l
     cache = PageCache(notebooks_folder(folder))
     executed = cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
     script = LESSONS / lesson / "redraw.py"
-    redraw = runpy.run_path(str(script))
+    redraw = runpy.run_path(str(script)) if script.is_file() else {}
     before_cell = redraw.get("before_cell", lambda figure: "")
     code = [cell for cell in page.notebook.cells if cell.cell_type == "code"]
     tagged = [
@@ -73,7 +78,8 @@ def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, l
         and name_of(cell) not in redraw.get("NOT_IN_BUNDLE", ())
     ]
     bundle = outputs_folder(folder) / lesson / name / "cpu"
-    sources = [imports(page), NAMES.format(folder=str(bundle), script=str(script))]
+    sources = [imports(page), NAMES.format(folder=str(bundle))]
+    sources += [FURTHER.format(script=str(script))] if redraw else []
     sources += [f"{before_cell(name_of(cell))}\n{cell.source}" for cell, _ in tagged]
     redrawn = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(s) for s in sources])
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
