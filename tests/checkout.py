@@ -46,6 +46,11 @@ def make(work: Path, *words: str, fails: bool = False) -> str:
 
 def unit_tests(work: Path, *places: str, marks: str = "not engine and not browser") -> str:
     """Run tests of a copy."""
-    return run_in(
-        work, "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", "-m", marks, *places
-    )
+    options = ("-q", "-p", "no:cacheprovider", "-m", marks)
+    return run_in(work, "python", "-m", "pytest", *options, *places)
+
+
+def import_contracts(work: Path) -> str:
+    """Check the import contracts of a copy."""
+    command = "from importlinter.cli import lint_imports_command; lint_imports_command()"
+    return run_in(work, "python", "-c", command, "--no-logo", "--no-cache")
