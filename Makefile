@@ -62,6 +62,10 @@ verify: $(ENVIRONMENT) ## verify recorded and built evidence (BUNDLE=path: one f
 test: $(ENVIRONMENT) ## run all tests (needs Debian's chromium)
 	@"$(PY)" -m pytest
 
+.PHONY: test-lessons
+test-lessons: $(ENVIRONMENT) ## remove a lesson and add one in copies of the checkout (half an hour)
+	@"$(PY)" -m pytest -m slow tests/maintain/test_lesson_folders.py
+
 # codespell looks up what its expression finds: here the entries of our list, phrases included. It
 # leaves out names of files and attributes, "there is no", "is no longer" and "stand still".
 WORDS = (?<![./-])(?<!here )(?:$$(sed 's/->.*//; s/^[a-z]/\\b[&\U&]/' .words.txt | sort -r | paste -sd '|'))\b(?! longer| more| still|[.]\w)
@@ -77,6 +81,11 @@ lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell and the schema o
 	@"$(PY)" -m codespell_lib --dictionary .words.txt --regex "$(WORDS)" $(PROSE)
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-actions .github/actions/*/action.yml
+
+# NEW reaches the script as an environment variable.
+.PHONY: lesson
+lesson: $(ENVIRONMENT) ## add a lesson that is made from the template (NEW=l05)
+	@"$(PY)" build_scripts/lesson.py
 
 # OLD and NEW reach the recipe through the environment, so a path may hold any character.
 .PHONY: compare

@@ -30,7 +30,7 @@ from robo_genesis.sim import joints as robot_model
 from robo_genesis.sim import session
 from robo_genesis.sim.joints import JointMap
 
-pytest_plugins = ("bundles",)
+pytest_plugins = ("bundles", "built_site")
 
 # Tests send SIGINT to the commands that they start; a shell that starts pytest with & ignores it.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -41,11 +41,15 @@ settings.load_profile("course")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Deselect the real change of the pin unless `-m` names it."""
-    if "repin" not in config.option.markexpr:
-        deselected = [item for item in items if item.get_closest_marker("repin")]
-        config.hook.pytest_deselected(items=deselected)
-        items[:] = [item for item in items if item not in deselected]
+    """Leave tests of more than half an hour out unless `-m` names their marker."""
+    named = config.option.markexpr
+    left_out = [
+        item
+        for item in items
+        if any(mark not in named and item.get_closest_marker(mark) for mark in ("repin", "slow"))
+    ]
+    config.hook.pytest_deselected(items=left_out)
+    items[:] = [item for item in items if item not in left_out]
 
 
 LINKS = ("link0", "link4", "hand")

@@ -1,9 +1,15 @@
-"""The map of the course, from `course_map.yml`: each lesson, what it builds on, and its state.
+"""The lessons on the site, from `course_map.yml`: the map, links to them, and the featured one.
 
-A page shows it with ```` ```{course-map} ````. A lesson with a page has the badges of its evidence;
-one without is planned.
+| in a page | shows |
+|---|---|
+| {course-map} (directive) | a card for each lesson: what it builds on, and its state |
+| {course-status} (directive) | what was run for each published lesson, and its state |
+| {featured} L04 (directive) | its content, while the map features this lesson |
+| {lesson}`some words <l04/lab>` | a link to a lesson's page, plain text without that lesson |
 """
 
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,33 +18,40 @@ import yaml
 from docutils import nodes
 from sphinx import addnodes
 from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
+from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 from robo_genesis.site.evidence.measured import badge_node, lesson_statuses
 
 FILE = "course_map.yml"
+LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
+"""A link to a lesson's page: its words, the lesson and the page."""
 
 
 class CourseMapError(Exception):
-    """The map cannot be used; the message says which line of it and why."""
+    """The map cannot be used; the message names the line and the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lesson:
-    """One lesson; `needs` None where it is not decided yet, `page` None while it is planned."""
+    """One lesson.
+
+    `needs` is None where it is not decided yet. `page` is the lecture, None while the lesson is
+    planned. The home page shows the measurements of the `featured` lesson.
+    """
 
     id: str
     title: str
     needs: tuple[str, ...] | None = None
     page: str | None = None
+    featured: bool = False
 
 
 def read_map(book: Path) -> list[Lesson]:
     """Return the lessons of a book's map in their order.
 
     Raises:
-        CourseMapError: the file is not a list of lessons, an id stands twice, or a lesson needs one
-            that does not come before it.
+        CourseMapError: the file is not a list of lessons, an id occurs twice, a lesson needs one
+            that does not come before it, or two lessons are featured.
     """
     rows = yaml.safe_load((book / FILE).read_text("utf8"))
     lessons: list[Lesson] = []
@@ -47,8 +60,9 @@ def read_map(book: Path) -> list[Lesson]:
             needs = row.get("needs")
             lesson = Lesson(**row | {"needs": None if needs is None else tuple(needs)})
         except (AttributeError, TypeError) as error:
-            message = f"{FILE} has {row!r}; a lesson has id, title and perhaps needs and page."
-            raise CourseMapError(message) from error
+            raise CourseMapError(
+                f"{FILE} has {row!r}; a lesson has id, title and perhaps needs, page and featured."
+            ) from error
         known = [earlier.id for earlier in lessons]
         if lesson.id in known:
             raise CourseMapError(f"{FILE} names {lesson.id} twice.")
@@ -59,27 +73,38 @@ def read_map(book: Path) -> list[Lesson]:
                 f"{', '.join(known) or 'none'}."
             )
         lessons.append(lesson)
+    featured = [lesson.id for lesson in lessons if lesson.featured]
+    if len(featured) > 1:
+        raise CourseMapError(f"{FILE} features {' and '.join(featured)}; keep one `featured`.")
     return lessons
 
 
-class CourseMap(SphinxDirective):
-    """Show the lessons as a list of cards."""
+class MapDirective(SphinxDirective):
+    """Base of the directives that read the map."""
 
-    def run(self) -> list[nodes.Node]:
-        """Return the list; a map that cannot be used, or a page that is not there, is an error."""
+    def lessons(self) -> list[Lesson]:
+        """Return the lessons; an unusable map or a missing page is an error of the build."""
         book = Path(self.env.srcdir)
         self.env.note_dependency(str(book / FILE))
         try:
             lessons = read_map(book)
         except (CourseMapError, OSError, yaml.YAMLError) as error:
-            raise self.error(f"course-map: {error}") from error
+            raise self.error(f"{self.name}: {error}") from error
         gone = [x.page for x in lessons if x.page and x.page not in self.env.found_docs]
         if gone:
-            raise self.error(f"course-map: the book has no page {', '.join(gone)}.")
-        return [nodes.bullet_list("", *map(self.card, lessons), classes=["course-map"])]
+            raise self.error(f"{self.name}: the book has no page {', '.join(gone)}.")
+        return lessons
+
+
+class CourseMap(MapDirective):
+    """Show the lessons as a list of cards."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return the list."""
+        return [nodes.bullet_list("", *map(self.card, self.lessons()), classes=["course-map"])]
 
     def card(self, lesson: Lesson) -> nodes.list_item:
-        """Return what stands on one lesson's card."""
+        """Return the card of one lesson."""
         name = nodes.strong("", f"{lesson.id} ")
         head = nodes.paragraph("", "", name, self.title(lesson))
         state = nodes.paragraph("", "", *self.verdict(lesson), classes=["state"])
@@ -89,13 +114,9 @@ class CourseMap(SphinxDirective):
 
     def title(self, lesson: Lesson) -> nodes.Node:
         """Return the title, of a published lesson as a link."""
-        text = nodes.inline("", lesson.title)
         if lesson.page is None:
-            return text
-        return addnodes.pending_xref(
-            "", text, reftype="doc", refdomain="std", refdoc=self.env.docname, refexplicit=True,
-            reftarget=f"/{lesson.page}", refwarn=True,
-        )  # fmt: skip
+            return nodes.inline("", lesson.title)
+        return page_link(self.env.docname, lesson.page, lesson.title)
 
     def verdict(self, lesson: Lesson) -> list[nodes.Node]:
         """Return the badges of a published lesson, a word for a planned one."""
@@ -107,8 +128,65 @@ class CourseMap(SphinxDirective):
         return shown[:-1]
 
 
+class CourseStatus(MapDirective):
+    """Show the state of each published lesson, as `lesson-status` does."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return a name and a list for each."""
+        published = (lesson.id for lesson in self.lessons() if lesson.page)
+        text = "\n".join(f"**{i}**\n\n```{{lesson-status}} {i.lower()}\n```\n" for i in published)
+        return self.parse_text_to_nodes(text)
+
+
+class Featured(MapDirective):
+    """Show content about one lesson while the map features it, otherwise nothing."""
+
+    required_arguments = 1
+    has_content = True
+
+    def run(self) -> list[nodes.Node]:
+        """Return the content; without the lesson it is not even parsed."""
+        featured = [lesson.id for lesson in self.lessons() if lesson.featured and lesson.page]
+        return self.parse_content_to_nodes() if self.arguments == featured else []
+
+
+class LessonLink(SphinxRole):
+    """Link to a page of a lesson; without that lesson, the words alone remain."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return the link; a page that the lesson does not have is an error of the build."""
+        found = LINK.fullmatch(self.text)
+        if found is None:
+            return self.refused(f"{self.text!r} is not a link; write `some words <l04/lecture>`")
+        words, lesson, page = found.groups()
+        pages = lesson_pages(self.env.found_docs, lesson)
+        if pages and page not in pages:
+            return self.refused(f"{lesson} has no page {page!r}; choices: {', '.join(pages)}")
+        if not pages:
+            return [nodes.Text(words)], []
+        return [page_link(self.env.docname, pages[page], words)], []
+
+    def refused(self, message: str) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return an error of the build."""
+        return [], [self.inliner.reporter.error(f"lesson: {message}.", line=self.lineno)]
+
+
+def lesson_pages(docnames: Iterable[str], lesson: str) -> dict[str, str]:
+    """Return the pages of a lesson by name, from the folder `lessons/l04-…` of a book."""
+    paths = [Path(name) for name in sorted(docnames)]
+    return {p.name: str(p) for p in paths if p.match(f"lessons/{lesson}-*/*")}
+
+
+def page_link(source: str, target: str, words: str) -> nodes.Node:
+    """Return a link from one page to another."""
+    return addnodes.pending_xref(
+        "", nodes.inline("", words, classes=["std", "std-doc"]), reftype="doc", refdomain="std",
+        refdoc=source, refexplicit=True, reftarget=f"/{target}", refwarn=True,
+    )  # fmt: skip
+
+
 def needs_line(lesson: Lesson) -> list[nodes.Node]:
-    """Return the line that says which lessons come before, none where that is not decided yet."""
+    """Return the line with the lessons that come before, none where that is not decided yet."""
     if lesson.needs is None:
         return []
     line = nodes.paragraph(classes=["needs"])
@@ -126,6 +204,9 @@ def anchor(lesson: str) -> str:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Register the directive."""
+    """Register the directives and the role."""
     app.add_directive("course-map", CourseMap)
+    app.add_directive("course-status", CourseStatus)
+    app.add_directive("featured", Featured)
+    app.add_role("lesson", LessonLink())
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

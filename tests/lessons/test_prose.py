@@ -1,42 +1,19 @@
-"""Prose of the pages holds no decimal number but configured inputs; measured ones are inserted."""
+"""The only decimal numbers in prose are configured inputs; measured ones are inserted."""
 
 import re
+import runpy
 from pathlib import Path
 
 import pytest
 
-from robo_genesis.core import scene
+from robo_genesis.core.free_fall import GRAVITY
 from robo_genesis.core.project import BOOK
-from robo_genesis.lessons.l02 import spec as l02
-from robo_genesis.lessons.l03 import metrics as contact_metrics
-from robo_genesis.lessons.l03 import spec as l03
-from robo_genesis.lessons.l04 import metrics, study_spec
-from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.lessons.l04 import text as interpretation
-from robo_genesis.sim import contacts
 
-CONFIGURED = {
-    "time step [s]": scene.DT,
-    "window [s]": l04.WINDOW,
-    "step of joint4 [rad]": l04.STEP,
-    "small step of joint4 [rad]": study_spec.SMALL_STEP,
-    "open finger [m]": scene.Q_START[-1],
-    "rise fraction": metrics.RISE_FRACTION,
-    "settling band [rad]": metrics.SETTLING_BAND,
-    "saturation threshold": metrics.SATURATION_THRESHOLD,
-    "edge of the box [m]": l02.BASELINE.size,
-    "height of the box [m]": l02.BASELINE.height,
-    "length of the drop [s]": l02.BASELINE.dt * l02.BASELINE.steps,
-    "acceleration of gravity [m/s²]": l02.BASELINE.gravity,
-    "edge of the cube [m]": l03.BASELINE.size,
-    "height of the surface [m]": contacts.TOP,
-    "window of a landing [s]": l03.BASELINE.duration,
-    "own friction of the cubes": l03.PUSHED.friction,
-    "and of the other": l03.BESIDE.friction,
-    "friction of the surface": l03.PUSHED.surface_friction,
-    "and of the other surface, and the time to settle [s]": l03.PUSHED.settle,
-    "slow enough for a stop [m/s], and a damping ratio": contact_metrics.STOP_SPEED,
-    "speed nearly at rest [rad/s]": interpretation.AT_REST,
+LISTS = sorted(Path(__file__).parent.glob("*/prose_numbers.py"))
+"""The numbers of each lesson are a module beside its tests."""
+
+CONFIGURED = {f"{GRAVITY:g}"} | {
+    f"{value:g}" for path in LISTS for value in runpy.run_path(str(path))["CONFIGURED"].values()
 }
 PAGES = [*sorted(BOOK.glob("*.md")), *sorted(BOOK.glob("[el]*/**/*.md"))]
 DECIMAL = re.compile(r"(?<![\w.])(?:\d*\.\d+(?:e-?\d+)?|\d+e-?\d+)(?!\.\d)")
@@ -53,8 +30,7 @@ def prose(source: str) -> str:
 
 
 def typed_numbers(source: str) -> set[str]:
-    configured = {f"{value:g}" for value in CONFIGURED.values()}
-    return set(DECIMAL.findall(prose(source))) - configured
+    return set(DECIMAL.findall(prose(source))) - CONFIGURED
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.relative_to(BOOK).as_posix())
@@ -63,7 +39,7 @@ def test_prose_types_no_measured_number(page: Path):
 
 
 def test_a_typed_measurement_is_found():
-    assert typed_numbers("G2 overshoots by 0.0447 rad, of a step of 0.25 rad.") == {"0.0447"}
+    assert typed_numbers("G2 overshoots by 0.0447 rad, under 9.81 m/s².") == {"0.0447"}
     assert typed_numbers("Overshoot 3.5 %.") == {"3.5"}
     assert typed_numbers("| 87.0 | N·m |") == {"87.0"}
 

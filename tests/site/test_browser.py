@@ -1,23 +1,12 @@
 """The built site in a real browser: light, dark and on a narrow phone."""
 
 import pytest
+from built_site import PAGES
 
 from robo_genesis.evidence.status import STATES
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-PAGES = (
-    "index",
-    "glossary",
-    "evidence/ledger",
-    "evidence/recording",
-    "lessons/l02-life-cycle/lecture",
-    "lessons/l02-life-cycle/lab",
-    "lessons/l03-rigid-bodies/lecture",
-    "lessons/l03-rigid-bodies/lab",
-    "lessons/l04-joint-control/lecture",
-    "lessons/l04-joint-control/lab",
-)
 VIEWS = {"light": (1280, "light"), "dark": (1280, "dark"), "phone": (320, "light")}
 
 

@@ -3,17 +3,18 @@
 import pytest
 import yaml
 from bs4 import BeautifulSoup
+from built_site import LESSON_PAGES
 from tiny_book import make_book
 
 from robo_genesis.build.render import RenderError, render
 from robo_genesis.core.project import BOOK
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.site.course_map import FILE, CourseMapError, Lesson, read_map
 
 MAP = [
     {"id": "L01", "title": "One"},
     {"id": "L02", "title": "Two", "needs": []},
-    {"id": "L04", "title": "Four", "needs": ["L01", "L02"], "page": "page"},
+    {"id": "L04", "title": "Four", "needs": ["L01", "L02"], "page": "page", "featured": True},
 ]
 
 
@@ -23,7 +24,7 @@ def write(book, rows):
 
 def test_the_course_s_map_names_the_lessons_that_are_published():
     published = {lesson.id: lesson.page for lesson in read_map(BOOK) if lesson.page}
-    lectures = {p.lesson.upper(): p.docname for p in find_pages(BOOK) if p.page == "lecture"}
+    lectures = {name.upper(): LESSON_PAGES[name, "lecture"] for name in LESSONS}
     assert published == lectures
 
 
@@ -32,7 +33,7 @@ def test_a_map_is_read_in_its_order(tmp_path):
     assert read_map(tmp_path) == [
         Lesson("L01", "One"),
         Lesson("L02", "Two", ()),
-        Lesson("L04", "Four", ("L01", "L02"), "page"),
+        Lesson("L04", "Four", ("L01", "L02"), "page", featured=True),
     ]
 
 
@@ -45,6 +46,7 @@ def test_a_map_is_read_in_its_order(tmp_path):
         ([MAP[0], MAP[0]], "names L01 twice"),
         ([MAP[0], MAP[2]], "L04 needs L02; before it come L01"),
         ([{"id": "L01", "title": "One", "needs": ["L01"]}], "L01 needs L01; before it come none"),
+        ([MAP[2] | {"id": name, "needs": []} for name in ("L04", "L05")], "features L04 and L05"),
     ],
 )
 def test_a_map_that_cannot_be_right_is_refused(tmp_path, rows, said):
@@ -53,15 +55,23 @@ def test_a_map_that_cannot_be_right_is_refused(tmp_path, rows, said):
         read_map(tmp_path)
 
 
-def build(folder, rows):
-    book = make_book(folder, page="# Page\n\nText.\n", text="# Map\n\n```{course-map}\n```\n")
+def build(folder, rows, text="```{course-map}\n```"):
+    other = "lessons/l02-two/lecture"
+    (folder / "book" / other).parent.mkdir(parents=True)
+    book = make_book(
+        folder, page="# Page\n\nText.\n", text=f"# Map\n\n{text}\n", **{other: "# Two\n\nText.\n"}
+    )
     write(book, rows)
     return render(book, folder / "staging", folder / "cache", folder / "render.log")
 
 
+def text_page(folder, rows, text):
+    html = (build(folder, rows, text) / "text.html").read_text()
+    return BeautifulSoup(html, "html.parser").article
+
+
 def test_a_card_a_lesson_with_prerequisites_and_state(tmp_path):
-    page = BeautifulSoup((build(tmp_path, MAP) / "text.html").read_text(), "html.parser")
-    cards = page.select("ul.course-map > li")
+    cards = text_page(tmp_path, MAP, "```{course-map}\n```").select("ul.course-map > li")
     lines = [[p.get_text() for p in card.select("p")] for card in cards]
     assert lines == [
         ["L01 One", "planned"],
@@ -73,6 +83,42 @@ def test_a_card_a_lesson_with_prerequisites_and_state(tmp_path):
     assert {a["href"][1:] for a in cards[2].select(".needs a")} < {card["id"] for card in cards}
 
 
-def test_a_page_that_is_not_there_fails_the_build(tmp_path):
-    with pytest.raises(RenderError, match="the book has no page nowhere"):
-        build(tmp_path, [MAP[0] | {"page": "nowhere"}])
+FEATURED = """
+{lesson}`The second <l02/lecture>` and {lesson}`the
+third <l03/lab>`.
+
+:::{featured} L04
+Four was measured.
+:::
+
+:::{featured} L05
+```{glance} l05
+```
+:::
+
+```{course-status}
+```
+"""
+
+
+def test_lessons_that_are_absent_leave_words_and_no_content(tmp_path):
+    article = text_page(tmp_path, MAP, FEATURED)
+    _, first, second, *_ = article.select("section > p")
+    assert first.get_text() == "The second and the third."
+    assert [a["href"] for a in first.select("a")] == ["lessons/l02-two/lecture.html"]
+    assert second.get_text() == "Four was measured."
+    assert [b.get_text() for b in article.select("section > p > strong")] == ["L04"]
+    assert len(article.select("ul.lesson-status > li")) == 2
+    assert "L05" not in article.get_text()
+
+
+def test_wrong_pages_fail_the_build(tmp_path):
+    text = "{lesson}`Two <l02/lectur>` {lesson}`l02/lecture`\n\n```{course-map}\n```"
+    with pytest.raises(RenderError) as raised:
+        build(tmp_path, [MAP[0] | {"page": "nowhere"}], text)
+    for message in (
+        "the book has no page nowhere",
+        "l02 has no page 'lectur'; choices: lecture",
+        "'l02/lecture' is not a link; write `some words <l04/lecture>`",
+    ):
+        assert message in str(raised.value)

@@ -1,106 +1,56 @@
-"""Each measured figure on a page is what its cell draws from the arrays of the page's bundle."""
+"""Each measured figure on a page is what its cell draws from the arrays of the page's bundle.
+
+The cells see the page's imports and its `traces`. `redraw.py` beside a lesson's tests gives the
+further names that they use.
+"""
+
+import ast
+import runpy
+from pathlib import Path
 
 import nbformat
 import pytest
+from built_site import MEASURING_PAGES
 from nbclient import NotebookClient
 
 from robo_genesis.build.page_cache import PageCache, notebooks_folder, outputs_folder
 from robo_genesis.core.project import BOOK, ROOT, page_cache_folder
-from robo_genesis.lessons.book_pages import find_pages, fingerprint
+from robo_genesis.lessons.book_pages import Page, cell_sources, find_pages, fingerprint
 
 pytestmark = pytest.mark.engine
 
-FROM_BUNDLE = """
-import matplotlib.pyplot as plt, numpy as np
+LESSONS = Path(__file__).parents[1] / "lessons"
+NAMES = """
+import runpy
 from pathlib import Path
+import numpy as np
 from PIL import Image
-from robo_genesis import engines_compared, l04, l04_studies, plots, studies, study_plots
-from robo_genesis.evidence import bundle, step_runs
-from robo_genesis.evidence.trace_files import read_trace
-from robo_genesis.sim.joints import JointMap
-from robo_genesis.core.scene import JOINT_NAMES
+from robo_genesis.evidence.bundle import read_arrays
+from robo_genesis.evidence.trace_files import read_any_trace
 
-plots.use_course_style()
-folder = Path({folder!r})
-arrays = bundle.read_arrays(folder)
-everything = {{case: read_trace(folder, arrays, case) for case in arrays.cases}}
-baseline, assigned = everything["baseline"], everything.get("assigned")
-compared = {{case: everything[case] for case in ("G1", "G2", "G3")}}
-traces = {{"baseline": baseline}}
-camera = True
+plotting.use_course_style()
+folder, camera = Path({folder!r}), True
 frames = {{n: np.array(Image.open(folder / "frames" / f"{{n}}.png")) for n in ("initial", "final")}}
-joints = JointMap(JOINT_NAMES, l04.EXPECTED_TYPES, *[np.arange(9)] * 4)
-entry = joints.entry(l04.STEPPED_JOINT)
-found = step_runs.read_studies(folder, bundle.read_manifest(folder))
+arrays = read_arrays(folder)
+traces = {{case: read_any_trace(folder, arrays, case) for case in arrays.cases}}
 """
+FURTHER = "globals().update(runpy.run_path({script!r})['names'](folder))"
 
-FROM_DROPS = """
-import matplotlib.pyplot as plt, numpy as np
-from pathlib import Path
-from PIL import Image
-from robo_genesis import drop_plots, l02, plots, substep_study
-from robo_genesis.lessons.l02.metrics import measure, predicted
-from robo_genesis.evidence import bundle
-from robo_genesis.evidence.trace_files import read_body_trace
 
-plots.use_course_style()
-folder = Path({folder!r})
-arrays = bundle.read_arrays(folder)
-traces = {{case: read_body_trace(folder, arrays, case) for case in arrays.cases}}
-case, trace = l02.BASELINE, traces["baseline"]
-camera = True
-frames = {{n: np.array(Image.open(folder / "frames" / f"{{n}}.png")) for n in ("initial", "final")}}
-cases = {{n: c for n, c in (l02.CASES | l02.SUBSTEP_CASES).items() if n in traces}}
-study = substep_study.study(measure(traces, cases), cases)
-"""
-
-FROM_CONTACTS = """
-import matplotlib.pyplot as plt, numpy as np
-from pathlib import Path
-from PIL import Image
-from robo_genesis import contact_plots, contact_studies, contacts, drop_plots, energy, l03, plots
-from robo_genesis.lessons.l03 import friction as sliding
-from robo_genesis.lessons.l03.metrics import measure
-from robo_genesis.evidence import bundle
-from robo_genesis.evidence.trace_files import read_contact_trace
-
-plots.use_course_style()
-folder = Path({folder!r})
-arrays, numbers = bundle.read_arrays(folder), bundle.read_metrics(folder)
-traces = {{case: read_contact_trace(folder, arrays, case) for case in arrays.cases}}
-case, trace = l03.BASELINE, traces["baseline"]
-camera = True
-frames = {{n: np.array(Image.open(folder / "frames" / f"{{n}}.png")) for n in ("initial", "final")}}
-if folder.parent.name == "lab":
-    slid, bounced = measure(traces, l03.SLIDES), measure(traces, l03.BOUNCES)
-    coulomb = {{
-        name: sliding.coulomb_distance(of.speed, max(of.friction, of.surface_friction))
-        for name, of in l03.SLIDES.items()
-    }}
-    shown = {{n: l03.BOUNCES[n] for n in ("bounce_sub1", "bounce_sub2", "bounce_sub100")}}
-    shares = {{l03.BOUNCES[name].h: of.first_kept for name, of in bounced.items()}}
-    expected = 100 * energy.kept_at_bounces(l03.DROPPED_BALL.spring[1])
-else:
-    seconds = {{name: metric.value for name, metric in numbers["time_constant"].items()}}
-    study = contact_studies.Studies(traces, measure(traces, l03.STUDY_CASES), seconds)
-"""
-
-SETUPS = {"l02": FROM_DROPS, "l03": FROM_CONTACTS, "l04": FROM_BUNDLE}
-
-STUDIED = {"fig-l04-theory", "fig-l04-step-size", "fig-l04-convergence"}
-"""Figures that are drawn when the page has all of its traces, not the baseline's alone."""
-
-NOT_IN_BUNDLE = {"fig-l04-grid-overshoot", "fig-l04-grid-saturation", "fig-l04-film"}
-"""Maps of the grid, whose runs the page holds as JSON and no bundle does, and the film: its cell
-holds the filmed run to the recorded one."""
+def imports(page: Page) -> str:
+    """Return the imports of a page's cells, except those of the engine and of other libraries."""
+    found = [node for source in cell_sources(page) for node in ast.walk(ast.parse(source))]
+    kept = ("robo_genesis", "matplotlib", "numpy", "IPython", "dataclasses")
+    return "\n".join(
+        ast.unparse(node)
+        for node in found
+        if isinstance(node, ast.Import | ast.ImportFrom)
+        and (getattr(node, "module", None) or node.names[0].name).split(".")[0] in kept
+    )
 
 
 def name_of(cell) -> str:
     return cell.metadata["mystnb"]["figure"]["name"]
-
-
-def redrawing(cell) -> str:
-    return f"traces = everything\n{cell.source}" if name_of(cell) in STUDIED else cell.source
 
 
 def svgs(cells) -> list[str]:
@@ -108,8 +58,7 @@ def svgs(cells) -> list[str]:
     return [o["data"]["image/svg+xml"] for o in outputs if "image/svg+xml" in o.get("data", {})]
 
 
-@pytest.mark.parametrize("name", ["lecture", "lab"])
-@pytest.mark.parametrize("lesson", SETUPS)
+@pytest.mark.parametrize(("lesson", "name"), MEASURING_PAGES)
 def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, lesson, name):
     for variable, value in (("ROBO_GENESIS_RENDER", "1"), ("ROBO_GENESIS_BACKEND", "cpu")):
         monkeypatch.setenv(variable, value)
@@ -118,17 +67,23 @@ def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, l
     folder = page_cache_folder(fingerprint(pages, ROOT))
     cache = PageCache(notebooks_folder(folder))
     executed = cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
+    script = LESSONS / lesson / "redraw.py"
+    redraw = runpy.run_path(str(script)) if script.is_file() else {}
+    before_cell = redraw.get("before_cell", lambda figure: "")
     code = [cell for cell in page.notebook.cells if cell.cell_type == "code"]
     tagged = [
         (cell, ran)
         for cell, ran in zip(code, executed.cells, strict=True)
-        if "figure" in cell.metadata.get("tags", []) and name_of(cell) not in NOT_IN_BUNDLE
+        if "figure" in cell.metadata.get("tags", [])
+        and name_of(cell) not in redraw.get("NOT_IN_BUNDLE", ())
     ]
-    setup = SETUPS[lesson].format(folder=str(outputs_folder(folder) / lesson / name / "cpu"))
-    sources = [setup, *(redrawing(cell) for cell, _ in tagged)]
+    bundle = outputs_folder(folder) / lesson / name / "cpu"
+    sources = [imports(page), NAMES.format(folder=str(bundle))]
+    sources += [FURTHER.format(script=str(script))] if redraw else []
+    sources += [f"{before_cell(name_of(cell))}\n{cell.source}" for cell, _ in tagged]
     redrawn = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(s) for s in sources])
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
     NotebookClient(redrawn, kernel_name="python3", timeout=120).execute()
     drawn = svgs([ran for _, ran in tagged])
-    assert len(drawn) == len(tagged) >= 3
+    assert len(drawn) == len(tagged) >= 1
     assert svgs(redrawn.cells) == drawn

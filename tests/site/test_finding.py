@@ -11,21 +11,20 @@ from pathlib import Path
 
 import pytest
 from bs4 import BeautifulSoup
+from built_site import PAGES
 
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.site.course_map import read_map
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 LECTURE = "lessons/l04-joint-control/lecture"
 LAB = "lessons/l04-joint-control/lab"
-FIRST = (
-    "lessons/l02-life-cycle/lecture",
-    "lessons/l02-life-cycle/lab",
-    "lessons/l03-rigid-bodies/lecture",
-    "lessons/l03-rigid-bodies/lab",
-)
-ANCHORS = Path(__file__).with_name("anchors.txt")
+TESTS = Path(__file__).parents[1]
+ANCHORS = [TESTS / "site" / "anchors.txt", *sorted(TESTS.glob("lessons/*/anchors.txt"))]
+"""The anchors of each lesson's pages are a file beside the lesson's tests."""
+
 PLACES = "article section[id], article section > span[id], article figure[id], article dt[id]"
 NUMBERED = re.compile(r"id\d+$")
 
@@ -128,7 +127,7 @@ def places(site) -> set[str]:
 
     Recorded runs come and go with the machines that made them, so what is in their panels is none.
     """
-    names = [LECTURE, LAB, *FIRST, "glossary", "index", "performance/costs"]
+    names = [name for name in PAGES if not name.startswith("evidence/")]
     return {
         f"{name}#{tag['id']}"
         for name in names
@@ -137,23 +136,24 @@ def places(site) -> set[str]:
     }
 
 
+def published_anchors() -> set[str]:
+    return {anchor for file in ANCHORS for anchor in file.read_text().split()}
+
+
 def test_anchors_that_were_published_stay(site):
-    published = set(ANCHORS.read_text().split())
+    published = published_anchors()
     assert len(published) > 100
     gone = sorted(published - places(site))
     assert gone == [], "Links elsewhere lead there: keep the old name as a target `(name)=` above."
 
 
 def test_new_anchors_are_kept_from_now_on(site):
-    new = sorted(places(site) - set(ANCHORS.read_text().split()))
-    assert new == [], f"Add these lines to {ANCHORS.name}, and they stay."
+    new = sorted(places(site) - published_anchors())
+    assert new == [], "Add these lines to anchors.txt in tests/lessons/lNN or tests/site."
 
 
 def test_each_page_leads_to_the_one_before_and_after(site):
-    order = ["index", *FIRST, LECTURE, LAB, "glossary"]
-    order += ["evidence/ledger"]
-    order += ["evidence/trust", "evidence/recording"]
-    for before, after in itertools.pairwise(order):
+    for before, after in itertools.pairwise(PAGES):
         assert neighbour(site, before, "next") == after
         assert neighbour(site, after, "prev") == before
 
@@ -190,7 +190,7 @@ def test_pages_tell_their_reading_time_and_history(site):
 
 def test_the_home_page_maps_the_course(site):
     cards = {c["id"]: c for c in parsed(site, "index").select("ul.course-map > li")}
-    assert list(cards) == [f"lesson-l0{number}" for number in range(1, 9)]
+    assert list(cards) == [f"lesson-{lesson.id.lower()}" for lesson in read_map(BOOK)]
     published = [name for name, card in cards.items() if "published" in card["class"]]
     assert published == [f"lesson-{name}" for name in LESSONS]
     for name in published:
@@ -201,7 +201,9 @@ def test_the_home_page_maps_the_course(site):
 def test_the_home_page_shows_a_measurement_before_its_second_paragraph(site):
     home = parsed(site, "index")
     figures = home.select(".glance figure")
-    assert [figure["id"] for figure in figures] == ["glance-l04-response", "glance-l04-final"]
+    (featured,) = (lesson.id.lower() for lesson in read_map(BOOK) if lesson.featured)
+    expected = [f"glance-{featured}-{picture}" for picture in ("response", "final")]
+    assert [figure["id"] for figure in figures] == expected
     assert all("Measured on cpu" in figure.get_text() for figure in figures)
     assert len(figures[0].find_all_previous("p")) <= len(home.select("p")) - 5
 

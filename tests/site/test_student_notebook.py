@@ -11,16 +11,13 @@ from pathlib import Path
 import nbformat
 import pytest
 from bs4 import BeautifulSoup
+from built_site import LESSON_PAGES
 
 from robo_genesis.build import stages
 from robo_genesis.core import project
 
 pytestmark = pytest.mark.engine
-LABS = {
-    "l02": "lessons/l02-life-cycle/lab",
-    "l03": "lessons/l03-rigid-bodies/lab",
-    "l04": "lessons/l04-joint-control/lab",
-}
+LABS = {lesson: name for (lesson, page), name in LESSON_PAGES.items() if page == "lab"}
 OURS = ("PYTHON", "VIRTUAL_ENV", "ROBO_GENESIS", "JUPYTER", "IPYTHON")
 """Variables of this environment that a reader's does not have."""
 

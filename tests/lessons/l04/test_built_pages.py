@@ -1,21 +1,27 @@
-"""The failure gallery and the doctor as a reader finds them on the built lecture."""
+"""The built pages of L04: the failure gallery, the doctor, errors, warnings and formulas."""
 
 import re
+from pathlib import Path
 
 import pytest
 from bs4 import BeautifulSoup
 
 from robo_genesis.core import project
+from robo_genesis.evidence import bundle
 from robo_genesis.sim.diagnosis import LINKS
 
 pytestmark = pytest.mark.engine
+FOLDER = "lessons/l04-joint-control"
 PARTS = ("Symptom.", "Evidence.", "Diagnosis.", "Mend.")
+
+
+def parsed(page: Path) -> BeautifulSoup:
+    return BeautifulSoup(page.read_text(), "html.parser")
 
 
 @pytest.fixture(scope="module")
 def lecture(site) -> BeautifulSoup:
-    path = site / "lessons" / "l04-joint-control" / "lecture.html"
-    return BeautifulSoup(path.read_text(), "html.parser")
+    return parsed(site / FOLDER / "lecture.html")
 
 
 @pytest.fixture(scope="module")
@@ -78,3 +84,39 @@ def test_fingers_before_and_after_gains_stand_on_the_page(lecture):
     pattern = r"finger_joint2 ended at (\S+) m before gains were set and at (\S+) m with gains"
     before, after = re.search(pattern, text).groups()
     assert float(before) < 0.1 * float(after)
+
+
+def test_a_number_in_prose_is_the_bundle_s_and_says_where_it_comes_from(site):
+    records = bundle.read_metrics(site.parent / "evidence" / "l04" / "cpu")
+    number = parsed(site / "index.html").select_one(".measured")
+    assert number.get_text() == f"{records['G2']['overshoot'].value:.4f} rad"
+    assert re.search(
+        r"l04/lab on cpu, Genesis .*, run \w{8}, \d{4}-\d\d-\d\d", number["data-provenance"]
+    )
+
+
+def test_expected_error_shows_its_message_without_a_stack(lecture):
+    errors = [e.get_text() for e in lecture.select(".output.traceback")]
+    assert [error.split(":")[0] for error in errors] == ["JointError", "GenesisException"]
+    assert "finger_joint2" in errors[0]
+    assert "non-PD-reducible actuator" in errors[1]
+
+
+def test_the_missing_reference_run_has_a_panel_with_its_command(lecture):
+    panel = lecture.select_one(".evidence-panel.status-missing")
+    assert (
+        f"No run on this backend is recorded for Genesis {project.engine_pin()}" in panel.get_text()
+    )
+    assert "make evidence LESSON=l04 BACKEND=amdgpu" in panel.get_text()
+    assert not panel.select("img")
+
+
+def test_engine_warnings_are_kept_in_a_fold(site):
+    folds = parsed(site / FOLDER / "lab.html").select("details.hide")
+    assert any("Approximating tendon" in fold.get_text() for fold in folds)
+
+
+def test_math_needs_no_script(lecture):
+    assert len(lecture.select("math")) > 5
+    scripts = [script.get("src") or script.get_text() for script in lecture.select("script")]
+    assert not [text for text in scripts if "mathjax" in text.lower() or "katex" in text.lower()]

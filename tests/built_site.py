@@ -1,4 +1,4 @@
-"""The built site: the same command as `make book`, so that its tests look at the real thing."""
+"""Fixtures of the site that `make book` builds, and the lists of its pages."""
 
 import os
 import subprocess
@@ -8,12 +8,30 @@ from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from threading import Thread
+from typing import TYPE_CHECKING
 
 import pytest
 from browsers import chromium
-from playwright.sync_api import Browser, sync_playwright
 
 from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.lessons.book_pages import docnames
+from robo_genesis.lessons.registry import LESSONS
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+PAGES = tuple(docnames(BOOK / "_toc.yml"))
+"""Every page of the book in reading order."""
+
+LESSON_PAGES = {
+    (Path(name).parent.name.partition("-")[0], Path(name).name): name
+    for name in PAGES
+    if name.startswith("lessons/")
+}
+"""The pages of lessons by lesson and page."""
+
+MEASURING_PAGES = [(name, page) for name, lesson in LESSONS.items() for page in lesson.pages]
+"""Lesson and page of each page that leaves a bundle."""
 
 
 class QuietHandler(SimpleHTTPRequestHandler):
@@ -44,7 +62,9 @@ def address(site) -> Iterator[str]:
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
+def browser() -> Iterator["Browser"]:
+    from playwright.sync_api import sync_playwright
+
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
         yield browser

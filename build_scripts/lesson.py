@@ -1,0 +1,20 @@
+"""Add a lesson that is made from the template: `make lesson NEW=l05`.
+
+Exit status: 0 added, 1 refused or failed, 130 interrupted. Unless it is 0, nothing is changed.
+"""
+
+import os
+import sys
+
+from robo_genesis.build.command import run
+from robo_genesis.core.project import ROOT
+from robo_genesis.maintain.new_lesson import LessonError, add_lesson
+
+
+def main() -> int:
+    """Add the lesson and return the exit status."""
+    return run(lambda: add_lesson(ROOT, os.environ.get("NEW", "")), "added", (LessonError,))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,16 @@
+"""The decimal numbers that prose of L04 may hold: configured inputs."""
+
+from robo_genesis.core.scene import Q_START
+from robo_genesis.lessons.l04 import metrics, spec, study_spec
+from robo_genesis.lessons.l04.text import AT_REST
+
+CONFIGURED = {
+    "window [s]": spec.WINDOW,
+    "step of joint4 [rad]": spec.STEP,
+    "small step of joint4 [rad]": study_spec.SMALL_STEP,
+    "open finger [m]": Q_START[-1],
+    "rise fraction": metrics.RISE_FRACTION,
+    "settling band [rad]": metrics.SETTLING_BAND,
+    "saturation threshold": metrics.SATURATION_THRESHOLD,
+    "speed nearly at rest [rad/s]": AT_REST,
+}

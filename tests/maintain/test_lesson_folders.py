@@ -1,0 +1,113 @@
+"""A lesson is a folder: one is removed from a copy of the checkout, and one is added to another.
+
+Both books are built as `make book` does it. Pages that the checkout has executed are copied, so
+that a build executes the pages alone whose code changed.
+"""
+
+import shutil
+
+import pytest
+import yaml
+from bs4 import BeautifulSoup
+from built_site import PAGES
+from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
+
+from robo_genesis.build import npm
+from robo_genesis.core.project import CACHE
+from robo_genesis.lessons.registry import LESSONS
+
+pytestmark = [pytest.mark.engine, pytest.mark.slow]
+
+REMOVED = ("l03",)
+UNIT_TESTS = ("core", "evidence", "lessons", "maintain", "sim", "site", "test_imports.py")
+
+
+def edit(path, change):
+    path.write_text(yaml.safe_dump(change(yaml.safe_load(path.read_text())), sort_keys=False))
+
+
+def remove(work, lesson):
+    """Remove the folders of a lesson and its lines in the two lists of the book."""
+    for place in ("robo_genesis/lessons", "book/lessons", "book/evidence", "tests/lessons"):
+        for folder in (work / place).glob(f"{lesson}*"):
+            shutil.rmtree(folder)
+
+    def chapters(toc):
+        kept = [c for c in toc["chapters"] if not c["file"].startswith(f"lessons/{lesson}-")]
+        return toc | {"chapters": kept}
+
+    def entries(rows):
+        name = lesson.upper()
+        for row in rows:
+            if "needs" in row:
+                row["needs"] = [need for need in row["needs"] if need != name]
+        return [row for row in rows if row["id"] != name]
+
+    edit(work / "book" / "_toc.yml", chapters)
+    edit(work / "book" / "course_map.yml", entries)
+
+
+def build(work):
+    """Build the book of a copy and return its site."""
+    cache = work / ".cache"
+    cache.mkdir()
+    (cache / "npm").symlink_to(npm.packages().parents[1])
+    (cache / "engine").symlink_to(CACHE / "engine")
+    shutil.copytree(CACHE / "pages", cache / "pages", symlinks=True)
+    print(make(work, "book"))
+    return work / "book" / "_build" / "html"
+
+
+def parsed(site, name):
+    return BeautifulSoup((site / f"{name}.html").read_text(), "html.parser")
+
+
+@pytest.fixture(scope="module", params=REMOVED)
+def without(request, tmp_path_factory):
+    """The name of a lesson, and a copy of the checkout without that lesson."""
+    work = copy_checkout(tmp_path_factory.mktemp("without") / "checkout")
+    remove(work, request.param)
+    return request.param, work
+
+
+def test_the_rest_of_the_code_does_without_a_lesson(without):
+    _, work = without
+    import_contracts(work)
+    run_in(work, "python", "-m", "ruff", "check", "--no-cache", ".")
+    git_needed = "--ignore=tests/maintain/test_new_lesson.py"
+    assert "passed" in unit_tests(work, *(f"tests/{place}" for place in UNIT_TESTS), git_needed)
+
+
+def test_the_book_without_a_lesson_builds(without, build_output):
+    lesson, work = without
+    site = build(work)
+    for name in PAGES:
+        if name.startswith(f"lessons/{lesson}-"):
+            assert not (site / f"{name}.html").exists()
+        else:
+            links = [a["href"] for a in parsed(site, name).select("a[href]")]
+            assert [link for link in links if f"/{lesson}-" in link] == [], name
+    cards = [card["id"] for card in parsed(site, "index").select("ul.course-map > li")]
+    assert f"lesson-{lesson}" not in cards
+    assert {f"lesson-{name}" for name in LESSONS if name != lesson} <= {*cards}
+    assert f"{lesson}/lab" not in parsed(site, "evidence/ledger").get_text()
+
+
+def test_a_new_lesson_is_on_the_site_at_once(tmp_path, build_output):
+    work = copy_checkout(tmp_path / "checkout")
+    make(work, "lesson", "NEW=l99")
+    site = build(work)
+    assert "passed" in unit_tests(work, "tests/lessons/l99")
+    card = parsed(site, "index").select_one("#lesson-l99")
+    assert card.a["href"] == "lessons/l99-new-lesson/lecture.html"
+    assert card.select_one(".evidence-badge").get_text() == "cpu-verified"
+    assert "L99 CHECK: PASSED" in parsed(site, "lessons/l99-new-lesson/lab").get_text()
+    ledger = parsed(site, "evidence/ledger")
+    places = [a["href"] for a in ledger.select("#figures-and-tables tbody a")]
+    assert "../lessons/l99-new-lesson/lab.html#fig-l99-lab-height" in places
+    assert "l99/lab" in ledger.get_text()
+    index = (site / "searchindex.js").read_text()
+    assert "lessons/l99-new-lesson/lecture" in index
+    assert "lessons/l99-new-lesson/lab" in index
+    taken = {path.name for path in (site / "takeaways" / "l99-lab").iterdir()}
+    assert {"l99-lab.ipynb", "l99-lab-executed.ipynb", "baseline.csv"} <= taken

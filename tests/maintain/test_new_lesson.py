@@ -1,0 +1,130 @@
+"""A lesson made from the template is complete; a name that cannot be used changes nothing."""
+
+import pytest
+import yaml
+from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
+
+from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.maintain.new_lesson import (
+    TEMPLATE,
+    LessonError,
+    add_lesson,
+    with_chapter,
+    with_entry,
+)
+
+TOC, COURSE_MAP = (BOOK / name for name in ("_toc.yml", "course_map.yml"))
+PUBLISHED = "test_the_course_s_map_names_the_lessons_that_are_published"
+ADDED = """
+from pathlib import Path
+from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.site.course_map import read_map
+print(list(LESSONS), [m.page for m in read_map(Path("book")) if m.id == "L99"])
+print([(p.lesson, p.page) for p in find_pages(Path("book")) if p.lesson == "l99"])
+"""
+
+
+@pytest.fixture(scope="module")
+def work(tmp_path_factory):
+    """A copy of the checkout with one more lesson."""
+    work = copy_checkout(tmp_path_factory.mktemp("checkout") / "with a space")
+    said = make(work, "lesson", "NEW=l99")
+    assert "Lesson l99 was added" in said
+    return work
+
+
+def test_registry_course_map_and_book_have_the_lesson(work):
+    lists, pages = run_in(work, "python", "-c", ADDED).splitlines()
+    assert lists.endswith("'l99'] ['lessons/l99-new-lesson/lecture']")
+    assert pages == "[('l99', 'lab')]"
+
+
+def test_the_code_is_clean(work):
+    places = ("robo_genesis/lessons/l99", "tests/lessons/l99")
+    run_in(work, "python", "-m", "ruff", "check", "--no-cache", *places)
+    run_in(work, "python", "-m", "ruff", "format", "--no-cache", "--check", *places)
+    run_in(work, "python", "-m", "mypy", "--cache-dir=/dev/null", "-p", "robo_genesis.lessons.l99")
+    import_contracts(work)
+
+
+def test_its_tests_and_those_of_all_lessons_pass(work):
+    names = ("lessons/l99", "lessons/test_registry.py", "lessons/test_prose.py")
+    course_map = "tests/site/test_course_map.py::" + PUBLISHED
+    assert "passed" in unit_tests(work, *(f"tests/{name}" for name in names), course_map)
+
+
+def test_the_template_is_small():
+    lines = sum(len(path.read_text().splitlines()) for path in TEMPLATE.rglob("*.tmpl"))
+    assert 100 < lines <= 300
+
+
+def files(root):
+    return {path: path.read_bytes() for path in root.rglob("*") if path.is_file()}
+
+
+@pytest.fixture
+def small(tmp_path):
+    """The files that adding a lesson reads and changes."""
+    for place in ("robo_genesis/lessons/l04", "book/lessons/l07-old", "tests/lessons/l08"):
+        (tmp_path / place).mkdir(parents=True)
+    for path in (TOC, COURSE_MAP):
+        (tmp_path / "book" / path.name).write_bytes(path.read_bytes())
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("", "NEW='' is not valid: write `l` and two digits"),
+        ("L05", "NEW='L05' is not valid"),
+        ("l5", "NEW='l5' is not valid"),
+        ("../l05", "is not valid"),
+        ("l04", "Lesson l04 exists: robo_genesis/lessons/l04"),
+        ("l07", "Lesson l07 exists: book/lessons/l07-old"),
+        ("l08", "Lesson l08 exists: tests/lessons/l08"),
+        ("l02", "course_map.yml names a page of L02"),
+    ],
+)
+def test_a_name_that_cannot_be_used_changes_nothing(small, name, message):
+    before = files(small)
+    with pytest.raises(LessonError) as raised:
+        add_lesson(small, name)
+    assert message in str(raised.value)
+    assert files(small) == before
+
+
+def test_a_failure_leaves_nothing_half_written(small, monkeypatch):
+    before = files(small)
+    monkeypatch.setattr("robo_genesis.maintain.new_lesson.with_entry", lambda text, lesson: None)
+    with pytest.raises(TypeError):  # the last file cannot be written
+        add_lesson(small, "l05")
+    assert files(small) == before
+    assert not list(small.rglob("l05*"))
+
+
+@pytest.mark.parametrize(("lesson", "before"), [("l01", None), ("l05", "l04"), ("l99", "l04")])
+def test_the_lists_stay_in_order(lesson, before):
+    toc = yaml.safe_load(with_chapter(TOC.read_text(), lesson))["chapters"]
+    names = [chapter["file"] for chapter in toc]
+    at = names.index(f"lessons/{lesson}-new-lesson/lecture")
+    assert toc[at]["sections"] == [{"file": f"lessons/{lesson}-new-lesson/lab"}]
+    assert names[at - 1].startswith(f"lessons/{before}") if before else at == 0
+    assert len(names) == len(yaml.safe_load(TOC.read_text())["chapters"]) + 1
+
+    rows = yaml.safe_load(with_entry(COURSE_MAP.read_text(), lesson))
+    ids = [row["id"] for row in rows]
+    assert ids == sorted(ids)
+    assert rows[ids.index(lesson.upper())]["page"] == f"lessons/{lesson}-new-lesson/lecture"
+    assert [row for row in rows if row["id"] != lesson.upper()] == [
+        row for row in yaml.safe_load(COURSE_MAP.read_text()) if row["id"] != lesson.upper()
+    ]
+
+
+def test_a_list_without_lessons_is_refused():
+    with pytest.raises(LessonError, match="has no line"):
+        with_chapter("format: jb-book\nroot: index\n", "l05")
+
+
+def test_the_template_is_not_in_the_package():
+    assert not list((ROOT / "robo_genesis" / "maintain" / "template").rglob("*.py"))
