@@ -178,7 +178,7 @@ def real_engine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleName
     Module scope releases the lock before the tests of the site build it.
     """
     contract = session.Contract("cpu", True, tmp_path_factory.mktemp("outputs"))
-    with stages.only_build(project.CACHE), pytest.MonkeyPatch.context() as patch:
+    with stages.build_lock(project.CACHE), pytest.MonkeyPatch.context() as patch:
         for name, value in project.engine_cache_environment().items():
             patch.setitem(os.environ, name, value)
         engine = session.start(contract)

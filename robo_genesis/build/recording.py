@@ -12,7 +12,7 @@ from robo_genesis.build.command import TIMEOUT, Progress, say
 from robo_genesis.build.execute import execute_pages, kernel_environment
 from robo_genesis.build.page_artifacts import Verify
 from robo_genesis.build.page_results import PageResult, failure_report
-from robo_genesis.build.stages import only_build, require_contract
+from robo_genesis.build.stages import build_lock, require_contract
 from robo_genesis.core import project
 from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence.bundle_store import put, recover, require_folder
@@ -74,7 +74,7 @@ def record(recording: Recording) -> list[str]:
         BuildError: a build, or another recording, runs here.
         ProjectError, PageError: checkout, environment or the bundle's place is not fit for it.
     """
-    with only_build(recording.cache):
+    with build_lock(recording.cache):
         recover(recording.evidence)
         page, progress = _lab(recording), Progress(recording.say)
         require_folder(recording.evidence)

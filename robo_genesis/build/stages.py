@@ -73,7 +73,7 @@ def run_build(build: Build) -> list[str]:
         ArtifactError: pages that were executed elsewhere are refused; nothing was published.
         ProjectError, PageError: the checkout is not fit for a build.
     """
-    with only_build(build.cache):
+    with build_lock(build.cache):
         settle(build.book / project.PUBLISHED)
         bundle_store.recover(build.book / "evidence")
         inputs = up_to_date.inputs_digest(build.root, build.book)
@@ -126,7 +126,7 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
         BuildError: there is no such page, it failed, or a build runs here. Nothing was exported.
         ArtifactError, ProjectError, PageError: folder, checkout or book are not fit for it.
     """
-    with only_build(build.cache):
+    with build_lock(build.cache):
         engine, pages, folder = _prepare(build)
         names = {page.docname: page for page in pages}
         names |= {f"{page.lesson}/{page.page}": page for page in pages if page.declares_bundle}
@@ -268,7 +268,7 @@ def _summary(
     return lines
 
 
-def only_build(cache: Path) -> AbstractContextManager[None]:
+def build_lock(cache: Path) -> AbstractContextManager[None]:
     """Hold the lock of builds and of tests that run the engine.
 
     Args:

@@ -40,7 +40,7 @@ def evaluate(named: Sequence[Callable[[Subject], list[str]]], run: Subject) -> t
     return tuple(outcomes)
 
 
-def wrong_stamps(cases: Mapping[str, Any], traces: Mapping[str, TimeSeries]) -> list[str]:
+def wrong_times(cases: Mapping[str, Any], traces: Mapping[str, TimeSeries]) -> list[str]:
     """Return which runs do not have a state for t = 0 and one for each outer step, at k · dt.
 
     Args:

@@ -7,19 +7,19 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.session import FrameError, require_frame
 
-POSTURES = ("camera", "schematic")
+END_STATES = ("camera", "schematic")
 
 
 def problems(posture: str, frames: Mapping[str, np.ndarray], links: FloatArray) -> list[str]:
     """Return the problems of the evidence of the first and last state, none if it is valid.
 
     Args:
-        posture: the kind of evidence, one of `POSTURES`.
+        posture: the kind of evidence, one of `END_STATES`.
         frames: the camera's pictures by name.
         links: (n+1, l, 3) link positions of the run [m], which a schematic draws.
     """
-    if posture not in POSTURES:
-        return [f"posture evidence is called {posture!r}, expected one of {POSTURES}"]
+    if posture not in END_STATES:
+        return [f"posture evidence is called {posture!r}, expected one of {END_STATES}"]
     if posture == "schematic":
         found = ["a schematic must not come with camera frames"] if frames else []
         return found + (["no link moved"] if (links[0] == links[-1]).all() else [])

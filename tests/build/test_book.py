@@ -25,8 +25,8 @@ from robo_genesis.build.page_artifacts import ArtifactError
 from robo_genesis.build.stages import (
     Build,
     BuildError,
+    build_lock,
     export_one,
-    only_build,
     require_contract,
     run_build,
 )
@@ -116,7 +116,7 @@ def test_a_build_without_work_repeats_the_last_lines_and_loads_no_heavy_package(
 
 
 def test_a_release_is_built_whether_anything_changed_or_not(built):
-    with only_build(built.folder / "cache"):
+    with build_lock(built.folder / "cache"):
         assert "Another build" in fails("book.py", built.folder, RELEASE="1")
 
 
@@ -279,10 +279,10 @@ def test_another_installed_engine_stops_the_build_before_any_page(tmp_path, monk
 
 def test_a_second_build_at_the_same_time_is_refused_with_the_first_one_s_process(tmp_path):
     with (
-        only_build(tmp_path),
+        build_lock(tmp_path),
         pytest.raises(BuildError, match=rf"process {os.getpid()}\)"),
-        only_build(tmp_path),
+        build_lock(tmp_path),
     ):
         pass
-    with only_build(tmp_path):
+    with build_lock(tmp_path):
         pass

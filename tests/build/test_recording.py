@@ -8,7 +8,7 @@ from tiny_book import LAB_FRONT, cell, make_book, notebook
 from robo_genesis.build import recording
 from robo_genesis.build.execute import kernel_environment
 from robo_genesis.build.recording import Recording, RecordingError, record
-from robo_genesis.build.stages import BuildError, only_build
+from robo_genesis.build.stages import BuildError, build_lock
 from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.evidence.bundle import BundleRefused
 
@@ -214,7 +214,7 @@ def test_another_installed_engine_stops_the_recording(tmp_path, monkeypatch):
 
 
 def test_a_recording_beside_a_build_is_refused(tmp_path):
-    with only_build(tmp_path / "cache"), pytest.raises(BuildError, match="Another build"):
+    with build_lock(tmp_path / "cache"), pytest.raises(BuildError, match="Another build"):
         run(tmp_path, lab("cuda"))
 
 

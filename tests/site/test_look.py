@@ -92,7 +92,7 @@ def test_a_case_s_name_in_running_text_has_its_colour(page, theme):
     )
     assert {name for name, *_ in names} == {*CASES} - {"baseline"}
     for name, colour, weight in names:
-        assert hexadecimal(colour) == getattr(MARKS[name], theme), name
+        assert hexadecimal(colour) == getattr(MARKS[CASES[name]], theme), name
         assert weight == "600"
 
 
@@ -108,9 +108,9 @@ def test_a_run_of_a_case_has_that_case_s_line_in_the_explorer(page, theme):
     output = page.locator(".explorer output").inner_text()
     name = re.search(r"the case (G\d)", output).group(1)
     line = ".explorer svg .curve"
-    assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS[name], theme)
+    assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS[CASES[name]], theme)
     dashes = [float(n) for n in re.findall(r"[\d.]+", style(page, line, "strokeDasharray"))]
-    assert dashes == [2 * length for length in MARKS[name].dashes]
+    assert dashes == [2 * length for length in MARKS[CASES[name]].dashes]
     page.locator("#explorer-kp").press("ArrowLeft")  # between the cases: no case's line
     assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS["further"], theme)
 
@@ -130,4 +130,4 @@ def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
         drawn = [float(length) for length in re.findall(r"[\d.]+", dashes)]
         assert drawn == [2 * length for length in MARKS[name].dashes], name
     count = Counter(name for name, *_ in lines)
-    assert count == {"G1": 3, "G2": 3, "G3": 3, "target": 1, "limit": 2}
+    assert count == {"first": 3, "second": 3, "third": 3, "target": 1, "limit": 2}

@@ -62,7 +62,7 @@ def test_the_install_line_is_enough_to_run_each_student_s_notebook(site, home):
     assert run(f"{folder}/bin/python -c '{where}'", home, environment).startswith(str(home))
     for lesson, (*_, start) in lines.items():
         execute = start.replace("jupyter lab", f"jupyter execute --output={lesson}-done.ipynb")
-        with stages.only_build(project.CACHE):
+        with stages.build_lock(project.CACHE):
             run(execute, home, environment)
         done = nbformat.read(home / f"{lesson}-done.ipynb", as_version=4)
         assert f"genesis-world {project.engine_pin()}" in done.cells[1].outputs[0].text

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, evaluate, wrong_counts, wrong_masses, wrong_stamps
+from robo_genesis.core.checks import Check, evaluate, wrong_counts, wrong_masses, wrong_times
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.lessons.l02.metrics import DropMetrics, fallen
@@ -59,7 +59,7 @@ def start(run: DropExperiment) -> list[str]:
 
 def stamps(run: DropExperiment) -> list[str]:
     """The record has one state at t = 0 and one after each outer step, at the times k · dt."""
-    return wrong_stamps(run.cases, run.traces)
+    return wrong_times(run.cases, run.traces)
 
 
 def falls(run: DropExperiment) -> list[str]:

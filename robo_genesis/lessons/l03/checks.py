@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, evaluate, wrong_counts, wrong_masses, wrong_stamps
+from robo_genesis.core.checks import Check, evaluate, wrong_counts, wrong_masses, wrong_times
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import friction, spec
 from robo_genesis.lessons.l03.energy import kept_at_bounces
@@ -81,7 +81,7 @@ def settings(run: ContactExperiment) -> list[str]:
 
 def stamps(run: ContactExperiment) -> list[str]:
     """The record of each case has one state at t = 0 and one after each outer step."""
-    return wrong_stamps(run.cases, run.traces)
+    return wrong_times(run.cases, run.traces)
 
 
 def start(run: ContactExperiment) -> list[str]:

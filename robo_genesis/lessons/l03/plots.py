@@ -14,8 +14,18 @@ from robo_genesis.lessons.l03.study import Studies, solver_step
 from robo_genesis.sim import mujoco_contacts
 from robo_genesis.sim.contacts import ContactCase
 
-LANDING_MARKS = {"baseline": "baseline", "dt10_sub1": "G1", "dt20_sub2": "G3", "dt20_sub1": "G2"}
-SLIDE_MARKS = {"low_on_050": "G1", "high_on_050": "G2", "low_on_030": "G3", "high_on_030": "other"}
+LANDING_MARKS = {
+    "baseline": "baseline",
+    "dt10_sub1": "first",
+    "dt20_sub2": "third",
+    "dt20_sub1": "second",
+}
+SLIDE_MARKS = {
+    "low_on_050": "first",
+    "high_on_050": "second",
+    "low_on_030": "third",
+    "high_on_030": "other",
+}
 
 Cases = Mapping[str, ContactCase]
 Traces = Mapping[str, ContactTrace]
@@ -122,7 +132,7 @@ def energies(axes: Sequence[Axes], traces: Traces, cases: Cases) -> None:
         traces: by case.
         cases: up to three cases to draw.
     """
-    for (name, case), mark in zip(cases.items(), ("G2", "other", "G3"), strict=False):
+    for (name, case), mark in zip(cases.items(), ("second", "other", "third"), strict=False):
         trace = traces[name]
         start, clear = total_energy(trace, case)[0], clearance(trace, case) > 0
         for ax, energy in zip(axes, (total_energy, conserved_energy), strict=True):

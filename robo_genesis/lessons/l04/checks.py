@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, evaluate, wrong_stamps
+from robo_genesis.core.checks import Check, evaluate, wrong_times
 from robo_genesis.core.scene import JOINT_NAMES
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec
@@ -106,7 +106,7 @@ def baseline_approaches(run: StepExperiment) -> list[str]:
 
 def stamps(run: StepExperiment) -> list[str]:
     """Each run has its configured steps, states at times k · dt from zero, and its own target."""
-    return wrong_stamps(run.cases, run.traces) + [
+    return wrong_times(run.cases, run.traces) + [
         f"{name} was not commanded its target at every step"
         for name, case in run.cases.items()
         if not (run.traces[name].target == case.q_target).all()
