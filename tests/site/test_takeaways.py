@@ -88,7 +88,8 @@ def test_a_wheel_is_built_anew_only_where_its_sources_changed(tmp_path, monkeypa
 
 def package_files():
     found = (project.ROOT / "robo_genesis").rglob("*")
-    return [path for path in found if path.is_file() and path.suffix != ".pyc"]
+    left_out = (".pyc", ".tmpl")  # the template of lessons is in the repository alone
+    return [path for path in found if path.is_file() and path.suffix not in left_out]
 
 
 def test_a_package_that_cannot_be_built_says_why(tmp_path):
