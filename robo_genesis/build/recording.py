@@ -169,7 +169,7 @@ def summary(place: Path, facts: Any) -> list[str]:
 
     Args:
         place: where the bundle is.
-        facts: what its manifest says of the run.
+        facts: the facts about the run in its manifest.
     """
     files = [path for path in place.rglob("*") if path.is_file()]
     size = sum(path.stat().st_size for path in files) / 1e6

@@ -222,7 +222,7 @@ def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
     """Raise BundleRefused if a bundle's backend or camera is not the requested one.
 
     Args:
-        predicate: what the bundle's manifest says of its run.
+        predicate: the predicate of the bundle's manifest.
         contract: the variables that requested it.
     """
     remedy = "Let the page read runtime.read_contract() and set neither itself."

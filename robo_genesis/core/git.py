@@ -46,7 +46,9 @@ def unclean(root: Path, reason: str = "A release is built from one commit") -> l
     try:
         changed = git(root, "status", "--porcelain", "--untracked-files=all").splitlines()
     except ProjectError as error:
-        return [f"{root} is no git checkout: {error} {reason}: clone the repository, run it there."]
+        return [
+            f"{root} is not a git checkout: {error} {reason}: clone the repository, run it there."
+        ]
     if not changed:
         return []
     more = f", and {len(changed) - SHOWN} more" if len(changed) > SHOWN else ""

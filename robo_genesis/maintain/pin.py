@@ -33,7 +33,7 @@ def chosen_version(given: str, pin: str, versions: Versions) -> str:
         versions: returns the installable ones, on request with pre-releases.
 
     Raises:
-        RepinError: none was given, it is no version, it is the pin, or it cannot be installed.
+        RepinError: none was given, it is not a version, it is the pin, or it cannot be installed.
     """
     if not given:
         raise RepinError(f"GENESIS is not given. {USAGE} (the pin is {pin}).")

@@ -130,7 +130,7 @@ def names(bench: Bench) -> str:
         )
     lower, upper = bench.joints.lower, bench.joints.upper
     if not (np.isfinite(lower).all() and np.isfinite(upper).all() and (lower < upper).all()):
-        raise StepError(f"Limits {lower} to {upper} are no ranges. Check model and version.")
+        raise StepError(f"Limits {lower} to {upper} are not ranges. Check model and version.")
     return f"{len(scene.JOINT_NAMES)} joints by name, {model['dofs']} DOFs, every limit a range"
 
 

@@ -108,7 +108,7 @@ def runs(
 def _motion(trace: Trace, joints: JointMap, joint: str) -> str:
     k = joints.entry(joint)
     start, target = (said(q, joints.position_units[k]) for q in (trace.q[0, k], trace.target[0, k]))
-    return f"`{joint}` starts at {start} and is told to go to {target}."
+    return f"`{joint}` starts at {start} and gets the target {target}."
 
 
 def _quality(metrics: Mapping[str, str]) -> str:

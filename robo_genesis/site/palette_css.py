@@ -62,7 +62,7 @@ def _svg_dashes(mark: Mark) -> str:
 def _stripe(name: str) -> dict[str, str]:
     """Return a background that repeats a mark's dashes, and a width that holds them whole.
 
-    Half of the first dash goes to the end, so that a single gap stands inside the line.
+    Half of the first dash goes to the end, so that a single gap is inside the line.
     """
     dashes, colour = MARKS[name].dashes, f"var(--{css_name(name)})"
     if not dashes:
@@ -82,7 +82,7 @@ class MarkCases(SphinxPostTransform):
     """Mark each case that is named.
 
     A cell of a table that holds a case's name, and nothing else, gets the line of the plots beside
-    it; in running text the name has the case's colour. The word "baseline" is no such name there.
+    it; in running text the name has the case's colour. The word "baseline" is not coloured there.
     """
 
     default_priority = 400  # outputs of cells have been chosen by then
@@ -100,7 +100,7 @@ class MarkCases(SphinxPostTransform):
 
 
 def _is_running(text: nodes.Text) -> bool:
-    """Whether a text stands in a paragraph or a caption, and is neither code, link nor marked."""
+    """Whether a text is in a paragraph or a caption, and is neither code, link nor marked."""
     parent = text.parent
     while not isinstance(parent, nodes.paragraph | nodes.caption):
         if parent is None or isinstance(parent, OTHER_TEXT):

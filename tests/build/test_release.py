@@ -72,7 +72,7 @@ def test_a_lesson_without_a_lab_is_named(checkout, book):
 def test_a_copy_without_git_is_refused(tmp_path, monkeypatch):
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
     [line] = unclean(tmp_path)
-    assert "is no git checkout" in line
+    assert "is not a git checkout" in line
 
 
 def test_stale_evidence_of_the_minimum_hardware_is_named(checkout, built, book):

@@ -396,7 +396,7 @@ def test_a_folder_that_is_missing_exits_2_with_the_usage(folder):
     for name, folders in (("OLD", ["", folder]), ("NEW", [folder, ""])):
         done = run("--report", "", *folders)
         assert done.returncode == 2
-        assert done.stderr.startswith(f"{name}='' is no folder. Usage: make compare")
+        assert done.stderr.startswith(f"{name}='' is not a folder. Usage: make compare")
 
 
 def test_a_report_that_cannot_be_written_exits_2(folder, no_file):

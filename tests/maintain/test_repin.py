@@ -168,7 +168,7 @@ REFUSALS = {
     "no repository": (
         NEW,
         lambda root: (root / ".git").rename(root.parent / ".git.away"),
-        r"is no git checkout: .* clone the repository",
+        r"is not a git checkout: .* clone the repository",
     ),
     "a linked project": (NEW, lambda root: link(root, "pyproject.toml"), r"^pyproject.* a link, "),
     "a linked lock": (NEW, lambda root: link(root, "requirements.lock"), r"^requirements.* a link"),

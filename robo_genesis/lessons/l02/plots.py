@@ -15,7 +15,7 @@ def height(ax: Axes, trace: BodyTrace, case: Drop) -> Axes:
     """Draw the height of the box's centre at every sample, and its height on the ground."""
     ax.plot(trace.t, trace.link_pos[:, 0, 2], marker=".", label="measured, get_links_pos",
             **look("baseline"))  # fmt: skip
-    ax.axhline(case.size / 2, label="centre of a box that stands on the ground", **look("limit"))
+    ax.axhline(case.size / 2, label="centre of a box on the ground", **look("limit"))
     ax.set_ylim(bottom=0)
     ax.set(xlabel="time [s]", ylabel="height z [m]")
     ax.set_title("Height of the box", loc="left")

@@ -72,8 +72,8 @@ def depths(ax: Axes, studies: Studies) -> Axes:
     h = {name: 1000 * solver_step(name) for name in spec.STEPS_STUDIED}
     points = [(h[name], found) for name in h for found in studies.landings(name)]
     for label, rebounds, marker, size, mark in (
-        ("stays on the surface", False, "o", 4.5, "G1"),
-        ("leaves it again", True, "^", 6, "G2"),
+        ("stays on the surface", False, "o", 4.5, "first"),
+        ("leaves it again", True, "^", 6, "second"),
     ):
         drawn = [(x, 1000 * f.penetration) for x, f in points if (f.rebound > CLEAR) == rebounds]
         x, depth = zip(*drawn, strict=True) if drawn else ((), ())

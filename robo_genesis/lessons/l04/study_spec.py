@@ -24,7 +24,7 @@ PAGE = "lecture"
 COMPARED = {"G1": G1, "G2": G2, "G3": G3}
 
 PARTING_THRESHOLD = SETTLING_BAND
-"""Distance from which a measured position is said to have left the ideal one [rad]."""
+"""A measured position has left the ideal one at this distance [rad]."""
 
 SMALL_STEP = 0.005
 """Height of a step whose demand stays below the effort limit with the gains of G1 and G2 [rad]."""

@@ -53,7 +53,7 @@ class Glance(SphinxDirective):
         return [box]
 
     def figure(self, lesson: str, picture: Picture) -> nodes.Node:
-        """Return a figure; its file stands beside the site until Sphinx copies it."""
+        """Return a figure; its file lies beside the site until Sphinx copies it."""
         anchor = f"glance-{lesson}-{picture.name}"
         file = Path(self.env.app.outdir).parent / "panel" / f"{anchor}{picture.suffix}"
         file.parent.mkdir(parents=True, exist_ok=True)
