@@ -34,8 +34,8 @@ def main() -> int:
     for name, path in (("OLD", args.old), ("NEW", args.new)):
         if not path or not Path(path).is_dir():
             return refused(
-                f"{name}={path!r} is not a folder. Usage: make compare OLD=path NEW=path; a path is "
-                "a bundle's folder, for example book/_build/evidence/l04/cpu."
+                f"{name}={path!r} is not a folder. Usage: make compare OLD=path NEW=path; a path "
+                "is a bundle's folder, for example book/_build/evidence/l04/cpu."
             )
     old, new = Path(args.old), Path(args.new)
     try:

@@ -47,7 +47,7 @@ def unclean(root: Path, reason: str = "A release is built from one commit") -> l
         changed = git(root, "status", "--porcelain", "--untracked-files=all").splitlines()
     except ProjectError as error:
         return [
-            f"{root} is not a git checkout: {error} {reason}: clone the repository, run it there."
+            f"{root} is not a git checkout: {error} {reason}: clone the repository; run it there."
         ]
     if not changed:
         return []

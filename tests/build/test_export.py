@@ -51,7 +51,7 @@ def test_another_page_is_refused_and_the_valid_ones_are_listed(folder, name):
 
 
 def test_a_place_that_cannot_be_written_is_refused_before_the_run(folder, no_file):
-    with pytest.raises(ProjectError, match="is no folder that you may write"):
+    with pytest.raises(ProjectError, match="is not a folder that you may write"):
         export(folder, "broken", no_file)
     with pytest.raises(BuildError, match="TO is not set"):
         export(folder, "broken", None)

@@ -202,7 +202,7 @@ def test_unknown_lessons_and_backends_are_refused_with_the_valid_ones(tmp_path, 
 
 def test_a_place_that_cannot_hold_evidence_is_refused_before_the_run(tmp_path, no_file):
     said: list[str] = []
-    with pytest.raises(ProjectError, match=f"{no_file.parent} is no folder .* TO=folder"):
+    with pytest.raises(ProjectError, match=f"{no_file.parent} is not a folder .* TO=folder"):
         run(tmp_path, lab("cuda"), to=no_file, say=said.append)
     assert said == []
 
