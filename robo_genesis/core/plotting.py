@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from robo_genesis.core.channels import Channel, Level, Runs
 from robo_genesis.core.palette import CASES, MARKS, marks_of
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.trace import Trace
+from robo_genesis.core.trace import BodyTrace, Trace
 
 
 def look(name: str, **more: Any) -> dict[str, Any]:
@@ -132,6 +132,28 @@ def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
     ax.set_xlabel("x [m]")
     ax.set_ylabel("z [m]")
     ax.set_title("Schematic of measured link origins: this is not a camera frame")
+    ax.legend()
+    return ax
+
+
+def body_schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) -> Axes:
+    """Draw a cube in its first and last state as a square seen from the side, x against z [m].
+
+    Args:
+        ax: where to draw.
+        trace: the run.
+        size: edge of the cube [m].
+        floor: height of the surface below it [m].
+    """
+    for label, when, name in (("start", 0, "other"), ("end", -1, "baseline")):
+        x, _, z = trace.link_pos[when, 0]
+        left, right, low, top = (x - size / 2, x + size / 2, z - size / 2, z + size / 2)
+        ax.plot([left, right, right, left, left], [low, low, top, top, low], label=label,
+                **look(name))  # fmt: skip
+    ax.axhline(floor, color="#7a7a7a")
+    ax.set_aspect("equal")
+    ax.set(xlabel="x [m]", ylabel="z [m]")
+    ax.set_title("Schematic of measured positions: this is not a camera frame")
     ax.legend()
     return ax
 

@@ -97,8 +97,7 @@ def test_neither_verification_nor_comparison_loads_the_engine_or_jupyter(folder)
     assert not loaded & {*ENGINE, *JUPYTER}
 
 
-def test_a_broken_book_is_named(command, recorded, monkeypatch, capsys):
+def test_a_broken_book_is_named(command, recorded, monkeypatch):
     monkeypatch.undo()
     monkeypatch.setattr(command, "BOOK", recorded.parents[2])
-    assert command.main() == 1
-    assert "Nothing can be verified: The table of contents" in capsys.readouterr().err
+    assert str(command.main()).startswith("Nothing can be verified: The table of contents")

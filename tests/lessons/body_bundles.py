@@ -5,11 +5,11 @@ from dataclasses import asdict
 
 import numpy as np
 import pytest
-from robo_genesis.evidence.recompute import Reader
 from spoilers import edit, predicate, seal
 
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.reader import Reader
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.registry import find_lesson

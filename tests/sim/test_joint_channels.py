@@ -90,7 +90,7 @@ def test_the_table_holds_every_sample_and_starts_before_the_first_step(runs, tra
 
 def test_what_moves_is_said_from_the_record(runs, traces):
     assert runs.moves["G2"].startswith("**G2**: `joint4` starts at −2.0000 rad")
-    assert "told to go to −1.7500 rad" in runs.moves["G2"]
+    assert "gets the target −1.7500 rad" in runs.moves["G2"]
     far = 100 * (traces["G2"].link_pos[:, 2, 0]).max()
     assert f"The link `hand` moves farthest, by up to {far:.1f} cm." in runs.moves["G2"]
 

@@ -3,8 +3,6 @@
 import pytest
 from built_site import PAGES
 
-from robo_genesis.evidence.status import STATES
-
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 VIEWS = {"light": (1280, "light"), "dark": (1280, "dark"), "phone": (320, "light")}
@@ -45,6 +43,7 @@ def test_folded_log_opens_by_keyboard(browser, address):
     page.close()
 
 
+STATES = ("verified", "inconclusive", "missing", "stale", "failed", "refused")
 CONTRAST = """() => {
   const light = text => text.match(/[\\d.]+/g).slice(0, 3)
     .map(v => v / 255).map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)

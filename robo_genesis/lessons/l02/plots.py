@@ -70,25 +70,3 @@ def gaps(ax: Axes, study: StepStudy) -> Axes:
     ax.minorticks_off()
     ax.legend(fontsize="small", loc="upper left")
     return ax
-
-
-def schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) -> Axes:
-    """Draw the box in its first and last state as a square seen from the side, x against z [m].
-
-    Args:
-        ax: where to draw.
-        trace: the run.
-        size: edge of the box [m].
-        floor: height of the surface below it [m].
-    """
-    for label, when, name in (("start", 0, "other"), ("end", -1, "baseline")):
-        x, _, z = trace.link_pos[when, 0]
-        left, right, low, top = (x - size / 2, x + size / 2, z - size / 2, z + size / 2)
-        ax.plot([left, right, right, left, left], [low, low, top, top, low], label=label,
-                **look(name))  # fmt: skip
-    ax.axhline(floor, color="#7a7a7a")
-    ax.set_aspect("equal")
-    ax.set(xlabel="x [m]", ylabel="z [m]")
-    ax.set_title("Schematic of measured positions: this is not a camera frame")
-    ax.legend()
-    return ax

@@ -19,5 +19,5 @@ def names(folder: Path) -> dict[str, Any]:
         "traces": traces,
         "case": spec.BASELINE,
         "trace": traces["baseline"],
-        "study": study.study(measure(traces, cases), cases),
+        "step_study": study.step_study(measure(traces, cases), cases),
     }

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from robo_genesis.core import tables
+from robo_genesis.core import plotting, tables
 from robo_genesis.core.checks import require
 from robo_genesis.core.free_fall import (
     ahead_of_continuous,
@@ -268,7 +268,7 @@ def test_figures_show_what_they_are_given(experiment):
     plots.speed(axes[1], trace, case)
     plots.three_drops(axes[2], trace, case, predicted(trace, case))
     plots.gaps(axes[3], study.step_study(experiment.metrics, ALL_CASES))
-    plots.schematic(axes[4], trace, case.size)
+    plotting.body_schematic(axes[4], trace, case.size)
     assert axes[0].get_lines()[0].get_ydata() == pytest.approx(trace.link_pos[:, 0, 2])
     assert axes[1].get_lines()[1].get_ydata()[-1] == pytest.approx(9.81 * 0.2)
     measured = axes[2].get_lines()[2].get_ydata()

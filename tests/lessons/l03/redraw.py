@@ -19,4 +19,4 @@ def names(folder: Path) -> dict[str, Any]:
             "bounced": measure(traces, spec.BOUNCES),
         }
     seconds = {name: metric.value for name, metric in numbers["time_constant"].items()}
-    return found | {"study": study.Studies(traces, measure(traces, spec.STUDY_CASES), seconds)}
+    return found | {"studies": study.Studies(traces, measure(traces, spec.STUDY_CASES), seconds)}

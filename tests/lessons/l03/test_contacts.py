@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 from robo_genesis.core.checks import require
 from robo_genesis.core.trace import ContactTrace, TraceError
 from robo_genesis.evidence.trace_files import CONTACT_FIELDS
-from robo_genesis.lessons.l02.plots import schematic
 from robo_genesis.lessons.l03 import checks, energy, friction, plots, spec, text
 from robo_genesis.lessons.l03 import study as l03_study
 from robo_genesis.lessons.l03 import tables as l03_tables
@@ -459,7 +458,7 @@ def test_figures_are_drawn_with_labelled_axes(experiment, study):
     plots.stopping(one, {"low_on_050": None}, {"low_on_050": 0.4})
     assert len(one.patches) == 0  # a cube that did not stop has no bar
     plots.kept(Figure().subplots(), {0.01: 90.0, 0.001: None}, 94)
-    schematic(Figure().subplots(), experiment.traces["baseline"], 0.08, contacts.TOP)
+    plotting.body_schematic(Figure().subplots(), experiment.traces["baseline"], 0.08, contacts.TOP)
 
 
 # Studies

@@ -3,9 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.evidence.recompute import Reader
-
 from robo_genesis.evidence import bundle
+from robo_genesis.evidence.reader import Reader
 from robo_genesis.evidence.trace_files import read_joints, read_trace
 from robo_genesis.lessons.l04 import recompute, spec
 

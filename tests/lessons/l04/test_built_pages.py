@@ -8,7 +8,7 @@ from bs4 import BeautifulSoup
 
 from robo_genesis.core import project
 from robo_genesis.evidence import bundle
-from robo_genesis.sim.diagnosis import LINKS
+from robo_genesis.sim.diagnosis import STEPS
 
 pytestmark = pytest.mark.engine
 FOLDER = "lessons/l04-joint-control"
@@ -71,10 +71,10 @@ def test_the_doctor_s_own_output_stands_on_the_page(lecture):
     blocks = [block.get_text() for block in lecture.select("div.cell_output pre")]
     (found,) = (text for text in blocks if "DOCTOR:" in text)
     lines = found.strip().splitlines()
-    assert lines[-1] == f"DOCTOR: all {len(LINKS)} links hold"
+    assert lines[-1] == f"DOCTOR: all {len(STEPS)} steps pass"
     assert f"genesis-world {project.engine_pin()}, as pinned" in lines[0]
     assert [line.split()[1:3] for line in lines if line[:2].strip().isdigit()] == [
-        [link.__name__, "ok"] for link in LINKS
+        [step.__name__, "ok"] for step in STEPS
     ]
     assert max(map(len, lines)) <= 80
 
