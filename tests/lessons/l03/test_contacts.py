@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from robo_genesis.core import plotting
 from robo_genesis.core.checks import require
 from robo_genesis.core.trace import ContactTrace, TraceError
 from robo_genesis.evidence.trace_files import CONTACT_FIELDS
