@@ -70,17 +70,22 @@ def without_a_check(folder):
     edit(folder, "manifest.json", lambda manifest: manifest["predicate"]["checks"].pop())
 
 
-@pytest.mark.parametrize(
-    ("spoil", "code", "named"),
-    [
-        (without_a_run, "cases", "G2_substeps_10"),
-        (with_value("G2_substeps_10", "overshoot", 1.1), "metrics", "G2_substeps_10.overshoot"),
-        (without_a_reading, "metrics", "inertia_MuJoCo"),
-        (with_value("readings", "gravity_G2", 1.5), "checks", "gravity_support"),
-        (without_a_check, "checks", ""),
-    ],
-)
-def test_a_spoiled_one_is_refused_by_its_code(studied, spoil, code, named):
+SPOILED = {
+    "a study run is missing": (without_a_run, "cases", "G2_substeps_10"),
+    "a study metric was changed": (
+        with_value("G2_substeps_10", "overshoot", 1.1), "metrics", "G2_substeps_10.overshoot",
+    ),
+    "a reading is missing": (without_a_reading, "metrics", "inertia_MuJoCo"),
+    "a reading contradicts the runs": (
+        with_value("readings", "gravity_G2", 1.5), "checks", "gravity_support",
+    ),
+    "a check of the studies is missing": (without_a_check, "checks", ""),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("how", SPOILED)
+def test_a_spoiled_one_is_refused_by_its_code(studied, how):
+    spoil, code, named = SPOILED[how]
     spoil(studied)
     seal(studied)
     with pytest.raises(BundleRefused, match=rf"^{code}: .*{named}"):
