@@ -1,6 +1,7 @@
 # `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
-# PORT=8000, BUNDLE=path (for verify), GENESIS=version (for repin), SITE_URL=address and
-# EXECUTED=folder (for book), PAGE=page and TO=folder (for execute),
+# PORT=8000, BUNDLE=path (verify), GENESIS=version (repin), SITE_URL=address and EXECUTED=folder
+# (book), PAGE=page and TO=folder (execute), LESSON=name, BACKEND=name and TO=folder (evidence),
+# OLD=path, NEW=path and REPORT=folder (compare), NEW=name (lesson), ROWS=names and RUNS=n (bench),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
 
 SHELL := /bin/bash

@@ -123,7 +123,9 @@ def site(html: Path) -> Record:
 
 def sentences(article: Tag) -> list[str]:
     """Return an article's masked text by sentences, rows of tables and lines of code."""
-    for unread in article.select("script, style, .headerlink, .page-history li"):
+    for unread in article.select(
+        "script, style, .headerlink, .page-history li, #time-of-each-page table"
+    ):
         unread.decompose()
     for picture in article.select("img[alt]"):
         picture.replace_with(f" [{picture['alt']}] ")

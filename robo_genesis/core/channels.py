@@ -85,7 +85,7 @@ class Runs:
         if not self.traces or not self.channels:
             raise ValueError(
                 f"{len(self.traces)} runs and {len(self.channels)} channels given; pictures and "
-                "replays take at least one of each. Name them in robo_genesis/lessons/registry.py."
+                "replays take at least one of each. Correct the lesson's declaration."
             )
         grids = {case: (trace.steps, trace.dt) for case, trace in self.traces.items()}
         if any(not np.array_equal(trace.t, self.t) for trace in self.traces.values()):

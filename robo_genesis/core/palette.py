@@ -53,8 +53,8 @@ def marks_of(cases: Sequence[str]) -> dict[str, str]:
     """
     if len(cases) > len(CASE_CLASSES):
         raise ValueError(
-            f"{', '.join(cases)} are {len(cases)} cases; the palette tells {len(CASE_CLASSES)} "
-            "apart. Draw fewer cases in one plot, or add marks to CASE_CLASSES in this module."
+            f"{', '.join(cases)} are {len(cases)} cases; the palette has {len(CASE_CLASSES)} "
+            "marks. Draw fewer cases in one plot, or add marks to CASE_CLASSES in this module."
         )
     own = {case: CASES[case] for case in cases if case in CASES}
     baseline, *coloured = CASE_CLASSES

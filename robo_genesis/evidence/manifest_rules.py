@@ -78,7 +78,7 @@ def check_backend(folder: Path, manifest: Manifest) -> None:
         expect("backend", MANIFEST, "actual where cpu was requested", backend.actual, "cpu")
     archs, device = AGREEMENT[backend.actual]
     if backend.arch not in archs:
-        expect("torch", MANIFEST, "backend.arch", backend.arch, " or ".join(archs), TORCH)
+        expect("torch", MANIFEST, "backend.arch", backend.arch, archs, TORCH)
     expect("torch", MANIFEST, "backend.torch_device", backend.torch_device, device, TORCH)
     builds = (bool(backend.hip_version), bool(backend.cuda_version))
     needed = {"amdgpu": (True, False), "cuda": (False, True)}.get(backend.actual, builds)

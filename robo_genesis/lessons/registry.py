@@ -7,8 +7,16 @@ from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, Measuring
 
 
 def _discovered() -> dict[str, Lesson]:
-    folders = sorted(path.parent.name for path in Path(__file__).parent.glob("*/__init__.py"))
-    return {name: import_module(f"{__package__}.{name}").LESSON for name in folders}
+    found = {}
+    for init in sorted(Path(__file__).parent.glob("*/__init__.py")):
+        lesson = getattr(import_module(f"{__package__}.{init.parent.name}"), "LESSON", None)
+        if not isinstance(lesson, Lesson):
+            raise TypeError(
+                f"{init} declares LESSON as {lesson!r}. Each folder of a lesson declares one: "
+                "LESSON = Lesson(spec=..., metrics=..., pages=..., recompute=..., filmed=...)."
+            )
+        found[init.parent.name] = lesson
+    return found
 
 
 LESSONS: dict[str, Lesson] = _discovered()

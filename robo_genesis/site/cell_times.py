@@ -43,7 +43,7 @@ def cell_seconds(page: Page) -> list[float]:
     except KeyError:
         raise LookupError(f"{page.docname} is not executed. Build with `make book`.") from None
     seconds = list(executed.metadata.get("robo_genesis", {}).get("cell_seconds", []))
-    cells = sum(cell.cell_type == "code" for cell in executed.cells)
+    cells = sum(cell.cell_type == "code" and bool(cell.source.strip()) for cell in executed.cells)
     if not cells or len(seconds) != cells:
         raise LookupError(
             f"{page.docname} has {cells} code cells and {len(seconds)} recorded times. A page "

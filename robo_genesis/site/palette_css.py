@@ -20,7 +20,8 @@ STROKE = 2
 """Width of the SVG lines that the dashes are meant for, in their own units."""
 LINE, LENGTH = 0.12, 1.9
 """Width of the line beside a case's name, and about its length, in letter heights."""
-NAME = re.compile(rf"\b({'|'.join(name for name in CASES if name != 'baseline')})\b")
+NAME = re.compile(rf"\b({'|'.join(map(re.escape, sorted({*CASES} - {'baseline'}))) or '(?!)'})\b")
+"""A case's name in prose; without named cases it matches nothing."""
 OTHER_TEXT = (nodes.literal, nodes.literal_block, nodes.math, nodes.raw, nodes.reference)
 
 

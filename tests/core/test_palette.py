@@ -54,7 +54,7 @@ def test_each_case_drawn_with_others_has_a_mark_of_its_own():
 
 
 def test_more_cases_than_marks_are_refused():
-    with pytest.raises(ValueError, match=r"a, b, c, d, e are 5 cases; the palette tells 4 apart"):
+    with pytest.raises(ValueError, match=r"a, b, c, d, e are 5 cases; the palette has 4 marks"):
         marks_of("abcde")
 
 

@@ -432,6 +432,8 @@ SPOILED = {
     "cuda without CUDA": ("torch", "torch", both(on("cuda"), part("backend", cuda_version=None))),
     "Torch forced to the CPU": ("torch", "torch", both(on("amdgpu"), part(
         "backend", torch_device="cpu"))),
+    "an architecture that spells the valid ones": ("torch", "torch", part(
+        "backend", arch="x64 or arm64")),
     "Torch forced to the CPU by a switch": ("torch", "torch", predicate(
         environment={"GS_TORCH_FORCE_CPU_DEVICE": "1"})),
     "an architecture forced by a switch": ("torch", "torch", both(on("amdgpu"), predicate(

@@ -1,5 +1,7 @@
 """The list of lessons: each entry is complete, and its pages are the book's."""
 
+import ast
+
 import pytest
 
 from robo_genesis.core.orderings import HELD_BY
@@ -33,6 +35,17 @@ def test_modules_cases_and_metrics_of_a_lesson_exist(name):
         assert margin > lesson.spec.RESOLUTION[units.pop()]
         assert not units
     assert {*lesson.about_metrics("unit").values()} - {"1"} <= lesson.spec.TOLERANCES.keys()
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_specification_is_data(name):
+    """Apart from its parameters, a lesson's spec has at most helpers that build its constants."""
+    tree = ast.parse((ROOT / "robo_genesis" / "lessons" / name / "spec.py").read_text("utf8"))
+    calls = (n.func for n in ast.walk(tree) if isinstance(n, ast.Call))
+    called = {func.id for func in calls if isinstance(func, ast.Name)}
+    for function in (n.name for n in tree.body if isinstance(n, ast.FunctionDef)):
+        assert function.endswith("parameters") or function in called
+    assert not any(isinstance(node, ast.ClassDef) for node in tree.body)
 
 
 def test_a_lookup_error_lists_the_choices():

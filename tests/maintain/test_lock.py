@@ -47,6 +47,9 @@ def test_the_lock_is_what_is_needed_of_what_is_installed():
     found = lock.needed(installed | {"robo-genesis": {"requires_dist": direct}})
     versions = {name: installed[name]["version"].split("+")[0] for name in found}
     assert versions == LOCKED
+    asked = [Requirement(line) for line in direct]
+    here = {canonicalize_name(r.name) for r in asked if not r.marker or r.marker.evaluate()}
+    assert here <= LOCKED.keys()
 
 
 def test_the_lock_is_written_whole_and_torch_stays(tmp_path, monkeypatch):

@@ -14,7 +14,10 @@ from robo_genesis.lessons.book_pages import find_pages
 
 def built(folder, *executed, **seconds):
     """Render a book whose pages were executed with these seconds of their cells; return a table."""
-    page, other = notebook(cell("1"), cell("2"), cell("3")), notebook(cell("4"), title="Other")
+    page, other = (
+        notebook(cell("1"), cell("2"), cell(""), cell("3")),
+        notebook(cell("4"), title="Other"),
+    )
     book = make_book(folder, page=page, other=other, times="# Times\n\n```{cell-times}\n```\n")
     cache = PageCache(notebooks_folder(folder / "cache"))
     for found in find_pages(book):

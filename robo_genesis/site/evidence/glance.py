@@ -38,7 +38,7 @@ class Glance(SphinxDirective):
         compared = compared_cases(lesson)
         if compared is None:
             raise self.error(
-                f"glance: {lesson} compares no cases; see robo_genesis/lessons/registry.py."
+                f"glance: {lesson} compares no cases. Declare `compared` in its LESSON."
             )
         status = page_state(outputs_folder(), lesson, RECORDED_PAGE, book)
         if status.manifest is None:
