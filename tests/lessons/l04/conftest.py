@@ -1,15 +1,23 @@
 """The studies of L04 without Genesis."""
 
+import io
+import sys
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
+import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
+from robo_genesis.core import plotting
 from robo_genesis.core.scene import Q_START
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l04 import plots, study_spec
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.lessons.l04 import study as studies
-from robo_genesis.lessons.l04 import study_spec
 from robo_genesis.sim import mujoco_joints
+from robo_genesis.sim.joints import JointMap
 
 LINKS = ("link0", "link4", "hand")
 
@@ -43,3 +51,19 @@ def study_runs(joints) -> studies.Studies:
             for name, case in l04.CASES.items()
         },
     )
+
+
+@pytest.fixture
+def draw_svg(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., bytes]]:
+    """Draw the response of joint4 in the course's style, as the bytes of an SVG file."""
+    monkeypatch.setitem(sys.modules, "matplotlib_inline.backend_inline", None)
+
+    def draw(traces: dict[str, Trace], joints: JointMap) -> bytes:
+        figure, stream = Figure(), io.BytesIO()
+        plots.response(figure.subplots(3, 1), traces, joints, l04.STEPPED_JOINT)
+        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+        return stream.getvalue()
+
+    with mpl.rc_context():
+        plotting.use_course_style()
+        yield draw
