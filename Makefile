@@ -59,13 +59,20 @@ evidence: $(ENVIRONMENT) ## record a lab here (LESSON=l04 BACKEND=amdgpu|cuda|cp
 verify: $(ENVIRONMENT) ## verify recorded and built evidence (BUNDLE=path: one folder)
 	@"$(PY)" build_scripts/verify.py
 
-.PHONY: test
-test: $(ENVIRONMENT) ## run all tests (needs Debian's chromium)
-	@"$(PY)" -m pytest
+# The site is built first, because the tests of the engine hold the lock of builds.
+TESTS = "$(PY)" build_scripts/book.py && "$(PY)" -m pytest --numprocesses 2 --dist loadscope --no-loadscope-reorder
 
-.PHONY: test-lessons
-test-lessons: $(ENVIRONMENT) ## remove a lesson and add one in copies of the checkout (half an hour)
-	@"$(PY)" -m pytest -m slow tests/maintain/test_lesson_folders.py
+.PHONY: test
+test: export RENDER = 1
+test: export SITE_URL =
+test: $(ENVIRONMENT) ## build the site, and run the tests (needs Debian's chromium)
+	@$(TESTS)
+
+.PHONY: test-all
+test-all: export RENDER = 1
+test-all: export SITE_URL =
+test-all: $(ENVIRONMENT) ## run the slow tests too: empty environments, a changed pin (network; hours)
+	@$(TESTS) --slow
 
 # codespell looks up what its expression finds: here the entries of our list, phrases included. It
 # leaves out names of files and attributes, "there is no", "is no longer" and "stand still".
@@ -114,10 +121,6 @@ lock: $(ENVIRONMENT) ## resolve requirements.lock again from pyproject.toml
 repin: $(ENVIRONMENT) ## try another engine version, then change pin and lock (GENESIS=version)
 	@"$(PY)" build_scripts/repin.py
 
-.PHONY: test-repin
-test-repin: $(ENVIRONMENT) ## change the pin there and back in a clone (network; an hour)
-	@"$(PY)" -m pytest -m repin tests/maintain/test_repin_round_trip.py
-
 # ROWS and RUNS reach the script as environment variables.
 .PHONY: bench
 bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=names RUNS=n; a quiet machine)
@@ -126,7 +129,7 @@ bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=
 .PHONY: has-packages
 has-packages:
 	@"$(PY)" -c 'import sys; from importlib.util import find_spec; \
-	  needed = "genesis jupyter_book pytest ruff mypy importlinter codespell_lib check_jsonschema".split(); \
+	  needed = "genesis jupyter_book pytest xdist ruff mypy importlinter codespell_lib check_jsonschema".split(); \
 	  missing = [name for name in needed if find_spec(name) is None]; \
 	  sys.exit("PYTHON=%s lacks %s. Install the lock there: pip install -r requirements.lock" \
 	  % (sys.argv[1], ", ".join(missing)) if missing else 0)' "$(PY)"

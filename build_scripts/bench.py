@@ -42,7 +42,7 @@ myst_enable_extensions = {}
 NBCLIENT = "import nbclient, nbformat, sys; nbclient.execute(nbformat.read(sys.argv[1], 4))"
 
 
-class BenchError(Exception):
+class BenchError(project.ProjectError):
     """A command failed or did other work than intended; the message says which and why."""
 
 
@@ -176,4 +176,4 @@ def measure() -> list[str]:
 
 
 if __name__ == "__main__":
-    sys.exit(run(measure, "measured", (BenchError, project.ProjectError)))
+    sys.exit(run(measure, "measured"))

@@ -14,7 +14,7 @@ import sys
 
 from robo_genesis.build.command import choice, collect_rarely, parser, path, run, set_contract
 from robo_genesis.build.up_to_date import nothing_changed
-from robo_genesis.core.project import PUBLISHED, ROOT, ProjectError
+from robo_genesis.core.project import PUBLISHED, ROOT
 
 
 def main() -> int:
@@ -32,26 +32,17 @@ def main() -> int:
         )
     if jobs is not None and not (jobs.isdecimal() and int(jobs) > 0):
         sys.exit(f"JOBS={jobs!r} is not valid. Give the number of pages that run at once, from 1.")
-    book = args.book.absolute()
-    if not (release or executed) and (lines := nothing_changed(ROOT, book, book / PUBLISHED)):
+    published = args.book / PUBLISHED
+    if not (release or executed) and (lines := nothing_changed(ROOT, args.book, published)):
         print("\n".join(lines))
         return 0
     # Sphinx's and Jupyter's packages are loaded only now.
-    from robo_genesis.build.page_artifacts import ArtifactError
-    from robo_genesis.build.render import RenderError
-    from robo_genesis.build.stages import Build, BuildError, run_build
+    from robo_genesis.build.stages import Build, run_build
 
     collect_rarely()
-    build = Build(
-        book=book,
-        cache=args.cache.absolute(),
-        timeout=args.timeout,
-        jobs=int(jobs) if jobs else None,
-        release=release,
-        executed=executed,
-    )
-    failures = (BuildError, ArtifactError, ProjectError, RenderError)
-    return run(lambda: run_build(build), "published", failures)
+    parallel = int(jobs) if jobs else None
+    build = Build(**vars(args), jobs=parallel, release=release, executed=executed)
+    return run(lambda: run_build(build), "published")
 
 
 if __name__ == "__main__":

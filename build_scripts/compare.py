@@ -12,7 +12,7 @@ from pathlib import Path
 from robo_genesis.core.project import CACHE
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.evidence.compare import compare, specification_of
+from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE
 
 STATUS = {DIFFERS: 1, INCONCLUSIVE: 1, NOT_COMPARABLE: 2}
@@ -39,8 +39,7 @@ def main() -> int:
             )
     old, new = Path(args.old), Path(args.new)
     try:
-        spec = specification_of(new)
-        comparison = compare(old, new, spec)
+        comparison = compare(old, new)
     except BundleRefused as refusal:
         return refused(f"Refused: {refusal}")
     runs = [predicate.run_id[:8] for predicate in (comparison.old, comparison.new)]

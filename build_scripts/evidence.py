@@ -9,9 +9,7 @@ import os
 import sys
 
 from robo_genesis.build.command import choice, parser, path, run
-from robo_genesis.build.recording import Recording, RecordingError, record
-from robo_genesis.build.stages import BuildError
-from robo_genesis.core.project import ProjectError
+from robo_genesis.build.recording import Recording, record
 
 if __name__ == "__main__":
     args = parser(__doc__).parse_args()
@@ -21,9 +19,6 @@ if __name__ == "__main__":
         lesson=os.environ.get("LESSON") or "",
         expected=os.environ.get("BACKEND") or None,
         to=path("TO"),
-        book=args.book.absolute(),
-        cache=args.cache.absolute(),
-        timeout=args.timeout,
+        **vars(args),
     )
-    failures = (RecordingError, BuildError, ProjectError)
-    sys.exit(run(lambda: record(recording), "recorded", failures))
+    sys.exit(run(lambda: record(recording), "recorded"))

@@ -11,9 +11,7 @@ import os
 import sys
 
 from robo_genesis.build.command import parser, path, run, set_contract
-from robo_genesis.build.page_artifacts import ArtifactError
-from robo_genesis.build.stages import Build, BuildError, export_one
-from robo_genesis.core.project import ProjectError
+from robo_genesis.build.stages import Build, export_one
 from robo_genesis.lessons.book_pages import find_pages
 
 
@@ -22,20 +20,12 @@ def main() -> int:
     arguments = parser(__doc__)
     arguments.add_argument("--list", action="store_true", help="print the pages and execute none")
     args = arguments.parse_args()
-    failures = (BuildError, ArtifactError, ProjectError)
     if args.list:
-        return run(
-            lambda: [json.dumps([p.docname for p in find_pages(args.book)])], "listed", failures
-        )
+        return run(lambda: [json.dumps([p.docname for p in find_pages(args.book)])], "listed")
     set_contract()
-    build = Build(
-        book=args.book.absolute(),
-        cache=args.cache.absolute(),
-        timeout=args.timeout,
-        command="make execute",
-    )
+    build = Build(book=args.book, cache=args.cache, timeout=args.timeout, command="make execute")
     name, to = os.environ.get("PAGE") or "", path("TO")
-    return run(lambda: export_one(name, to, build), "exported", failures)
+    return run(lambda: export_one(name, to, build), "exported")
 
 
 if __name__ == "__main__":

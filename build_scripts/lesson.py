@@ -8,13 +8,7 @@ import sys
 
 from robo_genesis.build.command import run
 from robo_genesis.core.project import ROOT
-from robo_genesis.maintain.new_lesson import LessonError, add_lesson
-
-
-def main() -> int:
-    """Add the lesson and return the exit status."""
-    return run(lambda: add_lesson(ROOT, os.environ.get("NEW", "")), "added", (LessonError,))
-
+from robo_genesis.maintain.new_lesson import add_lesson
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(lambda: add_lesson(ROOT, os.environ.get("NEW", "")), "added"))

@@ -8,7 +8,6 @@ import argparse
 import sys
 
 from robo_genesis.build.command import run
-from robo_genesis.core.project import ProjectError
 from robo_genesis.maintain.lock import write_lock
 
 if __name__ == "__main__":
@@ -16,4 +15,4 @@ if __name__ == "__main__":
     parser.add_argument("--keep", action="store_true", help="keep installed versions that fit")
     parser.add_argument("constraints", nargs="*", metavar="NAME==VERSION")
     args = parser.parse_args()
-    sys.exit(run(lambda: [write_lock(args.constraints, args.keep)], "written", (ProjectError,)))
+    sys.exit(run(lambda: [write_lock(args.constraints, args.keep)], "written"))

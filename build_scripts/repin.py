@@ -9,11 +9,8 @@ import os
 import sys
 
 from robo_genesis.build.command import run
-from robo_genesis.core.project import ProjectError
-from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.maintain.pin import RepinError
 from robo_genesis.maintain.repin import Repin, run_repin
 
 if __name__ == "__main__":
     request = Repin(os.environ.get("GENESIS", ""))
-    sys.exit(run(lambda: run_repin(request), "changed", (RepinError, ProjectError, BundleRefused)))
+    sys.exit(run(lambda: run_repin(request), "changed"))

@@ -16,12 +16,13 @@ import sys
 import tempfile
 import textwrap
 from collections.abc import Sequence
+from dataclasses import asdict
 
 from robo_genesis.core import project
 from robo_genesis.sim.diagnosis import STEPS, Bench, Finding, examine, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
-REPORT_FORMAT = 1
+REPORT_FORMAT = 2
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 
 
@@ -31,11 +32,8 @@ def table(findings: Sequence[Finding]) -> str:
     lines = []
     for number, f in enumerate(findings, start=1):
         head = f"{number:2}  {f.step:{indent - 15}}  {f.state:7}  "
-        lines.append(
-            textwrap.fill(f.found, WIDTH, initial_indent=head, subsequent_indent=" " * indent)
-            if f.found
-            else head.rstrip()
-        )
+        found = textwrap.fill(f.found, WIDTH, initial_indent=head, subsequent_indent=" " * indent)
+        lines.append(found or head.rstrip())
     return "\n".join([*lines, "", verdict(findings)])
 
 
@@ -55,7 +53,7 @@ def report(findings: Sequence[Finding], bench: Bench) -> str:
         "format": REPORT_FORMAT,
         "ok": all(f.state == "ok" for f in findings),
         "broken": next((f.step for f in findings if f.state == "broken"), None),
-        "links": [{"link": f.step, "state": f.state, "found": f.found} for f in findings],
+        "steps": [asdict(f) for f in findings],
         "versions": {"python": platform.python_version()}
         | {name: project.installed_version(name) for name in PACKAGES},
         "platform": {
@@ -81,9 +79,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     print(f"{len(STEPS)} steps; the first start of the engine takes minutes", file=sys.stderr)
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
-        bench = Bench(
-            {"ROBO_GENESIS_OUTPUTS_DIR": folder} | os.environ
-        )  # by default `outputs` in the working directory
+        # Without it, the outputs would go to the working directory.
+        bench = Bench({"ROBO_GENESIS_OUTPUTS_DIR": folder} | os.environ)
         findings = examine(bench)
     print(report(findings, bench) if options.json else table(findings))
     return 0 if all(f.state == "ok" for f in findings) else 1

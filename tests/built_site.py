@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -11,7 +12,8 @@ from threading import Thread
 from typing import TYPE_CHECKING
 
 import pytest
-from browsers import chromium
+from browsers import launched
+from bs4 import BeautifulSoup
 
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons.book_pages import docnames
@@ -34,6 +36,11 @@ MEASURING_PAGES = [(name, page) for name, lesson in LESSONS.items() for page in 
 """Lesson and page of each page that leaves a bundle."""
 
 
+OUTSIDE = dict(os.environ)
+"""The environment of the tests. The engine sets switches when a test imports it, and a build with
+other switches would execute every page again."""
+
+
 class QuietHandler(SimpleHTTPRequestHandler):
     def log_message(self, *args) -> None:
         pass
@@ -42,7 +49,7 @@ class QuietHandler(SimpleHTTPRequestHandler):
 @pytest.fixture(scope="session")
 def build_output() -> str:
     command = [sys.executable, str(ROOT / "build_scripts" / "book.py")]
-    environment = os.environ | {"RENDER": "1", "SITE_URL": "", "PYTHONPATH": str(ROOT)}
+    environment = OUTSIDE | {"RENDER": "1", "SITE_URL": "", "PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
@@ -53,19 +60,27 @@ def site(build_output) -> Path:
     return BOOK / "_build" / "html"
 
 
-@pytest.fixture(scope="session")
-def address(site) -> Iterator[str]:
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(QuietHandler, directory=str(site)))
+def parsed(site: Path, name: str) -> BeautifulSoup:
+    """Return a page of the site."""
+    return BeautifulSoup((site / f"{name}.html").read_text(), "html.parser")
+
+
+@contextmanager
+def served(site: Path, handler: type[QuietHandler] = QuietHandler) -> Iterator[str]:
+    """Serve the site in a thread; the value is its address."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(handler, directory=str(site)))
     Thread(target=server.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{server.server_port}"
     server.shutdown()
 
 
+@pytest.fixture(scope="session")
+def address(site) -> Iterator[str]:
+    with served(site) as address:
+        yield address
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator["Browser"]:
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium(), args=["--no-sandbox"])
+    with launched() as browser:
         yield browser
-        browser.close()

@@ -10,14 +10,14 @@ from robo_genesis.core import project
 from robo_genesis.evidence import evidence_key
 from robo_genesis.evidence import recorder as record
 from robo_genesis.evidence.evidence_key import page_digest
-from robo_genesis.evidence.recorder import Measured, Recorder
+from robo_genesis.evidence.recorder import Recorder
+from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.lessons.l04.checks import run_checks
-from robo_genesis.lessons.l04.metrics import metric_records
-from robo_genesis.sim import session
+from robo_genesis.sim import camera, session
 
 QUADRANTS = evidence_key.locked_version("quadrants", project.ROOT)
 RUN_ID = "0123456789abcdef" * 2
+RENDERER = camera.Renderer("Mesa", "llvmpipe")
 LOG = (
     ("INFO", "Running on [a CPU] with backend gs.cpu. Device memory: 23.54 GB."),
     ("INFO", f"🚀 Genesis initialized. 🔖 version: {project.engine_pin()}, 🌱 seed: 0, "
@@ -37,20 +37,6 @@ def engine(backend):
     log = session.EngineLog()
     log.lines += LOG
     return session.Engine(project.engine_pin(), QUADRANTS, "32", 0, backend, log)
-
-
-@pytest.fixture(scope="session")
-def measured(experiment):
-    return Measured(
-        joints=experiment.joints,
-        links=("link0", "link4", "hand"),
-        traces=experiment.traces,
-        metrics=metric_records(experiment.metrics, experiment.model),
-        checks=run_checks(experiment),
-        frames=experiment.frames,
-        parameters=l04.parameters(),
-        renderer=session.Renderer("Mesa", "llvmpipe"),
-    )
 
 
 @contextmanager
@@ -81,15 +67,15 @@ def recorder_of(patch, engine, outputs: Path, lesson: str, page: str) -> Recorde
     return Recorder(lesson, page, session.Contract("cpu", True, outputs), engine)
 
 
-def written(engine, outputs: Path, lesson: str, page: str, measured: Measured) -> Path:
+def written(engine, outputs: Path, lesson: str, page: str, experiment: Experiment) -> Path:
     """Write the bundle of a page below a folder without a real engine, and return its folder."""
     with without_engine(engine.backend) as patch:
-        return recorder_of(patch, engine, outputs, lesson, page).write(measured)
+        return recorder_of(patch, engine, outputs, lesson, page).write(experiment, RENDERER)
 
 
 @pytest.fixture(scope="session")
-def pristine(tmp_path_factory, engine, measured) -> Path:
-    return written(engine, tmp_path_factory.mktemp("pristine"), "l04", "lab", measured)
+def pristine(tmp_path_factory, engine, experiment) -> Path:
+    return written(engine, tmp_path_factory.mktemp("pristine"), "l04", "lab", experiment)
 
 
 @pytest.fixture
@@ -104,3 +90,10 @@ def courses_pages(monkeypatch):
     monkeypatch.setattr(
         evidence_key, "page_digest", lambda le, p, book: page_digest(le, p, project.BOOK)
     )
+
+
+@pytest.fixture
+def undecided(monkeypatch):
+    """Give the orderings that L04 claims margins so wide that no bundle shows them."""
+    wide = tuple((pair, metric, order, 1e6) for pair, metric, order, _ in l04.RELATIONS)
+    monkeypatch.setattr(l04, "RELATIONS", wide)

@@ -1,16 +1,15 @@
 """Copies of the checkout, for tests that change its files."""
 
-import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+from tiny_book import SETTINGS
+
+from robo_genesis.build.worktree import environment
 from robo_genesis.core.git import git
 from robo_genesis.core.project import ROOT
-
-OUTER = ("PYTHONPATH", "MAKEFLAGS", "MFLAGS", "MAKELEVEL", "RELEASE", "EXECUTED", "RENDER", "JOBS")
-"""Variables of the command that runs the tests; a command in a copy must not see them."""
 
 
 def copy_checkout(work: Path) -> Path:
@@ -24,12 +23,11 @@ def copy_checkout(work: Path) -> Path:
 
 
 def run_in(work: Path, *command: str, fails: bool = False) -> str:
-    """Run a command in a copy and return its output; `python` is this interpreter."""
-    given = {name: value for name, value in os.environ.items() if name not in OUTER}
+    """Run a command in a copy, with no setting of an outer make; `python` is this interpreter."""
     done = subprocess.run(
         [sys.executable if word == "python" else word for word in command],
         cwd=work,
-        env=given | {"PYTHONPATH": str(work), "PYTHONDONTWRITEBYTECODE": "1"},
+        env=environment(work, *SETTINGS) | {"PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,
         text=True,
         check=False,

@@ -10,24 +10,18 @@ from typing import Any
 import numpy as np
 import pytest
 from hypothesis import settings
+from xdist.scheduler import LoadScopeScheduling
 
 from robo_genesis.build import stages
 from robo_genesis.core import project
-from robo_genesis.core.scene import (
-    CAMERA,
-    DT,
-    FRAME_SHAPE,
-    FRANKA_MJCF,
-    JOINT_NAMES,
-    SUBSTEPS,
-    per_joint,
-)
+from robo_genesis.core.scene import CAMERA, DT, FRAME_SHAPE, SUBSTEPS
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04 import checks as step_checks
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l04 import LAB
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.lessons.l04.metrics import measure
 from robo_genesis.sim import joints as robot_model
 from robo_genesis.sim import session
+from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES, per_joint
 from robo_genesis.sim.joints import JointMap
 
 pytest_plugins = ("bundles", "built_site")
@@ -40,16 +34,36 @@ settings.register_profile("course", derandomize=True, deadline=None)
 settings.load_profile("course")
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--slow", action="store_true", help="run the slow tests as well")
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave tests of more than half an hour out unless `-m` names their marker."""
-    named = config.option.markexpr
-    left_out = [
-        item
-        for item in items
-        if any(mark not in named and item.get_closest_marker(mark) for mark in ("repin", "slow"))
-    ]
+    """Leave slow tests out unless `--slow` asks for them."""
+    for item in items:
+        starts = "real_engine" in getattr(item, "fixturenames", ())
+        if starts and not item.get_closest_marker("engine"):
+            raise pytest.UsageError(f"{item.nodeid} starts the engine. Give it the mark `engine`.")
+    left_out = [] if config.option.slow else [i for i in items if i.get_closest_marker("slow")]
     config.hook.pytest_deselected(items=left_out)
     items[:] = [item for item in items if item not in left_out]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> LoadScopeScheduling:
+    """Run all modules that start the engine in one process: they take the lock of builds.
+
+    Tests in a browser read the site that was built before.
+    """
+    # Groups of pytest-xdist 3.8 have no effect with pytest 9.2 (its issue 1386).
+
+    class ByModule(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = nodeid.partition("::")[0]
+            text = (config.rootpath / file).read_text()
+            return "engine" if "mark.engine" in text and "mark.browser" not in text else file
+
+    return ByModule(config, log)
 
 
 LINKS = ("link0", "link4", "hand")
@@ -157,17 +171,10 @@ def frames() -> dict[str, np.ndarray]:
 
 
 @pytest.fixture(scope="session")
-def experiment(joints, traces, frames) -> step_checks.StepExperiment:
-    """A synthetic L04 run that passes every check."""
-    return step_checks.StepExperiment(
-        joints=joints,
-        model=l04.EXPECTED_MODEL,
-        cases=l04.CASES,
-        traces=traces,
-        metrics=measure(traces, l04.CASES, joints.entry(l04.STEPPED_JOINT)),
-        end_state="camera",
-        frames=frames,
-    )
+def experiment(joints, traces, frames) -> Experiment:
+    """A synthetic run of L04's lab that passes every check."""
+    readings = {"model": l04.EXPECTED_MODEL}
+    return Experiment(LAB, traces, LINKS, readings, frames, rendered=True, joints=joints)
 
 
 @pytest.fixture(scope="module")

@@ -75,12 +75,19 @@ def refusals() -> Record:
     verify, codes = getattr(module, VERIFY[1]), defaultdict(list)
 
     class Tests:
-        def pytest_runtest_setup(self, item: pytest.Function) -> None:
+        def pytest_collection_modifyitems(self, items: list[pytest.Function]) -> None:
+            items[:] = [item for item in items if self.spoils(item)]
+
+        def given(self, item: pytest.Function) -> list[Any]:
+            return list(item.callspec.params.values()) if hasattr(item, "callspec") else []
+
+        def spoils(self, item: pytest.Function) -> bool:
             tables = [table for table in vars(item.module).values() if isinstance(table, dict)]
-            given = list(item.callspec.params.values()) if hasattr(item, "callspec") else []
-            if given and (len(given) > 1 or not any(given[0] in table for table in tables)):
-                pytest.skip("spoils no bundle")
-            self.spoiler = given[0] if given else item.originalname
+            given = self.given(item)
+            return not given or (len(given) == 1 and any(given[0] in table for table in tables))
+
+        def pytest_runtest_setup(self, item: pytest.Function) -> None:
+            self.spoiler = (self.given(item) or [item.originalname])[0]
 
         def verify(self, folder: Path, *args: Any, **options: Any) -> Any:
             try:

@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import pytest
 import yaml
 
 from robo_genesis.core.project import BOOK, ROOT, engine_cache_folder
@@ -20,21 +19,10 @@ MAKE = re.compile(r"\bmake ([a-z.][\w./-]*)")
 INTERPOLATED = re.compile(r"\$\{\{")
 
 
-@pytest.fixture(scope="module")
-def workflow() -> dict[str, Any]:
-    # YAML 1.1 reads `on` as true; the base loader leaves every scalar as text.
-    return yaml.load(WORKFLOW.read_text(), Loader=yaml.BaseLoader)
-
-
-@pytest.fixture(scope="module")
-def jobs(workflow) -> dict[str, Any]:
-    return workflow["jobs"]
-
-
-def steps(workflow: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return all steps of the workflow and of its own action."""
-    own = yaml.load(SETUP.read_text(), Loader=yaml.BaseLoader)["runs"]["steps"]
-    return [step for job in workflow["jobs"].values() for step in job["steps"]] + own
+# YAML 1.1 reads `on` as true; the base loader leaves every scalar as text.
+PLAN, OWN = (yaml.load(path.read_text(), Loader=yaml.BaseLoader) for path in (WORKFLOW, SETUP))
+JOBS = PLAN["jobs"]
+STEPS = [step for job in JOBS.values() for step in job["steps"]] + OWN["runs"]["steps"]
 
 
 def step(job: dict[str, Any], uses: str) -> dict[str, Any]:
@@ -42,22 +30,19 @@ def step(job: dict[str, Any], uses: str) -> dict[str, Any]:
     return found
 
 
-def test_every_target_that_a_step_makes_is_one(workflow):
+def test_every_target_that_a_step_makes_is_one():
     targets = set(re.findall(r"^([\w./-]+):", (ROOT / "Makefile").read_text(), re.M))
-    made = {name for one in steps(workflow) for name in MAKE.findall(one.get("run", ""))}
+    made = {name for one in STEPS for name in MAKE.findall(one.get("run", ""))}
     assert made >= {"lint", "test", "execute", "book", "pages", "repin"}
     assert made <= targets
 
 
-@pytest.fixture(scope="module")
-def plan(jobs) -> str:
-    """The script that says what there is to execute."""
-    (found,) = [one["run"] for one in jobs["lint"]["steps"] if one.get("id") == "plan"]
-    return found
+def run_plan(folder: Path, python: str) -> tuple[int, dict[str, str]]:
+    """Run the step that says what to execute, as the workflow's shell does.
 
-
-def run_plan(plan: str, folder: Path, python: str) -> tuple[int, dict[str, str]]:
-    """Run the script as the workflow's shell does; return its status and what it put out."""
+    Return its status and what it put out.
+    """
+    (plan,) = [one["run"] for one in JOBS["lint"]["steps"] if one.get("id") == "plan"]
     (folder / "output").touch()
     # A make of this test's own would say where it is; the workflow's is the outermost.
     given = {name: value for name, value in os.environ.items() if name != "MAKELEVEL"}
@@ -72,77 +57,73 @@ def run_plan(plan: str, folder: Path, python: str) -> tuple[int, dict[str, str]]
     return done.returncode, dict(line.split("=", 1) for line in lines)
 
 
-def test_the_matrix_is_the_pages_of_the_book(plan, jobs, tmp_path):
-    status, output = run_plan(plan, tmp_path, sys.executable)
+def test_the_matrix_is_the_pages_of_the_book(tmp_path):
+    status, output = run_plan(tmp_path, sys.executable)
     assert status == 0
     assert json.loads(output["pages"]) == [page.docname for page in find_pages(BOOK)]
     assert output["kernels"] == engine_cache_folder().name
-    assert jobs["lint"]["outputs"] == {n: f"${{{{ steps.plan.outputs.{n} }}}}" for n in output}
-    assert jobs["execute"]["strategy"]["matrix"] == {
+    assert JOBS["lint"]["outputs"] == {n: f"${{{{ steps.plan.outputs.{n} }}}}" for n in output}
+    assert JOBS["execute"]["strategy"]["matrix"] == {
         "page": "${{ fromJSON(needs.lint.outputs.pages) }}"
     }
-    assert jobs["execute"]["strategy"]["fail-fast"] == "false"
+    assert JOBS["execute"]["strategy"]["fail-fast"] == "false"
 
 
-def test_a_plan_that_fails_stops_the_workflow(plan, tmp_path):
-    status, output = run_plan(plan, tmp_path, "false")
-    assert status != 0
-    assert output == {}
+def test_a_plan_that_fails_stops_the_workflow(tmp_path):
+    assert run_plan(tmp_path, "false") == (2, {})
 
 
-def test_the_book_is_built_from_what_the_pages_jobs_export(jobs):
-    (execute,) = [one for one in jobs["execute"]["steps"] if "make execute" in one.get("run", "")]
-    (book,) = [one for one in jobs["book"]["steps"] if "make book" in one.get("run", "")]
+def test_the_book_is_built_from_what_the_pages_jobs_export():
+    (execute,) = [one for one in JOBS["execute"]["steps"] if "make execute" in one.get("run", "")]
+    (book,) = [one for one in JOBS["book"]["steps"] if "make book" in one.get("run", "")]
     (sent, *_) = [
-        one["with"] for one in jobs["execute"]["steps"] if "upload-" in one.get("uses", "")
+        one["with"] for one in JOBS["execute"]["steps"] if "upload-" in one.get("uses", "")
     ]
-    taken = step(jobs["book"], "actions/download-artifact")["with"]
+    taken = step(JOBS["book"], "actions/download-artifact")["with"]
     assert execute["env"] == {"PAGE": "${{ matrix.page }}", "TO": sent["path"]}
     assert sent["name"] == "executed-${{ strategy.job-index }}"
     assert taken["pattern"] == "executed-*"
     assert book["env"]["EXECUTED"] == taken["path"]
-    assert "execute" in jobs["book"]["needs"]
+    assert "execute" in JOBS["book"]["needs"]
 
 
-def test_compiled_kernels_are_saved_when_a_page_fails_and_restored_by_the_same_name(jobs):
+def test_compiled_kernels_are_saved_when_a_page_fails_and_restored_by_the_same_name():
     for name in ("test", "execute"):
-        save = step(jobs[name], "actions/cache/save")
+        save = step(JOBS[name], "actions/cache/save")
         assert save["if"] == "always()"
         assert save["with"]["path"] == ".cache/engine"
-        restored = step(jobs[name], "./.github/actions/setup")["with"]["kernels"]
+        restored = step(JOBS[name], "./.github/actions/setup")["with"]["kernels"]
         assert save["with"]["key"].startswith(f"{restored}-${{{{ github.run_id }}}}")
 
 
-def test_a_scheduled_run_restores_nothing(workflow):
-    cached = [
-        one for one in steps(workflow) if re.match("actions/cache(/restore)?@", one.get("uses", ""))
-    ]
+def test_a_scheduled_run_restores_nothing():
+    cached = [one for one in STEPS if re.match("actions/cache(/restore)?@", one.get("uses", ""))]
     assert len(cached) == 2
     assert all("github.event_name != 'schedule'" in one["if"] for one in cached)
 
 
-def test_a_job_that_can_fail_leaves_its_reports(jobs):
+def test_a_job_that_can_fail_leaves_its_reports():
     for name in ("test", "execute", "book", "refresh"):
-        kept = [one for one in jobs[name]["steps"] if one.get("if") == "failure()"]
+        kept = [one for one in JOBS[name]["steps"] if one.get("if") == "failure()"]
         assert [one["with"]["include-hidden-files"] for one in kept] == ["true"], name
 
 
-def test_jobs_can_write_only_what_they_must(workflow, jobs):
-    assert workflow["permissions"] == {"contents": "read"}
-    more = {name: job["permissions"] for name, job in jobs.items() if "permissions" in job}
+def test_jobs_can_write_only_what_they_must():
+    assert PLAN["permissions"] == {"contents": "read"}
+    more = {name: job["permissions"] for name, job in JOBS.items() if "permissions" in job}
     assert more == {
         "deploy": {"pages": "write", "id-token": "write"},
         "propose": {"contents": "write", "pull-requests": "write"},
     }
-    assert jobs["deploy"]["if"].startswith("github.ref == 'refs/heads/main'")
+    assert JOBS["deploy"]["if"].startswith("github.ref == 'refs/heads/main'")
     for name in more:  # what can write runs no code of the course, of its packages or its pages
-        assert not any(MAKE.search(one.get("run", "")) for one in jobs[name]["steps"])
+        assert not any(MAKE.search(one.get("run", "")) for one in JOBS[name]["steps"])
 
 
-def test_no_checkout_leaves_its_token_where_the_course_s_code_runs(jobs):
+def test_no_checkout_leaves_its_token_where_the_course_s_code_runs():
     kept = [
         name
-        for name, job in jobs.items()
+        for name, job in JOBS.items()
         for one in job["steps"]
         if one.get("uses", "").startswith("actions/checkout")
         and one.get("with", {}).get("persist-credentials") != "false"
@@ -150,12 +131,12 @@ def test_no_checkout_leaves_its_token_where_the_course_s_code_runs(jobs):
     assert kept == ["propose"]
 
 
-def test_versions_are_pinned_and_input_never_becomes_shell(workflow):
-    for one in steps(workflow):
+def test_versions_are_pinned_and_input_never_becomes_shell():
+    for one in STEPS:
         used = one.get("uses", "")
         assert not used.startswith("./") or (ROOT / used / "action.yml").is_file()
         assert used.startswith("./") or not used or re.search(r"[@:]v?\d[\w.]*$", used), used
         assert not INTERPOLATED.search(one.get("run", "")), one["run"]
-    for job in workflow["jobs"].values():
+    for job in JOBS.values():
         assert not job.get("container", "").endswith("latest")
-        assert int(job["timeout-minutes"]) > 0
+        assert re.search(r"\b\d{2,3}\b", job["timeout-minutes"])

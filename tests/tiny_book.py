@@ -5,11 +5,11 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import yaml
 
-from robo_genesis.build.worktree import environment
 from robo_genesis.core.project import BOOK, ROOT
 
 FRONT = (
@@ -76,6 +76,16 @@ def write_bundle(outputs: Path, run_id: str, backend: str = "cpu") -> Path:
     return folder
 
 
+def old_bundle(folder: Path, backend: str) -> Path:
+    """Put an older bundle in place and return a file that a refused recording must leave."""
+    place = folder / "kept" / "l04" / backend
+    place.mkdir(parents=True)
+    (place / "manifest.json").write_text("{}")
+    (place / "log.txt").write_text("old")
+    (place / "of the old one.txt").touch()
+    return place / "log.txt"
+
+
 def start(script: str, folder: Path, *more: str, **settings: str) -> subprocess.Popen[str]:
     """Start a command on a folder's tiny book, with more arguments and these settings alone."""
     arguments = ["--book", str(folder / "book"), "--cache", str(folder / "cache"), *more]
@@ -98,23 +108,29 @@ def fails(script: str, folder: Path, *more: str, **settings: str) -> str:
     return report
 
 
-def make(folder: Path, *words: str, fails: bool = False) -> str:
-    """Run make in another checkout, with no setting of an outer make; return its output."""
-    done = subprocess.run(
-        ["make", *words],
-        cwd=folder,
-        env=environment(folder, *SETTINGS),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert (done.returncode != 0) == fails, done.stdout + done.stderr
-    return done.stdout + done.stderr
+def wait_for(process: subprocess.Popen[str], *files: Path) -> None:
+    """Wait until a process, or what it started, has written to each of these files."""
+    end = time.monotonic() + 60
+    while not all(path.exists() and path.read_text() for path in files):
+        assert time.monotonic() < end
+        assert process.poll() is None
+        time.sleep(0.05)
 
 
 def git(root: Path, *words: str) -> str:
     """Return what git prints in a folder, where it can commit."""
-    command = ["git", "-C", str(root), "-c", "user.name=a", "-c", "user.email=a@b", *words]
+    command = [
+        "git",
+        "-C",
+        str(root),
+        "-c",
+        "user.name=a",
+        "-c",
+        "user.email=a@b",
+        "-c",
+        "commit.gpgsign=false",
+        *words,
+    ]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 

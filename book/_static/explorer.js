@@ -60,8 +60,8 @@ document.addEventListener("DOMContentLoaded", () => {
         ticks: [-data.limit, 0, data.limit].map((value) => ({ value, label: write(value, 0) })),
         levels: [-data.limit, data.limit].map((value) => ({ value, mark: "limit" })),
       });
-      svgs.q.setAttribute("aria-label", `Position of joint4 over time. ${point.said}`);
-      svgs.force.setAttribute("aria-label", `Control force of joint4 over time. ${point.said}`);
+      svgs.q.setAttribute("aria-label", `Position of joint4 over time. ${point.sentence}`);
+      svgs.force.setAttribute("aria-label", `Control force of joint4 over time. ${point.sentence}`);
     }
 
     function show() {
@@ -71,7 +71,7 @@ document.addEventListener("DOMContentLoaded", () => {
         input.labels[0].querySelector(".value").textContent = text;
       });
       const point = chosen();
-      root.querySelector("output").textContent = point.said;
+      root.querySelector("output").textContent = point.sentence;
       root.querySelector("dl").replaceChildren(
         ...point.metrics.map((value, k) => {
           const row = document.createElement("div");

@@ -153,11 +153,11 @@ document.addEventListener("DOMContentLoaded", () => {
     function readout() {
       const { time, values, levels } = run();
       const k = sample();
-      const said = (value, unit, digits) => `${write(value, digits)} ${unit}`;
+      const withUnit = (value, unit, digits) => `${write(value, digits)} ${unit}`;
       return [
-        said(time[k], "s", timeDigits) + (k ? "" : ", before the first step"),
-        ...channels.map(({ unit, digits }, c) => said(values[c][k], unit, digits)),
-        ...levels.map((level) => level.said),
+        withUnit(time[k], "s", timeDigits) + (k ? "" : ", before the first step"),
+        ...channels.map(({ unit, digits }, c) => withUnit(values[c][k], unit, digits)),
+        ...levels.map((level) => level.text),
       ];
     }
 

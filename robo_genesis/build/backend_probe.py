@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 
+from robo_genesis.build.kernels import end_with_parent
 from robo_genesis.core.project import ProjectError
 
 PROBE = """
@@ -29,6 +30,7 @@ def expected_backend() -> str:
             text=True,
             check=True,
             timeout=PROBE_SECONDS,
+            preexec_fn=end_with_parent(),
         )
         hip, cuda, count = json.loads(done.stdout.splitlines()[-1])
     except (subprocess.SubprocessError, ValueError, IndexError) as error:

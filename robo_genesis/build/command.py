@@ -10,7 +10,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from robo_genesis.core.project import BOOK, BUILD_BACKEND, CACHE
+from robo_genesis.core.project import BOOK, BUILD_BACKEND, CACHE, ProjectError
+from robo_genesis.core.refusals import BundleRefused
 
 TIMEOUT = 1500
 """Seconds for one cell; a page's front matter may set another."""
@@ -39,7 +40,7 @@ def collect_rarely() -> None:
     gc.set_threshold(1_000_000, 20, 100)
 
 
-def run(task: Callable[[], Sequence[str]], done: str, failures: tuple[type[Exception], ...]) -> int:
+def run(task: Callable[[], Sequence[str]], done: str) -> int:
     """Run a task, print its last lines and return the exit status.
 
     A cancelled CI job sends SIGTERM, which ends the task as Ctrl-C does, so that no kernel is left.
@@ -47,7 +48,6 @@ def run(task: Callable[[], Sequence[str]], done: str, failures: tuple[type[Excep
     Args:
         task: does the work and returns the last lines for the user.
         done: the verb for its result: `published`, `recorded`.
-        failures: exceptions whose message is a whole report.
 
     Returns:
         0 done, 1 failed, 130 interrupted.
@@ -58,7 +58,7 @@ def run(task: Callable[[], Sequence[str]], done: str, failures: tuple[type[Excep
     except KeyboardInterrupt:
         print(f"\nInterrupted: nothing was {done}.", file=sys.stderr)
         return 130
-    except failures as error:
+    except (ProjectError, BundleRefused) as error:
         report = str(error)
     except OSError as error:
         report = f"A file cannot be used: {error}. Give it free space or write access."
@@ -86,7 +86,12 @@ def choice(name: str, default: str, choices: tuple[str, ...], reason: str = "") 
 def path(name: str) -> Path | None:
     """Return an environment variable as an absolute path, None if it is unset or empty."""
     value = os.environ.get(name)
-    return Path(value).absolute() if value else None
+    return absolute(value) if value else None
+
+
+def absolute(value: str) -> Path:
+    """Return a text as an absolute path."""
+    return Path(value).absolute()
 
 
 def set_contract() -> None:
@@ -104,7 +109,7 @@ def set_contract() -> None:
 def parser(description: str) -> argparse.ArgumentParser:
     """Return a parser with the arguments of the commands that execute pages."""
     arguments = argparse.ArgumentParser(description=description.splitlines()[0])
-    arguments.add_argument("--book", type=Path, default=BOOK, help="folder of the pages")
-    arguments.add_argument("--cache", type=Path, default=CACHE, help="folder of the caches")
+    arguments.add_argument("--book", type=absolute, default=BOOK, help="folder of the pages")
+    arguments.add_argument("--cache", type=absolute, default=CACHE, help="folder of the caches")
     arguments.add_argument("--timeout", type=int, default=TIMEOUT, help="seconds for one cell")
     return arguments

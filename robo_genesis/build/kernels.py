@@ -1,11 +1,12 @@
 """Kernels that no configuration of the user reaches, and that never outlive the build."""
 
+import ctypes
 import multiprocessing
 import os
 import shutil
 import signal
 import threading
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,9 @@ ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
 # one that is registered right after them runs right before them, after the engine's, and ends it.
 END_BEFORE_IPYKERNEL = "__import__('atexit').register(__import__('os')._exit, 0)"
 ARGUMENTS = [f"--IPKernelApp.exec_lines={END_BEFORE_IPYKERNEL}"]
+
+PR_SET_PDEATHSIG = 1
+"""The request of <linux/prctl.h> for a signal at the end of the parent."""
 
 
 class CleanKernelManager(AsyncKernelManager):
@@ -130,6 +134,25 @@ def kill_with_descendants(pids: Iterable[int]) -> None:
         with suppress(psutil.NoSuchProcess):
             process.kill()
     psutil.wait_procs(doomed, timeout=10)
+
+
+def end_with_parent(sent: signal.Signals = signal.SIGKILL) -> Callable[[], None]:
+    """Return a `preexec_fn` of subprocess: Linux signals the child when its parent ends.
+
+    This also holds for a parent that is killed by SIGKILL, as by the kernel when memory is short.
+    The parent is the thread that starts the child.
+
+    Args:
+        sent: the signal for the child. SIGTERM is for children that pass it on, as `make` does.
+    """
+    parent, prctl = os.getpid(), ctypes.CDLL(None).prctl  # loaded before the fork
+
+    def ask() -> None:
+        prctl(PR_SET_PDEATHSIG, sent)
+        if os.getppid() != parent:  # it ended before the request
+            os.kill(os.getpid(), sent)
+
+    return ask
 
 
 def die_with_parent(scratch: Path) -> None:

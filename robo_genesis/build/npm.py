@@ -10,6 +10,7 @@ import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 
+from robo_genesis.build.kernels import end_with_parent
 from robo_genesis.core.project import CACHE, ROOT, ProjectError
 
 LOCK = ("package.json", "package-lock.json")
@@ -60,7 +61,14 @@ def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
 def _install(folder: Path) -> None:
     npm = node().parents[1] / "lib/node_modules/npm/bin/npm-cli.js"
     command = [str(node()), str(npm), "ci"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=end_with_parent(),
+    )
     if done.returncode != 0:
         raise ProjectError(
             f"npm ci failed with status {done.returncode}:\n{done.stdout}{done.stderr}\n"

@@ -23,8 +23,10 @@ from robo_genesis.build.page_cache import (
     usable,
 )
 from robo_genesis.build.page_results import PageResult, find_bundle, unexpected_outcome
-from robo_genesis.core.files import NEXT, OLD, beside, settle, swap
-from robo_genesis.evidence.bundle import BundleRefused, RunId, Sha256, Strict, sha256
+from robo_genesis.core.files import NEXT, OLD, replaced
+from robo_genesis.core.project import ProjectError
+from robo_genesis.evidence.bundle import BundleRefused, sha256
+from robo_genesis.evidence.fields import RunId, Sha256, Strict
 from robo_genesis.lessons.book_pages import Page, code_digest
 
 Verify = Callable[[Path, str], Any]
@@ -37,7 +39,7 @@ FILES_LIMIT = 500
 AGAIN = "Execute the page again, from this commit and this lock: make execute PAGE={} TO=folder"
 
 
-class ArtifactError(Exception):
+class ArtifactError(ProjectError):
     """Executed pages cannot be exported or imported; nothing was changed."""
 
 
@@ -79,9 +81,7 @@ def export_page(result: PageResult, folder: Path, to: Path) -> Path:
     to.mkdir(parents=True, exist_ok=True)
     cache = PageCache(notebooks_folder(folder))
     cached = cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk)
-    settle(place)
-    fresh = beside(place, NEXT)
-    try:
+    with replaced(place) as fresh:
         fresh.mkdir()
         nbformat.write(cached.nb, fresh / NOTEBOOK)
         if page.declares_bundle:
@@ -95,9 +95,6 @@ def export_page(result: PageResult, folder: Path, to: Path) -> Path:
             files={name: sha256(fresh / name) for name in sorted(plain_files(fresh))},
         )
         (fresh / RECORD).write_text(record.model_dump_json(indent=1), encoding="utf8")
-        swap(place)
-    finally:
-        settle(place)
     return place
 
 

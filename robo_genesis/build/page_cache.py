@@ -1,8 +1,9 @@
 """The cache of executed pages: a page needs no run if its outputs and its bundle are of one run."""
 
 import shutil
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partialmethod
 from pathlib import Path
 
 from jupyter_cache.base import CacheBundleIn, JupyterCacheAbstract
@@ -28,17 +29,9 @@ class PageCache(JupyterCacheBase):
     again. Tags, captions and expected exceptions are read from the page, never from the cache.
     """
 
-    def create_hashed_notebook(
-        self,
-        nb: NotebookNode,
-        nb_metadata: Iterable[str] | None = ("kernelspec",),
-        cell_metadata: Iterable[str] | None = (),
-    ) -> tuple[NotebookNode, str]:
-        """Return the notebook's code cells and their digest; see the base class."""
-        hashed: tuple[NotebookNode, str] = super().create_hashed_notebook(
-            nb, nb_metadata, cell_metadata
-        )
-        return hashed
+    create_hashed_notebook = partialmethod(
+        JupyterCacheBase.create_hashed_notebook, cell_metadata=()
+    )
 
 
 def notebooks_folder(folder: Path) -> Path:

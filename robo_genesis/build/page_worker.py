@@ -80,18 +80,16 @@ def work(run: PageRun, connection: Connection) -> None:
 def execute_page(run: PageRun) -> Failure | None:
     """Execute a page in an empty temporary folder; store it, or return why it failed."""
     notebook, error = run.page.notebook, None
-    started: list[int] = []
-    begins: list[float] = []
+    begins: dict[int, float] = {}  # of each cell that started, by its index
     seconds: list[float] = []
 
     def cell_starts(cell: NotebookNode, cell_index: int) -> None:
         CleanKernelManager.busy = True
-        started.append(cell_index)
-        begins.append(time.monotonic())
+        begins[cell_index] = time.monotonic()
 
     def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
         CleanKernelManager.busy = False
-        seconds.append(round(time.monotonic() - begins[-1], 3))
+        seconds.append(round(time.monotonic() - begins[cell_index], 3))
 
     begin = time.monotonic()
     with tempfile.TemporaryDirectory(dir=run.scratch) as folder:
@@ -109,7 +107,7 @@ def execute_page(run: PageRun) -> Failure | None:
         except Exception as caught:  # a dead kernel, or none that starts, is a failed page as well
             error = caught
     elapsed = time.monotonic() - begin
-    failure = _failure(run, error, started)
+    failure = _failure(run, error, list(begins))
     if failure is None:
         own = notebook.metadata.setdefault("robo_genesis", NotebookNode())
         own.update(run_id=run.run_id, cell_seconds=seconds)

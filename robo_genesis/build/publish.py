@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robo_genesis.core.files import NEXT, beside, settle, swap
+from robo_genesis.core.files import replaced
 from robo_genesis.core.project import PUBLISHED
 
 if TYPE_CHECKING:  # commands that need only names load no Jupyter
@@ -36,9 +36,7 @@ def publish(
     Raises:
         OSError: nothing is changed.
     """
-    settle(book / PUBLISHED)
-    following = beside(book / PUBLISHED, NEXT)
-    try:
+    with replaced(book / PUBLISHED) as following:
         following.mkdir()
         shutil.move(html, following / "html")
         for result in results:
@@ -47,7 +45,4 @@ def publish(
                 own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
                 shutil.copytree(result.bundle, following.joinpath(*own, result.bundle.name))
         finish(following)
-        swap(book / PUBLISHED)
-    finally:
-        settle(book / PUBLISHED)
     return book / PUBLISHED / "html"

@@ -24,7 +24,7 @@ BACKENDS = (*ACCELERATORS, "cpu")
 COMMAND = "make evidence"
 
 
-class RecordingError(Exception):
+class RecordingError(project.ProjectError):
     """Nothing was recorded; the message is the whole report. The older bundle is unchanged."""
 
 
@@ -72,7 +72,7 @@ def record(recording: Recording) -> list[str]:
         RecordingError: the lesson or backend is not valid, another backend was found, the lab
             failed, or its bundle was refused. The older bundle is unchanged.
         BuildError: a build, or another recording, runs here.
-        ProjectError, PageError: checkout, environment or the bundle's place is not fit for it.
+        ProjectError: checkout, environment or the bundle's place is not fit for it.
     """
     with build_lock(recording.cache):
         recover(recording.evidence)

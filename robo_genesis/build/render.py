@@ -8,9 +8,10 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
+from robo_genesis.build.kernels import end_with_parent
 from robo_genesis.build.page_cache import notebooks_folder, outputs_folder
 from robo_genesis.build.page_results import ANSI
-from robo_genesis.core.project import ROOT
+from robo_genesis.core.project import ROOT, ProjectError
 
 COMMAND = """\
 from robo_genesis.build.command import collect_rarely
@@ -22,7 +23,7 @@ EXECUTED = "ROBO_GENESIS_EXECUTED_PAGES"
 COMPLAINT = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
 
 
-class RenderError(Exception):
+class RenderError(ProjectError):
     """Sphinx failed or warned; the message holds its complaints and the place of the log."""
 
 
@@ -58,7 +59,12 @@ def render(
     }
     with log.open("w", encoding="utf8") as stream:
         done = subprocess.run(
-            command, env=environment, stdout=stream, stderr=subprocess.STDOUT, check=False
+            command,
+            env=environment,
+            stdout=stream,
+            stderr=subprocess.STDOUT,
+            check=False,
+            preexec_fn=end_with_parent(),
         )
     html = staging / "_build" / "html"
     if done.returncode != 0 or not (html / "index.html").is_file():

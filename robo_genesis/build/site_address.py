@@ -4,10 +4,12 @@ import os
 from collections.abc import Mapping
 from urllib.parse import urlsplit
 
+from robo_genesis.core.project import ProjectError
+
 SITE_URL = "SITE_URL"
 
 
-class AddressError(ValueError):
+class AddressError(ProjectError):
     """`SITE_URL` is not an address; the message says what is valid."""
 
 

@@ -5,8 +5,9 @@
 
 import os
 import shutil
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -20,7 +21,7 @@ from robo_genesis.build.page_results import PageResult, failure_report
 from robo_genesis.build.publish import publish
 from robo_genesis.build.release import missing_for_release
 from robo_genesis.build.render import render
-from robo_genesis.build.site_address import AddressError, site_address, site_root
+from robo_genesis.build.site_address import site_address, site_root
 from robo_genesis.build.site_archive import pack
 from robo_genesis.build.site_checks import check_site
 from robo_genesis.core import project
@@ -32,8 +33,11 @@ from robo_genesis.evidence.status import refused_records
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.book_pages import Page, find_pages, fingerprint
 
+STAGING = "staging"
+"""How the names of the folders begin in which builds render."""
 
-class BuildError(Exception):
+
+class BuildError(project.ProjectError):
     """A stage failed; the message is the whole report, and the old site is unchanged."""
 
 
@@ -71,14 +75,15 @@ def run_build(build: Build) -> list[str]:
     Raises:
         BuildError: a stage failed; nothing was published.
         ArtifactError: pages that were executed elsewhere are refused; nothing was published.
-        ProjectError, PageError: the checkout is not fit for a build.
+        ProjectError: the checkout or SITE_URL is not fit for a build.
     """
-    with build_lock(build.cache):
+    with build_lock(build.cache), staging_folder(build.cache) as staging:
         settle(build.book / project.PUBLISHED)
         bundle_store.recover(build.book / "evidence")
         inputs = up_to_date.inputs_digest(build.root, build.book)
         progress = Progress(build.say)
-        _require_for_render()
+        site_address()  # refused here, because rendering would fail only after minutes
+        npm.packages()
         engine, pages, folder = _prepare(build)
         verify = build.verify or partial(verify_bundle, book=build.book)
         if build.release:
@@ -94,9 +99,8 @@ def run_build(build: Build) -> list[str]:
             _require_for_release([*unclean(build.root), *problems])
             progress("release", "clean tree, current evidence")
         progress("render", "all pages")
-        staging, log = build.cache / "staging", build.cache / "render.log"
         executed = [r.page.docname for r in results if r.status == "executed"]
-        html = render(build.book, staging, folder, log, executed)
+        html = render(build.book, staging, folder, build.cache / "render.log", executed)
         progress("pack", pack(html).name)  # last of the site's files; the checks look for it
         checked = _check(html, progress)
         project.forget_old_pages(folder)
@@ -109,6 +113,24 @@ def run_build(build: Build) -> list[str]:
         html = publish(build.book, html, results, finish)  # last: after it, nothing may fail
         progress("publish", str(html))
         return [f"Site: {html / 'index.html'}", *summary(executed=len(executed))]
+
+
+@contextmanager
+def staging_folder(cache: Path) -> Iterator[Path]:
+    """Make the folder in which one build renders; remove it in the end.
+
+    The build lock must be held: folders of killed builds are removed first. A process that a killed
+    build left would write into its own folder and not into this one.
+
+    Args:
+        cache: folder of the caches.
+    """
+    for left in cache.glob(f"{STAGING}*"):
+        shutil.rmtree(left, ignore_errors=True)
+    with tempfile.TemporaryDirectory(
+        prefix=f"{STAGING}-", dir=cache, ignore_cleanup_errors=True
+    ) as own:
+        yield Path(own)
 
 
 def export_one(name: str, to: Path | None, build: Build) -> list[str]:
@@ -124,7 +146,7 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
 
     Raises:
         BuildError: there is no such page, it failed, or a build runs here. Nothing was exported.
-        ArtifactError, ProjectError, PageError: folder, checkout or book are not fit for it.
+        ProjectError: folder, checkout or book are not fit for it.
     """
     with build_lock(build.cache):
         engine, pages, folder = _prepare(build)
@@ -149,15 +171,6 @@ def _prepare(build: Build) -> tuple[str, list[Page], Path]:
     project.remove_stale_kernel_lock(build.cache)
     pages = find_pages(build.book)
     return engine, pages, project.page_cache_folder(fingerprint(pages, build.root), build.cache)
-
-
-def _require_for_render() -> None:
-    """Raise errors that the last stages would raise after minutes: of SITE_URL, of npm."""
-    try:
-        site_address()
-    except AddressError as error:
-        raise BuildError(str(error)) from error
-    npm.packages()
 
 
 def _require_for_release(problems: Sequence[str]) -> None:

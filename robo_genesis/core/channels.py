@@ -31,7 +31,7 @@ class Level:
     """A reference for a channel, such as a target, drawn as lines across its plot.
 
     `mark` is the mark of the line in the palette, `legend` its sentence in a replay. `values` by
-    case are in the unit of the channel; `said` by case is their text. `band` is the half width
+    case are in the unit of the channel; `texts` by case have the unit. `band` is the half width
     of an area around each line, 0 for none.
     """
 
@@ -40,7 +40,7 @@ class Level:
     mark: str
     legend: str
     values: Mapping[str, tuple[float, ...]]
-    said: Mapping[str, str]
+    texts: Mapping[str, str]
     band: float = 0.0
 
 
@@ -64,8 +64,8 @@ class View:
 class Runs:
     """Runs with the same times; `subject` is the joint or body of the channels: `the box`.
 
-    `moves` describes by case, as Markdown, the motion. `alt` and `caption` belong to a picture of
-    the first channel.
+    `moves` describes by case the motion, with `**strong**` and code as its only markup. `alt` and
+    `caption` belong to a picture of the first channel.
 
     Raises:
         ValueError: there are no runs or no channels, or the runs differ in their times.

@@ -1,6 +1,6 @@
 """Named checks, and the error that names each check that failed."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -27,55 +27,61 @@ class Check:
     detail: str
 
 
-def evaluate(named: Sequence[Callable[[Subject], list[str]]], run: Subject) -> tuple[Check, ...]:
-    """Run checks on a subject; the name and docstring of a function are those of its check."""
+def evaluate(
+    named: Sequence[Callable[[Subject], Iterable[str]]], run: Subject
+) -> tuple[Check, ...]:
+    """Run checks on a subject; each yields the problems that it finds.
+
+    The name and docstring of a function are those of its check.
+    """
     outcomes = []
     for check in named:
         try:
-            problems = check(run)
-        except (ValueError, KeyError, IndexError) as error:  # arrays that do not fit together
+            problems = list(check(run))
+        except (ValueError, LookupError, ArithmeticError) as error:
+            # Arrays that do not fit together, or values beyond what floats can hold.
             problems = [f"cannot be evaluated: {error!r}"]
         requirement = (check.__doc__ or "").strip()
         outcomes.append(Check(check.__name__, not problems, "; ".join(problems) or requirement))
     return tuple(outcomes)
 
 
-def wrong_times(cases: Mapping[str, Any], traces: Mapping[str, TimeSeries]) -> list[str]:
-    """Return which runs do not have a state for t = 0 and one for each outer step, at k · dt.
+def wrong_times(cases: Mapping[str, Any], traces: Mapping[str, TimeSeries]) -> Iterator[str]:
+    """Yield which runs do not have a state for t = 0 and one for each outer step, at k · dt.
 
     Args:
         cases: by name, with their outer `steps` and `dt` [s].
         traces: by case.
     """
-    problems = []
     for name, case in cases.items():
         t, expected = traces[name].t, np.arange(case.steps + 1) * case.dt
         if len(t) != len(expected) or not np.allclose(t, expected, rtol=0, atol=1e-9):
-            problems.append(
+            yield (
                 f"{name} has {len(t) - 1} steps to {t[-1]:g} s, asked for {case.steps} steps of "
                 f"{case.dt:g} s"
             )
-    return problems
 
 
-def wrong_counts(found: Mapping[str, int], expected: Mapping[str, int]) -> list[str]:
-    """Return a message if the engine's counts of a model differ from the expected ones."""
-    return [] if dict(found) == expected else [f"the model has {dict(found)}, expected {expected}"]
+def wrong_counts(found: Mapping[str, float], expected: Mapping[str, float]) -> Iterator[str]:
+    """Yield a message if the engine's counts of a model differ from the expected ones."""
+    if dict(found) != expected:
+        yield f"the model has {dict(found)}, expected {expected}"
 
 
-def wrong_masses(found: Mapping[str, float], expected: Mapping[str, float]) -> list[str]:
-    """Return the bodies whose mass is not density times volume, or was not read.
+def wrong_masses(found: Mapping[str, float], expected: Mapping[str, float]) -> Iterator[str]:
+    """Yield the bodies whose mass is not density times volume, or was not read.
 
     Args:
         found: the engine's mass of each body [kg].
         expected: density times volume of each body [kg].
     """
-    return [
-        f"the engine's mass of the {body} is {found.get(body, np.nan):g} kg, density times volume "
-        f"is {mass:g} kg"
-        for body, mass in expected.items()
-        if not abs(found.get(body, np.nan) - mass) <= MASS_SHARE * mass
-    ]
+    for body, mass in expected.items():
+        measured = found.get(body, np.nan)
+        if not abs(measured - mass) <= MASS_SHARE * mass:
+            yield (
+                f"the engine's mass of the {body} is {measured:g} kg, density times volume is "
+                f"{mass:g} kg"
+            )
 
 
 def require(lesson: str, outcomes: Sequence[Check]) -> str:

@@ -7,11 +7,6 @@ from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.orderings import HELD_BY, order
 from robo_genesis.core.quantities import format_value
 
-INSPECT = (
-    "Before blaming the model, inspect saturation, the time stamps, the initial states and "
-    "the length of the window."
-)
-
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
@@ -59,12 +54,14 @@ def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
     return f"The {label} {verb[comparison.order]} ({values})."
 
 
-def prediction_sentence(names: tuple[str, str], comparison: Comparison, predicted: str) -> str:
-    """Return the outcome of a prediction; after a failed one, the sentence says what to inspect."""
+def prediction_sentence(
+    names: tuple[str, str], comparison: Comparison, predicted: str, advice: str
+) -> str:
+    """Return the outcome of a prediction; `advice` follows one that did not hold."""
     label = comparison.label
     claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
     if comparison.order is None:
         return f"{claim}. Cannot be judged: not observed in either case."
     if comparison.order in HELD_BY[predicted]:
         return f"{claim}. Held in this run."
-    return f"{claim}. **Did not hold**: measured {comparison.order}. {INSPECT}"
+    return f"{claim}. **Did not hold**: measured {comparison.order}. {advice}"

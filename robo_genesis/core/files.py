@@ -44,13 +44,13 @@ def write_whole(path: Path, content: bytes) -> None:
 
 
 def settle(folder: Path, prefix: str = "") -> None:
-    """Repair a folder after a process was killed while it replaced the folder with `swap`.
+    """Repair a folder after a process was killed while it replaced the folder; see `replaced`.
 
     If the old folder was already moved aside and there is no new one, it is restored. Otherwise
     the old folder and an unused next one are removed.
 
     Args:
-        folder: the argument of `swap`; it need not exist.
+        folder: it need not exist.
         prefix: see `beside`.
     """
     aside = beside(folder, OLD, prefix)
@@ -61,16 +61,26 @@ def settle(folder: Path, prefix: str = "") -> None:
             shutil.rmtree(other)
 
 
-def swap(folder: Path, prefix: str = "") -> None:
-    """Replace a folder with the complete next folder beside it; the old one is moved aside.
+@contextmanager
+def replaced(folder: Path, prefix: str = "") -> Iterator[Path]:
+    """Replace a folder in one move with one that the caller creates; a failure changes nothing.
 
     Args:
-        folder: `settle` removes its old state, and repairs an interrupted replacement.
+        folder: moved aside, then removed. `settle` repairs a replacement that was killed.
         prefix: see `beside`.
+
+    Yields:
+        The path of the new folder, which the caller makes.
     """
-    if folder.exists():
-        os.rename(folder, beside(folder, OLD, prefix))
-    os.rename(beside(folder, NEXT, prefix), folder)
+    settle(folder, prefix)
+    following = beside(folder, NEXT, prefix)
+    try:
+        yield following
+        if folder.exists():
+            os.rename(folder, beside(folder, OLD, prefix))
+        os.rename(following, folder)
+    finally:
+        settle(folder, prefix)
 
 
 def beside(folder: Path, suffix: str, prefix: str = "") -> Path:

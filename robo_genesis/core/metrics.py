@@ -42,14 +42,12 @@ class CaseMetrics:
         return [(name, getattr(self, name), unit) for name, unit in self.about("unit").items()]
 
 
-def count_records(found: Mapping[str, int]) -> dict[str, Record]:
-    """Return counts that the engine reported; another run must report the same ones."""
-    return {name: _record(count, "1", "exact", ENGINE) for name, count in found.items()}
-
-
-def reading_records(found: Mapping[str, float], unit: str) -> dict[str, Record]:
-    """Return values in one unit that the engine reported."""
-    return {name: _record(value, unit, "value", ENGINE) for name, value in found.items()}
+def reading_records(
+    found: Mapping[str, float], units: Mapping[str, str], exact: bool
+) -> dict[str, Record]:
+    """Return values that the engine reported, with their units; another run repeats exact ones."""
+    kind = "exact" if exact else "value"
+    return {name: _record(value, units[name], kind, ENGINE) for name, value in found.items()}
 
 
 def case_records(metrics: Mapping[str, CaseMetrics]) -> dict[str, dict[str, Record]]:

@@ -4,7 +4,7 @@ The hues follow the palette of Okabe and Ito, darkened or lightened until each i
 Dashes distinguish the lines without colour; no two marks share a pattern.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 GROUNDS = {"light": ("#ffffff", "#f3f4f5"), "dark": ("#14181e", "#222832", "#29313d")}
@@ -41,12 +41,13 @@ CASE_CLASSES = {
 }  # fmt: skip
 """The marks that cases take, with their classes in style sheets."""
 
-CASES = {"baseline": "baseline"}
-"""Mark of each case that has one of its own. A lesson adds its cases when it is imported."""
 
+def marks_of(cases: Sequence[str], declared: Mapping[str, str]) -> dict[str, str]:
+    """Return the mark of each case: the declared one, or one that no other case here has.
 
-def marks_of(cases: Sequence[str]) -> dict[str, str]:
-    """Return the mark of each case: its own, or one that no other case here has.
+    Args:
+        cases: that are drawn together.
+        declared: marks of cases by name; it may lack some and have others.
 
     Raises:
         ValueError: there are more cases than marks for cases.
@@ -56,7 +57,7 @@ def marks_of(cases: Sequence[str]) -> dict[str, str]:
             f"{', '.join(cases)} are {len(cases)} cases; the palette has {len(CASE_CLASSES)} "
             "marks. Draw fewer cases in one plot, or add marks to CASE_CLASSES in this module."
         )
-    own = {case: CASES[case] for case in cases if case in CASES}
+    own = {case: declared[case] for case in cases if case in declared}
     baseline, *coloured = CASE_CLASSES
     free = iter([mark for mark in (*coloured, baseline) if mark not in own.values()])
     return {case: own.get(case) or next(free) for case in cases}

@@ -10,14 +10,14 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from robo_genesis.core.channels import Channel, Level, Runs
-from robo_genesis.core.palette import CASES, MARKS, marks_of
+from robo_genesis.core.palette import MARKS, marks_of
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, Trace
 
 
 def look(name: str, **more: Any) -> dict[str, Any]:
-    """Return the line style of a mark, or of a case with a mark of its own, in the light theme."""
-    mark = MARKS[CASES.get(name, name)]
+    """Return the line style of a mark of the palette in the light theme."""
+    mark = MARKS[name]
     return {"color": mark.light, "linestyle": (0, mark.dashes) if mark.dashes else "-", **more}
 
 
@@ -60,13 +60,13 @@ def course_style() -> Iterator[None]:
         yield
 
 
-def style(name: str) -> dict[str, Any]:
-    """Return the line style of a case; a case without a mark of its own has the baseline's."""
-    return look(CASES.get(name, "baseline"))
-
-
 def channel(
-    ax: Axes, t: FloatArray, drawn: Channel, subject: str, levels: Sequence[Level] = ()
+    ax: Axes,
+    t: FloatArray,
+    drawn: Channel,
+    subject: str,
+    marks: Mapping[str, str],
+    levels: Sequence[Level] = (),
 ) -> Axes:
     """Draw one channel of each case with its levels.
 
@@ -75,6 +75,7 @@ def channel(
         t: times of the states (n+1,) [s].
         drawn: the channel.
         subject: the joint or body that it belongs to.
+        marks: the declared marks of cases by name.
         levels: of this channel; equal ones of several cases are drawn once.
     """
     for level in levels:
@@ -86,15 +87,15 @@ def channel(
                 ax.axhspan(*edges, color="#e9e4d4", zorder=0, label=label)
             name = "" if number else level.name
             ax.axhline(value, **look(level.mark, label=name, linewidth=1.4))
-    for case, mark in marks_of(list(drawn.values)).items():
+    for case, mark in marks_of(list(drawn.values), marks).items():
         ax.plot(t, drawn.values[case], label=case, **look(mark))
     return finish(ax, f"{drawn.name.capitalize()} of {subject}", f"{drawn.head} [{drawn.unit}]")
 
 
-def first_channel(ax: Axes, runs: Runs) -> Axes:
+def first_channel(ax: Axes, runs: Runs, marks: Mapping[str, str]) -> Axes:
     """Draw the first channel, which represents the runs in small pictures."""
     first = runs.channels[0]
-    return channel(ax, runs.t, first, runs.subject, runs.levels_of(first))
+    return channel(ax, runs.t, first, runs.subject, marks, runs.levels_of(first))
 
 
 def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], title: str, unit: str) -> Axes:

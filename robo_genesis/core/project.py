@@ -36,7 +36,7 @@ CACHE_LIMIT = {"QD_OFFLINE_CACHE_MAX_SIZE_OF_FILES": "2000000000"}
 
 
 class ProjectError(Exception):
-    """The checkout or the environment is not ready for a build; the message says what to do."""
+    """A command cannot do its work; the message is the whole report and says what to do."""
 
 
 def engine_pin(root: Path = ROOT) -> str:

@@ -27,7 +27,7 @@ def signed(value: float, digits: int) -> str:
     return f"{value:+.{digits}f}".replace("-", "−") if value else "0"
 
 
-def said(value: float, unit: str, digits: int = 4) -> str:
+def with_unit(value: float, unit: str, digits: int = 4) -> str:
     """Return a value with its unit; the minus sign is U+2212, and zero has no sign."""
     text = f"{value:.{digits}f}"
     text = text.removeprefix("-") if float(text) == 0 else text.replace("-", "−")

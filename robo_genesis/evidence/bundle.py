@@ -12,12 +12,23 @@ import hashlib
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import rfc8785
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter, ValidationError
 
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
+from robo_genesis.core.refusals import AGAIN, LONGEST_SHOWN, BundleRefused, expect, shown
+from robo_genesis.evidence.fields import (
+    LARGEST,
+    Index,
+    Line,
+    LongLine,
+    Message,
+    RunId,
+    Sha256,
+    Strict,
+    Timestamp,
+)
 from robo_genesis.evidence.strict_json import read_json
 
 STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
@@ -25,17 +36,6 @@ PREDICATE_TYPE = "urn:robo-genesis:evidence:v1"
 SCHEMA_VERSION = 1
 KEYED = ("schema_version", "lesson", "page", "source", "parameters", "seed")
 KEYED_OF_ENGINE = ("version", "quadrants_version", "precision")
-
-Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
-RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
-Index = Annotated[int, Field(ge=0, lt=2**31)]
-Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?Z$")]
-
-
-class Strict(BaseModel):
-    """A frozen record that refuses unknown fields and converts no types."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
 class Digest(Strict):
@@ -47,16 +47,16 @@ class Digest(Strict):
 class Subject(Strict):
     """One file of the bundle; the name is relative to the folder of the bundle."""
 
-    name: str
+    name: Line
     digest: Digest
 
 
 class EngineRecord(Strict):
     """The engine that computed the runs."""
 
-    version: str
-    quadrants_version: str
-    precision: str
+    version: Line
+    quadrants_version: Line
+    precision: Line
     files_match_wheel: bool
 
 
@@ -66,39 +66,39 @@ class BackendRecord(Strict):
     requested: Literal["auto", "cpu"]
     actual: Literal["cpu", "cuda", "amdgpu", "metal"]
     actual_at_end: Literal["cpu", "cuda", "amdgpu", "metal"]
-    arch: str
-    torch_device: str
-    torch_version: str
-    hip_version: str | None
-    cuda_version: str | None
-    device_name: str
-    driver: str | None
+    arch: Line
+    torch_device: Line
+    torch_version: Line
+    hip_version: Line | None
+    cuda_version: Line | None
+    device_name: Line
+    driver: Line | None
 
 
 class RenderRecord(Strict):
     """The renderer of the frames; with mode `skip`, the other fields are None."""
 
     mode: Literal["camera", "skip"]
-    vendor: str | None
-    renderer: str | None
+    vendor: Line | None
+    renderer: Line | None
     software: bool | None
 
 
 class HostRecord(Strict):
     """The machine and its packages."""
 
-    os: str
-    machine: str
-    cpu: str
-    cores: int
-    python: str
-    packages: dict[str, str]
+    os: Line
+    machine: Line
+    cpu: Line
+    cores: Index
+    python: Line
+    packages: dict[Line, Line]
 
 
 class GitRecord(Strict):
     """State of the checkout."""
 
-    commit: str
+    commit: Line
     dirty: bool
 
 
@@ -106,36 +106,36 @@ class SourceRecord(Strict):
     """Digests of the code that computed: code cells of the page, modules of the package."""
 
     page: Sha256 | None
-    modules: dict[str, Sha256]
+    modules: dict[Line, Sha256]
 
 
 class CheckRecord(Strict):
     """Outcome of one named check."""
 
-    name: str
+    name: Line
     passed: bool
-    detail: str
+    detail: Message
 
 
 class Predicate(Strict):
     """The circumstances and outcomes of the run."""
 
     schema_version: int
-    lesson: str
-    page: str
+    lesson: Line
+    page: Line
     run_id: RunId
     started: Timestamp
     ended: Timestamp
-    command: str
+    command: LongLine
     engine: EngineRecord
     backend: BackendRecord
     render: RenderRecord
     host: HostRecord
-    environment: dict[str, str]
-    parameters: dict[str, Any]
+    environment: dict[Line, LongLine]
+    parameters: dict[Line, Any]
     seed: int
     checks: list[CheckRecord]
-    warnings: list[str]
+    warnings: list[Message]
     git: GitRecord | None
     source: SourceRecord
     evidence_key: Sha256
@@ -154,47 +154,47 @@ class Metric(Strict):
     """One number of `metrics.json`; null means not observed."""
 
     value: int | float | None
-    unit: str
+    unit: Line
     kind: Literal["exact", "value", "performance"] = Field(alias="class")
-    source: list[str] = Field(alias="from")
+    source: list[Line] = Field(alias="from")
 
 
 class Variable(Strict):
     """One array of `arrays.json`. `unit` is a list if each DOF has its own unit."""
 
-    dims: list[str]
+    dims: list[Line]
     shape: list[int]
-    dtype: str
-    unit: str | list[str]
-    long_name: str
+    dtype: Line
+    unit: Line | list[Line]
+    long_name: Line
 
 
 class CaseArrays(Strict):
     """The arrays of one case."""
 
-    file: str
-    note: str
-    variables: dict[str, Variable]
+    file: Line
+    note: Line
+    variables: dict[Line, Variable]
 
 
 class JointRecord(Strict):
     """The joint of one DOF of the arrays; a limit is null if the model has none."""
 
-    name: str
-    type_: str = Field(alias="type")
+    name: Line
+    type_: Line = Field(alias="type")
     dof_idx_local: Index
     q_idx_local: Index
     lower: float | None
     upper: float | None
-    unit: str
+    unit: Line
 
 
 class Arrays(Strict):
     """`arrays.json`: labels of the dimensions, the joints, and the arrays of each case."""
 
-    coords: dict[str, list[str]]
+    coords: dict[Line, list[Line]]
     joints: list[JointRecord]
-    cases: dict[str, CaseArrays]
+    cases: dict[Line, CaseArrays]
 
 
 def sha256(path: Path) -> str:
@@ -268,7 +268,14 @@ def _version(value: Any) -> int:
 def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
     """Return metrics by group (a case, or `model`) and name."""
     content = read_json(folder, "metrics.json")
-    return _validated(dict[str, dict[str, Metric]], content, "metrics.json")
+    metrics: dict[str, dict[str, Metric]] = _validated(
+        dict[Line, dict[Line, Metric]], content, "metrics.json"
+    )
+    for name, metric in by_full_name(metrics).items():
+        if abs(metric.value or 0) > LARGEST:
+            value = f"{name} is {shown(metric.value)}, expected at most 2⁵³"
+            raise BundleRefused("bad-schema", f"metrics.json: {value}. {AGAIN}")
+    return metrics
 
 
 def by_full_name(metrics: Mapping[str, Mapping[str, Metric]]) -> dict[str, Metric]:
@@ -286,5 +293,5 @@ def _validated(form: Any, value: Any, file: str) -> Any:
         return TypeAdapter(form).validate_python(value)
     except ValidationError as error:
         first = error.errors()[0]
-        place = ".".join(map(str, (file, *first["loc"])))
+        place = ".".join(map(str, (file, *first["loc"])))[:LONGEST_SHOWN]
         raise BundleRefused("bad-schema", f"{place}: {first['msg']}. {AGAIN}") from error

@@ -3,6 +3,7 @@
 import os
 import re
 import stat
+from collections import Counter
 from pathlib import Path
 
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
@@ -60,8 +61,8 @@ def check_files(folder: Path, present: set[str], manifest: Manifest) -> None:
     listed = [subject.name for subject in manifest.subject]
     odd = [name for name in listed if not NAME.fullmatch(name)]
     expect("path", "manifest.json", "list of names that are not plain relative paths", odd, [])
-    folded = [name.casefold() for name in listed]
-    repeated = sorted({name for name in listed if folded.count(name.casefold()) > 1})
+    folded = Counter(name.casefold() for name in listed)
+    repeated = sorted({name for name in listed if folded[name.casefold()] > 1})
     expect("path", "manifest.json", "list of names that differ at most in case", repeated, [])
     absent = sorted({*listed, *REQUIRED} - present)
     unlisted = sorted(present - {*listed, "manifest.json"})

@@ -4,7 +4,7 @@ import os
 import shutil
 from pathlib import Path
 
-from robo_genesis.core.files import NEXT, OLD, beside, settle, swap
+from robo_genesis.core.files import NEXT, OLD, replaced, settle
 from robo_genesis.core.project import ProjectError
 
 HIDDEN = "."
@@ -41,11 +41,8 @@ def put(bundle: Path, lesson: Path) -> Path:
             f"{place} is not an evidence bundle: it has no manifest.json, or is a link. "
             "Move it away, or name another folder with TO=folder."
         )
-    try:
-        shutil.copytree(bundle, beside(place, NEXT, HIDDEN))
-        swap(place, HIDDEN)
-    finally:
-        recover(lesson.parent)
+    with replaced(place, HIDDEN) as following:
+        shutil.copytree(bundle, following)
     return place
 
 

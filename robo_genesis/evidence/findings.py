@@ -31,14 +31,13 @@ Two runs that both break an ordering agree, but the claim of the lesson fails.
 
 
 @dataclass(frozen=True, slots=True)
-class Specification:
-    """What a lesson declares about its runs, as data of its module.
+class PageSpecification:
+    """What a lesson declares about the runs of one of its pages.
 
     `metrics` gives the required metrics of each case; `tolerances` is unit or metric →
     (atol, rtol).
     """
 
-    lesson: str
     metrics: Mapping[str, tuple[str, ...]]
     tolerances: Mapping[str, tuple[float, float]]
     relations: tuple[Relation, ...]
@@ -106,7 +105,7 @@ def section(title: str, findings: Iterator[Finding], empty: str = "") -> Section
     return Section(title, tuple(rows), empty)
 
 
-def coverage(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
+def coverage(old: Side, new: Side, spec: PageSpecification) -> Iterator[Finding]:
     """Both sides have the same cases, metrics, checks, labels and joints."""
     metrics = {f"{case}.{name}" for case, names in spec.metrics.items() for name in names}
     yield from _present("case", {*old.traces}, {*new.traces}, {*spec.metrics})
@@ -163,7 +162,7 @@ def invariants(old: Side, new: Side) -> Iterator[Finding]:
         yield Finding(EQUAL if all(both) else DIFFERS, name, here, there)
 
 
-def relations(old: Side, new: Side, spec: Specification) -> Iterator[Finding]:
+def relations(old: Side, new: Side, spec: PageSpecification) -> Iterator[Finding]:
     """Both sides show each ordering that the lesson claims."""
     for relation in spec.relations:
         (first, second), metric, claim, margin = relation

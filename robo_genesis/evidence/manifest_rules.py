@@ -1,15 +1,17 @@
 """Rules between the fields of a manifest, the name of its folder and the log."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from datetime import datetime
 from pathlib import Path
 
 from robo_genesis.core import project
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.evidence.bundle import Manifest, Predicate, evidence_key
+from robo_genesis.evidence.fields import LINE_LIMIT
 from robo_genesis.lessons.registry import LESSONS
-from robo_genesis.sim.session import Renderer
+from robo_genesis.sim.backends import contradictions
+from robo_genesis.sim.camera import Renderer
 
 MANIFEST = "manifest.json"
 RELABEL = "Name the folder after the backend that computed."
@@ -20,14 +22,6 @@ TORCH = (
 
 FORCED = ("GS_TORCH_FORCE_CPU_DEVICE", "QD_ARCH")
 """Switches that can make the engine and Torch use different devices."""
-
-AGREEMENT = {
-    "cpu": (("x64", "arm64"), "cpu"),
-    "cuda": (("cuda",), "cuda"),
-    "amdgpu": (("amdgpu",), "cuda"),
-    "metal": (("metal",), "mps"),
-}
-"""Actual backend → architectures of Quadrants, device of Torch. ROCm calls its device `cuda`."""
 
 LEVELS = ("DEBUG", "INFO", "WARNING", "ERROR", "CRITICAL")
 SOFTWARE_LINE = "Software rendering context detected"
@@ -65,8 +59,6 @@ def check_identity(
 def check_backend(folder: Path, manifest: Manifest) -> None:
     """Require one backend, which names the folder, during the whole run, and a matching Torch.
 
-    Only the build of Torch distinguishes ROCm from CUDA.
-
     Raises:
         BundleRefused: `backend` or `torch`.
     """
@@ -76,14 +68,8 @@ def check_backend(folder: Path, manifest: Manifest) -> None:
     expect("backend", MANIFEST, "actual_at_end", backend.actual_at_end, backend.actual, again)
     if backend.requested == "cpu":
         expect("backend", MANIFEST, "actual where cpu was requested", backend.actual, "cpu")
-    archs, device = AGREEMENT[backend.actual]
-    if backend.arch not in archs:
-        expect("torch", MANIFEST, "backend.arch", backend.arch, archs, TORCH)
-    expect("torch", MANIFEST, "backend.torch_device", backend.torch_device, device, TORCH)
-    builds = (bool(backend.hip_version), bool(backend.cuda_version))
-    needed = {"amdgpu": (True, False), "cuda": (False, True)}.get(backend.actual, builds)
-    what = f"whether Torch has (HIP, CUDA) for {backend.actual}"
-    expect("torch", MANIFEST, what, builds, needed, TORCH)
+    for what, found, expected in contradictions(backend):
+        expect("torch", MANIFEST, what, found, expected, TORCH)
 
 
 def check_environment(manifest: Manifest) -> None:
@@ -142,34 +128,48 @@ def check_log(folder: Path, manifest: Manifest) -> None:
         text = (folder / "log.txt").read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise BundleRefused("log", f"log.txt: {error}, expected UTF-8. {AGAIN}") from error
-    for what, found, expected in _log_facts(text, manifest.predicate):
+    lines = text.removesuffix("\n").split("\n")
+    longest = max(map(len, lines))
+    if longest > LINE_LIMIT:
+        what = f"a line has {longest} characters, expected at most {LINE_LIMIT}"
+        raise BundleRefused("log", f"log.txt: {what}. {AGAIN}")
+    for what, found, expected in _log_facts(lines, manifest.predicate):
         expect("log", "log.txt", what, found, expected)
 
 
-def _log_facts(text: str, predicate: Predicate) -> Iterator[tuple[str, object, object]]:
-    """Yield (name, value in the log, value in the manifest) of each fact that the log states."""
+def _log_facts(lines: Sequence[str], predicate: Predicate) -> Iterator[tuple[str, object, object]]:
+    """Yield (name, value in the log, value in the manifest) of each fact that the log states.
+
+    Each line is searched from its start alone: the time grows with its length, not its square.
+    """
     backend, engine = predicate.backend, predicate.engine
-    yield "warnings", _warnings(text), predicate.warnings
-    for device, name in re.findall(r"Running on \[(.*)\] with backend (?:gs\.)?(\w+)", text):
-        yield "backend", name, backend.actual
-        yield "device", device, backend.device_name
-    for what, pattern, expected in (
-        ("engine version", r"initialized\..*version: ([^,\s]+)", engine.version),
-        ("seed", r"initialized\..*seed: ([^,\s]+)", str(predicate.seed)),
-        ("precision", r"initialized\..*precision: ([^,\s]+)", engine.precision),
-    ):
-        yield from ((what, found, expected) for found in re.findall(pattern, text))
-    if SOFTWARE_LINE in text and predicate.render.mode == "camera":
+    yield "warnings", _warnings(lines), predicate.warnings
+    stated = {
+        "engine version": engine.version,
+        "seed": str(predicate.seed),
+        "precision": engine.precision,
+    }
+    for line in lines:
+        device, _, name = line.partition("Running on [")[2].rpartition("] with backend ")
+        if word := re.match(r"(?:gs\.)?(\w+)", name):
+            yield "backend", word[1], backend.actual
+            yield "device", device, backend.device_name
+        start = line.partition("initialized.")[2]
+        for what, expected in stated.items():
+            found = start.rpartition(f"{what.split()[-1]}: ")
+            if found[1] and (value := re.match(r"[^,\s]+", found[2])):
+                yield what, value[0], expected
+    if predicate.render.mode == "camera" and any(SOFTWARE_LINE in line for line in lines):
         yield "software rendering", True, predicate.render.software
 
 
-def _warnings(text: str) -> list[str]:
+def _warnings(lines: Sequence[str]) -> list[str]:
     """Return the messages of the log at WARNING or above; a message may have several lines."""
-    messages: list[tuple[str, str]] = []
-    for line in text.removesuffix("\n").split("\n"):
+    messages: list[tuple[str, list[str]]] = []
+    for line in lines:
         level, _, rest = line.partition(" ")
         if level in LEVELS:
-            messages.append((level, rest))
+            messages.append((level, [rest]))
         elif messages:
-            messages[-1] = (messages[-1][0], f"{messages[-1][1]}\n{line}")
-    return [rest for level, rest in messages if level not in ("DEBUG", "INFO")]
+            messages[-1][1].append(line)
+    return ["\n".join(parts) for level, parts in messages if level not in ("DEBUG", "INFO")]

@@ -8,54 +8,25 @@ import os
 import platform
 import shutil
 import uuid
-from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from robo_genesis.core import project
-from robo_genesis.core.checks import Check
 from robo_genesis.core.git import git_or_none
-from robo_genesis.core.metrics import Record
-from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import write_traces
-from robo_genesis.lessons.registry import find_page
+from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.sim import session
-from robo_genesis.sim.joints import JointMap
+from robo_genesis.sim.camera import Renderer
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"
-
-
-@dataclass(frozen=True, slots=True)
-class Measured:
-    """The measurements of a page.
-
-    | field | meaning |
-    |---|---|
-    | `joints` | of the DOFs, None for runs of free bodies |
-    | `metrics` | group → name → {value, unit, class, from} |
-    | `frames` | name → RGB, empty without a camera |
-    | `parameters` | JSON values |
-    | `notes` | by case, how its arrays differ from an ordinary run |
-    """
-
-    joints: JointMap | None
-    links: Sequence[str]
-    traces: Mapping[str, TimeSeries]
-    metrics: Mapping[str, Mapping[str, Record]]
-    checks: Sequence[Check]
-    frames: Mapping[str, np.ndarray]
-    parameters: Mapping[str, Any]
-    renderer: session.Renderer | None
-    notes: Mapping[str, str] = field(default_factory=dict)
 
 
 class Recorder:
@@ -97,7 +68,7 @@ class Recorder:
         }
         return [{"what": name, "value": value} for name, value in found.items()]
 
-    def write(self, measured: Measured) -> Path:
+    def write(self, experiment: Experiment, renderer: Renderer | None) -> Path:
         """Write the bundle to a temporary folder, then move it to its place in one step.
 
         Raises:
@@ -106,17 +77,17 @@ class Recorder:
         Returns:
             Its folder. An earlier bundle of the same page and backend is replaced.
         """
-        if self.contract.render != (measured.renderer is not None):
+        if self.contract.render != (renderer is not None):
             raise session.ContractError(
                 f"ROBO_GENESIS_RENDER asks for {'a camera' if self.contract.render else 'none'}, "
-                f"but the page used {'a' if measured.renderer else 'no'} renderer. Render exactly "
+                f"but the page used {'a' if renderer else 'no'} renderer. Render exactly "
                 "if the contract asks for it."
             )
         partial = self.contract.outputs / f".{self.lesson}-{self.page}-{self.run_id}.partial"
         shutil.rmtree(partial, ignore_errors=True)
         partial.mkdir(parents=True)
         try:
-            self._write_files(partial, measured)
+            self._write_files(partial, experiment, renderer)
             self.folder.parent.mkdir(parents=True, exist_ok=True)
             shutil.rmtree(self.folder, ignore_errors=True)
             partial.rename(self.folder)
@@ -124,12 +95,12 @@ class Recorder:
             shutil.rmtree(partial, ignore_errors=True)
         return self.folder
 
-    def _write_files(self, folder: Path, measured: Measured) -> None:
-        traces, links = measured.traces, list(measured.links)
-        arrays = write_traces(folder, traces, measured.joints, links, measured.notes)
+    def _write_files(self, folder: Path, run: Experiment, renderer: Renderer | None) -> None:
+        notes = {name: declared.note for name, declared in run.page.runs.items()}
+        arrays = write_traces(folder, run.traces, run.joints, list(run.links), notes)
         _write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
-        _write_json(folder / "metrics.json", measured.metrics)
-        for name, frame in measured.frames.items():
+        _write_json(folder / "metrics.json", run.records())
+        for name, frame in run.frames.items():
             (folder / "frames").mkdir(exist_ok=True)
             text = PngInfo()
             text.add_text("run_id", self.run_id)
@@ -146,18 +117,14 @@ class Recorder:
                 if path.is_file()
             ],
             "predicateType": bundle.PREDICATE_TYPE,
-            "predicate": self._predicate(measured),
+            "predicate": self._predicate(run, renderer),
         }
         bundle.Manifest.model_validate(statement)
         _write_json(folder / "manifest.json", statement)
 
-    def _predicate(self, measured: Measured) -> dict[str, Any]:
-        backend, renderer = self.engine.backend, measured.renderer
-        modules = bundle.module_digests(find_page(self.lesson, self.page).modules, PACKAGE)
-        at_end = {
-            "actual_at_end": session.probe(backend.requested).actual,
-            "driver": driver_version(),
-        }
+    def _predicate(self, run: Experiment, renderer: Renderer | None) -> dict[str, Any]:
+        backend = self.engine.backend
+        modules = bundle.module_digests(run.page.modules, PACKAGE)
         predicate: dict[str, Any] = {
             "schema_version": bundle.SCHEMA_VERSION,
             "lesson": self.lesson,
@@ -166,13 +133,11 @@ class Recorder:
             "started": self.started,
             "ended": _now(),
             "command": os.environ.get("ROBO_GENESIS_COMMAND", "notebook run by hand"),
-            "engine": {
-                "version": self.engine.version,
-                "quadrants_version": self.engine.quadrants_version,
-                "precision": self.engine.precision,
-                "files_match_wheel": self._match.result(),
-            },
-            "backend": asdict(backend) | at_end,
+            "engine": {name: getattr(self.engine, name) for name in bundle.KEYED_OF_ENGINE}
+            | {"files_match_wheel": self._match.result()},
+            "backend": asdict(backend)
+            | {"actual_at_end": session.probe(backend.requested).actual}
+            | {"driver": driver_version()},
             "render": {
                 "mode": "camera" if renderer else "skip",
                 "vendor": renderer.vendor if renderer else None,
@@ -183,9 +148,9 @@ class Recorder:
             "environment": {
                 name: project.without_home(value) for name, value in self.engine.switches.items()
             },
-            "parameters": dict(measured.parameters),
+            "parameters": run.page.parameters(),
             "seed": self.engine.seed,
-            "checks": [asdict(check) for check in measured.checks],
+            "checks": [asdict(check) for check in run.outcomes()],
             "warnings": self.engine.log.warnings,
             "git": git_record(),
             "source": {"page": os.environ.get("ROBO_GENESIS_PAGE_SHA256"), "modules": modules},

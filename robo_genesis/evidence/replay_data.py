@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from robo_genesis.core.channels import Runs
+from robo_genesis.core.channels import Runs, farthest_link
+from robo_genesis.core.quantities import format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import any_bodies, read_joints, read_trace
 from robo_genesis.lessons.declaration import Compared, Moving
@@ -21,10 +22,31 @@ def read_runs(folder: Path, drawn: Compared | Moving) -> Runs:
         ValueError: it has no such joint, link or axis, or the runs differ in their times.
     """
     arrays = bundle.read_arrays(folder)
+    if isinstance(drawn, Compared):
+        return _joint_runs(folder, arrays, drawn)
+    bodies = {case: any_bodies(folder, arrays, case) for case in drawn.cases}
     links = arrays.coords["link"]
-    if isinstance(drawn, Moving):
-        bodies = {case: any_bodies(folder, arrays, case) for case in drawn.cases}
-        return body_channels.runs(bodies, links, drawn.link, drawn.thing, drawn.axes)
+    return body_channels.runs(bodies, links, drawn.link, drawn.thing, drawn.axes)
+
+
+def _joint_runs(folder: Path, arrays: bundle.Arrays, drawn: Compared) -> Runs:
     traces = {case: read_trace(folder, arrays, case) for case in drawn.cases}
-    joints, metrics = read_joints(arrays), bundle.read_metrics(folder)
-    return joint_channels.runs(traces, links, joints, drawn.joint, metrics, drawn.band)
+    links, joints, joint = arrays.coords["link"], read_joints(arrays), drawn.joint
+    metrics, moves = bundle.read_metrics(folder), {}
+    for case, trace in traces.items():
+        values = {name: format_value(m.value, m.unit) for name, m in metrics[case].items()}
+        moves[case] = (
+            f"**{case}**: {joint_channels.motion(trace, joints, joint)} "
+            f"{farthest_link(links, trace)} {drawn.quality.format(**values)}"
+        )
+    return Runs(
+        subject=joint,
+        traces=traces,
+        links=links,
+        channels=joint_channels.channels(traces, joints, joint),
+        levels=joint_channels.levels(traces, joints, joint, drawn.band),
+        moves=moves,
+        view=drawn.view,
+        alt=drawn.alt,
+        caption=drawn.caption,
+    )

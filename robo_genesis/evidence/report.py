@@ -7,7 +7,7 @@ from pathlib import Path
 from robo_genesis.core import tables
 from robo_genesis.core.files import write_whole
 from robo_genesis.evidence.bundle import Predicate
-from robo_genesis.evidence.compare import Comparison
+from robo_genesis.evidence.compare import BundleComparison
 from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, SEVERITY, Section
 
 COLUMNS = ("result", "what", "old", "new", "Δ", "allowed")
@@ -33,13 +33,13 @@ th, td { border-bottom: 1px solid var(--line); padding: .3rem .8rem .3rem 0; tex
 """
 
 
-def title(comparison: Comparison) -> str:
+def title(comparison: BundleComparison) -> str:
     """Return the heading of a report."""
     lesson, page = comparison.new.lesson, comparison.new.page
     return f"{lesson.upper()} {page}: {comparison.axis}"
 
 
-def verdict(comparison: Comparison) -> str:
+def verdict(comparison: BundleComparison) -> str:
     """Return the result in one sentence, and the number of rows in each state."""
     if comparison.obstacles:
         return "Not comparable."
@@ -48,7 +48,7 @@ def verdict(comparison: Comparison) -> str:
     return f"{comparison.state.capitalize()}. Rows: {counts}."
 
 
-def summary(comparison: Comparison) -> str:
+def summary(comparison: BundleComparison) -> str:
     """Return the report in a few lines: verdict, obstacles or sections, notes."""
     lines = [title(comparison), verdict(comparison), *comparison.obstacles]
     for part in comparison.sections:
@@ -59,7 +59,7 @@ def summary(comparison: Comparison) -> str:
     return "\n".join([*lines, *comparison.notes])
 
 
-def markdown(comparison: Comparison, level: int = 1) -> str:
+def markdown(comparison: BundleComparison, level: int = 1) -> str:
     """Return the report as Markdown; its heading has the given level."""
     mark = "#" * level
     parts = [f"{mark} {plain(title(comparison))}", f"**{verdict(comparison)}**"]
@@ -67,17 +67,17 @@ def markdown(comparison: Comparison, level: int = 1) -> str:
     for part in comparison.sections:
         state = f": {part.state}" if part.findings else ""
         parts.append(f"{mark}# {part.title}{state}")
-        parts.append(markdown_table(_table(part)) if part.findings else part.empty)
+        parts.append(markdown_table(_table(part), part.empty))
     parts += [f"{mark}# The two bundles", markdown_table(_origin(comparison))]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
 
-def html(comparison: Comparison) -> str:
+def html(comparison: BundleComparison) -> str:
     """Return the report as one HTML page without scripts, fonts or pictures from elsewhere."""
     return html_page(title(comparison), html_body(comparison))
 
 
-def html_body(comparison: Comparison, level: int = 1) -> list[str]:
+def html_body(comparison: BundleComparison, level: int = 1) -> list[str]:
     """Return the HTML elements of the report; its heading has the given level."""
     top, below = f"h{level}", f"h{level + 1}"
     body = [f"<{top}>{escape(title(comparison))}</{top}>"]
@@ -88,8 +88,7 @@ def html_body(comparison: Comparison, level: int = 1) -> list[str]:
     for part in comparison.sections:
         mark = f': <span class="{_css(part.state)}">{part.state}</span>' if part.findings else ""
         body.append(f"<{below}>{part.title}{mark}</{below}>")
-        content = html_table(part.title, _table(part)) if part.findings else f"<p>{part.empty}</p>"
-        body.append(content)
+        body.append(html_table(part.title, _table(part), part.empty))
     table = html_table("The two bundles", _origin(comparison))
     return [*body, f"<{below}>The two bundles</{below}>", table]
 
@@ -119,7 +118,7 @@ def _table(part: Section) -> list[Row]:
     return [tuple(row[k] for k in kept) for row in [COLUMNS, *rows]]
 
 
-def _origin(comparison: Comparison) -> list[Row]:
+def _origin(comparison: BundleComparison) -> list[Row]:
     old, new = _facts(comparison.old), _facts(comparison.new)
     rows = [("folder", *comparison.folders), *((what, old[what], new[what]) for what in old)]
     return [("", "old", "new"), *rows]
@@ -141,16 +140,25 @@ def _facts(predicate: Predicate) -> dict[str, str]:
     }
 
 
-def markdown_table(rows: list[Row]) -> str:
-    """Return rows of text as a Markdown table; the first row is the head."""
+def markdown_table(rows: list[Row], empty: str = "") -> str:
+    """Return rows of text as a Markdown table; the first row is the head.
+
+    Args:
+        rows: of equal length.
+        empty: the text in the place of a table that has only a head.
+    """
+    if len(rows) == 1:
+        return empty
     head = [plain(cell) for cell in rows[0]]
     return tables.markdown(
         [dict(zip(head, map(plain, row), strict=True)) for row in rows[1:]]
     ).strip()
 
 
-def html_table(label: str, rows: list[Row]) -> str:
-    """Return rows of text as a table in a scroll box; the first row is the head."""
+def html_table(label: str, rows: list[Row], empty: str = "") -> str:
+    """Return rows of text as a table in a scroll box; see `markdown_table`."""
+    if len(rows) == 1:
+        return f"<p>{empty}</p>"
     head = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in rows[0])
     body = "".join(f"<tr>{''.join(map(_cell, row))}</tr>\n" for row in rows[1:])
     return (

@@ -11,8 +11,8 @@ from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence import bundle, evidence_key
 from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.compare import specification
-from robo_genesis.evidence.manifest_rules import AGREEMENT
 from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.sim.backends import BACKENDS
 
 RECORDED_PAGE = "lab"
 """The page whose bundles are recorded on accelerators and kept in the repository."""
@@ -76,20 +76,6 @@ class Status:
             f"{passed} of {len(predicate.checks)} checks passed, {camera}, "
             f"measured {predicate.started[:10]}.{more}"
         )
-
-
-def page_status(
-    outputs: Path,
-    lesson: str,
-    page: str,
-    backend: str,
-    book: Path = project.BOOK,
-    *,
-    root: Path = project.ROOT,
-) -> Status:
-    """Return the state of one bundle below the outputs folder of a build."""
-    absent = f"No bundle was recorded for {lesson}/{page}."
-    return bundle_status(outputs / lesson / page / backend, lesson, page, absent, book, root=root)
 
 
 def recorded_status(book: Path, lesson: str, backend: str, *, root: Path = project.ROOT) -> Status:
@@ -193,7 +179,7 @@ def recorded_folders(book: Path) -> list[Path]:
     return [
         path
         for path in sorted((book / "evidence").glob("*/[!.]*"))
-        if path.is_dir() or path.is_symlink() or path.name in AGREEMENT
+        if path.is_dir() or path.is_symlink() or path.name in BACKENDS
     ]
 
 

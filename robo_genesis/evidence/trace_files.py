@@ -161,16 +161,6 @@ def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
     return read_run(folder, arrays, case, Trace)
 
 
-def read_body_trace(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
-    """Return one run of free bodies; see `read_run`."""
-    return read_run(folder, arrays, case, BodyTrace)
-
-
-def read_contact_trace(folder: Path, arrays: Arrays, case: str) -> ContactTrace:
-    """Return one run of free bodies on a surface; see `read_run`."""
-    return read_run(folder, arrays, case, ContactTrace)
-
-
 def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Trace | BodyTrace:
     """Return one run of joints if the bundle has any, else of free bodies; see `read_run`."""
     return read_trace(folder, arrays, case) if arrays.joints else any_bodies(folder, arrays, case)

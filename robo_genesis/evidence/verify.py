@@ -1,17 +1,16 @@
 """Accept or refuse a bundle: whatever can be recomputed from its arrays is recomputed."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from robo_genesis.core import project
 from robo_genesis.core.checks import Check
-from robo_genesis.core.metrics import Record
-from robo_genesis.core.refusals import BundleRefused, expect
+from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.evidence import bundle, bundle_files, evidence_key, manifest_rules
 from robo_genesis.evidence.bundle import Manifest
-from robo_genesis.evidence.reader import Reader
+from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.strict_json import differences
-from robo_genesis.lessons.registry import find_lesson
+from robo_genesis.lessons.experiment import Experiment
 
 
 def verify_bundle(
@@ -52,23 +51,26 @@ def verify_bundle(
     manifest_rules.check_log(folder, manifest)
     manifest_rules.check_engine_files(manifest)
     evidence_key.check_current(manifest, root, book)
-    reader = Reader(folder, manifest)
-    recomputed = find_lesson(manifest.predicate.lesson).recompute(reader)
-    check_metrics(reader, recomputed.metrics)
-    check_outcomes(manifest, recomputed.outcomes)
+    experiment = from_bundle(folder, manifest)
+    check_metrics(folder, experiment)
+    check_outcomes(manifest, experiment.outcomes())
     return manifest
 
 
-def check_metrics(reader: Reader, expected: Mapping[str, Mapping[str, Record]]) -> None:
+def check_metrics(folder: Path, experiment: Experiment) -> None:
     """Require that metrics.json has the values, units, classes and sources of the runs.
 
     Raises:
-        BundleRefused: `metrics`.
+        BundleRefused: `bad-trace` if the arrays of a run give no metrics; `metrics`.
     """
     found = {
         group: {name: metric.model_dump(by_alias=True) for name, metric in metrics.items()}
-        for group, metrics in reader.metrics.items()
+        for group, metrics in bundle.read_metrics(folder).items()
     }
+    try:
+        expected = experiment.records()
+    except (LookupError, ValueError, ArithmeticError) as error:
+        raise BundleRefused("bad-trace", f"arrays: {error} {AGAIN}") from error
     for name, recorded, computed in differences(found, expected):
         expect("metrics", "metrics.json", name, recorded, computed)
 

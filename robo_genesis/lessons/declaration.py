@@ -1,21 +1,19 @@
 """The form of a lesson's declaration in its `__init__.py`."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-import numpy as np
-
-from robo_genesis.core.checks import Check
-from robo_genesis.core.metrics import CaseMetrics, Record
+from robo_genesis.core.channels import View
+from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.orderings import Relation
 from robo_genesis.core.text import listed
-from robo_genesis.core.trace import BodyTrace, ContactTrace, Trace
-from robo_genesis.sim.joints import JointMap
+from robo_genesis.lessons.experiment import MeasuringPage
 
 COMMON_MODULES = (
     "core.checks", "core.metrics", "core.quantities", "core.scene", "core.trace",
-    "sim.end_state", "sim.joints", "sim.session",
+    "lessons.experiment", "sim.backends", "sim.camera", "sim.end_state", "sim.joints",
+    "sim.session",
 )  # fmt: skip
 """Modules that affect the measurements of every page."""
 
@@ -44,70 +42,6 @@ class Specification(Protocol):
         """The orderings that the lesson claims."""
 
 
-class BundleReader(Protocol):
-    """The files of one bundle, as the `recompute` of a lesson reads them.
-
-    Every method raises BundleRefused if a file is damaged or does not match the arguments.
-    """
-
-    @property
-    def page(self) -> str:
-        """The page that recorded the bundle."""
-
-    @property
-    def end_state(self) -> str:
-        """`camera` if the run was rendered, else `schematic`."""
-
-    def frames(self) -> dict[str, np.ndarray]:
-        """Return the camera frames by name, each (height, width, 3)."""
-
-    def joints(self) -> JointMap:
-        """Return the joint of each DOF of the arrays."""
-
-    def traces(
-        self, required: Iterable[str], check_coords: Callable[[Mapping[str, list[str]]], None]
-    ) -> dict[str, Trace]:
-        """Return all runs of joints by case, after `check_coords` has accepted their labels."""
-
-    def bodies(self, cases: Iterable[str], link: str) -> dict[str, BodyTrace]:
-        """Return the runs of one free body by case; the bundle has no other runs."""
-
-    def contacts(self, cases: Iterable[str], link: str) -> dict[str, ContactTrace]:
-        """Return the runs of one free body with its contacts by case; there are no other runs."""
-
-    def counts(self, group: str, names: Iterable[str]) -> dict[str, int]:
-        """Return counts that the engine reported; the group has no others."""
-
-    def recorded(self, group: str) -> dict[str, float]:
-        """Return the observed values of a group of metrics.json."""
-
-    def readings(self, group: str, names: Iterable[str]) -> dict[str, float]:
-        """Return values that the engine reported; the group has no others."""
-
-
-@dataclass(frozen=True, slots=True)
-class Recomputed:
-    """Recomputed content of a bundle: `metrics.json` and the outcomes of the named checks."""
-
-    metrics: Mapping[str, Mapping[str, Record]]
-    outcomes: Sequence[Check]
-
-
-@dataclass(frozen=True, slots=True)
-class MeasuringPage:
-    """A page that runs the engine and writes a bundle.
-
-    `parameters` returns every configured input as JSON values. `modules` are the modules whose
-    source affects the measurements, such as `core.trace`: a change in one makes evidence stale.
-    The `spec` of a lesson is not among them, because `parameters` covers it. `cases` are the cases
-    of the lesson that the page runs, None for all.
-    """
-
-    parameters: Callable[[], dict[str, Any]]
-    modules: tuple[str, ...]
-    cases: tuple[str, ...] | None = None
-
-
 @dataclass(frozen=True, slots=True)
 class Drawn:
     """Cases that share one plot and one replay.
@@ -126,10 +60,18 @@ class Drawn:
 
 @dataclass(frozen=True, slots=True)
 class Compared(Drawn):
-    """Cases that move one joint of a robot; `band` is the half width of its settling band."""
+    """Cases that move one joint of a robot; `band` is the half width of its settling band.
+
+    `alt` and `caption` belong to a picture of the joint's position. `quality` is a sentence about
+    one case with its metrics by name in braces: `Rise time {rise_time}.`
+    """
 
     joint: str
     band: float
+    view: View
+    alt: str
+    caption: str
+    quality: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,19 +104,19 @@ class Lesson:
     | `spec` | its module of data |
     | `metrics` | by case, the class of its metrics |
     | `pages` | the measuring pages by name |
-    | `recompute` | returns metrics and checks from the files of a bundle |
     | `filmed` | the subject of its camera frames |
     | `compared` | the cases of its pictures and its replay, None for no replay |
     | `further` | further replays by name |
+    | `marks` | the palette's marks of its cases; `baseline` needs none |
     """
 
     spec: Specification
     metrics: Mapping[str, type[CaseMetrics]]
     pages: Mapping[str, MeasuringPage]
-    recompute: Callable[[BundleReader], Recomputed]
     filmed: Filmed
     compared: Compared | Moving | None = None
     further: Mapping[str, Moving] = field(default_factory=dict)
+    marks: Mapping[str, str] = field(default_factory=dict)
 
     def about_metrics(self, what: str) -> dict[str, Any]:
         """Return `unit`, `label` or `noun` of each of its metrics by name."""

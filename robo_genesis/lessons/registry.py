@@ -3,7 +3,8 @@
 from importlib import import_module
 from pathlib import Path
 
-from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, MeasuringPage, Moving
+from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, Moving
+from robo_genesis.lessons.experiment import MeasuringPage
 
 
 def _discovered() -> dict[str, Lesson]:
@@ -13,7 +14,7 @@ def _discovered() -> dict[str, Lesson]:
         if not isinstance(lesson, Lesson):
             raise TypeError(
                 f"{init} declares LESSON as {lesson!r}. Each folder of a lesson declares one: "
-                "LESSON = Lesson(spec=..., metrics=..., pages=..., recompute=..., filmed=...)."
+                "LESSON = Lesson(spec=..., metrics=..., pages=..., filmed=...)."
             )
         found[init.parent.name] = lesson
     return found
@@ -21,6 +22,22 @@ def _discovered() -> dict[str, Lesson]:
 
 LESSONS: dict[str, Lesson] = _discovered()
 """By name, in the order of the course."""
+
+
+def _marks() -> dict[str, str]:
+    found = {"baseline": "baseline"}
+    for name, lesson in LESSONS.items():
+        for case, mark in lesson.marks.items():
+            if found.setdefault(case, mark) != mark:
+                raise ValueError(
+                    f"{name} gives the case {case} the mark {mark!r}, an earlier lesson gives it "
+                    f"{found[case]!r}. Use one mark for a name, or rename the case."
+                )
+    return found
+
+
+COURSE_MARKS = _marks()
+"""The palette's mark of each case that has one of its own, from all lessons."""
 
 
 def find_lesson(name: str) -> Lesson:

@@ -8,6 +8,8 @@ import shutil
 from pathlib import Path
 from string import Template
 
+from robo_genesis.core.project import ProjectError
+
 TEMPLATE = Path(__file__).with_name("template")
 SUFFIX = ".tmpl"
 TITLE = "A box lands"
@@ -16,7 +18,7 @@ CHAPTER = re.compile(r"  - file: (\S+)\s*")
 ENTRY = re.compile(r"- id: (\S+)\s*")
 
 
-class LessonError(Exception):
+class LessonError(ProjectError):
     """The lesson cannot be added; the message says why, and what is valid."""
 
 

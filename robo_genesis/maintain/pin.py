@@ -20,7 +20,7 @@ USAGE = "Usage: make repin GENESIS=1.2.3"
 Versions = Callable[[bool], list[str]]
 
 
-class RepinError(Exception):
+class RepinError(ProjectError):
     """The new pin was refused or failed; the message is the whole report."""
 
 

@@ -3,7 +3,6 @@
 Nothing of the checkout is touched before the last step, which writes two files.
 """
 
-import ctypes
 import signal
 import subprocess
 import sys
@@ -12,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.build.command import Progress, say
-from robo_genesis.build.kernels import kill_with_descendants
+from robo_genesis.build.kernels import end_with_parent, kill_with_descendants
 from robo_genesis.build.worktree import environment, worktree
 from robo_genesis.core import project
 from robo_genesis.core.files import locked
@@ -61,7 +60,7 @@ def run_repin(request: Repin) -> list[str]:
         The last lines for the user: what was changed, where the report is and what to do next.
 
     Raises:
-        RepinError, ProjectError: nothing was changed.
+        ProjectError, BundleRefused: nothing was changed.
     """
     root, folder = request.root, request.cache / "repin"
     require_plain_files(root)
@@ -72,14 +71,9 @@ def run_repin(request: Repin) -> list[str]:
     require_locked_packages(root)
     before = texts(root)
 
-    def refusal(process: str) -> RepinError:
-        return RepinError(
-            f"Another make repin runs here (process {process}). Wait for it, or stop it with "
-            "Ctrl-C there."
-        )
-
+    busy = "Another make repin runs here (process {}). Wait for it, or stop it with Ctrl-C there."
     with (
-        locked(folder / "lock", refusal),
+        locked(folder / "lock", lambda process: RepinError(busy.format(process))),
         worktree(root, folder / "work", request.cache) as work,
     ):
         pages = Trial(request, old, new, work, Progress(request.say)).run()
@@ -145,7 +139,7 @@ class Trial:
         folder = self.request.cache / "reports" / f"repin-{self.old}-{self.new}"
         pages = report.write(folder, refresh.markdown(found), refresh.html(found))
         self.progress("report", refresh.summary(found), str(folder))
-        self.command("test", f"all tests with {self.new}", "make", "test")
+        self.command("test", f"make test with {self.new}", "make", "test")
         return pages
 
     def command(self, stage: str, what: str, *command: str) -> None:
@@ -183,7 +177,7 @@ def run_logged(
             stdout=output,
             stderr=subprocess.STDOUT,
             start_new_session=True,  # a Ctrl-C of the terminal reaches this process alone
-            preexec_fn=_end_with_parent,
+            preexec_fn=end_with_parent(signal.SIGTERM),  # make passes it on
         )
         try:
             while process.poll() is None:
@@ -195,9 +189,3 @@ def run_logged(
             if process.poll() is None:
                 kill_with_descendants([process.pid])
     return process.returncode
-
-
-def _end_with_parent() -> None:
-    """Ask Linux for a SIGTERM when the parent ends, even by SIGKILL; make passes it on."""
-    set_parent_death_signal = 1  # PR_SET_PDEATHSIG of <sys/prctl.h>
-    ctypes.CDLL(None).prctl(set_parent_death_signal, signal.SIGTERM)

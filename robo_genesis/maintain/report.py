@@ -12,7 +12,7 @@ from bs4 import BeautifulSoup
 
 from robo_genesis.build.publish import PAGES
 from robo_genesis.evidence import report
-from robo_genesis.evidence.compare import Comparison, compare, specification_of
+from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.findings import SEVERITY, worst
 from robo_genesis.evidence.report import Row
 from robo_genesis.evidence.status import Status, recorded_folders, recorded_status
@@ -46,7 +46,7 @@ class Refresh:
 
     versions: Pair
     packages: dict[str, Pair]
-    comparisons: tuple[Comparison, ...]
+    comparisons: tuple[BundleComparison, ...]
     missing: tuple[str, ...]
     recorded: dict[str, tuple[Status, Status]]
     changed: tuple[tuple[str, str, str], ...]
@@ -91,7 +91,7 @@ def compare_builds(
     return Refresh(
         versions,
         changed_packages(*locks),
-        tuple(compare(old[n], new[n], specification_of(new[n])) for n in shared),
+        tuple(compare(old[n], new[n]) for n in shared),
         tuple(sorted(old.keys() ^ new.keys())),
         {name: (recorded[0][name], recorded[1][name]) for name in recorded[0]},
         tuple(changed_sentences(builds[0] / "html", builds[1] / "html")),
@@ -167,7 +167,7 @@ def markdown(refresh: Refresh) -> str:
     parts = [f"# {refresh.title}", f"**{summary(refresh).capitalize()}.**"]
     parts += [report.markdown(comparison, level=2) for comparison in refresh.comparisons]
     for name, rows, empty in _tables(refresh):
-        parts += [f"## {name}", report.markdown_table(rows) if len(rows) > 1 else empty]
+        parts += [f"## {name}", report.markdown_table(rows, empty)]
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
@@ -179,8 +179,7 @@ def html(refresh: Refresh) -> str:
     for comparison in refresh.comparisons:
         body += report.html_body(comparison, level=2)
     for name, rows, empty in _tables(refresh):
-        table = report.html_table(name, rows) if len(rows) > 1 else f"<p>{empty}</p>"
-        body += [f"<h2>{escape(name)}</h2>", table]
+        body += [f"<h2>{escape(name)}</h2>", report.html_table(name, rows, empty)]
     return report.html_page(refresh.title, body)
 
 

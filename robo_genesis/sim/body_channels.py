@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robo_genesis.core.channels import Channel, Runs, View, farthest_link
-from robo_genesis.core.text import listed, said, time_digits
+from robo_genesis.core.text import listed, time_digits, with_unit
 from robo_genesis.core.trace import BodyTrace
 
 
@@ -93,11 +93,12 @@ def _along(trace: BodyTrace, k: int, axis: Axis) -> str:
     """Describe where the origin of link `k` starts and ends along an axis, and its top speed."""
     path, velocity = (array[:, k, axis.number] for array in (trace.link_pos, trace.link_vel))
     distance, fastest = float(path[-1] - path[0]), int(np.abs(velocity).argmax())
-    ends = f"starts at {axis.at} {said(path[0], 'm')} and ends at {axis.at} {said(path[-1], 'm')}"
+    start, end = (f"{axis.at} {with_unit(value, 'm')}" for value in path[[0, -1]])
+    ends = f"starts at {start} and ends at {end}"
     if float(f"{distance:.4f}") != 0:
         verb = axis.forward if distance > 0 else axis.backward
-        ends += f": it {verb} {said(abs(distance), 'm')}"
+        ends += f": it {verb} {with_unit(abs(distance), 'm')}"
     if float(f"{velocity[fastest]:.4f}") == 0:
         return f"{ends}, at rest all the time"
-    when = said(trace.t[fastest], "s", time_digits(trace.dt))
-    return f"{ends}, fastest at {when} with {said(velocity[fastest], 'm/s')}"
+    when = with_unit(trace.t[fastest], "s", time_digits(trace.dt))
+    return f"{ends}, fastest at {when} with {with_unit(velocity[fastest], 'm/s')}"

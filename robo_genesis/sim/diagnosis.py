@@ -14,18 +14,18 @@ import numpy as np
 from robo_genesis.core import project, scene
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.trace import TraceError
-from robo_genesis.sim import joint_control, session
+from robo_genesis.sim import camera, franka, joint_control, session
 from robo_genesis.sim import joints as robot_model
 
 STEPPED_JOINT, ANGLE = "joint4", 0.25
 """The joint that the run commands, and by how much [rad]."""
 
 BASELINE = joint_control.ControlCase(
-    q_start=scene.Q_START,
-    q_target=scene.Q_START + ANGLE * np.equal(scene.JOINT_NAMES, STEPPED_JOINT),
-    kp=scene.KP_BASELINE,
-    kv=scene.KV_BASELINE,
-    effort_limit=scene.EFFORT_LIMIT,
+    q_start=franka.Q_START,
+    q_target=franka.Q_START + ANGLE * np.equal(franka.JOINT_NAMES, STEPPED_JOINT),
+    kp=franka.KP_BASELINE,
+    kv=franka.KV_BASELINE,
+    effort_limit=franka.EFFORT_LIMIT,
     steps=120,
 )
 
@@ -87,8 +87,8 @@ def backend(bench: Bench) -> str:
 
 def model_file(bench: Bench) -> str:
     """The robot's model is where the engine looks for it."""
-    session.asset(scene.FRANKA_MJCF)
-    return scene.FRANKA_MJCF
+    session.asset(franka.FRANKA_MJCF)
+    return franka.FRANKA_MJCF
 
 
 def build(bench: Bench) -> str:
@@ -98,7 +98,7 @@ def build(bench: Bench) -> str:
         sim_options=gs.options.SimOptions(dt=scene.DT, substeps=scene.SUBSTEPS), show_viewer=False
     )
     bench.scene.add_entity(gs.morphs.Plane())
-    bench.robot = bench.scene.add_entity(gs.morphs.MJCF(file=scene.FRANKA_MJCF))
+    bench.robot = bench.scene.add_entity(gs.morphs.MJCF(file=franka.FRANKA_MJCF))
     bench.camera = bench.scene.add_camera(**scene.CAMERA) if bench.contract.render else None
     bench.scene.build()
     if not bench.scene.is_built:
@@ -111,8 +111,8 @@ def render(bench: Bench) -> str:
     """The camera, if there is one, returns a usable picture."""
     if bench.camera is None:
         return "SKIP: ROBO_GENESIS_RENDER=0, no camera"
-    shape = session.capture(bench.camera).shape
-    renderer = session.read_renderer(bench.scene)
+    shape = camera.capture(bench.camera).shape
+    renderer = camera.read_renderer(bench.scene)
     how = "in software" if renderer.software else "on a GPU"
     return f"frame of shape {shape}, drawn {how} by {renderer.name}"
 
@@ -120,18 +120,18 @@ def render(bench: Bench) -> str:
 def names(bench: Bench) -> str:
     """Nine joints are found by name, with the expected DOFs, types and limits."""
     robot = bench.robot
-    bench.joints = robot_model.resolve_joints(robot, scene.JOINT_NAMES)
+    bench.joints = robot_model.resolve_joints(robot, franka.JOINT_NAMES)
     counts = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    model = dict(zip(scene.FRANKA_MODEL, counts, strict=True))
-    if model != scene.FRANKA_MODEL or bench.joints.types != scene.FRANKA_TYPES:
+    model = dict(zip(franka.MODEL_COUNTS, counts, strict=True))
+    if model != franka.MODEL_COUNTS or bench.joints.types != franka.JOINT_TYPES:
         raise StepError(
             f"The model has {model} and joints {', '.join(bench.joints.types)}; expected "
-            f"{scene.FRANKA_MODEL} and {', '.join(scene.FRANKA_TYPES)}. Check model and version."
+            f"{franka.MODEL_COUNTS} and {', '.join(franka.JOINT_TYPES)}. Check model and version."
         )
     lower, upper = bench.joints.lower, bench.joints.upper
     if not (np.isfinite(lower).all() and np.isfinite(upper).all() and (lower < upper).all()):
         raise StepError(f"Limits {lower} to {upper} are not ranges. Check model and version.")
-    return f"{len(scene.JOINT_NAMES)} joints by name, {model['dofs']} DOFs, every limit a range"
+    return f"{len(franka.JOINT_NAMES)} joints by name, {model['dofs']} DOFs, every limit a range"
 
 
 def target(bench: Bench) -> str:

@@ -5,22 +5,18 @@ from collections.abc import Mapping
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.session import FrameError, require_frame
-
-END_STATES = ("camera", "schematic")
+from robo_genesis.sim.camera import FrameError, require_frame
 
 
-def problems(posture: str, frames: Mapping[str, np.ndarray], links: FloatArray) -> list[str]:
+def problems(rendered: bool, frames: Mapping[str, np.ndarray], links: FloatArray) -> list[str]:
     """Return the problems of the evidence of the first and last state, none if it is valid.
 
     Args:
-        posture: the kind of evidence, one of `END_STATES`.
+        rendered: whether camera frames show both states; else a schematic of the links does.
         frames: the camera's pictures by name.
         links: (n+1, l, 3) link positions of the run [m], which a schematic draws.
     """
-    if posture not in END_STATES:
-        return [f"posture evidence is called {posture!r}, expected one of {END_STATES}"]
-    if posture == "schematic":
+    if not rendered:
         found = ["a schematic must not come with camera frames"] if frames else []
         return found + (["no link moved"] if (links[0] == links[-1]).all() else [])
     if set(frames) != {"initial", "final"}:

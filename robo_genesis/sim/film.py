@@ -1,23 +1,14 @@
 """Camera frames of chosen samples, taken during a run."""
 
-import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from robo_genesis.sim import session
-
-QUALITY = 70
-"""JPEG quality: high enough that no blocks are visible at the printed size."""
-
-VIEW = (slice(140, 420), slice(270, 550))
-"""Rows and columns of a frame that show the robot [pixel]."""
+from robo_genesis.sim.camera import capture
 
 
-class Filmed:
+class FilmedScene:
     """A scene with camera frames of some samples; everything else is delegated to the scene.
 
     Sample 0 is the state before the first step. A camera only reads the state; the page still
@@ -46,20 +37,4 @@ class Filmed:
 
     def _take(self) -> None:
         if self._steps in self._samples and self._steps not in self.frames:
-            self.frames[self._steps] = session.capture(self._camera)
-
-
-def strip(axes: Sequence[Axes], frames: Mapping[int, np.ndarray], dt: float) -> Sequence[Axes]:
-    """Show frames by sample number, each below its time [s]."""
-    for ax, (sample, frame) in zip(axes, sorted(frames.items()), strict=True):
-        ax.imshow(frame[VIEW])
-        ax.set_axis_off()
-        ax.set_title(f"t = {sample * dt:.2f} s", fontsize="small")
-    return axes
-
-
-def jpeg(figure: Figure) -> bytes:
-    """Return a figure of photographs as JPEG: an SVG file would be ten times as large."""
-    stream = io.BytesIO()
-    figure.savefig(stream, format="jpeg", dpi=90, pil_kwargs={"quality": QUALITY})
-    return stream.getvalue()
+            self.frames[self._steps] = capture(self._camera)

@@ -6,8 +6,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from robo_genesis.core.scene import FRANKA_MJCF, JOINT_NAMES, FloatArray
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
+from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import CaseError, ControlCase, assemble
 from robo_genesis.sim.session import asset
 

@@ -1,4 +1,4 @@
-"""The environment contract, the one `gs.init` of a process, its backend, its log, its frames."""
+"""The environment contract, the one `gs.init` of a process, its backend and its log."""
 
 import ctypes
 import importlib
@@ -13,10 +13,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from robo_genesis.core import project
-from robo_genesis.core.scene import FRAME_SHAPE, SEED
+from robo_genesis.core.scene import SEED
+from robo_genesis.sim.backends import BACKENDS, contradictions
 
 CHOICES = {"ROBO_GENESIS_BACKEND": ("cpu", "auto"), "ROBO_GENESIS_RENDER": ("1", "0")}
 """Valid values of the variables of the contract; the first is the default."""
@@ -31,10 +30,6 @@ class ContractError(ValueError):
 
 class EngineError(RuntimeError):
     """The engine is missing or incomplete, is started twice, or contradicts itself."""
-
-
-class FrameError(ValueError):
-    """A camera returned something else than a usable RGB frame."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,76 +233,17 @@ def probe(requested: str) -> Backend:
 
 
 def require_agreement(found: Backend) -> None:
-    """Raise EngineError unless Genesis, Quadrants and Torch use the same backend.
-
-    ROCm and CUDA both call their Torch device `cuda`; only `torch.version` distinguishes them.
-    """
-    expected = {
-        "cpu": (("x64", "arm64"), "cpu"),
-        "cuda": (("cuda",), "cuda"),
-        "amdgpu": (("amdgpu",), "cuda"),
-        "metal": (("metal",), "mps"),
-    }
-    if found.actual not in expected:
-        raise EngineError(f"Backend {found.actual!r} is unknown. Known: {', '.join(expected)}.")
-    archs, device = expected[found.actual]
-    hip, cuda = found.hip_version is not None, found.cuda_version is not None
-    torch_build = {"amdgpu": hip, "cuda": cuda and not hip}.get(found.actual, True)
-    as_requested = found.requested != "cpu" or found.actual == "cpu"
-    agree = found.arch in archs and found.torch_device == device
-    if not (agree and torch_build and as_requested):
+    """Raise EngineError unless Genesis, Quadrants and Torch use the requested backend."""
+    if found.actual not in BACKENDS:
+        raise EngineError(f"Backend {found.actual!r} is unknown. Known: {', '.join(BACKENDS)}.")
+    problems = [
+        f"{n} is {value!r}, expected {valid!r}" for n, value, valid in contradictions(found)
+    ]
+    if found.requested == "cpu" and found.actual != "cpu":
+        problems.append(f"the backend is {found.actual!r}, requested was 'cpu'")
+    if problems:
         raise EngineError(
-            f"Genesis, Quadrants and Torch disagree about the backend: {found}. Unset QD_ARCH and "
+            f"Genesis, Quadrants and Torch disagree about the backend: {'; '.join(problems)}. "
+            f"Found: {found}. Unset QD_ARCH and "
             "GS_TORCH_FORCE_CPU_DEVICE, check the Torch build, and restart the kernel."
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class Renderer:
-    """The OpenGL implementation that renders."""
-
-    vendor: str
-    name: str
-
-    @property
-    def software(self) -> bool:
-        """Whether it is Mesa's software rasteriser."""
-        return any(word in self.name.lower() for word in ("llvmpipe", "softpipe", "swrast"))
-
-
-def read_renderer(scene: Any) -> Renderer:
-    """Read GL_VENDOR and GL_RENDERER from the scene's OpenGL context."""
-    gl = importlib.import_module("OpenGL.GL")
-    context = scene.visualizer._rasterizer._renderer  # Genesis has no public access to it
-    context.make_current()
-    try:
-        vendor, name = (gl.glGetString(item).decode() for item in (gl.GL_VENDOR, gl.GL_RENDERER))
-    finally:
-        context.make_uncurrent()
-    return Renderer(vendor, name)
-
-
-def capture(camera: Any) -> np.ndarray:
-    """Render one frame, shape (540, 720, 3), uint8.
-
-    Raises:
-        FrameError: the frame is not usable.
-    """
-    rgb = camera.render()[0]
-    require_frame(rgb)
-    return np.array(rgb)
-
-
-def require_frame(rgb: Any) -> None:
-    """Raise FrameError unless `rgb` is a finite, non-empty RGB picture of the course's shape."""
-    shape = np.shape(rgb)
-    if shape != FRAME_SHAPE:
-        raise FrameError(f"The camera returned shape {shape}, expected {FRAME_SHAPE}.")
-    picture = np.asarray(rgb)
-    if picture.dtype != np.uint8 and not np.isfinite(picture).all():
-        raise FrameError("The camera returned values that are not finite.")
-    if (picture == picture[0, 0]).all():
-        raise FrameError(
-            f"The camera returned an empty picture: every pixel is {picture[0, 0].tolist()}. "
-            "It shows only the background. Check the camera's `pos` and `lookat`."
         )

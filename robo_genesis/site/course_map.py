@@ -12,7 +12,6 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import yaml
 from docutils import nodes
@@ -20,7 +19,7 @@ from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
-from robo_genesis.site.evidence.measured import badge_node, lesson_statuses
+from robo_genesis.site.evidence.measured import lesson_badges
 
 FILE = "course_map.yml"
 LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
@@ -122,10 +121,7 @@ class CourseMap(MapDirective):
         """Return the badges of a published lesson, a word for a planned one."""
         if lesson.page is None:
             return [nodes.inline("", "planned", classes=["planned"])]
-        shown: list[nodes.Node] = []
-        for status in lesson_statuses(Path(self.env.srcdir), lesson.id.lower()):
-            shown += [badge_node(status), nodes.Text(" ")]
-        return shown[:-1]
+        return lesson_badges(Path(self.env.srcdir), lesson.id.lower())
 
 
 class CourseStatus(MapDirective):
@@ -203,10 +199,9 @@ def anchor(lesson: str) -> str:
     return f"lesson-{lesson.lower()}"
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
+def setup(app: Sphinx) -> None:
     """Register the directives and the role."""
     app.add_directive("course-map", CourseMap)
     app.add_directive("course-status", CourseStatus)
     app.add_directive("featured", Featured)
     app.add_role("lesson", LessonLink())
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

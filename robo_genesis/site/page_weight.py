@@ -12,19 +12,17 @@ from PIL import Image
 # Jupyter Book and the theme load every script on all pages; these are needed only where a selector
 # matches. No page needs `fontawesome.js`: the icons come from a font.
 NEEDED_BY = {
-    "clipboard.min.js": "div.highlight",
-    "copybutton.js": "div.highlight",
-    "design-tabs.js": ".sd-tab-set",
-    "explorer.js": ".explorer",
-    "plot.js": ".explorer, .replay",
-    "replay.js": ".replay",
-    "fontawesome.js": None,
-    "language_data.js": "#search-results",
-    "search-from-disk.js": "#search-results",
-    "searchindex.js": "#search-results",
-    "searchtools.js": "#search-results",
-    "togglebutton.js": ".toggle, .admonition.dropdown",
-}
+    "div.highlight": {"clipboard.min.js", "copybutton.js"},
+    ".sd-tab-set": {"design-tabs.js"},
+    ".explorer": {"explorer.js"},
+    ".explorer, .replay": {"plot.js"},
+    ".replay": {"replay.js"},
+    "#search-results": {
+        "language_data.js", "search-from-disk.js", "searchindex.js", "searchtools.js",
+    },
+    ".toggle, .admonition.dropdown": {"togglebutton.js"},
+}  # fmt: skip
+NEEDED_NOWHERE = {"fontawesome.js"}
 
 NAMED = re.compile(r"[.#]([\w-]+)")
 """Classes and identifiers in a selector."""
@@ -52,7 +50,7 @@ TITLE = "page-title"
 
 PIXELS = {"": 1.0, "px": 1.0, "pt": 4 / 3, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
 """CSS pixels in one unit of length."""
-LENGTH = re.compile(r"([\d.]+)([a-z]*)")
+LENGTH = re.compile(rf"([\d.]+)({'|'.join(PIXELS)})")
 
 
 def reduce_weight(page: BeautifulSoup, folder: Path) -> None:
@@ -79,9 +77,9 @@ def drop_idle_scripts(page: BeautifulSoup) -> None:
         named = (NAMED.findall(part) for part in selector.split(","))
         return any(written.issuperset(names) for names in named) and bool(page.select_one(selector))
 
+    idle = NEEDED_NOWHERE.union(*(NEEDED_BY[s] for s in NEEDED_BY if not matches(s)))
     for script in page.find_all("script", src=True):
-        name = Path(urlsplit(str(script["src"])).path).name
-        if name in NEEDED_BY and not ((needed := NEEDED_BY[name]) and matches(needed)):
+        if Path(urlsplit(str(script["src"])).path).name in idle:
             script.decompose()
 
 
@@ -150,14 +148,12 @@ def image_size(file: Path) -> tuple[int, int]:
         with Image.open(file) as image:
             return image.size
     _, root = next(ElementTree.iterparse(file, events=["start"]))
-    width, height = (LENGTH.fullmatch(root.get(name, "")) for name in ("width", "height"))
-    if width and height and {width[2], height[2]} <= PIXELS.keys():
-        return round(float(width[1]) * PIXELS[width[2]]), round(
-            float(height[1]) * PIXELS[height[2]]
-        )
-    box = root.get("viewBox", "").split()
-    if len(box) == 4:
-        return round(float(box[2])), round(float(box[3]))
+    stated = [root.get("width", ""), root.get("height", "")]
+    for lengths in (stated, root.get("viewBox", "").split()[2:]):
+        sizes = [match.groups() for length in lengths if (match := LENGTH.fullmatch(length))]
+        if len(sizes) == 2:
+            width, height = (round(float(number) * PIXELS[unit]) for number, unit in sizes)
+            return width, height
     raise ValueError(f"{file.name} states no size. Give its root element a viewBox.")
 
 

@@ -12,48 +12,38 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
-from robo_genesis.core.palette import CASE_CLASSES, CASES, MARKS, Mark, css_name
-from robo_genesis.lessons import registry  # noqa: F401 - each lesson adds its cases to CASES
+from robo_genesis.core.palette import CASE_CLASSES, MARKS, Mark, css_name
+from robo_genesis.lessons.registry import COURSE_MARKS
 
 THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
 STROKE = 2
 """Width of the SVG lines that the dashes are meant for, in their own units."""
 LINE, LENGTH = 0.12, 1.9
 """Width of the line beside a case's name, and about its length, in letter heights."""
-NAME = re.compile(rf"\b({'|'.join(map(re.escape, sorted({*CASES} - {'baseline'}))) or '(?!)'})\b")
+NAMES = sorted({*COURSE_MARKS} - {"baseline"})
+NAME = re.compile(rf"\b({'|'.join(map(re.escape, NAMES)) or '(?!)'})\b")
 """A case's name in prose; without named cases it matches nothing."""
 OTHER_TEXT = (nodes.literal, nodes.literal_block, nodes.math, nodes.raw, nodes.reference)
 
 
 def css() -> str:
     """Return the style sheet of the palette."""
+    names = {css_name(name): mark for name, mark in MARKS.items()}
     rules = [
-        _rule(
-            selector, {f"--{css_name(name)}": getattr(mark, theme) for name, mark in MARKS.items()}
-        )
+        (selector, {f"--{name}": getattr(mark, theme) for name, mark in names.items()})
         for theme, selector in THEMES.items()
     ]
-    dashes = {f"--{css_name(name)}-dash": _svg_dashes(mark) for name, mark in MARKS.items()}
-    rules.insert(1, _rule(":root", dashes))
-    rules += [_rule(f".time-plot .{css_name(name)}", _ink(name)) for name in MARKS]
-    rules += [
-        _rule(f".case-name.{css_class}", {"color": f"var(--{css_class})"})
-        for css_class in CASE_CLASSES.values()
-    ]
-    rules += [
-        _rule(f".case-mark.{css_class}::before", _stripe(mark))
-        for mark, css_class in CASE_CLASSES.items()
-    ]
-    return "\n".join(["/* Written from robo_genesis/core/palette.py. */", *rules, ""])
-
-
-def _rule(selector: str, properties: dict[str, str]) -> str:
-    lines = "".join(f"  {name}: {value};\n" for name, value in properties.items())
-    return f"{selector} {{\n{lines}}}"
-
-
-def _ink(name: str) -> dict[str, str]:
-    return {"--ink": f"var(--{css_name(name)})", "--dash": f"var(--{css_name(name)}-dash)"}
+    rules.insert(1, (":root", {f"--{name}-dash": _svg_dashes(m) for name, m in names.items()}))
+    for name in names:
+        ink = {"--ink": f"var(--{name})", "--dash": f"var(--{name}-dash)"}
+        rules.append((f".time-plot .{name}", ink))
+    rules += [(f".case-name.{name}", {"color": f"var(--{name})"}) for name in CASE_CLASSES.values()]
+    rules += [(f".case-mark.{name}::before", _stripe(m)) for m, name in CASE_CLASSES.items()]
+    lines = ["/* Written from robo_genesis/core/palette.py. */"]
+    for selector, properties in rules:
+        declared = (f"  {name}: {value};" for name, value in properties.items())
+        lines += [f"{selector} {{", *declared, "}"]
+    return "\n".join([*lines, ""])
 
 
 def _svg_dashes(mark: Mark) -> str:
@@ -93,8 +83,8 @@ class MarkCases(SphinxPostTransform):
         for entry in self.document.findall(nodes.entry):
             name = entry.astext()
             paragraph = entry.next_node(nodes.paragraph)
-            if name in CASES and paragraph is not None:
-                paragraph["classes"] += ["case-mark", css_name(CASES[name])]
+            if name in COURSE_MARKS and paragraph is not None:
+                paragraph["classes"] += ["case-mark", css_name(COURSE_MARKS[name])]
         for text in list(self.document.findall(nodes.Text)):
             if NAME.search(text) and _is_running(text):
                 text.parent.replace(text, _named(text))
@@ -115,7 +105,9 @@ def _named(text: nodes.Text) -> list[nodes.Node]:
     parts: list[nodes.Node] = []
     for number, part in enumerate(NAME.split(text)):
         if number % 2:
-            parts.append(nodes.inline(part, part, classes=["case-name", css_name(CASES[part])]))
+            parts.append(
+                nodes.inline(part, part, classes=["case-name", css_name(COURSE_MARKS[part])])
+            )
         elif part:
             parts.append(nodes.Text(part))
     return parts
@@ -128,9 +120,8 @@ def write_css(app: Sphinx) -> None:
     (folder / "palette.css").write_text(css(), "utf8")
 
 
-def setup(app: Sphinx) -> dict[str, Any]:
+def setup(app: Sphinx) -> None:
     """Register style sheet and marks."""
     app.add_post_transform(MarkCases)
     app.add_css_file("palette.css", priority=400)  # before the sheets that use it
     app.connect("builder-inited", write_css)
-    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

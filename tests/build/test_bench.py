@@ -24,14 +24,15 @@ def test_rows_are_chosen_by_name(asked, names):
     assert bench.chosen(asked) == names
 
 
-def test_an_unknown_row_is_refused_with_those_that_are_known():
-    with pytest.raises(bench.BenchError, match=r"ROWS names c\. Choices: unchanged, prose, "):
-        bench.chosen("verify c")
-
-
-@pytest.mark.parametrize("runs", ["0", "-1", "many"])
-def test_a_number_of_runs_that_is_not_positive_is_refused(monkeypatch, runs):
+@pytest.mark.parametrize(
+    ("rows", "runs", "said"),
+    [
+        ("verify c", "3", r"ROWS names c\. Choices: unchanged, prose, "),
+        *(("", runs, f"RUNS='{runs}' is not valid") for runs in ("0", "-1", "many")),
+    ],
+)
+def test_unknown_rows_and_numbers_that_are_not_positive_are_refused(monkeypatch, rows, runs, said):
+    monkeypatch.setenv("ROWS", rows)
     monkeypatch.setenv("RUNS", runs)
-    monkeypatch.setenv("ROWS", "")
-    with pytest.raises(bench.BenchError, match=f"RUNS='{runs}' is not valid"):
+    with pytest.raises(bench.BenchError, match=said):
         bench.measure()

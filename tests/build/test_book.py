@@ -2,7 +2,6 @@
 
 import os
 import signal
-import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -18,9 +17,11 @@ from tiny_book import (
     notebook,
     published_marker,
     start,
+    wait_for,
 )
 
 from robo_genesis.build import up_to_date
+from robo_genesis.build.kernels import kill_with_descendants
 from robo_genesis.build.page_artifacts import ArtifactError
 from robo_genesis.build.stages import (
     Build,
@@ -230,11 +231,7 @@ def test_an_end_by_signal_leaves_the_old_site_and_no_process(tmp_path, sent, sta
     book = make_book(tmp_path, **dict(zip(("one", "two"), pages, strict=True)))
     marker = published_marker(book)
     process = start("book.py", tmp_path, JOBS="2")
-    end = time.monotonic() + 60
-    while not all(path.exists() and path.read_text() for path in pids):
-        assert time.monotonic() < end
-        assert process.poll() is None
-        time.sleep(0.05)
+    wait_for(process, *pids)
     below = {child.pid: child for child in psutil.Process(process.pid).children(recursive=True)}
     kernels = [below[int(path.read_text())] for path in pids]
     scratch = Path(kernels[0].cwd()).parent
@@ -248,6 +245,32 @@ def test_an_end_by_signal_leaves_the_old_site_and_no_process(tmp_path, sent, sta
     assert not list((tmp_path / "cache/pages").glob("*/notebooks/executed/*"))
     assert not scratch.exists()
     assert marker.read_text() == "the old site"
+
+
+def test_sphinx_ends_with_a_killed_build_and_the_next_build_removes_what_it_left(tmp_path):
+    """The kernel kills with SIGKILL when memory is short. Sphinx waits in a pipe that is a page."""
+    text = "# Text\n\n```{literalinclude} pipe\n```\n"
+    book = make_book(tmp_path, text=text, page=notebook(cell("1")))
+    marker, pipe, cache = published_marker(book), book / "pipe", tmp_path / "cache"
+    os.mkfifo(pipe)
+    process = start("book.py", tmp_path)
+    wait_for(process, cache / "render.log")
+    (left,) = cache.glob("staging*")
+    below = psutil.Process(process.pid).children(recursive=True)
+    process.kill()
+    process.communicate()
+    try:
+        assert psutil.wait_procs(below, timeout=5)[1] == []
+        assert below
+    finally:
+        kill_with_descendants(child.pid for child in below)
+    assert marker.read_text() == "the old site"
+    pipe.unlink()
+    pipe.write_text("text")
+    build(tmp_path)
+    assert marker.read_text() != "the old site"
+    assert not left.exists()
+    assert not list(cache.glob("staging*"))
 
 
 @pytest.mark.parametrize(

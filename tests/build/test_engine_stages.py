@@ -7,21 +7,19 @@ the L04 lab without its prose, and a ball that falls. The commands are those of 
 import json
 import re
 import shutil
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from tiny_book import cell, make, make_book, notebook
+from checkout import copy_checkout, make
+from tiny_book import cell, make_book, notebook
 
 from robo_genesis.build import npm
-from robo_genesis.core.git import git
-from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.core.project import BOOK
 from robo_genesis.evidence.bundle import sha256
 
 pytestmark = pytest.mark.engine
 
-PYTHON = f"PYTHON={sys.executable}"
 CELLS = re.compile(r"^```\{code-cell\}.*?^```$", re.M | re.S)
 BALL = """\
 from robo_genesis.sim import session as runtime
@@ -37,12 +35,8 @@ print("height", float(ball.get_pos()[2]))"""
 
 def clone(folder: Path, name: str) -> Path:
     """Copy the checkout's files, with a small book; only npm's packages are shared."""
-    work = folder / name
-    listed = git(ROOT, "ls-files", "-z", "--cached", "--others", "--exclude-standard")
-    for file in listed.split("\0"):
-        if (ROOT / file).is_file() and not file.startswith("book/"):
-            (work / file).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(ROOT / file, work / file)
+    work = copy_checkout(folder / name)
+    shutil.rmtree(work / "book")
     (work / ".cache").mkdir()
     (work / ".cache" / "npm").symlink_to(npm.packages().parents[1])
     _, front, body = (BOOK / "lessons/l04-joint-control/lab.md").read_text().split("---\n", 2)
@@ -72,7 +66,7 @@ def clones(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("clones")
     for name, page in (("lab", "l04/lab"), ("ball", "ball")):
         to = f"TO={folder / 'executed' / name}"
-        said = make(clone(folder, name), "execute", f"PAGE={page}", to, PYTHON)
+        said = make(clone(folder, name), "execute", f"PAGE={page}", to)
         assert f"{name}  executed in" in said
     return folder
 
@@ -99,13 +93,13 @@ def test_a_bundle_that_was_changed_on_the_way_leaves_no_site(site, clones, tmp_p
     record = json.loads((place / "page.json").read_text())
     record["files"][metrics.relative_to(place).as_posix()] = sha256(metrics)
     (place / "page.json").write_text(json.dumps(record))
-    said = make(site, "book", f"EXECUTED={spoiled}", PYTHON, fails=True)
+    said = make(site, "book", f"EXECUTED={spoiled}", fails=True)
     assert "is refused: digest: metrics.json" in said
     assert not (site / "book" / "_build").exists()
 
 
 def test_the_site_is_built_from_the_executed_pages_alone(site, clones, exported):
-    said = make(site, "book", f"EXECUTED={clones / 'executed'}", PYTHON)
+    said = make(site, "book", f"EXECUTED={clones / 'executed'}")
     assert "Pages: 0 executed, 2 reused." in said
     assert "lab  accepted" in said
     assert "height 0.9" in (site / "book/_build/html/ball.html").read_text()
@@ -119,6 +113,6 @@ def test_results_depend_neither_on_jobs_nor_on_the_caches(clones, exported):
     work = clones / "lab"
     for folder in (work / ".cache" / "pages").iterdir():
         shutil.rmtree(folder)
-    said = make(work, "book", "JOBS=2", PYTHON)
+    said = make(work, "book", "JOBS=2")
     assert "Pages: 2 executed, 0 reused." in said
     assert arrays(work / "book/_build/evidence/l04/cpu") == exported

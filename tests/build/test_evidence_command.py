@@ -1,11 +1,22 @@
 """`make evidence`: exit status, what is printed, and the real lab on the CPU."""
 
 import shutil
+import signal
 import subprocess
 import sys
 
 import pytest
-from tiny_book import LAB_FRONT, cell, fails, make_book, notebook, start
+from tiny_book import (
+    LAB_FRONT,
+    WRITE_BUNDLE,
+    cell,
+    fails,
+    make_book,
+    notebook,
+    old_bundle,
+    start,
+    wait_for,
+)
 
 from robo_genesis.core.project import BOOK, CACHE, ROOT
 from robo_genesis.evidence.bundle import evidence_key
@@ -27,21 +38,33 @@ def test_make_passes_the_settings(tmp_path):
     ("settings", "said"),
     [
         ({}, "lab, code cell 1, line "),
-        ({"LESSON": "l99"}, "LESSON='l99' is not valid. Lessons with a lab: l04."),
-        ({"BACKEND": "gpu"}, "BACKEND='gpu' is not valid. Choices: amdgpu, cuda, cpu"),
         ({"RENDER": "0"}, "RENDER='0' is not valid for a recording, which always has camera fr"),
     ],
 )
 def test_a_failure_is_status_1_a_report_and_the_old_bundle(tmp_path, settings, said):
-    old = tmp_path / "kept/l04/cpu/manifest.json"
-    old.parent.mkdir(parents=True)
-    old.write_text("the old one")
+    old = old_bundle(tmp_path, "cpu")
     make_book(tmp_path, lab=notebook(cell("1 / 0"), front=LAB_FRONT))
     given = {"LESSON": "l04", "BACKEND": "cpu", "TO": str(tmp_path / "kept")} | settings
     report = fails("evidence.py", tmp_path, **given)
     assert said in report
     assert settings or report.endswith("FAILED: nothing was recorded.\n")
-    assert old.read_text() == "the old one"
+    assert old.read_text() == "old"
+
+
+def test_ctrl_c_leaves_the_old_bundle_and_no_part_of_a_new_one(tmp_path):
+    old, started = old_bundle(tmp_path, "cpu"), tmp_path / "started"
+    waits = f"{WRITE_BUNDLE}\npathlib.Path({str(started)!r}).write_text('1')\nimport time"
+    make_book(tmp_path, lab=notebook(cell(f"{waits}\ntime.sleep(60)"), front=LAB_FRONT))
+    given = {"LESSON": "l04", "BACKEND": "cpu", "TO": str(tmp_path / "kept")}
+    process = start("evidence.py", tmp_path, **given)
+    wait_for(process, started)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err.endswith("Interrupted: nothing was recorded.\n")
+    assert [path.name for path in old.parents[1].iterdir()] == ["cpu"]
+    assert old.read_text() == "old"
+    assert not (tmp_path / "cache/recording").exists()
 
 
 @pytest.mark.engine

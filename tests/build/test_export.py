@@ -1,7 +1,5 @@
 """`make execute` and `make pages`: one page at a time, and the list of pages."""
 
-import json
-
 import pytest
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, fails, make_book, notebook, start
 
@@ -69,9 +67,3 @@ def test_a_page_has_the_contract_of_a_build_and_names_its_own_command(folder, tm
     _, err = process.communicate(timeout=120)
     assert process.returncode == 0, err
     assert r"0 cpu make execute\n" in (tmp_path / "contract/executed.ipynb").read_text()
-
-
-def test_the_list_is_one_line_of_json(folder):
-    out, err = start("execute.py", folder, "--list").communicate(timeout=120)
-    assert json.loads(out) == ["broken", "contract", "lab"], err
-    assert out.count("\n") == 1

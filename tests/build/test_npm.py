@@ -31,22 +31,14 @@ def test_the_locked_versions_are_installed():
     assert found == {name: lock[name]["version"] for name in found}
 
 
-def test_what_is_there_is_not_fetched_again(checkout, tmp_path, monkeypatch):
+def test_each_lock_has_a_folder_of_its_own_and_is_fetched_once(checkout, tmp_path, monkeypatch):
     calls = []
     monkeypatch.setattr(npm, "_install", calls.append)
-    first = npm.packages(checkout, tmp_path)
-    assert npm.packages(checkout, tmp_path) == first
-    assert len(calls) == 1
-
-
-def test_another_lock_has_a_folder_of_its_own(checkout, tmp_path, monkeypatch):
-    monkeypatch.setattr(npm, "_install", lambda folder: None)
-    before = npm.packages(checkout, tmp_path)
+    found = [npm.packages(checkout, tmp_path), npm.packages(checkout, tmp_path)]
     for name in (*npm.LOCK, npm.SETTINGS):
         (checkout / name).write_text("{}")
-        after = npm.packages(checkout, tmp_path)
-        assert after != before
-        before = after
+        found.append(npm.packages(checkout, tmp_path))
+    assert len(set(found)) == len(calls) == 4
 
 
 def test_a_lock_that_does_not_fit_is_refused_and_leaves_nothing(checkout, tmp_path):

@@ -53,27 +53,57 @@ def cached(here: Path):
     return cached_results(find_pages(here / "book"), here / "cache" / FINGERPRINT)
 
 
-def edit(here: Path, **changes) -> None:
+def lab(here: Path, name: str) -> Path:
+    return here / "executed" / LAB / name
+
+
+def record(**changes):
     """Change entries of the lab's record."""
-    path = here / "executed" / LAB / "page.json"
-    path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+
+    def spoil(here: Path) -> None:
+        path = lab(here, "page.json")
+        path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+
+    return spoil
 
 
 def seal(here: Path) -> None:
     """Make the digests of the lab's record right again."""
-    place = here / "executed" / LAB
+    place = lab(here, "")
     names = {path.relative_to(place).as_posix(): path for path in place.rglob("*")}
     files = {n: sha256(path) for n, path in names.items() if path.is_file() and n != "page.json"}
-    edit(here, files=files)
+    record(files=files)(here)
 
 
-def rewrite(here: Path, change) -> None:
+def book(change):
     """Change the lab's notebook, and its digest with it."""
-    path = here / "executed" / LAB / "executed.ipynb"
-    executed = nbformat.read(path, as_version=4)
-    change(executed)
-    nbformat.write(executed, path)
-    seal(here)
+
+    def spoil(here: Path) -> None:
+        path = lab(here, "executed.ipynb")
+        executed = nbformat.read(path, as_version=4)
+        change(executed)
+        nbformat.write(executed, path)
+        seal(here)
+
+    return spoil
+
+
+def file(name: str, text: str):
+    """Write a file of the lab, and its digest with it."""
+
+    def spoil(here: Path) -> None:
+        lab(here, name).write_text(text)
+        seal(here)
+
+    return spoil
+
+
+def first_cell(**changes):
+    return book(lambda executed: executed.cells[0].update(changes))
+
+
+def metadata(**changes):
+    return book(lambda executed: executed.metadata.update(changes))
 
 
 def test_a_page_is_its_notebook_its_record_and_what_it_left(elsewhere):
@@ -131,8 +161,7 @@ def test_a_bundle_that_is_refused_leaves_what_was_executed_here(here):
 
 
 def test_pages_lie_at_any_depth_but_not_within_another_nor_hidden(here):
-    (here / "executed" / LAB / "outputs/l04/lab/page.json").write_text("its own")
-    seal(here)
+    file("outputs/l04/lab/page.json", "its own")(here)
     for left in (".left", f"{LAB}.next", f"{LAB}.old"):
         shutil.copytree(here / "executed" / LAB, here / "executed" / left)
     (here / "executed" / "z").mkdir()
@@ -140,78 +169,41 @@ def test_pages_lie_at_any_depth_but_not_within_another_nor_hidden(here):
     assert [record.docname for record in take(here)] == ["text", LAB]
 
 
-def lab(here: Path, name: str) -> Path:
-    return here / "executed" / LAB / name
-
-
-def add_and_seal(here, name, text):
-    lab(here, name).write_text(text)
-    seal(here)
-
-
 def link(here):
     lab(here, SHAPE).unlink()
     lab(here, SHAPE).symlink_to("/etc/hostname")
 
 
-OTHER_RUN = "f" * 32
+RUN = "f" * 32
 ERROR = new_output("error", ename="ValueError", evalue="no", traceback=[])
 CODE = "its code cells are not those of"
 BUNDLE, SHAPE = "outputs/l04/lab/cpu/manifest.json", "outputs/l04/lab/shape.npz"
+OTHERS = json.dumps({"predicate": {"run_id": RUN}})
+NEW = "outputs/l04/lab/new"
 SPOILT = {
-    "another fingerprint": (lambda h: edit(h, fingerprint="1" * 20), "its fingerprint is 11"),
-    "an unknown page": (lambda h: edit(h, docname="gone"), "its page is 'gone'. Pages of"),
-    "a path for a page": (lambda h: edit(h, docname="../lab"), "its page is '../lab'"),
-    "changed code": (lambda h: edit(h, code="0" * 64), CODE),
-    "forged code": (lambda h: rewrite(h, lambda nb: nb.cells[0].update(source="1")), CODE),
-    "another kernel": (
-        lambda h: rewrite(h, lambda nb: nb.metadata.kernelspec.update(name="other")),
-        CODE,
-    ),
-    "a run that is none": (lambda h: edit(h, run_id="../x"), "page.json is not what"),
-    "a word too many": (lambda h: edit(h, signed=True), "page.json is not what"),
+    "another fingerprint": (record(fingerprint="1" * 20), "its fingerprint is 11"),
+    "an unknown page": (record(docname="gone"), "its page is 'gone'. Pages of"),
+    "a path for a page": (record(docname="../lab"), "its page is '../lab'"),
+    "changed code": (record(code="0" * 64), CODE),
+    "forged code": (first_cell(source="1"), CODE),
+    "another kernel": (metadata(kernelspec={"name": "other", "display_name": ""}), CODE),
+    "a run that is none": (record(run_id="../x"), "page.json is not what"),
+    "a word too many": (record(signed=True), "page.json is not what"),
     "no JSON": (lambda h: lab(h, "page.json").write_text("{"), "is not what `make"),
-    "the notebook of another run": (
-        lambda h: rewrite(h, lambda nb: nb.metadata.robo_genesis.update(run_id=OTHER_RUN)),
-        "executed.ipynb is of run ffff",
-    ),
-    "a notebook of no run": (
-        lambda h: rewrite(h, lambda nb: nb.metadata.update(robo_genesis="none")),
-        "executed.ipynb is of run None",
-    ),
-    "the bundle of another run": (
-        lambda h: add_and_seal(h, BUNDLE, json.dumps({"predicate": {"run_id": OTHER_RUN}})),
-        "it has no evidence bundle of run",
-    ),
-    "a cell that failed": (
-        lambda h: rewrite(h, lambda nb: nb.cells[0].update(outputs=[ERROR])),
-        "ExpectedException: ",
-    ),
+    "the notebook of another run": (metadata(robo_genesis={"run_id": RUN}), "ipynb is of run ffff"),
+    "a notebook of no run": (metadata(robo_genesis="none"), "executed.ipynb is of run None"),
+    "the bundle of another run": (file(BUNDLE, OTHERS), "it has no evidence bundle of run"),
+    "a cell that failed": (first_cell(outputs=[ERROR]), "ExpectedException: "),
     "no notebook": (lambda h: lab(h, "executed.ipynb").unlink(), "absent are ['executed.ipynb']"),
-    "what is no notebook": (
-        lambda h: add_and_seal(h, "executed.ipynb", "[]"),
-        "executed.ipynb is not a notebook",
-    ),
+    "what is no notebook": (file("executed.ipynb", "[]"), "executed.ipynb is not a notebook"),
     "no manifest": (lambda h: lab(h, BUNDLE).unlink(), f"absent are ['{BUNDLE}']"),
     "a changed file": (lambda h: lab(h, SHAPE).write_text("new"), "shape.npz'] changed since"),
-    "an unlisted file": (
-        lambda h: lab(h, "outputs/l04/lab/new").write_text("new"),
-        "not of this page ['outputs/l04/lab/new']",
-    ),
-    "a file of another page": (
-        lambda h: add_and_seal(h, "outputs/new", "new"),
-        "not of this page ['outputs/new']",
-    ),
-    "a path for a file": (
-        lambda h: edit(h, files={"../../x": "0" * 64}),
-        "absent are ['../../x'",
-    ),
+    "an unlisted file": (lambda h: lab(h, NEW).touch(), f"not of this page ['{NEW}']"),
+    "a file of another page": (file("outputs/new", "new"), "not of this page ['outputs/new']"),
+    "a path for a file": (record(files={"../../x": "0" * 64}), "absent are ['../../x'"),
     "a link": (link, "shape.npz is a link or device"),
     "a pipe": (lambda h: os.mkfifo(lab(h, "pipe")), "pipe is a link or device"),
-    "two of one page": (
-        lambda h: shutil.copytree(h / "executed" / LAB, h / "executed" / "again"),
-        "lab is in ",
-    ),
+    "two of one page": (lambda h: shutil.copytree(lab(h, ""), h / "executed/again"), "lab is in "),
 }
 
 

@@ -6,7 +6,6 @@ from tiny_book import LAB_FRONT, cell, make_book, notebook, published_marker, wr
 from robo_genesis.build.page_results import PageResult
 from robo_genesis.build.publish import publish
 from robo_genesis.core import files as core_files
-from robo_genesis.core.files import settle
 from robo_genesis.lessons.book_pages import find_pages
 
 
@@ -69,26 +68,3 @@ def test_a_failing_second_rename_brings_the_old_site_back(book, html, monkeypatc
         publish(book, html, [])
     assert marker.read_text() == "the old site"
     assert names(book) == {"_build"}
-
-
-def test_killed_between_the_renames_the_old_site_comes_back(book):
-    marker = published_marker(book)
-    (book / "_build").rename(book / "_build.old")
-    (book / "_build.next").mkdir()
-    settle(book / "_build")
-    assert marker.read_text() == "the old site"
-    assert names(book) == {"_build"}
-
-
-def test_killed_after_the_renames_the_new_site_stays(book):
-    marker = published_marker(book)
-    marker.write_text("the new site")
-    (book / "_build.old" / "html").mkdir(parents=True)
-    settle(book / "_build")
-    assert marker.read_text() == "the new site"
-    assert names(book) == {"_build"}
-
-
-def test_recovery_of_a_book_that_was_never_built_does_nothing(book):
-    settle(book / "_build")
-    assert names(book) == set()

@@ -55,61 +55,61 @@ def test_a_good_site_passes_and_everything_was_looked_at(tmp_path):
     assert checks["alt texts"].count == 1
 
 
+LINKED = (
+    ('<a href="gone.html">x</a>', "'gone.html' leads to no file"),
+    ('<a href="sub/page.html#gone">x</a>', "names no element of sub/page.html"),
+    ('<a href="#gone">x</a>', "names no element of index.html"),
+    ('<a href="../outside.html">x</a>', "leads to no file"),
+    ('<img src="gone.png" alt="A picture of it">', "'gone.png' leads to no file"),
+    ('<img srcset="picture.png 1x, gone.png 2x" alt="A picture">', "'gone.png' leads to no"),
+    ('<p style="background: url(gone.svg)">x</p>', "'gone.svg' leads to no file"),
+)
+ALT_TEXTS = (
+    "",
+    'alt=""',
+    'alt="  "',
+    'alt="figure.png"',
+    'alt="_images/0f343b0931126a20f133d67c2b018a3b.png"',
+    'alt="0f343b0931126a20f133d67c2b018a3b"',
+    'alt="picture"',
+)
+LOADED = (
+    '<script src="https://cdn.example.org/x.js"></script>',
+    '<script src="//cdn.example.org/x.js"></script>',
+    '<link rel="stylesheet" href="https://fonts.example.org/a.css">',
+    '<link rel="preconnect" href="https://fonts.example.org">',
+    "<style>@import 'https://fonts.example.org/a.css';</style>",
+    "<style>@font-face { src: url(https://fonts.example.org/a.woff2) }</style>",
+    '<script>const url = "https://unpkg.com/thebe@0.8.2/lib/index.js"</script>',
+    '<img src="https://img.example.org/a.png" alt="A picture of it">',
+    '<img srcset="https://img.example.org/a.png 2x" alt="A picture of it">',
+    '<iframe src="https://video.example.org/a"></iframe>',
+)
+MARKUP = (
+    '<div class="system-message">Unknown role</div>',
+    '<span class="problematic">|x|</span>',
+    "<p>{glue:text}`overshoot`</p>",
+    r"<p>\(x = 1\)</p>",
+    "<p>$$x$$</p>",
+    "<p>&lt;Figure size 640x480 with 1 Axes&gt;</p>",
+)
+
+
 @pytest.mark.parametrize(
-    ("body", "said"),
+    ("body", "check", "said"),
     [
-        ('<a href="gone.html">x</a>', "'gone.html' leads to no file"),
-        ('<a href="sub/page.html#gone">x</a>', "names no element of sub/page.html"),
-        ('<a href="#gone">x</a>', "names no element of index.html"),
-        ('<a href="../outside.html">x</a>', "leads to no file"),
-        ('<img src="gone.png" alt="A picture of it">', "'gone.png' leads to no file"),
-        ('<img srcset="picture.png 1x, gone.png 2x" alt="A picture">', "'gone.png' leads to no"),
-        ('<p style="background: url(gone.svg)">x</p>', "'gone.svg' leads to no file"),
+        *((body, "links", said) for body, said in LINKED),
+        *((f'<img src="picture.png" {alt}>', "alt texts", "has the alt text") for alt in ALT_TEXTS),
+        *((body, "third parties", "") for body in LOADED),
+        *((body, "leftovers", "") for body in MARKUP),
     ],
 )
-def test_broken_links_and_fragments_are_found(tmp_path, body, said):
-    (line,) = problems(make_site(tmp_path, body))["links"]
+def test_each_problem_is_found_by_its_check_alone(tmp_path, body, check, said):
+    found = problems(make_site(tmp_path, body))
+    assert list(found) == [check]
+    (line,) = found[check]
+    assert line.startswith("index.html: ")
     assert said in line
-    assert line.startswith("index.html: ")
-
-
-@pytest.mark.parametrize(
-    "alt",
-    [
-        "",
-        'alt=""',
-        'alt="  "',
-        'alt="figure.png"',
-        'alt="_images/0f343b0931126a20f133d67c2b018a3b.png"',
-        'alt="0f343b0931126a20f133d67c2b018a3b"',
-        'alt="picture"',
-    ],
-)
-def test_images_without_a_speaking_alt_text_are_found(tmp_path, alt):
-    (line,) = problems(make_site(tmp_path, f'<img src="picture.png" {alt}>'))["alt texts"]
-    assert line.startswith("index.html: picture.png has the alt text ")
-
-
-@pytest.mark.parametrize(
-    "head",
-    [
-        '<script src="https://cdn.example.org/x.js"></script>',
-        '<script src="//cdn.example.org/x.js"></script>',
-        '<link rel="stylesheet" href="https://fonts.example.org/a.css">',
-        '<link rel="preconnect" href="https://fonts.example.org">',
-        "<style>@import 'https://fonts.example.org/a.css';</style>",
-        "<style>@font-face { src: url(https://fonts.example.org/a.woff2) }</style>",
-        '<script>const url = "https://unpkg.com/thebe@0.8.2/lib/index.js"</script>',
-        '<img src="https://img.example.org/a.png" alt="A picture of it">',
-        '<img srcset="https://img.example.org/a.png 2x" alt="A picture of it">',
-        '<iframe src="https://video.example.org/a"></iframe>',
-    ],
-)
-def test_every_kind_of_third_party_request_is_found(tmp_path, head):
-    found = problems(make_site(tmp_path, head=head))
-    assert list(found) == ["third parties"]
-    (line,) = found["third parties"]
-    assert line.startswith("index.html: ")
 
 
 def test_style_sheets_and_script_files_are_searched(tmp_path):
@@ -127,18 +127,3 @@ def test_style_sheets_and_script_files_are_searched(tmp_path):
 def test_links_that_browsers_do_not_load_are_no_request(tmp_path):
     head = '<link rel="canonical" href="https://example.org/"><meta content="https://example.org">'
     assert problems(make_site(tmp_path, head=head)) == {}
-
-
-@pytest.mark.parametrize(
-    "body",
-    [
-        '<div class="system-message">Unknown role</div>',
-        '<span class="problematic">|x|</span>',
-        "<p>{glue:text}`overshoot`</p>",
-        r"<p>\(x = 1\)</p>",
-        "<p>$$x$$</p>",
-        "<p>&lt;Figure size 640x480 with 1 Axes&gt;</p>",
-    ],
-)
-def test_markup_that_was_not_understood_is_found(tmp_path, body):
-    assert list(problems(make_site(tmp_path, body))) == ["leftovers"]

@@ -71,23 +71,15 @@ def test_each_file_that_is_edited_or_removed_is_work(root):
     assert len(paths) == len(up_to_date.FILES) + 8
 
 
-def replace_package(root: Path) -> None:
-    folder = root.parent / "packages"
-    (folder / "genesis-1.dist-info").rename(folder / "genesis-2.dist-info")
-
-
-def install_again(root: Path) -> None:
-    os.utime(root.parent / "packages" / "genesis-1.dist-info", (1, 1))
-
-
+INSTALLED, UPGRADED = (f"../packages/genesis-{n}.dist-info" for n in (1, 2))
 CHANGES: dict[str, Callable[[Path], None]] = {
     "a new page": lambda root: (root / "book" / "new.md").write_text(""),
     "a new file that git ignores": lambda root: (root / "book" / "new.tmp").write_text(""),
     "a new module": lambda root: (root / "robo_genesis" / "new.py").write_text(""),
     "an edit committed": lambda root: git(root, "commit", "--allow-empty", "-m", "second"),
     "an edit staged": lambda root: git(root, "rm", "--cached", "book/index.md"),
-    "another version of a package": replace_package,
-    "a package installed again": install_again,
+    "another version of a package": lambda root: (root / INSTALLED).rename(root / UPGRADED),
+    "a package installed again": lambda root: os.utime(root / INSTALLED, (1, 1)),
     "no history": lambda root: shutil.rmtree(root / ".git"),
 }
 
@@ -132,19 +124,11 @@ def test_a_site_stands_as_long_as_inputs_and_site_are_what_they_were(published):
     assert up_to_date.recorded_lines(published, None) == []
 
 
-def remove(path: Path) -> None:
-    path.unlink()
-
-
-def edit(path: Path) -> None:
-    path.write_text(path.read_text().upper())
-
-
-def add(path: Path) -> None:
-    path.with_name("more").write_text("")
-
-
-@pytest.mark.parametrize("change", [remove, edit, add])
+@pytest.mark.parametrize(
+    "change",
+    [Path.unlink, lambda path: path.write_text("new"), lambda path: path.with_name("new").touch()],
+    ids=["removed", "edited", "added"],
+)
 @pytest.mark.parametrize("name", ["html/index.html", "evidence/l04/cpu/log.txt", "pages/a"])
 def test_each_change_of_the_site_is_work(published, name, change):
     change(published / name)

@@ -19,12 +19,12 @@ from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from robo_genesis.evidence import bundle, bundle_files, trace_files
+from robo_genesis.evidence.fields import LINE_LIMIT
 from robo_genesis.evidence.npz_archive import UNPACKED_LIMIT
-from robo_genesis.evidence.reader import Reader
-from robo_genesis.lessons.l04 import checks as step_checks
-from robo_genesis.lessons.l04 import recompute as step_runs
+from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l04 import LAB
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.lessons.l04.metrics import measure, metric_records
 
 
 def edit(folder, name, change):
@@ -46,6 +46,11 @@ def predicate(**values):
 def part(name, **values):
     """Change one record of the predicate."""
     return manifest(lambda m: m["predicate"][name].update(values))
+
+
+def modules(**digests):
+    """Change or add digests of modules."""
+    return manifest(lambda m: m["predicate"]["source"]["modules"].update(digests))
 
 
 def seal(folder):
@@ -87,6 +92,22 @@ def text(name, old, new):
         path.write_bytes(before.replace(old.encode(), new.encode()))
 
     return change
+
+
+def long_log(line):
+    """Add one long line, which a pattern that backtracks would search for seconds."""
+
+    def change(folder):
+        with (folder / "log.txt").open("a", encoding="utf8") as stream:
+            stream.write("INFO " + line * (LINE_LIMIT // len(line) + 1))
+
+    return change
+
+
+def many_lines(folder):
+    """Add a warning of two million lines."""
+    with (folder / "log.txt").open("a", encoding="utf8") as stream:
+        stream.write("WARNING \n" + "\n" * 2_000_000)
 
 
 def log(old, new):
@@ -150,10 +171,6 @@ def link_folder(folder):
     folder.symlink_to(elsewhere)
 
 
-def pipe(folder):
-    os.mkfifo(folder / "pipe")
-
-
 def pad(name):
     """Make a file too long for its kind."""
 
@@ -205,15 +222,14 @@ def measured_again(folder):
     """Make metrics.json what the arrays now give."""
     arrays = bundle.read_arrays(folder)
     found = {case: trace_files.read_trace(folder, arrays, case) for case in arrays.cases}
-    records = metric_records(measure(found, l04.CASES, 3), l04.EXPECTED_MODEL)
+    records = Experiment(LAB, found, [], {"model": l04.EXPECTED_MODEL}, {}, True).records()
     (folder / "metrics.json").write_text(json.dumps(records), "utf8")
 
 
 def checked_again(folder):
     """Make the recorded checks those of the arrays and joints, failures included."""
-    files = Reader(folder, bundle.read_manifest(folder))
-    run = step_runs.read_run(files, step_runs.read_traces(files))
-    predicate(checks=[asdict(outcome) for outcome in step_checks.run_checks(run)])(folder)
+    run = from_bundle(folder, bundle.read_manifest(folder))
+    predicate(checks=[asdict(outcome) for outcome in run.outcomes()])(folder)
 
 
 def arrays(change):
@@ -280,10 +296,6 @@ def header(shape):
     """Write an array that is nothing but its header."""
     text = b"{'descr': '<f4', 'fortran_order': False, 'shape': " + shape + b"\n"
     return member("q_rad_or_m.npy", b"\x93NUMPY\x01\x00" + struct.pack("<H", len(text)) + text)
-
-
-def bomb(folder):
-    member("q_rad_or_m.npy", bytes(UNPACKED_LIMIT + 1))(folder)
 
 
 def member_twice(folder):
@@ -355,12 +367,26 @@ def failing(how, *more):
     return both(FAILING[how], checked_again, *more)
 
 
+TEXTS = [
+    ("backend", name)
+    for name in ("device_name", "driver", "torch_version", "hip_version", "cuda_version", "arch")
+]
+TEXTS += [("render", "renderer"), ("engine", "version"), ("host", "os")]
+ODD = {
+    "two lines": "<script>\nalert(1)</script>",
+    "a control character": "\x1b[2Jx",
+    "a separator of lines": "a\u2028b",
+    "a reversed direction": "a\u202eb",
+    "201 characters": "x" * 201,
+}
+"""Text that no page and no terminal may show."""
+
 SPOILED = {
     # Form of the files, before anything is believed.
     "no manifest": ("missing-file",) * 2 + (lambda f: (f / "manifest.json").unlink(),),
     "a link instead of a file": ("path", "path", link_out),
     "a link instead of the folder": ("path", "path", link_folder),
-    "a pipe among the files": ("path", "path", pipe),
+    "a pipe among the files": ("path", "path", lambda f: os.mkfifo(f / "pipe")),
     "a manifest that is too long": ("too-big", None, pad("manifest.json")),
     "a log that is too long": ("too-big", "too-big", pad("log.txt")),
     "an archive that is too long": ("too-big", "too-big", pad(G1)),
@@ -397,6 +423,32 @@ SPOILED = {
     "a schema that is true": ("bad-schema", "bad-schema", predicate(schema_version=True)),
     "a newer schema of other fields": ("schema", None, manifest(
         lambda m: m.update(predicateType="urn:robo-genesis:evidence:v2", more=1))),
+    **{f"{name} of {what}": ("bad-schema", "bad-schema", part(record, **{name: value}))
+       for record, name in TEXTS for what, value in ODD.items()},
+    **{f"a command of {what}": ("bad-schema", "bad-schema", predicate(
+        command=value * 10)) for what, value in ODD.items()},
+    **{f"a warning of {what}": ("bad-schema", "bad-schema", predicate(
+        warnings=[value * 100])) for what, value in ODD.items() if "lines" not in what},
+    **{f"a switch of {what}": ("bad-schema", "bad-schema", predicate(
+        environment={"GS_LOG": value * 10})) for what, value in ODD.items()},
+    "a package of two lines": ("bad-schema", "bad-schema", part("host", packages={"a\nb": "1"})),
+    "a link of two lines": ("digest", "bad-schema", arrays(
+        lambda a: a["coords"].update(link=["a\nb", "c", "d"]))),
+    "a note with a control character": ("digest", "bad-schema", arrays(
+        lambda a: a["cases"]["G1"].update(note="\x1b[2J"))),
+    "a long unit": ("digest", "bad-schema", metric(unit="m" * 201)),
+    "a metric of 401 digits": ("digest", "bad-schema", metric(value=10**400)),
+    "a negative metric of 401 digits": ("digest", "bad-schema", metric(value=-(10**400))),
+    "a count of 401 digits": ("digest", "bad-schema", metrics(
+        lambda m: m["model"]["links"].update(value=10**400))),
+    "a metric of 10,000 digits": ("digest", "bad-json", text(
+        "metrics.json", '"value": 0', '"value": 1' + "0" * 10_000)),
+    "a seed of 401 digits": ("bad-json", None, predicate(seed=10**400)),
+    "a parameter of 401 digits": ("bad-json", None, part("parameters", rise_fraction=10**400)),
+    "cores of 401 digits": ("bad-schema", "bad-schema", part("host", cores=10**400)),
+    "a limit of 401 digits": ("digest", "bad-schema", joint(0, lower=-(10**400))),
+    "a shape of 401 digits": ("digest", "bad-array", variable(shape=[10**400, 9])),
+    "a DOF of 401 digits": ("digest", "bad-schema", joint(0, dof_idx_local=10**400)),
     # Identity.
     "another lesson": ("lesson", "lesson", predicate(lesson="l05")),
     "a page that the book lacks": ("key", "lesson", predicate(page="exam")),
@@ -460,6 +512,9 @@ SPOILED = {
     "a log of software drawing": ("digest", "log", both(on("cuda"), lambda f: (
         f / "log.txt").write_text((f / "log.txt").read_text("utf8")
                                   + "INFO Software rendering context detected.\n", "utf8"))),
+    "a log of one long line": ("digest", "log", long_log("x")),
+    "a long line of one word of the log": ("digest", "log", long_log("initialized. version: ")),
+    "a warning of many lines": ("digest", "log", many_lines),
     "a log that is no text": ("digest", "log", lambda f: (f / "log.txt").write_bytes(b"\xff")),
     "a patched engine": ("engine-files", "engine-files", part("engine", files_match_wheel=False)),
     # The question.
@@ -471,10 +526,8 @@ SPOILED = {
     "another seed": ("key", "stale", both(predicate(seed=1), log("seed: 0", "seed: 1"))),
     "other parameters": ("key", "stale", manifest(
         lambda m: m["predicate"]["parameters"]["cases"]["G1"]["kp"].reverse())),
-    "another module": ("key", "stale", manifest(
-        lambda m: m["predicate"]["source"]["modules"].update(metrics="0" * 64))),
-    "a module more": ("key", "stale", manifest(
-        lambda m: m["predicate"]["source"]["modules"].update(luck="0" * 64))),
+    "another module": ("key", "stale", modules(metrics="0" * 64)),
+    "a module more": ("key", "stale", modules(luck="0" * 64)),
     "another lab page": ("key", "stale", part("source", page="0" * 64)),
     "no page digest": ("key", "stale", part("source", page=None)),
     "true for one": ("key", "stale", manifest(lambda m: m["predicate"]["parameters"].update(
@@ -520,7 +573,7 @@ SPOILED = {
     "a member more": ("digest", "bad-array", member("luck.npy", b"")),
     "arrays of another type": ("digest", "bad-array", rewrite(q=np.float64)),
     "arrays in Fortran's order": ("digest", "bad-array", rewrite(q=np.asfortranarray)),
-    "a zip bomb": ("digest", "too-big", bomb),
+    "a zip bomb": ("digest", "too-big", member("t_s.npy", bytes(UNPACKED_LIMIT + 1))),
     "arrays that are not finite": ("digest", "bad-trace", rewrite(q=changed_at((-1, 0), np.nan))),
     "a shifted time axis": ("digest", "bad-trace", rewrite(t=lambda t: t + 0.01)),
     "a target that wanders": ("digest", "bad-trace", rewrite(target=changed_at((5, 3), 0.0))),

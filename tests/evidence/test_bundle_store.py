@@ -1,22 +1,11 @@
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from tiny_book import old_bundle
 
 from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.evidence import bundle_store
-
-
-def old_log(folder: Path) -> Path:
-    """Put an older bundle in place and return one of its files."""
-    log = folder / "kept" / "l04" / "cuda" / "log.txt"
-    log.parent.mkdir(parents=True)
-    (log.parent / "manifest.json").write_text("{}")
-    log.write_text("old")
-    (log.parent / "of the old one.txt").touch()
-    return log
-
 
 DIES = """
 import os, sys
@@ -37,7 +26,7 @@ bundle_store.put(Path(sys.argv[1]), Path(sys.argv[2]))
 
 @pytest.mark.parametrize(("renames", "stands"), [(0, "old"), (1, "old"), (2, "new")])
 def test_a_kill_at_any_rename_leaves_the_old_or_the_new_bundle(tmp_path, renames, stands):
-    old, new = old_log(tmp_path), tmp_path / "run" / "cuda"
+    old, new = old_bundle(tmp_path, "cuda"), tmp_path / "run" / "cuda"
     new.mkdir(parents=True)
     (new / "manifest.json").write_text("{}")
     (new / "log.txt").write_text("new")
@@ -48,20 +37,6 @@ def test_a_kill_at_any_rename_leaves_the_old_or_the_new_bundle(tmp_path, renames
     assert [path.name for path in old.parents[1].iterdir()] == ["cuda"]
     assert old.read_text() == stands
     assert (old.parent / "of the old one.txt").exists() == (stands == "old")
-
-
-def test_a_copy_that_fails_changes_nothing(tmp_path, monkeypatch):
-    old = old_log(tmp_path)
-
-    def full(source, target):
-        target.mkdir()
-        raise OSError("No space left on device")
-
-    monkeypatch.setattr(bundle_store.shutil, "copytree", full)
-    with pytest.raises(OSError, match="No space left"):
-        bundle_store.put(tmp_path / "run" / "cuda", old.parents[1])
-    assert old.read_text() == "old"
-    assert [path.name for path in old.parents[1].iterdir()] == ["cuda"]
 
 
 @pytest.mark.parametrize("link", [False, True])

@@ -1,9 +1,9 @@
+import io
 from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
-from robo_genesis.core.scene import JOINT_NAMES
 from robo_genesis.core.trace import Trace
 from robo_genesis.evidence.bundle import BundleRefused, read_arrays
 from robo_genesis.evidence.trace_files import (
@@ -14,6 +14,7 @@ from robo_genesis.evidence.trace_files import (
     read_trace,
     write_traces,
 )
+from robo_genesis.sim.franka import JOINT_NAMES
 
 LINKS = ["link0", "link4", "hand"]
 
@@ -51,32 +52,21 @@ def test_arrays_come_back_bit_for_bit(written, traces):
 
 
 def test_the_description_comes_back(pristine, traces, joints, tmp_path):
-    assert read_arrays(pristine) == write_traces(tmp_path, traces, joints, LINKS)
-
-
-def test_dimensions_have_the_lengths_that_are_described(written):
-    _, arrays = written
+    arrays = write_traces(tmp_path, traces, joints, LINKS)
+    assert read_arrays(pristine) == arrays
     assert arrays.coords == {"dof": list(JOINT_NAMES), "link": LINKS}
-    lengths = {"state": 121, "step": 120, "dof": 9, "link": 3, "axis": 3, "wxyz": 4}
-    for variable in arrays.cases["G1"].variables.values():
-        assert variable.shape == [lengths[dim] for dim in variable.dims]
 
 
-def test_joints_come_back_as_they_were(written, joints):
-    found = read_joints(written[1])
-    assert (found.names, found.types) == (joints.names, joints.types)
-    for name in ("dofs_idx_local", "qs_idx_local", "lower", "upper"):
-        assert getattr(found, name).tolist() == getattr(joints, name).tolist()
-
-
-def test_a_joint_without_a_limit_has_null(written, joints):
+def test_joints_come_back_as_they_were_and_a_limit_that_is_missing_is_null(written, joints):
     lower, upper = np.array(joints.lower), np.array(joints.upper)
     lower[2], upper[5] = -np.inf, np.inf
     free = replace(joints, lower=lower, upper=upper)
     records = joint_records(free)
     assert [r.name for r in records if r.lower is None] == ["joint3"]
     found = read_joints(written[1].model_copy(update={"joints": records}))
-    assert (found.lower.tolist(), found.upper.tolist()) == (lower.tolist(), upper.tolist())
+    assert (found.names, found.types) == (joints.names, joints.types)
+    for name in ("dofs_idx_local", "qs_idx_local", "lower", "upper"):
+        assert getattr(found, name).tolist() == getattr(free, name).tolist()
 
 
 def test_a_limit_that_is_no_number_is_not_written(joints):
@@ -102,12 +92,9 @@ def test_each_dof_has_its_own_unit(joints, written, field):
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"extra": np.zeros(1)}, "list of arrays"),
         ({"q_rad_or_m": None}, "list of arrays"),
-        ({"q_rad_or_m": np.zeros((121, 9))}, r"q_rad_or_m is .*float64"),
-        ({"q_rad_or_m": np.zeros((120, 9), np.float32)}, r"q_rad_or_m is .*120, 9"),
+        ({"q_rad_or_m": np.zeros((120, 9))}, r"q_rad_or_m is .*120, 9.*float64"),
         ({"q_rad_or_m": np.zeros((121, 9), np.float16)}, r"q_rad_or_m\.npy is <f2"),
-        ({"q_rad_or_m": np.full((121, 9), None)}, r"q_rad_or_m\.npy is \|O"),
     ],
 )
 def test_other_arrays_than_the_described_ones_are_refused(spoil, changed, message):
@@ -115,23 +102,20 @@ def test_other_arrays_than_the_described_ones_are_refused(spoil, changed, messag
         read_trace(*spoil(**changed), "G1")
 
 
-def test_arrays_that_form_no_run_are_refused(spoil, traces):
-    q = np.array(traces["G1"].q)
-    q[3, 3] = np.nan
-    with pytest.raises(BundleRefused, match=r"^bad-trace: arrays/G1.npz: q is not finite"):
-        read_trace(*spoil(q_rad_or_m=q), "G1")
+SINGLE = io.BytesIO()
+np.save(SINGLE, np.zeros(3))
 
 
 @pytest.mark.parametrize(
     "broken",
     [
         lambda data: b"",
-        lambda data: data[: len(data) // 2],
         lambda data: b"no archive",
         lambda data: data[:200] + bytes(200) + data[400:],
         lambda data: data.replace(b"\x1f", b"\x2f"),
+        lambda data: SINGLE.getvalue(),
     ],
-    ids=["empty", "cut", "text", "zeros", "swapped bytes"],
+    ids=["empty", "text", "zeros", "swapped bytes", "a single array"],
 )
 def test_a_file_that_cannot_be_read_is_refused(written, broken):
     path = written[0] / "arrays" / "G1.npz"
@@ -140,12 +124,7 @@ def test_a_file_that_cannot_be_read_is_refused(written, broken):
         read_trace(*written, "G1")
 
 
-def test_a_missing_file_and_a_single_array_are_refused(written):
-    path = written[0] / "arrays" / "G1.npz"
-    path.unlink()
-    with pytest.raises(BundleRefused, match=r"^bad-array: "):
-        read_trace(*written, "G1")
-    with path.open("wb") as file:
-        np.save(file, np.zeros(3))
+def test_a_missing_file_is_refused(written):
+    (written[0] / "arrays" / "G1.npz").unlink()
     with pytest.raises(BundleRefused, match=r"^bad-array: "):
         read_trace(*written, "G1")

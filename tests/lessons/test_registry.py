@@ -5,9 +5,12 @@ import ast
 import pytest
 
 from robo_genesis.core.orderings import HELD_BY
+from robo_genesis.core.palette import CASE_CLASSES
 from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.evidence.trace_files import KINDS
 from robo_genesis.lessons import registry
 from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.lessons.declaration import Compared
 from robo_genesis.lessons.registry import LESSONS, find_lesson, find_page
 
 
@@ -28,13 +31,22 @@ def test_modules_cases_and_metrics_of_a_lesson_exist(name):
     drawn = [lesson.compared, *lesson.further.values()]
     assert all(of is None or {*of.cases} <= {*lesson.spec.CASES} for of in drawn)
     assert lesson.metrics.keys() == lesson.spec.CASES.keys()
+    assert lesson.marks.keys() <= lesson.spec.CASES.keys()
+    assert {*lesson.marks.values()} <= CASE_CLASSES.keys()
+    if isinstance(lesson.compared, Compared):
+        units = lesson.about_metrics("unit")
+        assert lesson.compared.quality.format_map(units)  # a name that is no metric raises KeyError
     for (first, second), metric, order, margin in lesson.spec.RELATIONS:
         assert {first, second} <= {*lesson.spec.CASES}
         units = {lesson.metrics[case].about("unit")[metric] for case in (first, second)}
         assert order in HELD_BY
         assert margin > lesson.spec.RESOLUTION[units.pop()]
         assert not units
-    assert {*lesson.about_metrics("unit").values()} - {"1"} <= lesson.spec.TOLERANCES.keys()
+    units = {*lesson.about_metrics("unit").values()}
+    assert units <= lesson.spec.RESOLUTION.keys()
+    assert units - {"1"} <= lesson.spec.TOLERANCES.keys()
+    sources = {name for of in lesson.about_metrics("sources").values() for name in of}
+    assert sources <= {name for fields in KINDS.values() for name, *_ in fields.values()}
 
 
 @pytest.mark.parametrize("name", LESSONS)
@@ -57,5 +69,5 @@ def test_a_lookup_error_lists_the_choices():
 
 
 def test_cases_are_written_as_words():
-    assert registry.Compared(("A", "B", "C"), "joint", 0.01).names == "A, B and C"
+    assert registry.Moving(("A", "B", "C"), link="box", thing="box").names == "A, B and C"
     assert registry.Moving(("A",), link="box", thing="box").names == "A"

@@ -50,6 +50,7 @@ def remove(work, lesson):
 def build(work):
     """Build the book of a copy and return its site."""
     cache = work / ".cache"
+    shutil.rmtree(cache, ignore_errors=True)  # of the copy's own tests
     cache.mkdir()
     (cache / "npm").symlink_to(npm.packages().parents[1])
     (cache / "engine").symlink_to(CACHE / "engine")

@@ -1,7 +1,6 @@
 """The lock names every package that the project needs, in the version that is installed."""
 
 import importlib.metadata
-import re
 import tomllib
 
 from packaging.requirements import Requirement
@@ -67,12 +66,8 @@ def test_the_lock_is_written_whole_and_torch_stays(tmp_path, monkeypatch):
     assert asked == [(["a==1", "torch==1.0"], False), (["torch==2.0"], True)]
 
 
-def test_every_line_names_one_exact_public_version():
+def test_every_package_has_one_line_and_the_engine_its_pin():
     assert len(LOCKED) == len(LINES)
-    assert all(re.fullmatch(r"[\w.]+", version) for version in LOCKED.values())
-
-
-def test_the_lock_follows_the_pin():
     assert LOCKED["genesis-world"] == engine_pin()
 
 

@@ -1,4 +1,4 @@
-"""The real change of the pin, there and back, in a clone: `make test-repin`, never `make test`."""
+"""The real change of the pin, there and back, in a clone."""
 
 import json
 import shutil
@@ -6,20 +6,20 @@ import sys
 from pathlib import Path
 
 import pytest
-from tiny_book import commit, git, make
+from checkout import make, run_in
+from tiny_book import commit, git
 
 from robo_genesis.core import project
 from robo_genesis.core.project import ROOT
 from robo_genesis.evidence import report as pages
-from robo_genesis.evidence.compare import compare, specification
+from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.findings import EQUAL, WITHIN
 
-pytestmark = pytest.mark.repin
+pytestmark = [pytest.mark.engine, pytest.mark.slow]
 
 PIN = project.engine_pin()
 OTHER = "1.4.5" if PIN != "1.4.5" else "1.3.3"
 BASE = f"BASE_PYTHON={sys.executable}"
-PYTHON = f"PYTHON={sys.executable}"
 
 
 @pytest.fixture(scope="module")
@@ -53,22 +53,22 @@ def keep(clone: Path, name: str) -> Path:
 
 def test_there_and_back(clone):
     before = texts(clone)
-    refused = make(clone, "repin", "GENESIS=9.9.9", PYTHON, fails=True)
+    refused = make(clone, "repin", "GENESIS=9.9.9", fails=True)
     assert "there is no genesis-world 9.9.9" in refused
     assert changed(clone) == []
 
-    make(clone, "book", PYTHON)
+    make(clone, "book")
     first = keep(clone, "first")
-    make(clone, "repin", f"GENESIS={OTHER}", PYTHON)
+    make(clone, "repin", f"GENESIS={OTHER}")
     assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
     assert project.engine_pin(clone) == OTHER
     report = (clone / ".cache/reports" / f"repin-{PIN}-{OTHER}" / "report.md").read_text()
     assert "## L04 lab: engine version" in report
     assert "| differs |" not in report
 
-    make(clone, "book", BASE)  # in the environment of the new lock
+    run_in(clone, "make", "book", BASE)  # in the environment of the new lock
     second = keep(clone, "second")
-    found = compare(first, second, specification("l04"))
+    found = compare(first, second)
     assert found.state in (EQUAL, WITHIN), pages.summary(found)
     assert predicate(second)["engine"]["version"] == OTHER
     assert predicate(second)["evidence_key"] != predicate(first)["evidence_key"]
@@ -79,10 +79,10 @@ def test_there_and_back(clone):
         assert predicate(first)["run_id"][:8] not in html, page
 
     commit(clone)
-    make(clone, "repin", f"GENESIS={PIN}", BASE)
+    run_in(clone, "make", "repin", f"GENESIS={PIN}", BASE)
     assert texts(clone) == before
     assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
-    make(clone, "book", BASE)
+    run_in(clone, "make", "book", BASE)
     third = keep(clone, "third")
     assert predicate(third)["evidence_key"] == predicate(first)["evidence_key"]
-    assert compare(first, third, specification("l04")).state == EQUAL
+    assert compare(first, third).state == EQUAL

@@ -1,15 +1,13 @@
 """Frames of a run are taken at the samples that were asked for, and of nothing else."""
 
-import io
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
-from PIL import Image
 
 from robo_genesis.core.scene import FRAME_SHAPE
-from robo_genesis.sim import film, session
+from robo_genesis.sim.camera import FrameError
+from robo_genesis.sim.film import FilmedScene
 
 
 class Scene:
@@ -32,7 +30,7 @@ class Scene:
 @pytest.fixture
 def filmed():
     scene = Scene()
-    return film.Filmed(scene, scene, (0, 2, 3))
+    return FilmedScene(scene, scene, (0, 2, 3))
 
 
 def test_frames_show_the_states_that_were_asked_for(filmed):
@@ -51,15 +49,5 @@ def test_all_else_is_the_scene_s_own(filmed):
 def test_a_frame_that_shows_nothing_is_refused():
     scene = Scene()
     blind = SimpleNamespace(render=lambda: (np.zeros(FRAME_SHAPE, np.uint8),))
-    with pytest.raises(session.FrameError):
-        film.Filmed(scene, blind, (0,)).step()
-
-
-def test_a_strip_names_the_times_in_their_order_and_is_light(frames):
-    figure = Figure(figsize=(7, 3))
-    axes = figure.subplots(1, 2)
-    film.strip(axes, {20: frames["final"], 0: frames["initial"]}, dt=0.01)
-    assert [ax.get_title() for ax in axes] == ["t = 0.00 s", "t = 0.20 s"]
-    with Image.open(io.BytesIO(film.jpeg(figure))) as picture:
-        assert picture.format == "JPEG"
-        assert picture.size == (630, 270)
+    with pytest.raises(FrameError):
+        FilmedScene(scene, blind, (0,)).step()

@@ -1,13 +1,12 @@
 """Control cases are validated and never changed; a run records each state at its own time."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from robo_genesis.core.scene import JOINT_NAMES
 from robo_genesis.lessons.l04.spec import BASELINE, CASES, G1, G2
+from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import (
     CaseError,
     ControlCase,
@@ -142,19 +141,16 @@ def test_a_position_outside_its_limits_is_not_clipped(robot, joints):
     assert robot.calls == []
 
 
-def test_equal_cases_have_no_differences(joints):
-    assert differences(G1, replace(G1, kp=G1.kp.copy()), joints) == []
-
-
 @pytest.mark.parametrize("name", ARRAYS)
 def test_differences_name_field_and_joint(joints, name):
     other = replace(BASELINE, **{name: getattr(BASELINE, name) + np.isin(np.arange(N), (0, 7))})
     assert differences(BASELINE, other, joints) == [f"{name}[joint1]", f"{name}[finger_joint1]"]
 
 
-def test_differences_name_several_fields_at_once(joints):
+def test_differences_name_several_fields_at_once_and_no_equal_ones(joints):
     other = replace(G2, kv=G2.kv + np.eye(N)[3], steps=3)
     assert differences(G1, other, joints) == ["kp[joint4]", "kv[joint4]", "steps"]
+    assert differences(G1, replace(G1, kp=G1.kp.copy()), joints) == []
 
 
 def test_every_field_of_a_case_is_compared(joints):
@@ -163,16 +159,18 @@ def test_every_field_of_a_case_is_compared(joints):
     assert named == set(ControlCase.__dataclass_fields__)
 
 
-def test_a_scene_that_is_not_built_is_refused(robot, joints):
-    with pytest.raises(CaseError, match=r"not built: call scene.build\(\)"):
-        run_case(SimpleNamespace(is_built=False), robot, joints, BASELINE)
-    assert robot.calls == []
-
-
-@pytest.mark.parametrize("change", [{"dt": 0.02}, {"substeps": 20}])
-def test_a_scene_of_another_time_step_is_refused(robot, joints, change):
-    with pytest.raises(CaseError, match="Restart and build"):
-        reset(robot, robot, joints, replace(BASELINE, **change))
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("is_built", False, r"not built: call scene.build\(\)"),
+        ("dt", 0.02, "Restart and build"),
+        ("substeps", 20, "Restart and build"),
+    ],
+)
+def test_a_scene_that_is_not_built_for_the_case_is_refused(robot, joints, name, value, message):
+    setattr(robot, name, value)
+    with pytest.raises(CaseError, match=message):
+        run_case(robot, robot, joints, BASELINE)
     assert robot.calls == []
 
 

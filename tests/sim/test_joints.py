@@ -40,6 +40,7 @@ def robot():
         ("weld", "FIXED", [], []),
         ("disc", "REVOLUTE", [11], [13, 14]),
         ("screw", "REVOLUTE", [12, 13], [15]),
+        ("twin", "REVOLUTE", [6], [16]),
     )
 
 
@@ -74,28 +75,23 @@ def test_arrays_are_read_only(robot, name):
         getattr(resolve_joints(robot, ("slider",)), name)[0] = 0
 
 
-def test_an_unknown_name_lists_the_models_names(robot):
-    with pytest.raises(
-        JointError, match=r"'elbw'.*base, shoulder, wrist, slider, weld, disc, screw"
-    ):
-        resolve_joints(robot, ("shoulder", "elbw"))
+REFUSED = [
+    (("shoulder", "elbw"), r"'elbw'.*base, shoulder, wrist, slider, weld, disc, screw, twin"),
+    *(
+        ((name,), f"'{name}' has {dofs} DOFs and {qpos} qpos")
+        for name, dofs, qpos in (
+            ("wrist", 3, 4), ("base", 6, 7), ("weld", 0, 0), ("disc", 1, 2), ("screw", 2, 1),
+        )
+    ),
+    (("shoulder", "shoulder"), r"shoulder, shoulder share DOFs: \[6, 6\]"),
+    (("shoulder", "twin"), r"shoulder, twin share DOFs: \[6, 6\]"),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("name", "dofs", "qpos"),
-    [("wrist", 3, 4), ("base", 6, 7), ("weld", 0, 0), ("disc", 1, 2), ("screw", 2, 1)],
-)
-def test_a_joint_that_is_no_scalar_gives_both_counts(robot, name, dofs, qpos):
-    with pytest.raises(JointError, match=f"'{name}' has {dofs} DOFs and {qpos} qpos"):
-        resolve_joints(robot, (name,))
-
-
-def test_joints_that_share_a_dof_are_refused(robot):
-    with pytest.raises(JointError, match=r"share DOFs: \[6, 6\]"):
-        resolve_joints(robot, ("shoulder", "shoulder"))
-    robot = FakeRobot(("one", "REVOLUTE", [0], [0]), ("two", "REVOLUTE", [0], [1]))
-    with pytest.raises(JointError, match="one, two share DOFs"):
-        resolve_joints(robot, ("one", "two"))
+@pytest.mark.parametrize(("names", "message"), REFUSED)
+def test_names_that_are_not_one_dof_each_are_refused(robot, names, message):
+    with pytest.raises(JointError, match=message):
+        resolve_joints(robot, names)
 
 
 def test_entry_is_the_place_in_the_map(robot):

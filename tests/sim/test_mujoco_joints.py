@@ -5,10 +5,10 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from robo_genesis.core.scene import JOINT_NAMES, Q_START
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.sim import mujoco_joints
+from robo_genesis.sim.franka import JOINT_NAMES, Q_START
 from robo_genesis.sim.joint_control import CaseError
 
 K = JOINT_NAMES.index(l04.STEPPED_JOINT)

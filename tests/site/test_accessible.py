@@ -4,9 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 from playwright.sync_api import Page
-from watching import drawn, page_names
-
-from robo_genesis.build import npm
+from watching import drawn, page_names, violations
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -21,23 +19,29 @@ STATES = {
 }
 # axe-core skips what a closed fold hides, so each page is looked at once more with all folds open.
 OPENED = ("light", "dark", "narrow")
+AXE = {
+    "runOnly": {"type": "tag", "values": RULES},
+    "rules": {"target-size": {"enabled": True}},  # WCAG 2.2 AA, and off by default
+}
 OPEN_ALL = """() => {
   const folds = [...document.querySelectorAll("article details:not([open])")];
   for (const fold of folds) fold.open = true;
   return folds.length;
 }"""
-RUN_AXE = """async rules => {
-  const found = await axe.run(document, {
-    runOnly: { type: "tag", values: rules },
-    rules: { "target-size": { enabled: true } }, // WCAG 2.2 AA, and off as axe-core comes
-  });
-  return {
-    rules: ["violations", "passes", "inapplicable", "incomplete"].flatMap(
-      kind => found[kind].map(rule => rule.id)),
-    violations: found.violations.flatMap(
-      rule => rule.nodes.map(node => `${rule.id}: ${node.target.join(" ")}`)),
-  };
-}"""
+SCROLLING = """() => [...document.querySelectorAll("article *")].filter(element => {
+  const { overflowX, visibility } = getComputedStyle(element);
+  return /auto|scroll/.test(overflowX) && element.scrollWidth > element.clientWidth
+    && element.clientWidth && visibility === "visible";
+}).map(element => ({
+  what: element.outerHTML.slice(0, 100),
+  reached: element.tabIndex === 0,
+  named: !!(element.ariaLabel || element.querySelector(":scope > figcaption, :scope > caption")),
+}))"""
+MOVING = """() => [...document.querySelectorAll("*")].filter(element => {
+  const style = getComputedStyle(element);
+  return parseFloat(style.transitionDuration) > 0 || style.animationName !== "none"
+    || style.scrollBehavior === "smooth";
+}).length"""
 THEME_WAITS = 300
 """How long after a change the theme looks again which boxes scroll [ms of the page's clock]."""
 
@@ -56,20 +60,6 @@ def put_into(page: Page, state: str) -> None:
     settle(page)
 
 
-def violations(page: Page) -> list[str]:
-    return page.evaluate(RUN_AXE, RULES)["violations"]
-
-
-@pytest.fixture(scope="module")
-def axe() -> str:
-    return str(npm.packages() / "axe-core" / "axe.min.js")
-
-
-@pytest.fixture(scope="module")
-def names(site) -> list[str]:
-    return [*page_names(site), "search.html?q=joint"]
-
-
 @pytest.fixture
 def page(browser) -> Iterator[Page]:
     page = browser.new_page()
@@ -78,28 +68,40 @@ def page(browser) -> Iterator[Page]:
     page.close()
 
 
-def test_axe_finds_nothing_on_any_page_in_any_state(page, address, axe, names):
-    found, wide, opened = {}, [], 0
+def test_each_page_can_be_used_in_every_state(page, address, site):
+    """axe-core finds nothing; boxes that scroll have focus and name; nothing is wide or moves."""
+    found, opened, kinds = {}, 0, set()
 
     def look(name: str, state: str, folds: str) -> None:
         put_into(page, state)
-        if problems := violations(page):
-            found[f"{name}, {state}, {folds}"] = problems
+        problems = violations(page, **AXE)
         if page.evaluate("document.documentElement.scrollWidth > innerWidth"):
-            wide.append(f"{name}, {state}, {folds}")
+            problems.append("wider than the window")
+        if page.evaluate(MOVING):
+            problems.append("moves")
+        if folds == "open":
+            boxes = page.evaluate(SCROLLING)
+            kinds.update(box["what"].split()[0] for box in boxes)
+            problems += [box["what"] for box in boxes if not (box["reached"] and box["named"])]
+        if problems:
+            found[f"{name}, {state}, folds {folds}"] = problems
 
-    for name in names:
+    for name in (*page_names(site), "search.html?q=joint"):
         page.goto(f"{address}/{name}")
-        page.add_script_tag(path=axe)
+        assert page.evaluate("[...document.querySelectorAll('*')].every(e => e.tabIndex <= 0)")
         for state in STATES:
-            look(name, state, "folds closed")
-        if folds := page.evaluate(OPEN_ALL):
-            opened += folds
-            for state in OPENED:
-                look(name, state, "folds open")
+            look(name, state, "closed")
+        opened += page.evaluate(OPEN_ALL)
+        for state in OPENED:
+            look(name, state, "open")
     assert found == {}
-    assert wide == []
     assert opened > 20
+    assert {"<pre", "<figure", "<div"} <= kinds
+
+
+def test_motion_remains_without_the_request(page, address):
+    page.goto(f"{address}/{LECTURE}")
+    assert page.evaluate(MOVING) > 0
 
 
 @pytest.mark.parametrize(
@@ -115,12 +117,11 @@ def test_axe_finds_nothing_on_any_page_in_any_state(page, address, axe, names):
         ),
     ],
 )
-def test_axe_would_find_it(page, address, axe, spoil, rule):
+def test_axe_would_find_it(page, address, spoil, rule):
     page.goto(f"{address}/index.html")
-    page.add_script_tag(path=axe)
     put_into(page, "light")
     page.evaluate(spoil)
-    assert rule in {line.partition(":")[0] for line in violations(page)}
+    assert rule in {line.partition(":")[0] for line in violations(page, **AXE)}
 
 
 FOCUSED = """() => {
@@ -174,12 +175,6 @@ def test_the_focus_is_seen_wherever_it_goes(page, address, site, width):
         assert hidden == [], name
 
 
-def test_the_focus_follows_the_text(page, address, names):
-    for name in names:
-        page.goto(f"{address}/{name}")
-        assert page.evaluate("[...document.querySelectorAll('*')].every(e => e.tabIndex <= 0)")
-
-
 def test_the_skip_link_leads_past_the_menu(page, address):
     page.goto(f"{address}/{LECTURE}")
     page.keyboard.press("Tab")
@@ -188,36 +183,18 @@ def test_the_skip_link_leads_past_the_menu(page, address):
     assert page.evaluate("document.activeElement.closest('main') !== null")
 
 
-SCROLLING = """() => [...document.querySelectorAll("article *")].filter(element => {
-  const { overflowX, visibility } = getComputedStyle(element);
-  return /auto|scroll/.test(overflowX) && element.scrollWidth > element.clientWidth
-    && element.clientWidth && visibility === "visible";
-}).map(element => ({
-  what: element.outerHTML.slice(0, 100),
-  reached: element.tabIndex === 0,
-  named: !!(element.ariaLabel || element.querySelector(":scope > figcaption, :scope > caption")),
-}))"""
-
-
-def test_every_box_that_scrolls_takes_the_focus_and_has_a_name(page, address, site):
+@pytest.mark.parametrize(
+    ("name", "box"),
+    [
+        (LECTURE, "article figure[tabindex='0']"),
+        ("evidence/ledger.html", "#figures-and-tables .scroll-box"),
+    ],
+)
+def test_a_box_scrolls_by_keyboard(page, address, name, box):
     page.set_viewport_size({"width": 320, "height": 700})
-    kinds = set()
-    for name in page_names(site):
-        page.goto(f"{address}/{name}")
-        page.evaluate("for (const fold of document.querySelectorAll('details')) fold.open = true")
-        settle(page)
-        boxes = page.evaluate(SCROLLING)
-        assert [box for box in boxes if not (box["reached"] and box["named"])] == [], name
-        kinds |= {box["what"].split()[0] for box in boxes}
-    assert {"<pre", "<figure", "<div"} <= kinds
-
-
-def test_a_box_scrolls_by_keyboard(page, address):
-    page.set_viewport_size({"width": 320, "height": 700})
-    page.goto(f"{address}/{LECTURE}")
+    page.goto(f"{address}/{name}")
     settle(page)
-    box = page.locator("article figure[tabindex='0']").first
-    box.focus()
+    page.locator(box).first.focus()
     page.keyboard.press("ArrowRight")
     page.wait_for_function("document.activeElement.scrollLeft > 0")
 
@@ -233,19 +210,3 @@ def test_every_fold_opens_by_keyboard(page, address):
         opened += fold.evaluate("summary => summary.parentElement.open") != before
         page.keyboard.press("Enter")
     assert opened == folds.count() > 20
-
-
-MOVING = """() => [...document.querySelectorAll("*")].filter(element => {
-  const style = getComputedStyle(element);
-  return parseFloat(style.transitionDuration) > 0 || style.animationName !== "none"
-    || style.scrollBehavior === "smooth";
-}).length"""
-
-
-def test_nothing_moves_for_who_asked_for_less_motion(page, address, site):
-    for name in page_names(site):
-        page.emulate_media(reduced_motion="reduce")
-        page.goto(f"{address}/{name}")
-        assert page.evaluate(MOVING) == 0
-    page.emulate_media(reduced_motion="no-preference")
-    assert page.evaluate(MOVING) > 0

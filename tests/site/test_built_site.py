@@ -4,8 +4,7 @@ import json
 from importlib import import_module
 
 import pytest
-from bs4 import BeautifulSoup
-from built_site import LESSON_PAGES, MEASURING_PAGES
+from built_site import LESSON_PAGES, MEASURING_PAGES, parsed
 
 from robo_genesis.core import project
 from robo_genesis.evidence.verify import verify_bundle
@@ -15,13 +14,9 @@ pytestmark = pytest.mark.engine
 PIN = project.engine_pin()
 
 
-def page(site, name: str) -> BeautifulSoup:
-    return BeautifulSoup((site / f"{name}.html").read_text(), "html.parser")
-
-
 @pytest.mark.parametrize(("lesson", "name"), MEASURING_PAGES)
 def test_pages_show_executed_outputs_and_their_verdict(site, lesson, name):
-    found = page(site, LESSON_PAGES[lesson, name])
+    found = parsed(site, LESSON_PAGES[lesson, name])
     assert f"{lesson.upper()} CHECK: PASSED" in found.get_text()
     assert found.select("div.cell_output img[src$='.svg']")
 
@@ -34,7 +29,7 @@ def test_pages_show_executed_outputs_and_their_verdict(site, lesson, name):
     ],
 )
 def test_status_is_computed_and_says_what_is_missing(site, lesson, name):
-    status = page(site, name).select_one(".lesson-status").get_text()
+    status = parsed(site, name).select_one(".lesson-status").get_text()
     count = len(import_module(f"robo_genesis.lessons.{lesson}.checks").CHECKS)
     assert f"cpu-verified Lab in a clean notebook kernel, Genesis {PIN}" in status
     assert f"{count} of {count} checks passed" in status

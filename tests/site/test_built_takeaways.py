@@ -5,7 +5,7 @@ import json
 import nbformat
 import numpy as np
 import pytest
-from bs4 import BeautifulSoup
+from built_site import parsed
 
 from robo_genesis.core import project
 from robo_genesis.evidence import bundle
@@ -18,7 +18,7 @@ OF_THE_SITE = ("{measured}", "{term}", "{takeaways}", ":::", "Take it with you")
 
 @pytest.fixture(scope="module")
 def page(site):
-    return BeautifulSoup((site / f"{LAB}.html").read_text(), "html.parser")
+    return parsed(site, LAB)
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,7 @@
 from copy import deepcopy
 
 import pytest
-from bs4 import BeautifulSoup
+from built_site import parsed
 from jupyter_cache.base import CacheBundleIn
 from tiny_book import cell, make_book, notebook
 
@@ -26,7 +26,7 @@ def built(folder, *executed, **seconds):
         ran.metadata["robo_genesis"] = {"cell_seconds": seconds[found.docname]}
         cache.cache_notebook_bundle(CacheBundleIn(ran, found.docname), check_validity=False)
     html = render(book, folder / "staging", folder / "cache", folder / "render.log", executed)
-    return BeautifulSoup((html / "times.html").read_text(), "html.parser").select_one("tbody")
+    return parsed(html, "times").select_one("tbody")
 
 
 def test_a_row_shows_rounded_times_the_slowest_cell_and_whether_this_build_ran_the_page(tmp_path):

@@ -2,8 +2,7 @@
 
 import pytest
 import yaml
-from bs4 import BeautifulSoup
-from built_site import LESSON_PAGES
+from built_site import LESSON_PAGES, parsed
 from tiny_book import make_book
 
 from robo_genesis.build.render import RenderError, render
@@ -55,19 +54,14 @@ def test_a_map_that_cannot_be_right_is_refused(tmp_path, rows, said):
         read_map(tmp_path)
 
 
-def build(folder, rows, text="```{course-map}\n```"):
-    other = "lessons/l02-two/lecture"
-    (folder / "book" / other).parent.mkdir(parents=True)
-    book = make_book(
-        folder, page="# Page\n\nText.\n", text=f"# Map\n\n{text}\n", **{other: "# Two\n\nText.\n"}
-    )
-    write(book, rows)
-    return render(book, folder / "staging", folder / "cache", folder / "render.log")
-
-
 def text_page(folder, rows, text):
-    html = (build(folder, rows, text) / "text.html").read_text()
-    return BeautifulSoup(html, "html.parser").article
+    """Render a book with this map, and return its page with this text."""
+    pages = {"page": "Page", "text": f"Map\n\n{text}", "lessons/l02-two/lecture": "Two"}
+    (folder / "book" / "lessons" / "l02-two").mkdir(parents=True)
+    book = make_book(folder, **{name: f"# {text}\n\nText.\n" for name, text in pages.items()})
+    write(book, rows)
+    html = render(book, folder / "staging", folder / "cache", folder / "render.log")
+    return parsed(html, "text").article
 
 
 def test_a_card_a_lesson_with_prerequisites_and_state(tmp_path):
@@ -115,7 +109,7 @@ def test_lessons_that_are_absent_leave_words_and_no_content(tmp_path):
 def test_wrong_pages_fail_the_build(tmp_path):
     text = "{lesson}`Two <l02/lectur>` {lesson}`l02/lecture`\n\n```{course-map}\n```"
     with pytest.raises(RenderError) as raised:
-        build(tmp_path, [MAP[0] | {"page": "nowhere"}], text)
+        text_page(tmp_path, [MAP[0] | {"page": "nowhere"}], text)
     for message in (
         "the book has no page nowhere",
         "l02 has no page 'lectur'; choices: lecture",

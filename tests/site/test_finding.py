@@ -1,18 +1,15 @@
 """Finding a page, a name or a place again: search, 404, anchors, neighbours, facts."""
 
 import itertools
+import os
 import re
-import shutil
-import subprocess
-import threading
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
-from bs4 import BeautifulSoup
-from built_site import PAGES
+from built_site import PAGES, QuietHandler, parsed, served
+from watching import errors
 
+from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.site.course_map import read_map
@@ -29,16 +26,10 @@ PLACES = "article section[id], article section > span[id], article figure[id], a
 NUMBERED = re.compile(r"id\d+$")
 
 
-def parsed(site, name: str) -> BeautifulSoup:
-    return BeautifulSoup((site / f"{name}.html").read_text(), "html.parser")
-
-
 @pytest.fixture
 def page(browser):
     page = browser.new_page()
-    problems: list[str] = []
-    page.on("console", lambda m: problems.append(m.text) if m.type == "error" else None)
-    page.on("pageerror", lambda error: problems.append(str(error)))
+    problems = errors(page)
     yield page
     page.close()
     assert [text for text in problems if "404 (" not in text] == []
@@ -51,22 +42,11 @@ def results(page) -> list[str]:
     return page.eval_on_selector_all("#search-results li > a", "links => links.map(a => a.href)")
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "joint4",
-        "finger_joint1",
-        "get_dofs_control_force",
-        "control_dofs_position",
-        "set_dofs_kp",
-        "control_force",
-        "dofs_kp",
-        "overshoot",
-    ],
-)
-def test_search_finds_names_of_joints_and_calls(page, address, words):
-    page.goto(f"{address}/search.html?q={words}")
-    assert [url for url in results(page) if f"/{LECTURE}.html" in url]
+def test_search_finds_names_of_joints_and_calls(page, address):
+    names = "joint4 finger_joint1 set_dofs_kp dofs_kp control_dofs_position control_force overshoot"
+    for words in (*names.split(), "get_dofs_control_force"):
+        page.goto(f"{address}/search.html?q={words}")
+        assert [url for url in results(page) if f"/{LECTURE}.html" in url], words
 
 
 def test_search_finds_what_a_student_types_into_the_field(page, address):
@@ -85,7 +65,7 @@ def test_search_says_when_there_is_nothing(page, address):
     assert results(page) == []
 
 
-class WithNotFound(SimpleHTTPRequestHandler):
+class WithNotFound(QuietHandler):
     """Answers as a host of static sites does: unknown addresses get the site's own page."""
 
     def send_error(self, code: int, *_) -> None:
@@ -96,16 +76,11 @@ class WithNotFound(SimpleHTTPRequestHandler):
         self.end_headers()
         self.wfile.write(body)
 
-    def log_message(self, *_) -> None:
-        pass
-
 
 @pytest.fixture(scope="module")
 def host(site):
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(WithNotFound, directory=str(site)))
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{server.server_port}"
-    server.shutdown()
+    with served(site, WithNotFound) as address:
+        yield address
 
 
 @pytest.mark.parametrize("lost", ["nowhere", "lessons/nowhere.html", "a/b/c/d"])
@@ -154,38 +129,25 @@ def test_new_anchors_are_kept_from_now_on(site):
 
 def test_each_page_leads_to_the_one_before_and_after(site):
     for before, after in itertools.pairwise(PAGES):
-        assert neighbour(site, before, "next") == after
-        assert neighbour(site, after, "prev") == before
+        assert neighbour(site, before, "a.right-next") == f"{after}.html"
+        assert neighbour(site, after, "a.left-prev") == f"{before}.html"
 
 
-def neighbour(site, name: str, which: str) -> str:
-    href = parsed(site, name).select_one(f"a.{'right' if which == 'next' else 'left'}-{which}")[
-        "href"
-    ]
-    return (
-        ((site / name).parent / href)
-        .resolve()
-        .relative_to(site.resolve())
-        .with_suffix("")
-        .as_posix()
-    )
+def neighbour(site, name: str, link: str) -> str:
+    return os.path.normpath(Path(name).parent / parsed(site, name).select_one(link)["href"])
 
 
 def test_pages_tell_their_reading_time_and_history(site):
-    facts = parsed(site, LECTURE).select_one(".page-facts").get_text()
+    page = parsed(site, LECTURE)
+    facts = page.select_one(".page-facts").get_text()
     minutes, words = re.match(r"About (\d+) min to read: ([\d,]+) words", facts).groups()
     assert int(minutes) == round(int(words.replace(",", "")) / 200) > 20
-    history = parsed(site, LECTURE).select_one("details.page-history")
-    if "Git is not installed" in history.get_text():
-        assert shutil.which("git") is None
-        return
-    log = ("git", "log", "-n1", "--format=%cs %s", "--", f"{LECTURE}.md")
-    said = subprocess.run(log, cwd=BOOK, capture_output=True, text=True, check=False).stdout.strip()
-    if "Not known." in history.get_text():  # a shallow clone, or a copy outside of git
-        assert history.select("li") == []
-        assert not said or (BOOK.parent / ".git" / "shallow").exists()
-    else:
-        assert history.select_one("li").get_text() == said
+    history = [item.get_text() for item in page.select("details.page-history li")]
+    if git_or_none(BOOK, "rev-parse", "--is-shallow-repository") == "false\n":
+        last = git_or_none(BOOK, "log", "-n1", "--format=%cs %s", "--", f"{LECTURE}.md")
+        assert history[:1] == (last or "").splitlines()
+    else:  # a shallow clone, or a copy without its history
+        assert history == []
 
 
 def test_the_home_page_maps_the_course(site):
@@ -209,13 +171,10 @@ def test_the_home_page_shows_a_measurement_before_its_second_paragraph(site):
 
 
 def test_terms_are_linked_where_they_first_stand(site):
-    links = parsed(site, LECTURE).select("a.term-link")
+    page = parsed(site, LECTURE)
+    links = page.select("a.term-link")
     terms = [link["href"].partition("#")[2] for link in links]
     assert len(terms) == len(set(terms)) > 40
-    assert {"term-qpos", "term-mass-matrix", "term-saturation", "term-one-factor-at-a-time"} < {
-        *terms
-    }
+    assert {"term-qpos", "term-mass-matrix", "term-one-factor-at-a-time"} < {*terms}
     assert all(link["title"] for link in links)
-    assert not parsed(site, LECTURE).select(
-        "h1 a.term-link, h2 a.term-link, a a, summary a.term-link"
-    )
+    assert not page.select("h1 a.term-link, h2 a.term-link, a a, summary a.term-link")

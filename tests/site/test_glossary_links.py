@@ -1,7 +1,7 @@
 """Terms of the glossary are links at their first use on a page, and nowhere else."""
 
 import pytest
-from bs4 import BeautifulSoup
+from built_site import parsed
 from tiny_book import make_book
 
 from robo_genesis.build.render import RenderError, render
@@ -50,7 +50,7 @@ def build(folder, forms=FORMS):
 
 
 def links(html, name):
-    page = BeautifulSoup((html / f"{name}.html").read_text(), "html.parser")
+    page = parsed(html, name)
     return page, page.select("a.term-link")
 
 

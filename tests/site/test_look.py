@@ -7,9 +7,13 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Page, expect
 
-from robo_genesis.core.palette import CASES, GROUNDS, MARKS, contrast, css_name
+from robo_genesis.core.palette import GROUNDS, MARKS, contrast, css_name
+from robo_genesis.lessons.registry import LESSONS
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+CASES = {"baseline": "baseline"} | dict(LESSONS["l04"].marks)
+"""The mark of each case on the lecture."""
 
 LECTURE = "lessons/l04-joint-control/lecture.html"
 TEXT, GRAPHICS = 4.5, 3
@@ -25,17 +29,22 @@ READ = {
 }
 
 
+SHOWN = """selectors => selectors.map(selector =>
+  [...document.querySelectorAll(selector)].filter(one => one.checkVisibility()).length)"""
+FOLDS = "article .sd-summary-content > p"
+
+
 def hexadecimal(colour: str) -> str:
     """Return `rgb(r, g, b)` as `#rrggbb`."""
     return "#" + "".join(f"{int(part):02x}" for part in re.findall(r"\d+", colour)[:3])
 
 
-@pytest.fixture(params=["light", "dark"])
+@pytest.fixture(scope="module", params=["light", "dark"])
 def theme(request) -> str:
     return request.param
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def page(browser, address, theme) -> Iterator[Page]:
     page = browser.new_page(
         viewport={"width": 1280, "height": 900}, color_scheme=theme, reduced_motion="reduce"
@@ -57,10 +66,29 @@ def test_the_page_s_ground_is_one_that_the_palette_was_held_against(page, theme)
     assert panel in GROUNDS[theme]
 
 
-@pytest.mark.parametrize("what", READ)
-def test_words_can_be_read_on_every_ground(page, theme, what):
-    ink = hexadecimal(style(page, READ[what], "color"))
-    assert min(contrast(ink, ground) for ground in GROUNDS[theme][:2]) >= TEXT
+def test_words_can_be_read_on_every_ground(page, theme):
+    inks = {what: hexadecimal(style(page, selector, "color")) for what, selector in READ.items()}
+    worst = {what: min(contrast(ink, g) for g in GROUNDS[theme][:2]) for what, ink in inks.items()}
+    assert min(worst.values()) >= TEXT, worst
+
+
+def test_the_word_of_each_badge_can_be_read(page):
+    for state in ("verified", "inconclusive", "missing", "stale", "failed", "refused"):
+        badge = f"evidence-badge state-{state}"
+        page.evaluate(f"document.querySelector('.evidence-badge').className = '{badge}'")
+        pair = (style(page, ".evidence-badge", name) for name in ("color", "backgroundColor"))
+        assert contrast(*map(hexadecimal, pair)) >= TEXT, state
+
+
+def test_on_paper_the_menus_are_gone_and_folds_can_be_read(page):
+    sidebars = ["#pst-primary-sidebar", "#pst-secondary-sidebar"]
+    menus = [".bd-header-article", *sidebars, ".prev-next-footer"]
+    folded = page.locator(FOLDS).count()
+    assert min(page.evaluate(SHOWN, menus)) > 0
+    assert page.evaluate(SHOWN, [FOLDS])[0] < folded
+    page.emulate_media(media="print")
+    assert page.evaluate(SHOWN, [*menus, FOLDS]) == [*[0] * len(menus), folded]
+    page.emulate_media(media="screen")
 
 
 def test_the_palette_s_colours_reach_the_page(page, theme):
@@ -77,7 +105,7 @@ def test_each_case_has_its_line_in_the_tables(page):
           return [node.textContent, line.background, parseFloat(line.width)];
         })""",
     )
-    assert {name for name, *_ in marks} == set(CASES)
+    assert {name for name, *_ in marks} == {*CASES}
     assert len({ground for _, ground, _ in marks}) == len(CASES)
     assert all(width > 10 for *_, width in marks)
 
@@ -104,30 +132,37 @@ def test_in_the_dark_plots_lie_on_a_soft_card_and_keep_their_colours(page, theme
     assert all(contrast(mark.light, card) >= GRAPHICS for mark in MARKS.values())
 
 
+def lines(page: Page, selector: str) -> list[list]:
+    """Return class, colour and dashes of each drawn line."""
+    found = page.eval_on_selector_all(
+        selector,
+        """lines => lines.map(line => {
+          const { stroke, strokeDasharray } = getComputedStyle(line);
+          return [line.classList.item(1), stroke, strokeDasharray.match(/[\\d.]+/g) ?? []];
+        })""",
+    )
+    return [[name, hexadecimal(ink), [float(d) for d in dashes]] for name, ink, dashes in found]
+
+
+def look(name: str, theme: str) -> list:
+    """Return colour and dashes of a mark, for lines two units wide."""
+    mark = MARKS[name]
+    return [getattr(mark, theme), [2 * length for length in mark.dashes]]
+
+
 def test_a_run_of_a_case_has_that_case_s_line_in_the_explorer(page, theme):
     output = page.locator(".explorer output").inner_text()
     name = re.search(r"the case (G\d)", output).group(1)
-    line = ".explorer svg .curve"
-    assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS[CASES[name]], theme)
-    dashes = [float(n) for n in re.findall(r"[\d.]+", style(page, line, "strokeDasharray"))]
-    assert dashes == [2 * length for length in MARKS[CASES[name]].dashes]
+    assert lines(page, ".explorer svg .curve")[0][1:] == look(CASES[name], theme)
     page.locator("#explorer-kp").press("ArrowLeft")  # between the cases: no case's line
-    assert hexadecimal(style(page, line, "stroke")) == getattr(MARKS["further"], theme)
+    assert lines(page, ".explorer svg .curve")[0][1:] == look("further", theme)
 
 
 def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
-    lines = page.eval_on_selector_all(
-        ".replay[data-name=replay-l04-lecture-cpu] svg :is(.curve, .level)",
-        """lines => lines.map(line => {
-          const { stroke, strokeDasharray } = getComputedStyle(line);
-          return [line.classList.item(1), stroke, strokeDasharray];
-        })""",
-    )
     names = {css_name(name): name for name in MARKS}
-    lines = [(names[line], *drawn) for line, *drawn in lines]
-    for name, stroke, dashes in lines:
-        assert hexadecimal(stroke) == getattr(MARKS[name], theme), name
-        drawn = [float(length) for length in re.findall(r"[\d.]+", dashes)]
-        assert drawn == [2 * length for length in MARKS[name].dashes], name
-    count = Counter(name for name, *_ in lines)
+    count: Counter[str] = Counter()
+    runs = ".replay[data-name=replay-l04-lecture-cpu] svg :is(.curve, .level)"
+    for css_class, *drawn in lines(page, runs):
+        assert drawn == look(names[css_class], theme), css_class
+        count[names[css_class]] += 1
     assert count == {"first": 3, "second": 3, "third": 3, "target": 1, "limit": 2}

@@ -7,12 +7,6 @@ from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.site.evidence.measured import measured as insert
 
 
-@pytest.fixture
-def outputs(recorder, measured, monkeypatch):
-    recorder.write(measured)
-    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(recorder.contract.outputs))
-
-
 def test_a_metric_comes_with_unit_and_origin(outputs, experiment):
     text, origin = insert("l04/lab", "G2.overshoot")
     assert text == f"{experiment.metrics['G2'].overshoot:.4f} rad"

@@ -10,12 +10,6 @@ from robo_genesis.site import multiple_choice
 from robo_genesis.site.multiple_choice import UNDECIDED, measured_order, options
 
 
-@pytest.fixture
-def outputs(recorder, measured, monkeypatch):
-    recorder.write(measured)
-    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(recorder.contract.outputs))
-
-
 @pytest.mark.parametrize(
     ("unit", "order", "text"),
     [

@@ -1,26 +1,19 @@
 """Reading time, history and description of a page; an unknown history is not invented."""
 
-import subprocess
-
 import pytest
 from bs4 import BeautifulSoup
+from built_site import parsed
 from docutils.core import publish_doctree
-from tiny_book import make_book
+from tiny_book import git, make_book
 
 from robo_genesis.build.render import render
 from robo_genesis.site import page_facts as facts
-
-WHO = ("-c", "user.name=A", "-c", "user.email=a@example.org", "-c", "commit.gpgsign=false")
-
-
-def git(folder, *arguments):
-    subprocess.run(["git", "-C", folder, *WHO, *arguments], capture_output=True, check=True)
 
 
 def commit(folder, text, subject):
     (folder / "page.md").write_text(text)
     git(folder, "add", "page.md")
-    git(folder, "commit", "-m", subject)
+    git(folder, "commit", "-q", "-m", subject)
 
 
 @pytest.fixture
@@ -85,14 +78,11 @@ def test_a_page_has_all_three_and_the_home_page_no_time(tmp_path):
     text = "# Page\n\n- no paragraph\n\nA joint's *step* & more. " + "word " * 100
     book = make_book(tmp_path, page=text)
     html = render(book, tmp_path / "staging", tmp_path / "cache", tmp_path / "render.log")
-    page, home = (
-        BeautifulSoup((html / f"{name}.html").read_text(), "html.parser")
-        for name in ("page", "index")
-    )
+    page, home = parsed(html, "page"), parsed(html, "index")
     assert "About 1 min to read: 108 words" in page.select_one("h1 + p.page-facts").get_text()
     assert not home.select(".page-facts")
-    for parsed in (page, home):
-        assert "no Git history" in parsed.select_one("details.page-history").get_text()
+    for found in (page, home):
+        assert "no Git history" in found.select_one("details.page-history").get_text()
     (tag,) = page.select('meta[name="description"]')
     assert tag["content"].startswith("A joint’s step & more. word")
     assert tag["content"].endswith("word …")

@@ -1,5 +1,6 @@
 """The panel of a reference run shows its bundle, or the command that creates a missing one."""
 
+import dataclasses
 import shutil
 from types import SimpleNamespace
 
@@ -16,66 +17,147 @@ from without_sphinx import Panel
 from robo_genesis.core import project
 from robo_genesis.core.quantities import format_value, six_digits
 from robo_genesis.evidence import bundle, replay_data
-from robo_genesis.evidence.status import Status, recorded_status
+from robo_genesis.evidence.status import Status
 from robo_genesis.evidence.trace_files import read_trace
-from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.declaration import Filmed
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.sim import visual_shape
 from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.evidence import ledger as sphinx_ledger
-from robo_genesis.site.evidence import ledger_data, provenance
+from robo_genesis.site.evidence import ledger_data, measured, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
 from robo_genesis.site.evidence.ledger_data import Run
 
 FILMED = Filmed("the box", "the first run")
 
 
-@pytest.fixture
-def verified(folder) -> Status:
-    return Status("verified", "cpu", "", verify_bundle(folder))
-
-
 def test_a_missing_run_is_named_with_its_command(tmp_path):
-    text = sphinx_panel.missing_text("l04", recorded_status(tmp_path, "l04", "amdgpu"))
+    (missing,) = measured.recorded_runs(tmp_path, "l04")
+    text = " ".join(node.astext() for node in sphinx_panel.missing(missing))
     assert f"No evidence from amdgpu for Genesis {project.engine_pin()} (amdgpu-missing)." in text
     assert "$ make evidence LESSON=l04 BACKEND=amdgpu" in text
 
 
-def test_backend_facts_are_the_manifest_s(verified):
-    text = sphinx_panel.backend_text(verified)
-    facts = verified.manifest.predicate
-    for fact in (facts.backend.device_name, facts.run_id[:8], facts.render.renderer):
-        assert f"| {fact} |" in text
-    assert "| engine switches | none set |" in text
+@pytest.mark.parametrize(
+    ("switches", "shown"),
+    [
+        ({}, "none set"),
+        (
+            {"GS_ENABLE_ZEROCOPY": "0", "EGL_LOG": "a|b`c"},
+            "GS_ENABLE_ZEROCOPY=0\n\nEGL_LOG=a|b`c",
+        ),
+    ],
+)
+def test_backend_facts_are_the_manifest_s(folder, switches, shown):
+    predicate(environment=switches)(folder)
+    facts = bundle.read_manifest(folder).predicate
+    sentence, table = sphinx_panel.backend_facts("The run passed.", facts)
+    assert sentence.astext() == "Reference run. The run passed."
+    found = dict(rows_of([table]))
+    assert found["device"] == facts.backend.device_name
+    assert found["run"] == facts.run_id[:8]
+    assert found["renderer"] == facts.render.renderer
+    assert found["engine switches"] == shown
 
 
-def test_the_figure_changes_with_the_bundle_s_arrays(folder, verified, monkeypatch):
-    picture = sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu")
-    assert picture.content.startswith(b"<?xml")
-    assert "joint4 over time on cpu" in picture.alt
-    assert sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu") == picture
-    shown = {"G1": "G2", "G2": "G1", "G3": "G3"}
+ATTACKS = (
+    "<script>alert(1)</script>",
+    "![a](https://example.org/x.png)",
+    "[a](javascript:alert(1))",
+    "{raw}`x`",
+    "```{literalinclude} /etc/hostname",
+    ":::{raw} html",
+    "| a | **b** |",
+    "&lt;b&gt; $x$ \\(x\\) `y`",
+)
+
+
+@pytest.mark.parametrize("attack", ATTACKS)
+def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(
+    folder, tmp_path, record, monkeypatch, attack
+):
+    fields = ("device_name", "torch_version", "hip_version", "cuda_version", "driver")
+    part("backend", **dict.fromkeys(fields, attack))(folder)
+    part("render", renderer=attack)(folder)
+    predicate(environment={"GS_LOG": attack})(folder)
+    facts = bundle.read_manifest(folder).predicate
+    sentence, table = sphinx_panel.backend_facts(f"Frames by {attack}.", facts)
+    assert sentence.astext() == f"Reference run. Frames by {attack}."
+    found = dict(rows_of([table]))
+    both = f"{attack}, {attack}"
+    shown = {"device": attack, "Torch": attack, "HIP, CUDA": both, "driver": attack}
+    shown |= {"renderer": attack, "engine switches": f"GS_LOG={attack}"}
+    assert found | shown == found
+    plain = {
+        "paragraph",
+        "strong",
+        "literal",
+        *["table", "tgroup", "colspec", "thead", "tbody", "row", "entry"],
+    }
+    made = {n.tagname for part in (sentence, table) for n in part.findall(nodes.Element)}
+    assert made == plain
+
+
+@pytest.mark.parametrize("attack", ATTACKS)
+def test_the_reason_of_a_missing_run_is_never_markup(tmp_path, attack):
+    folder, status = tmp_path / attack[:3], Status("stale", attack, "", None, "stale", attack)
+    block = nodes.container(
+        "", *sphinx_panel.missing(Run("l04/lab", folder, status, recorded=True))
+    )
+    assert block.astext().count(attack) == 4
+    made = {n.tagname for n in block.findall(nodes.Element)}
+    assert made == {"container", "paragraph", "strong", "literal_block"}
+
+
+def test_a_panel_with_text_that_is_no_markup(folder, tmp_path, record, monkeypatch):
+    """What a run says reaches no parser: only our own sentences do."""
+    said, attack = [], "<script>alert(1)</script>"
+    parse = Panel.parse_text_to_nodes
+    monkeypatch.setattr(
+        Panel, "parse_text_to_nodes", lambda self, text: said.append(text) or parse(self, text)
+    )
+    run = record()
+    part("backend", device_name=attack, driver=attack)(run.folder)
+    edit(run.folder, "arrays.json", lambda a: a["coords"].update(link=[attack, "b", "c"]))
+    links = bundle.read_arrays(run.folder).coords["link"]
+    box = trimesh.creation.box((0.1, 0.1, 0.1))
+    parts = [Part(link, (9, 9, 9), box.vertices.astype(np.float32), box.faces) for link in links]
+    visual_shape.write_shape(tmp_path / "l04" / "lecture", parts)
+    trace = read_trace(run.folder, bundle.read_arrays(run.folder), "G1")
+    monkeypatch.setattr(
+        replay_data,
+        "read_trace",
+        lambda *asked: dataclasses.replace(trace, link_pos=trace.link_pos[:, [2, 1, 0]]),
+    )
+    run = accepted("l04/lab", run.folder, recorded=True)
+    monkeypatch.setattr(sphinx_panel, "comparison", lambda *asked: [nodes.paragraph("", "x")])
+    panel = Panel(tmp_path / "book").panel(run)
+    assert f"The link {attack} moves farthest" in panel.astext()
+    assert not [text for text in said if attack in text]
+    assert attack not in "".join(raw.astext() for raw in panel.findall(nodes.raw))
+
+
+def test_the_figure_changes_with_the_bundle_s_arrays(folder, monkeypatch):
+    shown = {"G1": "G1", "G2": "G2", "G3": "G3"}
     monkeypatch.setattr(replay_data, "read_trace", lambda f, a, case: read_trace(f, a, shown[case]))
-    assert sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu") != picture
+    first, same = (sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu") for _ in "ab")
+    assert first.content.startswith(b"<?xml")
+    assert "joint4 over time on cpu" in first.alt
+    assert same == first
+    shown |= {"G1": "G2", "G2": "G1"}
+    assert sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu") != first
 
 
-def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder, verified):
-    digests = {s.name: s.digest.sha256 for s in verified.manifest.subject}
-    pictures = list(sphinx_panel.frames(folder, FILMED, verified))
-    for picture in pictures:
-        assert ledger_data.sha256(picture.content) == digests[f"frames/{picture.name}.png"]
+def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder):
+    pictures = list(sphinx_panel.frames(folder, FILMED, "cpu"))
+    assert [picture.content for picture in pictures] == [
+        (folder / "frames" / f"{name}.png").read_bytes() for name in ("initial", "final")
+    ]
     states = [f"{name} state of the first run on cpu." for name in ("initial", "final")]
     assert [p.alt for p in pictures] == [f"Camera frame of the box, {state}" for state in states]
     shutil.rmtree(folder / "frames")
-    assert list(sphinx_panel.frames(folder, FILMED, verified)) == []
-
-
-def test_switches_are_shown_as_they_were_set(folder):
-    predicate(environment={"GS_ENABLE_ZEROCOPY": "0", "EGL_LOG": "a|b`c"})(folder)
-    text = sphinx_panel.backend_text(Status("verified", "cpu", "", bundle.read_manifest(folder)))
-    assert "| engine switches | `GS_ENABLE_ZEROCOPY=0`, `EGL_LOG=a\\|b'c` |" in text
+    assert list(sphinx_panel.frames(folder, FILMED, "cpu")) == []
 
 
 @pytest.fixture
@@ -91,10 +173,15 @@ def moved(folder, case, metric, by):
 
 
 def compared(folder, there):
-    """The text on two bundles of L04, and the cells of every line of its tables."""
-    text = sphinx_panel.metrics_text("l04", folder, there)
-    lines = [line for line in text.splitlines() if line.startswith("| ")]
-    return text, [[cell.strip() for cell in line.strip("| ").split(" | ")] for line in lines]
+    """The text on two bundles of L04, and the cells of every row of its tables."""
+    found = sphinx_panel.comparison(folder, there)
+    return "\n".join(node.astext() for node in found), rows_of(found)
+
+
+def rows_of(found):
+    """The text of the cells of every row of the tables among some nodes."""
+    rows = [row for node in found for row in node.findall(nodes.row)]
+    return [[cell.astext() for cell in row.findall(nodes.entry)] for row in rows]
 
 
 def cells(rows, start, at=0):
@@ -105,7 +192,7 @@ def cells(rows, start, at=0):
 
 def test_equal_runs_are_side_by_side(folder, there):
     text, rows = compared(folder, there)
-    assert text.startswith("**Compared with this build's run on cpu: equal.**")
+    assert text.startswith("Compared with this build's run on cpu: equal.")
     record = bundle.read_metrics(folder)["G2"]["overshoot"]
     value = format_value(record.value, record.unit)
     assert cells(rows, "G2 overshoot")[:3] == [value, value, "0 rad"]
@@ -123,7 +210,7 @@ def test_a_difference_has_a_tolerance_and_a_verdict(folder, there, by, verdict):
     atol, rtol = l04.TOLERANCES["rad"]
     expected = [six_digits(by, "rad"), six_digits(atol + rtol * value, "rad"), verdict]
     assert cells(rows, "G2 overshoot")[2:] == expected
-    assert f": {verdict}.**" in text
+    assert f": {verdict}. The lesson's" in text
 
 
 def test_the_lesson_s_own_tolerance_is_shown_and_a_count_may_not_differ(folder, there, monkeypatch):
@@ -156,36 +243,51 @@ def test_an_ordering_within_the_margin_is_inconclusive(folder, there):
 def test_a_difference_outside_the_tables_is_named(folder, there):
     edit(there, "arrays.json", lambda a: a["joints"][3].update(dof_idx_local=0))
     seal(there)
-    text, _ = compared(folder, there)
-    assert ": differs.** They also differ in coverage: see `make compare`." in text
+    said = ": differs. They also differ in coverage: see make compare."
+    assert said in compared(folder, there)[0]
 
 
 def test_runs_that_cannot_be_compared_have_the_reason(folder, there):
     part("parameters", rise_fraction=0.5)(there)
     text, rows = compared(folder, there)
-    assert text.startswith("**Not comparable with this build's run on cpu.**")
-    assert "- parameters.rise_fraction differs: 0.9 and 0.5." in text
+    assert text.startswith("Not comparable with this build's run on cpu.")
+    assert "parameters.rise_fraction differs: 0.9 and 0.5." in text
     assert rows == []
+
+
+def accepted(page, folder, **more) -> Run:
+    """An accepted run whose bundle is in a folder that is named after its backend."""
+    status = Status("verified", folder.name, "", bundle.read_manifest(folder))
+    return Run(page, folder, status, **more)
+
+
+@pytest.fixture
+def record(folder, tmp_path, monkeypatch, courses_pages):
+    """Record the bundle on another backend; this build's outputs and shape are in `tmp_path`."""
+    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
+    box = trimesh.creation.box((0.1, 0.1, 0.1))
+    links = bundle.read_arrays(folder).coords["link"]
+    parts = [Part(link, (9, 9, 9), box.vertices.astype(np.float32), box.faces) for link in links]
+    visual_shape.write_shape(tmp_path / "l04" / "lecture", parts)
+
+    def run(backend="amdgpu", lesson="l04") -> Run:
+        copy = shutil.copytree(folder, tmp_path / "book" / "evidence" / lesson / "cpu")
+        return accepted(f"{lesson}/lab", on(backend)(copy), recorded=True)
+
+    return run
 
 
 @pytest.mark.parametrize("accelerator", ["amdgpu", "cuda"])
 def test_the_comparison_names_both_runs_and_all_else_the_recorded_one(
-    folder, tmp_path, monkeypatch, accelerator
+    folder, tmp_path, record, monkeypatch, accelerator
 ):
     book = tmp_path / "book"
-    place = shutil.copytree(folder, book / "evidence" / "l04" / "cpu")
-    status = Status("verified", accelerator, "", bundle.read_manifest(on(accelerator)(place)))
-    runs = (
-        Run("l04/lab", folder, Status("verified", "cpu", "", bundle.read_manifest(folder))),
-        Run("l04/lab", book / "evidence" / "l04" / accelerator, status, recorded=True),
-    )
-    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
-    write_a_shape(tmp_path)
+    runs = accepted("l04/lab", folder), record(accelerator)
     monkeypatch.setattr(provenance, "measured_pages", lambda book: {})
     monkeypatch.setattr(provenance, "all_runs", lambda book: {run.key: run for run in runs})
     app = SimpleNamespace(env=SimpleNamespace(srcdir=book, docname="page"))
     document = new_document("page")
-    document += Panel(book).panel("l04", status)
+    document += Panel(book).panel(runs[1])
     for image in document.findall(nodes.image):
         image["uri"] = image["uri"].removeprefix("/")
     provenance.read_page(app, document)
@@ -207,56 +309,37 @@ def test_the_comparison_names_both_runs_and_all_else_the_recorded_one(
     assert [node.astext() for node in badge] == ["cpu-verified", f"{accelerator}-verified"]
 
 
-def write_a_shape(outputs):
-    """Write the shape of this build's lecture: a box for each link of the record."""
-    box = trimesh.creation.box((0.1, 0.1, 0.1))
-    links = bundle.read_arrays(outputs / "l04" / "lab" / "cpu").coords["link"]
-    parts = [Part(link, (9, 9, 9), box.vertices.astype(np.float32), box.faces) for link in links]
-    visual_shape.write_shape(outputs / "l04" / "lecture", parts)
-
-
-def test_a_recorded_run_replays_from_its_own_record(folder, tmp_path, monkeypatch):
-    write_a_shape(tmp_path)
-    panel = panel_of(folder, tmp_path, monkeypatch)
-    book = tmp_path / "book"
-    place = book / "evidence" / "l04" / "amdgpu"
-
+def test_a_recorded_run_replays_from_its_own_record(tmp_path, record):
+    run = record()
+    panel = Panel(tmp_path / "book").panel(run)
     (block,) = [n for n in panel.findall(nodes.container) if "replay-block" in classes(n)]
     assert block["evidence_runs"] == ("l04/lab/amdgpu/recorded",)
     name = "replay-l04-lab-amdgpu-recorded"
     assert f'data-model="../replay/{name}.js"' in block[0].astext()
-    written = book / "_build" / "html" / "replay"
+    written = tmp_path / "book" / "_build" / "html" / "replay"
     assert (written / f"{name}.js").read_bytes().startswith(b"(globalThis.replayModels ??= {})")
-    trace = read_trace(place, bundle.read_arrays(place), "G2")
+    trace = read_trace(run.folder, bundle.read_arrays(run.folder), "G2")
     model = pygltflib.GLTF2.load_binary(written / f"{name}.glb")
     assert [animation.name for animation in model.animations] == ["G1", "G2", "G3"]
     assert trace.link_pos[:, 2].astype(np.float32).tobytes() in model.binary_blob()
     assert len(list(block.findall(nodes.row))) == 1 + len(trace.t)
 
 
-def panel_of(folder, tmp_path, monkeypatch, lesson="l04"):
-    """The panel of a recorded run; this build's outputs are below `tmp_path`."""
-    book = tmp_path / "book"
-    place = on("amdgpu")(shutil.copytree(folder, book / "evidence" / lesson / "cpu"))
-    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
-    status = Status("verified", "amdgpu", "", bundle.read_manifest(place))
-    return Panel(book).panel(lesson, status)
-
-
-def test_another_robot_s_shape_is_an_error_of_the_page(folder, tmp_path, monkeypatch):
+def test_another_robot_s_shape_is_an_error_of_the_page(tmp_path, record):
     corner = np.eye(3, dtype=np.float32), np.array([[0, 1, 2]])
     visual_shape.write_shape(tmp_path / "l04" / "lecture", [Part("wheel", (9, 9, 9), *corner)])
     with pytest.raises(DirectiveError) as caught:
-        panel_of(folder, tmp_path, monkeypatch)
+        Panel(tmp_path / "book").panel(record())
     assert "l04/lab/amdgpu/recorded: The shape has parts of wheel" in caught.value.msg
     assert "at one pin" in caught.value.msg
 
 
 def test_a_lesson_that_compares_no_cases_has_neither_figure_nor_replay(
-    folder, tmp_path, monkeypatch
+    tmp_path, record, monkeypatch
 ):
-    monkeypatch.setattr(sphinx_panel, "metrics_text", lambda *asked: "The metrics.")
-    panel = panel_of(folder, tmp_path, monkeypatch, lesson="l01")
+    metrics = [nodes.paragraph("", "The metrics.")]
+    monkeypatch.setattr(sphinx_panel, "comparison", lambda *asked: metrics)
+    panel = Panel(tmp_path / "book").panel(record(lesson="l01"))
     assert not [n for n in panel.findall(nodes.container) if "replay-block" in classes(n)]
     names = [figure["ids"] for figure in panel.findall(nodes.figure)]
     assert names == [["l01-amdgpu-initial"], ["l01-amdgpu-final"]]

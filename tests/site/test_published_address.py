@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from bs4 import BeautifulSoup
+from built_site import parsed
 from PIL import Image
 
 from robo_genesis.build.render import render
@@ -30,11 +30,12 @@ def html(site, tmp_path_factory):
 
 
 def test_every_page_names_its_own_address(html):
-    found = {}
-    for path in html.rglob("*.html"):
-        page = BeautifulSoup(path.read_text(), "html.parser")
-        for link in page.select('link[rel="canonical"]'):
-            found[path.relative_to(html).as_posix()] = link["href"]
+    names = [path.relative_to(html).as_posix() for path in html.rglob("*.html")]
+    found = {
+        name: link["href"]
+        for name in names
+        for link in parsed(html, name.removesuffix(".html")).select('link[rel="canonical"]')
+    }
     assert "lessons/l04-joint-control/lecture.html" in found
     assert found == {name: ADDRESS + name for name in found}
 
@@ -48,9 +49,7 @@ def test_the_sitemap_lists_the_pages_and_no_tool(html):
 
 
 def test_a_link_to_a_lesson_shows_a_card(html):
-    page = BeautifulSoup(
-        (html / "lessons/l04-joint-control/lecture.html").read_text(), "html.parser"
-    )
+    page = parsed(html, "lessons/l04-joint-control/lecture")
     tags = {tag["property"]: tag["content"] for tag in page.select('meta[property^="og:"]')}
     assert tags["og:title"].startswith("L04: Robot models")
     assert tags["og:url"] == f"{ADDRESS}lessons/l04-joint-control/lecture.html"
@@ -64,7 +63,7 @@ def test_the_site_passes_its_checks_there(html):
 
 
 def test_links_of_the_404_page_begin_at_the_site_s_root(html):
-    page = BeautifulSoup((html / "404.html").read_text(), "html.parser")
+    page = parsed(html, "404")
     inside = [tag["href"] for tag in page.select("a[href], link[href]") if tag["href"][0] != "#"]
     assert len(inside) > 10
     assert [href for href in inside if not href.startswith(("/robot/course/", ADDRESS))] == []

@@ -10,13 +10,12 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from bs4 import BeautifulSoup
-from built_site import LESSON_PAGES
+from built_site import LESSON_PAGES, parsed
 
 from robo_genesis.build import stages
 from robo_genesis.core import project
 
-pytestmark = pytest.mark.engine
+pytestmark = [pytest.mark.engine, pytest.mark.slow]
 LABS = {lesson: name for (lesson, page), name in LESSON_PAGES.items() if page == "lab"}
 OURS = ("PYTHON", "VIRTUAL_ENV", "ROBO_GENESIS", "JUPYTER", "IPYTHON")
 """Variables of this environment that a reader's does not have."""
@@ -39,8 +38,7 @@ def run(line: str, folder: Path, environment: dict[str, str]) -> str:
 
 def taken(site: Path, lab: str, home: Path) -> list[str]:
     """Take all files of a lab's box home, and return the lines that it tells to run."""
-    page = BeautifulSoup((site / f"{lab}.html").read_text(), "html.parser")
-    box = page.select_one(".run-it-yourself")
+    box = parsed(site, lab).select_one(".run-it-yourself")
     for link in box.select("a.takeaway"):
         shutil.copy((site / lab).parent / link["href"], home)
     return box.select_one("pre").get_text().strip().splitlines()

@@ -1,14 +1,12 @@
 """What a first visit costs, as the browser measured it over a compressing server."""
 
 import gzip
-from collections.abc import Iterator
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from threading import Thread
 
 import pytest
-from bs4 import BeautifulSoup
+from built_site import QuietHandler, served
 from playwright.sync_api import Page, expect
 from watching import page_names
 
@@ -18,7 +16,6 @@ LECTURE = "lessons/l04-joint-control/lecture.html"
 BUDGET = 450_000  # bytes, compressed, before the reader asks for the viewer
 STILL = 0.001  # cumulative layout shift: a hundredth of the 0.1 that browsers call good
 TEXT = {".html", ".css", ".js", ".json", ".svg", ".txt"}
-VIEWS = {"desktop": (1280, 900), "phone": (320, 640)}
 
 WATCH_SHIFTS = """
 window.shifts = [];
@@ -51,13 +48,10 @@ LOADED = """() => [
 }))"""
 
 
-class CompressingHandler(SimpleHTTPRequestHandler):
+class CompressingHandler(QuietHandler):
     """Serves files as a web server does: text compressed."""
 
-    def log_message(self, *args) -> None:
-        pass
-
-    def do_GET(self) -> None:
+    def do_GET(self) -> None:  # noqa: N802 - the name in http.server
         path = Path(self.translate_path(self.path))
         if not path.is_file() or path.suffix not in TEXT:
             return super().do_GET()
@@ -72,58 +66,52 @@ class CompressingHandler(SimpleHTTPRequestHandler):
 
 @pytest.fixture(scope="module")
 def compressed(site) -> Iterator[str]:
-    handler = partial(CompressingHandler, directory=str(site))
-    server = ThreadingHTTPServer(("127.0.0.1", 0), handler)
-    Thread(target=server.serve_forever, daemon=True).start()
-    yield f"http://127.0.0.1:{server.server_port}"
-    server.shutdown()
+    with served(site, CompressingHandler) as address:
+        yield address
 
 
-@pytest.fixture(scope="module", params=VIEWS)
-def view(request) -> tuple[str, dict[str, int]]:
-    width, height = VIEWS[request.param]
-    return request.param, {"width": width, "height": height}
+@pytest.fixture(scope="module", params=[(1280, 900), (320, 640)], ids=["desktop", "phone"])
+def first_visit(request, browser, compressed) -> Callable[[str], AbstractContextManager[Page]]:
+    """Open a page of the site for the first time."""
 
+    @contextmanager
+    def opened(name: str) -> Iterator[Page]:
+        width, height = request.param
+        page = browser.new_page(viewport={"width": width, "height": height})
+        page.add_init_script(WATCH_SHIFTS)
+        page.goto(f"{compressed}/{name}", wait_until="networkidle")
+        yield page
+        page.close()
 
-@pytest.fixture(scope="module")
-def visited(browser, compressed, view) -> Iterator[Page]:
-    context = browser.new_context(viewport=view[1])
-    page = context.new_page()
-    page.add_init_script(WATCH_SHIFTS)
-    page.goto(f"{compressed}/{LECTURE}", wait_until="networkidle")
-    yield page
-    context.close()
-
-
-def test_a_first_visit_is_light(visited, view, capsys):
-    loaded = visited.evaluate(LOADED)
-    total = sum(entry["bytes"] for entry in loaded)
-    heavy = sorted(loaded, key=lambda entry: -entry["bytes"])[:6]
-    with capsys.disabled():
-        print(f"\nFirst load of the lecture, {view[0]}: {total / 1000:.0f} kB compressed")
-        for entry in heavy:
-            print(f"  {entry['bytes'] / 1000:6.1f} kB  {entry['name'].rpartition('/')[2]}")
-    assert heavy[-1]["bytes"] > 0
-    assert total <= BUDGET
+    return opened
 
 
 @pytest.fixture(scope="module")
-def read(browser, compressed, view, site) -> dict[str, tuple[list[dict], list[dict]]]:
+def visited(first_visit) -> Iterator[Page]:
+    with first_visit(LECTURE) as page:
+        yield page
+
+
+def test_a_first_visit_is_light(visited):
+    weights = {entry["name"]: entry["bytes"] for entry in visited.evaluate(LOADED)}
+    assert len([weight for weight in weights.values() if weight > 0]) > 6
+    assert sum(weights.values()) <= BUDGET, weights
+
+
+@pytest.fixture(scope="module")
+def read(first_visit, site) -> dict[str, tuple[list[dict], list[dict]]]:
     """Each page, visited for the first time and read to its end: what it loaded, what moved."""
     found = {}
     for name in page_names(site):
-        context = browser.new_context(viewport=view[1])
-        page = context.new_page()
-        page.add_init_script(WATCH_SHIFTS)
-        page.goto(f"{compressed}/{name}", wait_until="networkidle")
-        for top in range(0, page.evaluate("document.body.scrollHeight"), view[1]["height"] // 2):
-            page.evaluate(f"scrollTo({{ top: {top}, behavior: 'instant' }})")
-            page.wait_for_function(SEEN)
+        with first_visit(name) as page:
+            half = page.viewport_size["height"] // 2
+            for top in range(0, page.evaluate("document.body.scrollHeight"), half):
+                page.evaluate(f"scrollTo({{ top: {top}, behavior: 'instant' }})")
+                page.wait_for_function(SEEN)
+                page.evaluate(DRAWN)
+            page.wait_for_load_state("networkidle")
             page.evaluate(DRAWN)
-        page.wait_for_load_state("networkidle")
-        page.evaluate(DRAWN)
-        found[name] = (page.evaluate(LOADED), page.evaluate("allShifts()"))
-        context.close()
+            found[name] = (page.evaluate(LOADED), page.evaluate("allShifts()"))
     return found
 
 
@@ -134,14 +122,14 @@ def test_no_script_blocks_a_page(read):
         assert blocking, name  # the style sheets: the browser does tell
 
 
-def test_nothing_moves_while_a_page_comes_and_is_read(read, view, capsys):
-    totals = {name: sum(s["value"] for s in shifts) for name, (_, shifts) in read.items()}
-    most = max(totals, key=totals.__getitem__)
-    with capsys.disabled():
-        print(f"\nMost layout shift, {view[0]}: {totals[most]:.5f} ({most})")
-    moved = {name: read[name][1] for name, total in totals.items() if total > STILL}
+def test_nothing_moves_while_a_page_comes_and_is_read(read):
+    moved = {name: shifts for name, (_, shifts) in read.items() if sum_of(shifts) > STILL}
     assert moved == {}
-    assert LECTURE in totals
+    assert LECTURE in read
+
+
+def sum_of(shifts) -> float:
+    return sum(shift["value"] for shift in shifts)
 
 
 def test_a_shift_would_be_noticed(visited):
@@ -161,35 +149,19 @@ def test_light_or_dark_waits_for_no_script_file(browser, address, scheme):
 
 
 def test_without_scripts_a_page_has_its_colours(browser, address):
-    context = browser.new_context(java_script_enabled=False)
-    page = context.new_page()
+    page = browser.new_page(java_script_enabled=False)
     page.goto(f"{address}/{LECTURE}")
     expect(page.locator("article h2").first).to_have_css("border-top-width", "1px")
-    context.close()
+    page.close()
 
 
 def test_images_keep_their_shape(visited):
     visited.evaluate("for (const image of document.images) image.loading = 'eager'")
     visited.wait_for_function("[...document.images].every(image => image.complete)")
-    assert (
-        visited.evaluate("""() => [...document.images].filter(image => {
+    changed = visited.evaluate("""() => [...document.images].filter(image => {
       const { width, height } = image.getBoundingClientRect();
       const said = image.getAttribute("width") / image.getAttribute("height");
       const is = image.naturalWidth / image.naturalHeight;
       return Math.abs(width / height / is - 1) > 0.02 || Math.abs(said / is - 1) > 0.02;
     }).map(image => image.src)""")
-        == []
-    )
-
-
-def test_every_image_has_its_size_and_those_below_come_late(site):
-    wrong, late = [], 0
-    for name in page_names(site):
-        page = BeautifulSoup((site / name).read_text(), "html.parser")
-        for number, image in enumerate(page.select("article img")):
-            late += number > 0
-            sized = str(image.get("width", "")).isdigit() and str(image.get("height", "")).isdigit()
-            if not sized or (number and image.get("loading") != "lazy"):
-                wrong.append(f"{name}: {image['src']}")
-    assert wrong == []
-    assert late
+    assert changed == []

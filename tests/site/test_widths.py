@@ -65,21 +65,3 @@ def test_what_sticks_out_or_runs_long_would_be_found(browser, address):
     page.evaluate("document.querySelector('#box').style.overflowX = 'auto'")
     assert page.evaluate(LOOK)["out"] == []
     page.close()
-
-
-@pytest.mark.parametrize("width", [320, 390])
-def test_wide_tables_code_and_plots_scroll_in_a_box_on_a_phone(browser, address, width):
-    page = browser.new_page(viewport={"width": width, "height": 900})
-    page.goto(f"{address}/lessons/l04-joint-control/lecture.html")
-    count = """(inside) => [...document.querySelectorAll(`article ${inside}`)].filter((node) => {
-      for (let up = node; up; up = up.parentElement) {
-        if (up.scrollWidth > up.clientWidth + 1 && getComputedStyle(up).overflowX === "auto") {
-          up.scrollLeft = 50;
-          return up.scrollLeft > 0;
-        }
-      }
-      return false;
-    }).length"""
-    for what in ("table", "pre", "figure img[src$='.svg']"):
-        assert page.evaluate(count, what) > 3, what
-    page.close()

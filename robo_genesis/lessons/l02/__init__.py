@@ -1,23 +1,53 @@
 """L02: scenes, entities, and the simulation life cycle."""
 
-from robo_genesis.lessons.declaration import COMMON_MODULES, Filmed, Lesson, MeasuringPage, Moving
-from robo_genesis.lessons.l02 import recompute, spec
-from robo_genesis.lessons.l02.metrics import DropMetrics
+from dataclasses import replace
+
+from robo_genesis.core.trace import BodyTrace
+from robo_genesis.lessons.declaration import COMMON_MODULES, Filmed, Lesson, Moving
+from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
+from robo_genesis.lessons.l02 import checks, life_cycle, spec, study
+from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
 
 MODULES = (
     *COMMON_MODULES, "core.free_fall", "sim.rigid_bodies",
-    "lessons.l02.checks", "lessons.l02.metrics",
+    "lessons.l02.__init__", "lessons.l02.checks", "lessons.l02.metrics",
 )  # fmt: skip
 STUDY_MODULES = ("lessons.l02.life_cycle", "lessons.l02.study")
+
+
+def readings(rendered: bool) -> dict[str, Readings]:
+    """Return the engine's values of the scene and the box."""
+    return {"model": counts(spec.EXPECTED_MODEL), "body": Readings({"mass": "kg"})}
+
+
+def study_readings(rendered: bool) -> dict[str, Readings]:
+    """Return those of the lecture, which also tries each call on both sides of build."""
+    return readings(rendered) | {life_cycle.GROUP: counts(life_cycle.expected(rendered))}
+
+
+LAB = MeasuringPage(
+    runs=runs_of(spec.CASES),
+    kind=BodyTrace,
+    links=(spec.LINK,),
+    readings=readings,
+    measure=drop_metrics,
+    checks=checks.CHECKS,
+    parameters=spec.parameters,
+    modules=MODULES,
+)
+LECTURE = replace(
+    LAB,
+    runs=runs_of(spec.CASES | spec.SUBSTEP_CASES),
+    readings=study_readings,
+    checks=(*checks.CHECKS, *study.CHECKS, life_cycle.sides_of_build),
+    parameters=spec.study_parameters,
+    modules=MODULES + STUDY_MODULES,
+)
 
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, DropMetrics),
-    pages={
-        "lab": MeasuringPage(spec.parameters, MODULES),
-        spec.STUDY_PAGE: MeasuringPage(spec.study_parameters, MODULES + STUDY_MODULES),
-    },
-    recompute=recompute.recompute,
+    pages={"lab": LAB, spec.STUDY_PAGE: LECTURE},
     filmed=Filmed("the box"),
     compared=Moving(tuple(spec.CASES), link=spec.LINK, thing="box"),
 )

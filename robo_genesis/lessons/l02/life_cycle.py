@@ -3,11 +3,10 @@
 A change in what an engine accepts changes the recorded counts.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from robo_genesis.core.checks import Check
-from robo_genesis.core.metrics import Record, count_records
+from robo_genesis.lessons.experiment import Experiment
 
 GROUP = "life_cycle"
 """Group of a bundle's metrics: 1 where the engine accepted a call, 0 where it refused it."""
@@ -108,19 +107,10 @@ def counts(attempts: Attempts) -> dict[str, int]:
     return {f"{call} {side}": int(found is None) for (call, side), found in attempts.items()}
 
 
-def records(counted: Mapping[str, int]) -> dict[str, dict[str, Record]]:
-    """Return the counts as a group of `metrics.json`."""
-    return {GROUP: count_records(counted)}
-
-
-def check(counted: Mapping[str, int], rendered: bool) -> Check:
-    """Check that the engine accepted each call on its own side alone."""
-    accepted = {name: bool(count) for name, count in counted.items()}
+def sides_of_build(run: Experiment) -> Iterator[str]:
+    """The engine accepts each call on its own side of build and refuses it on the other."""
+    accepted = {name: bool(count) for name, count in run.readings[GROUP].items()}
     outcome = {None: "not tried", False: "refused", True: "accepted"}
-    problems = [
-        f"{name}: {outcome[accepted.get(name)]}"
-        for name, right in expected(rendered).items()
-        if accepted.get(name) != right
-    ]
-    passed = "The engine accepts each call on its own side of build and refuses it on the other."
-    return Check("sides_of_build", not problems, "; ".join(problems) or passed)
+    for name, right in expected(run.rendered).items():
+        if accepted.get(name) != right:
+            yield f"{name}: {outcome[accepted.get(name)]}"

@@ -1,6 +1,5 @@
 """Metrics of a dropped box, computed from its trace, and their form in `metrics.json`."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,11 +7,7 @@ import numpy as np
 from robo_genesis.core.free_fall import continuous_drop, summed_drop
 from robo_genesis.core.metrics import (
     CaseMetrics,
-    Record,
-    case_records,
-    count_records,
     metric,
-    reading_records,
 )
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace
@@ -61,20 +56,3 @@ def drop_metrics(trace: BodyTrace, case: Drop) -> DropMetrics:
         sideways=float(np.linalg.norm(xy - xy[0], axis=1).max()),
         turning=float(np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1).max()),
     )
-
-
-def measure(traces: Mapping[str, BodyTrace], cases: Mapping[str, Drop]) -> dict[str, DropMetrics]:
-    """Return the metrics of each case.
-
-    Raises:
-        KeyError: a case has no trace.
-    """
-    return {name: drop_metrics(traces[name], case) for name, case in cases.items()}
-
-
-def metric_records(
-    metrics: Mapping[str, DropMetrics], model: Mapping[str, int], mass: float
-) -> dict[str, dict[str, Record]]:
-    """Return `metrics.json`: counts of the model, mass, and metrics of each case."""
-    of_engine = {"model": count_records(model), "body": reading_records({"mass": mass}, "kg")}
-    return of_engine | case_records(metrics)

@@ -1,14 +1,14 @@
 """How far a stepped fall is from continuous free fall as the solver step shrinks."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, evaluate
 from robo_genesis.core.free_fall import ahead_of_continuous
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02.metrics import DropMetrics
 from robo_genesis.sim.rigid_bodies import Drop
 
@@ -26,7 +26,6 @@ class StepStudy:
     """
 
     names: tuple[str, ...]
-    cases: Mapping[str, Drop]
     h: FloatArray
     gaps: FloatArray
     expected: FloatArray
@@ -45,41 +44,35 @@ def step_study(metrics: Mapping[str, DropMetrics], cases: Mapping[str, Drop]) ->
         for name in names
     ]
     h = [cases[name].h for name in names]
-    return StepStudy(names, cases, np.array(h), np.array(gaps), np.array(expected))
+    return StepStudy(names, np.array(h), np.array(gaps), np.array(expected))
 
 
-def shrinks(study: StepStudy) -> list[str]:
-    """The gap to continuous free fall is smaller with every smaller solver step."""
-    pairs = itertools.pairwise(zip(study.names, study.gaps, strict=True))
-    return [
-        f"{fine} is {gap:g} m ahead, {coarse} {larger:g} m"
-        for (coarse, larger), (fine, gap) in pairs
-        if not 0 < gap < larger
-    ]
-
-
-def first_order(study: StepStudy) -> list[str]:
-    """The gap is g h t / 2, so half the solver step leaves half of it."""
-    return [
-        f"{name} is {gap:g} m ahead, expected {expected:g} m"
-        for name, gap, expected in zip(study.names, study.gaps, study.expected, strict=True)
-        if abs(gap - expected) > SHARE * expected
-    ]
-
-
-def one_factor(study: StepStudy) -> list[str]:
+def one_factor(run: Experiment) -> Iterator[str]:
     """The cases differ in their substeps alone."""
-    first = study.cases[study.names[0]]
-    return [
-        f"{name} differs from {study.names[0]} in more than its substeps"
-        for name in study.names
-        if replace(study.cases[name], substeps=first.substeps) != first
-    ]
+    first, *others = step_study(run.metrics, run.cases).names
+    for name in others:
+        if replace(run.cases[name], substeps=run.cases[first].substeps) != run.cases[first]:
+            yield f"{name} differs from {first} in more than its substeps"
 
 
-def run_checks(metrics: Mapping[str, DropMetrics], cases: Mapping[str, Drop]) -> tuple[Check, ...]:
-    """Run the study's checks."""
-    return evaluate((one_factor, shrinks, first_order), step_study(metrics, cases))
+def shrinks(run: Experiment) -> Iterator[str]:
+    """The gap to continuous free fall is smaller with every smaller solver step."""
+    study = step_study(run.metrics, run.cases)
+    pairs = itertools.pairwise(zip(study.names, study.gaps, strict=True))
+    for (coarse, larger), (fine, gap) in pairs:
+        if not 0 < gap < larger:
+            yield f"{fine} is {gap:g} m ahead, {coarse} {larger:g} m"
+
+
+def first_order(run: Experiment) -> Iterator[str]:
+    """The gap is g h t / 2, so half the solver step leaves half of it."""
+    study = step_study(run.metrics, run.cases)
+    for name, gap, expected in zip(study.names, study.gaps, study.expected, strict=True):
+        if abs(gap - expected) > SHARE * expected:
+            yield f"{name} is {gap:g} m ahead, expected {expected:g} m"
+
+
+CHECKS = (one_factor, shrinks, first_order)
 
 
 def rows(study: StepStudy, metrics: Mapping[str, DropMetrics]) -> Sequence[dict[str, str]]:

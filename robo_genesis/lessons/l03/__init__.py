@@ -1,25 +1,60 @@
 """L03: rigid-body physics and stable simulation."""
 
-from robo_genesis.lessons.declaration import COMMON_MODULES, Filmed, Lesson, MeasuringPage, Moving
-from robo_genesis.lessons.l03 import recompute, spec
-from robo_genesis.lessons.l03.metrics import metrics_class
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+from robo_genesis.core.trace import ContactTrace
+from robo_genesis.lessons.declaration import COMMON_MODULES, Filmed, Lesson, Moving
+from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
+from robo_genesis.lessons.l03 import checks, spec, study
+from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
+from robo_genesis.sim.contacts import SETTINGS
 
 MODULES = (
-    *COMMON_MODULES, "core.free_fall", "sim.contacts", "sim.rigid_bodies", "lessons.l03.checks",
-    "lessons.l03.energy", "lessons.l03.friction", "lessons.l03.metrics",
+    *COMMON_MODULES, "core.free_fall", "sim.contacts", "sim.rigid_bodies", "lessons.l03.__init__",
+    "lessons.l03.checks", "lessons.l03.energy", "lessons.l03.friction", "lessons.l03.metrics",
 )  # fmt: skip
 STUDY_MODULES = ("lessons.l03.study", "sim.mujoco_contacts", "sim.visual_shape")
+
+
+def readings(shapes: Collection[str], cases: Collection[str]) -> dict[str, Readings]:
+    """Return the engine's counts of the cube's scene, its masses, and the settings of cases."""
+    return {
+        "model": counts(spec.EXPECTED_MODEL),
+        "mass": Readings(dict.fromkeys(shapes, "kg")),
+        **{name: Readings(dict.fromkeys(cases, "1")) for name in SETTINGS},
+    }
+
+
+def study_readings(rendered: bool) -> Mapping[str, Readings]:
+    """Return those of the lecture, with the time constants but none of the runs in MuJoCo."""
+    seconds = Readings(dict.fromkeys(spec.STEPS_STUDIED, "s"))
+    return readings(["cube"], spec.BY_GENESIS) | {study.GROUP: seconds}
+
+
+LAB = MeasuringPage(
+    runs=runs_of(spec.CASES),
+    kind=ContactTrace,
+    links=(spec.LINK,),
+    readings=lambda rendered: readings(["cube", "ball"], spec.CASES),
+    measure=case_metrics,
+    checks=checks.CHECKS,
+    parameters=spec.parameters,
+    modules=MODULES,
+)
+LECTURE = replace(
+    LAB,
+    runs=runs_of(spec.STUDY_CASES),
+    readings=study_readings,
+    checks=(*checks.STUDY_CHECKS, *study.CHECKS),
+    parameters=spec.study_parameters,
+    modules=MODULES + STUDY_MODULES,
+)
 
 LESSON = Lesson(
     spec=spec,
     metrics={name: metrics_class(case) for name, case in spec.CASES.items()},
-    pages={
-        "lab": MeasuringPage(spec.parameters, MODULES),
-        spec.STUDY_PAGE: MeasuringPage(
-            spec.study_parameters, MODULES + STUDY_MODULES, cases=tuple(spec.REPEATED)
-        ),
-    },
-    recompute=recompute.recompute,
+    pages={"lab": LAB, spec.STUDY_PAGE: LECTURE},
     filmed=Filmed("the cube"),
     compared=Moving(("baseline", "dt10_sub1"), link=spec.LINK, thing="cube", until=0.5),
     further={"slides": Moving(tuple(spec.SLIDES), link=spec.LINK, thing="cube", axes=("x", "z"))},

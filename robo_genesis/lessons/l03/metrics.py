@@ -1,18 +1,10 @@
 """Metrics of bodies that land, slide or bounce, computed from their traces."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.metrics import (
-    CaseMetrics,
-    Record,
-    case_records,
-    count_records,
-    metric,
-    reading_records,
-)
+from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace, first_time, settled_from
 from robo_genesis.lessons.l03.energy import clearance, conserved_energy, flights, total_energy
@@ -85,16 +77,10 @@ def metrics_class(case: ContactCase) -> type[CaseMetrics]:
     return {LANDING: LandingMetrics, SLIDE: SlideMetrics, BOUNCE: BounceMetrics}[case.kind]
 
 
-def measure(
-    traces: Mapping[str, ContactTrace], cases: Mapping[str, ContactCase]
-) -> dict[str, CaseMetrics]:
-    """Measure each run by the kind of its case, which gives body, gravity and solver step.
-
-    Raises:
-        KeyError: a case has no trace.
-    """
+def case_metrics(trace: ContactTrace, case: ContactCase) -> CaseMetrics:
+    """Measure a run by the kind of its case, which gives body, gravity and solver step."""
     by_kind = {LANDING: landing_metrics, SLIDE: slide_metrics, BOUNCE: bounce_metrics}
-    return {name: by_kind[case.kind](traces[name], case) for name, case in cases.items()}
+    return by_kind[case.kind](trace, case)
 
 
 def landing_metrics(trace: ContactTrace, case: ContactCase) -> LandingMetrics:
@@ -170,15 +156,3 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
         flight_drift=max((float(np.ptp(kept[flight])) for flight in in_air), default=None),
         lent=max((float(np.ptp(total[flight])) for flight in in_air), default=None),
     )
-
-
-def metric_records(
-    metrics: Mapping[str, CaseMetrics],
-    model: Mapping[str, int],
-    masses: Mapping[str, float],
-    settings: Mapping[str, Mapping[str, float]],
-) -> dict[str, dict[str, Record]]:
-    """Return `metrics.json`: the engine's values of the model, and the metrics of each case."""
-    of_engine = {"model": count_records(model), "mass": reading_records(masses, "kg")}
-    of_engine |= {name: reading_records(found, "1") for name, found in settings.items()}
-    return of_engine | case_records(metrics)

@@ -5,12 +5,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
+from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.plotting import look
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import spec
 from robo_genesis.lessons.l03.energy import clearance, conserved_energy, total_energy
 from robo_genesis.lessons.l03.metrics import CLEAR
-from robo_genesis.lessons.l03.study import Studies, solver_step
+from robo_genesis.lessons.l03.study import landings_at, solver_step
 from robo_genesis.sim import mujoco_contacts
 from robo_genesis.sim.contacts import ContactCase
 
@@ -67,10 +68,10 @@ def counted(ax: Axes, traces: Traces, window: tuple[float, float]) -> Axes:
     return ax
 
 
-def depths(ax: Axes, studies: Studies) -> Axes:
+def depths(ax: Axes, metrics: Mapping[str, CaseMetrics]) -> Axes:
     """Draw the penetration of the cubes by solver step, with a mark for those that rebound."""
     h = {name: 1000 * solver_step(name) for name in spec.STEPS_STUDIED}
-    points = [(h[name], found) for name in h for found in studies.landings(name)]
+    points = [(h[name], found) for name in h for found in landings_at(metrics, name)]
     for label, rebounds, marker, size, mark in (
         ("stays on the surface", False, "o", 4.5, "first"),
         ("leaves it again", True, "^", 6, "second"),

@@ -4,12 +4,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from robo_genesis.core.metrics import CaseMetrics
+from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import friction, spec
-from robo_genesis.lessons.l03.metrics import CLEAR, CaseMetrics, LandingMetrics
-from robo_genesis.lessons.l03.study import Studies, distance_between, solver_step
+from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics
+from robo_genesis.lessons.l03.study import distance_between, landings_at, slide, solver_step
 from robo_genesis.sim.contacts import ContactCase
 
 Rows = Sequence[dict[str, str]]
+Metrics = Mapping[str, CaseMetrics]
 
 
 def landing_rows(cases: Mapping[str, ContactCase]) -> Rows:
@@ -27,16 +30,16 @@ def landing_rows(cases: Mapping[str, ContactCase]) -> Rows:
     ]
 
 
-def step_rows(studies: Studies) -> Rows:
-    """Return one row per solver step."""
+def step_rows(metrics: Metrics, time_constants: Mapping[str, float]) -> Rows:
+    """Return one row per solver step, with the engine's time constant of a contact [s]."""
     rows = []
     for name in spec.STEPS_STUDIED:
-        found = studies.landings(name)
+        found = landings_at(metrics, name)
         depths = [1000 * of.penetration for of in found]
         rows.append(
             {
                 "solver step h [ms]": f"{1000 * solver_step(name):g}",
-                "time constant [ms]": f"{1000 * studies.time_constants[name]:g}",
+                "time constant [ms]": f"{1000 * time_constants[name]:g}",
                 "penetration proxy, least to most [mm]": f"{min(depths):.2f} to {max(depths):.2f}",
                 "cubes that rebound": f"{sum(of.rebound > CLEAR for of in found)} of {len(found)}",
                 "highest rebound [mm]": f"{max(1000 * of.rebound for of in found):.2f}",
@@ -45,18 +48,18 @@ def step_rows(studies: Studies) -> Rows:
     return rows
 
 
-def slide_rows(studies: Studies, names: Sequence[str], stepped: bool = False) -> Rows:
+def slide_rows(metrics: Metrics, names: Sequence[str], stepped: bool = False) -> Rows:
     """Return one row per slide, with Coulomb's distance.
 
     Args:
-        studies: the runs of the lecture.
+        metrics: of the slides, by case.
         names: the slides to show.
         stepped: whether to give the value of the formula in solver steps.
     """
     rows = []
     formula = "v² / (2 μ g)" + (" − v h / 2" if stepped else "")
     for name in names:
-        case, found = spec.STUDY_CASES[name], studies.slide(name)
+        case, found = spec.STUDY_CASES[name], slide(metrics, name)
         mu = friction.pair_friction(case)
         distance = friction.coulomb_distance(case.speed, mu, case.gravity)
         distance -= case.speed * case.h / 2 if stepped else 0.0
@@ -74,17 +77,17 @@ def slide_rows(studies: Studies, names: Sequence[str], stepped: bool = False) ->
     return rows
 
 
-def engine_rows(studies: Studies) -> Rows:
+def engine_rows(traces: Mapping[str, ContactTrace], metrics: Metrics) -> Rows:
     """Return one row per pair of runs: the distance between the engines, and its first excess."""
     rows = []
     for pair in (*spec.ENGINE_PAIRS.items(), ("baseline", spec.OWN_DEFAULTS)):
-        distance = distance_between(studies, *pair)
+        distance = distance_between(traces, *pair)
         excess = np.flatnonzero(distance > spec.ENGINES_APART)
         since, counts = "never", ["–", "–"]
         if len(excess):
-            since = f"{studies.traces[pair[1]].t[excess[0]]:.2f} s"
-            counts = [str(studies.traces[name].contacts[excess[0], 0]) for name in pair]
-        heights = [f"{1000 * rise(studies.metrics[name]):.2f}" for name in pair]
+            since = f"{traces[pair[1]].t[excess[0]]:.2f} s"
+            counts = [str(traces[name].contacts[excess[0], 0]) for name in pair]
+        heights = [f"{1000 * rise(metrics[name]):.2f}" for name in pair]
         mm = 1000 * float(distance.max())
         rows.append(
             {

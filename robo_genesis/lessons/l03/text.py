@@ -1,13 +1,13 @@
 """Sentences about landings, slides and bounces, chosen and filled by their metrics."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from robo_genesis.core.text import Block, listed, signed
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import friction, spec
-from robo_genesis.lessons.l03.checks import ContactExperiment
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l03 import checks, friction, spec
 from robo_genesis.lessons.l03.energy import kept_at_bounces
 from robo_genesis.lessons.l03.metrics import (
     CLEAR,
@@ -23,17 +23,17 @@ INSPECT = (
 )
 
 
-def interpretation(run: ContactExperiment) -> tuple[Block, ...]:
+def interpretation(run: Experiment) -> tuple[Block, ...]:
     """Return the results of the lab's runs, for every outcome."""
-    landings, slides, bounces = run.landings(), run.slides(), run.bounces()
+    landings, slides, bounces = checks.landings(run), checks.slides(run), checks.bounces(run)
     landed = (landing_sentence(name, found) for name, found in landings.items())
     slid = (slide_sentence(name, found, run.cases[name]) for name, found in slides.items())
     bounced = (bounce_sentence(found, run.cases[name]) for name, found in bounces.items())
     return (
         Block("The landings", tuple(landed)),
-        Block("The effect of the step", step_sentences(landings, run.traces)),
+        Block("The effect of the step", tuple(step_sentences(landings, run.traces))),
         Block("The slides", tuple(slid)),
-        Block("Which friction counts", friction_sentences(slides, run.cases)),
+        Block("Which friction counts", tuple(friction_sentences(slides, run.cases))),
         Block("The energy of the ball", (*bounced, *energy_sentences(bounces, run.cases))),
     )
 
@@ -60,13 +60,12 @@ def landing_sentence(name: str, found: LandingMetrics) -> str:
 
 def step_sentences(
     landings: Mapping[str, LandingMetrics], traces: Mapping[str, ContactTrace]
-) -> tuple[str, ...]:
+) -> Iterator[str]:
     """Say what more substeps changed at one outer step, and compare equal solver steps."""
-    sentences = []
     for coarse, fine in spec.FINER:
         a, b = landings[coarse].penetration, landings[fine].penetration
         verb = "less deeply than" if b < a else "as deeply as or more deeply than"
-        sentences.append(
+        yield (
             f"`{fine}` sinks in {verb} `{coarse}`, which has fewer substeps: {mm(b)} instead of "
             f"{mm(a)}."
         )
@@ -74,24 +73,22 @@ def step_sentences(
     difference = np.abs(short.link_pos[:: round(long.dt / short.dt)] - long.link_pos).max()
     names = listed([f"`{name}`" for name in spec.EQUAL_STEP])
     why = "Their solver steps are equal; the outer step only sets how often the state is read."
+    shared = f"At shared times {names}"
     if difference == 0:
-        sentences.append(f"At shared times {names} have equal positions, to the last bit. {why}")
+        yield f"{shared} have equal positions, to the last bit. {why}"
     elif difference <= spec.SAME_STATE:
-        sentences.append(
-            f"At shared times {names} are {1e6 * difference:.2g} µm apart, which is float32 "
-            f"rounding. {why}"
+        yield f"{shared} are {1e6 * difference:.2g} µm apart, which is float32 rounding. {why}"
+    else:
+        yield f"{shared} are up to {mm(difference)} apart. {INSPECT}"
+    rebounding = [f"`{name}`" for name, of in landings.items() if of.rebound > CLEAR]
+    if rebounding:
+        yield (
+            f"{listed(rebounding)} {'rebounds' if len(rebounding) == 1 else 'rebound'}. These runs "
+            "cannot show whether that is physics or numerical error: the lecture tests smaller "
+            "steps and other heights."
         )
     else:
-        sentences.append(f"At shared times {names} are up to {mm(difference)} apart. {INSPECT}")
-    rebounding = [f"`{name}`" for name, of in landings.items() if of.rebound > CLEAR]
-    if not rebounding:
-        return (*sentences, "None of the cubes rebounds.")
-    return (
-        *sentences,
-        f"{listed(rebounding)} {'rebounds' if len(rebounding) == 1 else 'rebound'}. These runs "
-        "cannot show whether that is physics or numerical error: the lecture tests smaller steps "
-        "and other heights.",
-    )
+        yield "None of the cubes rebounds."
 
 
 def slide_sentence(name: str, found: SlideMetrics, case: ContactCase) -> str:
@@ -119,22 +116,21 @@ def slide_sentence(name: str, found: SlideMetrics, case: ContactCase) -> str:
 
 def friction_sentences(
     slides: Mapping[str, SlideMetrics], cases: Mapping[str, ContactCase]
-) -> tuple[str, ...]:
+) -> Iterator[str]:
     """Say which coefficient each distance shows, and what the other surface changed."""
-    sentences = []
     for name, found in slides.items():
         if found.stop_distance is not None:
             case = cases[name]
             larger = friction.pair_friction(case)
             apparent = friction.apparent_friction(case.speed, found.stop_distance, case.gravity)
-            sentences.append(
+            yield (
                 f"`{name}` has {case.friction:g} on {case.surface_friction:g}. Its distance "
                 f"corresponds to μ = {apparent:.3f}; the larger of the two is {larger:g}."
             )
     for lane in ("low", "high"):
         one, other = (slides[f"{lane}_on_{of}"].stop_distance for of in ("050", "030"))
         if one is None or other is None:
-            sentences.append(f"One of the cubes with {lane} friction did not stop.")
+            yield f"One of the cubes with {lane} friction did not stop."
             continue
         difference = abs(other - one)
         if difference <= spec.SAME_SLIDE:
@@ -142,8 +138,7 @@ def friction_sentences(
         else:
             direction = "farther" if other > one else "less far"
             effect = f"lets it travel {100 * difference:.1f} cm {direction}"
-        sentences.append(f"For the cube with {lane} friction, the other surface {effect}.")
-    return tuple(sentences)
+        yield f"For the cube with {lane} friction, the other surface {effect}."
 
 
 def bounce_sentence(found: BounceMetrics, case: ContactCase) -> str:
@@ -161,9 +156,8 @@ def bounce_sentence(found: BounceMetrics, case: ContactCase) -> str:
 
 def energy_sentences(
     bounces: Mapping[str, BounceMetrics], cases: Mapping[str, ContactCase]
-) -> tuple[str, ...]:
+) -> Iterator[str]:
     """Say which change of energy is the contact's loss, numerical error, or a bounded error."""
-    sentences = []
     name = min(bounces, key=lambda name: cases[name].h)
     case, kept = cases[name], bounces[name].first_kept
     if kept is not None:
@@ -172,7 +166,7 @@ def energy_sentences(
         cause = "The contact's own damping causes the whole loss."
         if difference > spec.FINE_SHARE:
             cause = f"The damping does not explain the difference of {difference:.2f} %. {INSPECT}"
-        sentences.append(
+        yield (
             f"The finest step leaves {kept:.2f} %; a linear spring with this damping leaves "
             f"{expected:.2f} %. {cause}"
         )
@@ -183,35 +177,34 @@ def energy_sentences(
     ]
     if flown:
         bounded, drift = zip(*flown, strict=True)
-        sentences.append(
+        yield (
             f"Within a flight the total energy changes by up to {max(bounded):.1f} mJ at one step "
             f"and by {min(bounded):.2f} mJ at another. This error is bounded: without m g h v / 2 "
             f"the energy changes by at most {1e6 * max(drift):.1f} millionths of the start."
         )
-    return tuple(sentences)
 
 
-def step_study(found: Mapping[float, Sequence[LandingMetrics]]) -> tuple[str, ...]:
+def step_study(found: Mapping[float, Sequence[LandingMetrics]]) -> Iterator[str]:
     """Say how penetration and rebound depend on the solver step.
 
     Args:
         found: by solver step [s], the metrics of landings from several heights.
     """
-    sentences = []
     for h in (max(found), min(found)):
         depths = [of.penetration for of in found[h]]
-        sentences.append(
+        yield (
             f"With a solver step of {1000 * h:g} ms the cubes sink in by {mm(min(depths))} to "
             f"{mm(max(depths))}."
         )
     rebounding = sorted(h for h, of in found.items() if any(one.rebound > CLEAR for one in of))
     if not rebounding:
-        return (*sentences, "No cube rebounds at any step.")
+        yield "No cube rebounds at any step."
+        return
     steps = listed([f"{1000 * h:g} ms" for h in rebounding])
     conclusion = "and at no smaller step: coarse steps cause the rebound, not the cube"
     if min(rebounding) == min(found):
         conclusion = "the smallest step included"
-    return (*sentences, f"Cubes rebound at {steps}, {conclusion}.")
+    yield f"Cubes rebound at {steps}, {conclusion}."
 
 
 def mm(value: float) -> str:

@@ -1,30 +1,102 @@
 """L04, robot models, degrees of freedom, and joint control."""
 
-from robo_genesis.core.palette import CASES
-from robo_genesis.lessons.declaration import COMMON_MODULES, Compared, Filmed, Lesson, MeasuringPage
-from robo_genesis.lessons.l04 import recompute, spec, study_spec
-from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
+from dataclasses import replace
 
-MODULES = (*COMMON_MODULES, "sim.joint_control", "lessons.l04.checks", "lessons.l04.metrics")
+from robo_genesis.core.channels import View
+from robo_genesis.core.text import listed
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.declaration import COMMON_MODULES, Compared, Filmed, Lesson
+from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
+from robo_genesis.lessons.l04 import checks, plausibility, spec, study, study_checks, study_spec
+from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics, step_metrics
+from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.joint_control import ControlCase
+
+MODULES = (
+    *COMMON_MODULES, "sim.franka", "sim.joint_control",
+    "lessons.l04.__init__", "lessons.l04.checks", "lessons.l04.metrics",
+)  # fmt: skip
 STUDY_MODULES = (
     "core.orderings", "lessons.l04.study", "lessons.l04.study_checks", "lessons.l04.theory",
     "sim.dynamics", "sim.mujoco_joints",
 )  # fmt: skip
 
-CASES.update(G1="first", G2="second", G3="third")
+STUDY_RUNS = {
+    # A run that holds its start has no step, so it has no metrics.
+    **{n: Run(case, not n.endswith("_hold")) for n, case in study_spec.STEP_CASES.items()},
+    **runs_of(study_spec.SUBSTEP_CASES),
+    **{
+        name: Run(spec.CASES[second.case], note="run in MuJoCo, not in Genesis")
+        for name, second in study_spec.SECOND_RUNS.items()
+    },
+    "assigned": Run(
+        spec.BASELINE,
+        measured=False,
+        note="state overwritten at each sample, no step taken; its time is nominal",
+    ),
+}
+
+
+def readings(rendered: bool) -> dict[str, Readings]:
+    """Return the engine's counts of the robot."""
+    return {"model": counts(spec.EXPECTED_MODEL)}
+
+
+def study_readings(rendered: bool) -> dict[str, Readings]:
+    """Return those of the lecture, which also reads what theory needs of the stepped joint."""
+    return readings(rendered) | {study.GROUP: Readings(study.UNITS)}
+
+
+def measure(trace: Trace, case: ControlCase) -> StepMetrics:
+    """Return the metrics of the stepped joint."""
+    return step_metrics(trace, spec.ENTRY)
+
+
+LAB = MeasuringPage(
+    runs=runs_of(spec.CASES),
+    kind=Trace,
+    joints=JOINT_NAMES,
+    readings=readings,
+    measure=measure,
+    checks=checks.CHECKS,
+    parameters=spec.parameters,
+    modules=MODULES,
+    validate=plausibility.require_possible_runs,
+)
+LECTURE = replace(
+    LAB,
+    runs=runs_of(spec.CASES) | STUDY_RUNS,
+    readings=study_readings,
+    checks=(*checks.CHECKS, *study_checks.CHECKS),
+    parameters=lambda: spec.parameters() | study_spec.parameters(),
+    modules=MODULES + STUDY_MODULES,
+)
 
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, StepMetrics),
-    pages={
-        "lab": MeasuringPage(spec.parameters, MODULES),
-        study_spec.PAGE: MeasuringPage(
-            lambda: spec.parameters() | study_spec.parameters(), MODULES + STUDY_MODULES
-        ),
-    },
-    recompute=recompute.recompute,
+    pages={"lab": LAB, study_spec.PAGE: LECTURE},
     filmed=Filmed("the Franka"),
+    marks=spec.CASE_MARKS,
     compared=Compared(
-        tuple(study_spec.COMPARED), joint=spec.STEPPED_JOINT, band=SETTLING_BAND, until=0.6
+        tuple(study_spec.COMPARED),
+        joint=spec.STEPPED_JOINT,
+        band=SETTLING_BAND,
+        until=0.6,
+        view=View(
+            thing="robot",
+            alt="The robot in 3D, in the posture of the sample that is shown. "
+            f"{spec.STEPPED_JOINT} moves.",
+            credit="Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from "
+            "franka_description, © Franka Robotics GmbH; decimated and converted",
+            orbit="45deg 72deg 90%",
+            target="0.2m 0.52m 0m",
+        ),
+        alt=f"Position of {spec.STEPPED_JOINT} over time with the gains of "
+        f"{listed(tuple(study_spec.COMPARED))}, its target and the settling band around it.",
+        caption=f"Position of {spec.STEPPED_JOINT}, three settings of its controller, from "
+        "get_dofs_position.",
+        quality="Rise time {rise_time}, overshoot {overshoot}, final error {final_error}; at the "
+        "force limit: {saturation_samples}.",
     ),
 )

@@ -11,15 +11,8 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
 from robo_genesis.lessons.l04.spec import STEPPED_JOINT
 from robo_genesis.lessons.l04.study_spec import GridPoint
-from robo_genesis.sim.joint_control import (
-    CaseError,
-    ControlCase,
-    assemble,
-    read_state,
-    read_step,
-    require_read_back,
-    validate,
-)  # fmt: skip
+from robo_genesis.sim import joint_control
+from robo_genesis.sim.joint_control import CaseError, ControlCase
 from robo_genesis.sim.joints import JointMap, to_numpy
 
 
@@ -97,7 +90,7 @@ def run_batch(
     """
     q_target = reset_batch(scene, robot, joints, cases).q_target
     dofs = joints.dofs_idx_local.tolist()
-    states, steps = [read_state(robot, dofs)], []
+    states, steps = [joint_control.read_state(robot, dofs)], []
     start_qd = to_numpy(robot.get_dofs_velocity(dofs))
     robot.control_dofs_position(q_target, dofs)
     start_control_force = to_numpy(robot.get_dofs_control_force(dofs))
@@ -105,10 +98,10 @@ def run_batch(
     for _ in range(cases[0].steps):
         robot.control_dofs_position(q_target, dofs)
         scene.step()
-        states.append(read_state(robot, dofs))
-        steps.append(read_step(robot, dofs))
+        states.append(joint_control.read_state(robot, dofs))
+        steps.append(joint_control.read_step(robot, dofs))
     return [
-        assemble(
+        joint_control.assemble(
             case,
             [tuple(values[k] for values in state) for state in states],
             [tuple(values[k] for values in step) for step in steps],
@@ -134,7 +127,7 @@ def reset_batch(
         The cases as one: its arrays are (cases, joints).
     """
     for case in cases:
-        validate(case, joints)
+        joint_control.validate(case, joints)
     found = (scene.n_envs, scene.dt, scene.substeps)
     required = {(len(cases), case.dt, case.substeps) for case in cases}
     if required != {found} or len({case.steps for case in cases}) != 1:
@@ -153,5 +146,5 @@ def reset_batch(
     robot.set_dofs_kv(batch.kv, dofs)
     robot.set_dofs_force_range(-batch.effort_limit, batch.effort_limit, dofs)
     robot.set_dofs_position(batch.q_start, dofs, zero_velocity=True)
-    require_read_back(robot, dofs, batch)
+    joint_control.require_read_back(robot, dofs, batch)
     return batch

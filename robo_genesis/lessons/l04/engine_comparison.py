@@ -1,6 +1,6 @@
 """One experiment with several solver steps, integrators and engines: rows and sentences."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,9 +10,10 @@ from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04 import spec, study_spec
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated
-from robo_genesis.lessons.l04.study import ENGINES, Studies, relation_outcome
+from robo_genesis.lessons.l04.study import ENGINES, GROUP, relation_outcome
 
 NOUNS, UNITS = StepMetrics.about("noun"), StepMetrics.about("unit")
 
@@ -21,9 +22,9 @@ ENGINE_LABELS = {"Genesis": "Genesis"} | {
 }
 
 
-def convergence_rows(run: Studies) -> list[dict[str, Any]]:
+def convergence_rows(run: Experiment) -> list[dict[str, Any]]:
     """Return for each solver step G2's overshoot in both engines."""
-    found = {engine: run.overshoot_by_substeps(engine) for engine in ENGINES}
+    found = {engine: study.overshoot_by_substeps(run, engine) for engine in ENGINES}
     return [
         {"substeps": n, "solver step [s]": f"{spec.G2.dt / n:g}"}
         | {ENGINE_LABELS[engine]: format_value(v[n], "rad") for engine, v in found.items()}
@@ -31,7 +32,9 @@ def convergence_rows(run: Studies) -> list[dict[str, Any]]:
     ]
 
 
-def convergence_sentences(overshoot: Mapping[str, Mapping[int, float]], declared: int) -> list[str]:
+def convergence_sentences(
+    overshoot: Mapping[str, Mapping[int, float]], declared: int
+) -> Iterator[str]:
     """Describe the effect of a finer solver step on the overshoot, in each engine.
 
     Args:
@@ -39,7 +42,6 @@ def convergence_sentences(overshoot: Mapping[str, Mapping[int, float]], declared
         declared: substeps of the lesson's own runs.
     """
     finest = max(next(iter(overshoot.values())))
-    sentences = []
     for engine, values in overshoot.items():
         coarse, fine = values[declared], values[finest]
         change = (
@@ -47,23 +49,22 @@ def convergence_sentences(overshoot: Mapping[str, Mapping[int, float]], declared
             if abs(fine - coarse) <= spec.RESOLUTION["rad"]
             else f"changes from {format_value(coarse, 'rad')} to {format_value(fine, 'rad')}"
         )
-        sentences.append(
+        yield (
             f"{ENGINE_LABELS[engine]}: from {declared} to {finest} substeps the overshoot {change}."
         )
     columns = ([values[n] for values in overshoot.values()] for n in (declared, finest))
     before, after = (max(column) - min(column) for column in columns)
     spread = f"from {format_value(before, 'rad')} to {format_value(after, 'rad')}"
-    sentences.append(
+    yield (
         f"The spread between them falls {spread}: the difference at the lesson's step comes mostly "
         "from the numerical method, not from the robot models."
         if after <= study_spec.SPREAD_SHARE * before
         else f"The spread between them changes {spread}. A finer step does not bring them "
         "together, so look for a difference between the models as well."
     )
-    return sentences
 
 
-def alone(run: Studies, case: str, term: float) -> float:
+def alone(run: Experiment, case: str, term: float) -> float:
     """Return the stepped joint's speed [rad/s] after the first step, its neighbours held still.
 
     Args:
@@ -71,17 +72,18 @@ def alone(run: Studies, case: str, term: float) -> float:
         case: one of the compared cases; its effort is assumed to be clipped throughout the step.
         term: the integrator's addition to the passive damping on the inertia's side [N·m·s/rad].
     """
-    configured = study_spec.COMPARED[case]
+    configured, readings = study_spec.COMPARED[case], run.readings[GROUP]
+    damping, inertia = readings["passive_damping"], readings["inertia_Genesis"]
     h = configured.dt / configured.substeps
-    effort = float(run.traces[case].start_control_force[run.entry])
+    effort = float(run.traces[case].start_control_force[spec.ENTRY])
     speed = 0.0
     for _ in range(configured.substeps):
-        net = effort - run.passive_damping * speed - run.gravity_at_start["Genesis"]
-        speed += h * net / (run.inertia["Genesis"] + h * (run.passive_damping + term))
+        net = effort - damping * speed - readings["gravity_at_start_Genesis"]
+        speed += h * net / (inertia + h * (damping + term))
     return speed
 
 
-def first_step_rows(run: Studies) -> list[dict[str, Any]]:
+def first_step_rows(run: Experiment) -> list[dict[str, Any]]:
     """Return for each compared case the stepped joint's speed after the first step, by engine."""
     return [
         {
@@ -90,18 +92,18 @@ def first_step_rows(run: Studies) -> list[dict[str, Any]]:
             "alone, without it": format_value(alone(run, case, 0.0), "rad/s"),
         }
         | {
-            ENGINE_LABELS[engine]: format_value(float(trace.qd[0, run.entry]), "rad/s")
-            for engine, trace in run.by_engine(case).items()
+            ENGINE_LABELS[engine]: format_value(float(trace.qd[0, spec.ENTRY]), "rad/s")
+            for engine, trace in study.by_engine(run, case).items()
         }
         for case, configured in study_spec.COMPARED.items()
-        for kv in [configured.kv[run.entry]]
+        for kv in [configured.kv[spec.ENTRY]]
     ]
 
 
-def first_step_sentence(run: Studies) -> str:
+def first_step_sentence(run: Experiment) -> str:
     """Name the engines in which G2 and G3 moved alike while both were clipped."""
-    fast, slow = (run.by_engine(case) for case in ("G2", "G3"))
-    if not all(clipped_at_start(t, run.entry) for t in (*fast.values(), *slow.values())):
+    fast, slow = (study.by_engine(run, case) for case in ("G2", "G3"))
+    if not all(clipped_at_start(t, spec.ENTRY) for t in (*fast.values(), *slow.values())):
         return (
             "G2 and G3 were not both clipped before and after the first step in every engine, so "
             "their speeds after it do not isolate the integrator."
@@ -109,7 +111,7 @@ def first_step_sentence(run: Studies) -> str:
     alike: list[str] = []
     apart: list[str] = []
     for engine in ENGINES:
-        difference = abs(fast[engine].qd[0, run.entry] - slow[engine].qd[0, run.entry])
+        difference = abs(fast[engine].qd[0, spec.ENTRY] - slow[engine].qd[0, spec.ENTRY])
         same = difference <= spec.RESOLUTION["rad/s"]
         (alike if same else apart).append(ENGINE_LABELS[engine])
     text = "G2 and G3 differ in KV alone and were clipped to one effort before and after this step."
@@ -126,7 +128,7 @@ def clipped_at_start(trace: Trace, entry: int) -> bool:
     return bool(is_saturated(efforts, trace.effort_limit[entry]).all())
 
 
-def relation_rows(run: Studies) -> list[dict[str, Any]]:
+def relation_rows(run: Experiment) -> list[dict[str, Any]]:
     """Return for each ordering that the lesson claims its state and values in each engine."""
     rows = []
     for relation in spec.RELATIONS:
@@ -134,14 +136,14 @@ def relation_rows(run: Studies) -> list[dict[str, Any]]:
         row: dict[str, Any] = {"claim": f"{NOUNS[metric]}: {pair[1]} {order} than {pair[0]}"}
         for engine in ENGINES:
             state, _ = relation_outcome(run, engine, relation)
-            found = run.compared(engine)
+            found = study.compared(run, engine)
             values = [format_value(getattr(found[case], metric), UNITS[metric]) for case in pair]
             row[ENGINE_LABELS[engine]] = f"{state}: {values[0]} → {values[1]}"
         rows.append(row)
     return rows
 
 
-def survival_sentence(run: Studies) -> str:
+def survival_sentence(run: Experiment) -> str:
     """Count the claimed orderings that every engine shows, and name the others."""
     failed = []
     for relation in spec.RELATIONS:

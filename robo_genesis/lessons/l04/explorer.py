@@ -63,7 +63,7 @@ def pack(found: Sweep) -> dict[str, Any]:
                 "case": NAMES.get(point, ""),
                 "q": q[k].tolist(),
                 "force": force[k].tolist(),
-                "said": sentence(point, measured, found.control_force.shape[1]),
+                "sentence": sentence(point, measured, found.control_force.shape[1]),
                 "metrics": [v for n, v in _written(measured).items() if n in SHOWN],
             }
             for k, (point, measured) in enumerate(zip(found.points, found.metrics, strict=True))

@@ -4,13 +4,11 @@ All of them describe a finite window with samples dt apart; none of them proves 
 that was not observed is None.
 """
 
-from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.metrics import CaseMetrics, case_records, count_records, metric
+from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace, first_time, settled_from
 
@@ -99,22 +97,3 @@ def step_metrics(trace: Trace, entry: int) -> StepMetrics:
         saturation_samples=saturation_samples,
         saturation_duration=saturation_samples * trace.dt,
     )
-
-
-def measure(
-    traces: Mapping[str, Trace], cases: Iterable[str], entry: int
-) -> dict[str, StepMetrics]:
-    """Return the metrics of each case from its trace; `entry` is the joint's column in the arrays.
-
-    Raises:
-        KeyError: a case has no trace.
-        ValueError: as `step_metrics`.
-    """
-    return {case: step_metrics(traces[case], entry) for case in cases}
-
-
-def metric_records(
-    metrics: Mapping[str, StepMetrics], model: Mapping[str, int]
-) -> dict[str, dict[str, dict[str, Any]]]:
-    """Return `metrics.json`: the model's counts and each case's metrics, with class and source."""
-    return {"model": count_records(model)} | case_records(metrics)

@@ -1,38 +1,47 @@
 """Figures of lesson L04: axes in, axes out; no numerics, no show()."""
 
+import io
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from robo_genesis.core.palette import marks_of
-from robo_genesis.core.plotting import LIMIT, TARGET, channel, finish, legend_above, look, style
+from robo_genesis.core.plotting import LIMIT, TARGET, channel, finish, legend_above, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
+from robo_genesis.lessons.l04.spec import CASE_MARKS
 from robo_genesis.sim import joint_channels
 from robo_genesis.sim.joints import JointMap
 
 IDEAL = look("target", linestyle=(0, (1, 1.2)), linewidth=1.8)
 ENGINE_STYLES = {
-    "Genesis": look("G2", linestyle="-", marker="o"),
+    "Genesis": look(CASE_MARKS["G2"], linestyle="-", marker="o"),
     "MuJoCo implicitfast": look("other", marker="s"),
     "MuJoCo Euler": look("further", marker="^"),
 }
 """All curves are G2's. Marker shapes distinguish the engines as well as colours."""
+
+JPEG_QUALITY = 70
+"""JPEG quality: high enough that no blocks are visible at the printed size."""
+
+FILM_VIEW = (slice(140, 420), slice(270, 550))
+"""Rows and columns of a frame that show the robot [pixel]."""
 
 
 def position(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
     """Draw q of one joint for each trace, the common target and its settling band."""
     drawn, *_ = joint_channels.channels(traces, joints, joint)
     target, *_ = joint_channels.levels(traces, joints, joint, SETTLING_BAND)
-    return channel(ax, next(iter(traces.values())).t, drawn, joint, [target])
+    return channel(ax, next(iter(traces.values())).t, drawn, joint, CASE_MARKS, [target])
 
 
 def velocity(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
     """Draw q̇ of one joint for each trace."""
     k = joints.entry(joint)
-    for name, mark in marks_of(list(traces)).items():
+    for name, mark in marks_of(list(traces), CASE_MARKS).items():
         ax.plot(traces[name].t_step, traces[name].qd[:, k], label=name, **look(mark))
     return finish(ax, f"Velocity of {joint}", f"q̇ [{joints.position_units[k]}/s]")
 
@@ -40,7 +49,7 @@ def velocity(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str
 def control_force(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
     """Draw the control force of one joint for each trace, between the limits read back."""
     k = joints.entry(joint)
-    for name, mark in marks_of(list(traces)).items():
+    for name, mark in marks_of(list(traces), CASE_MARKS).items():
         ax.plot(traces[name].t_step, traces[name].control_force[:, k], label=name, **look(mark))
     _limits(ax, next(iter(traces.values())), k)
     return finish(ax, f"Control force of {joint}", f"control force [{joints.effort_units[k]}]")
@@ -114,7 +123,7 @@ def beside_ideal(
     for ax, (name, q) in zip(axes, measured.items(), strict=True):
         ax.axhline(target, label="target", **TARGET)
         ax.plot(t, ideal[name], label="ideal joint", **IDEAL)
-        ax.plot(t, q, label="measured", **style(name))
+        ax.plot(t, q, label="measured", **look(CASE_MARKS[name]))
         _finish_case(ax, name, "q of joint4 [rad]", until)
     return axes
 
@@ -131,7 +140,7 @@ def step_sizes(
     """
     for ax, (name, curves) in zip(axes, shares.items(), strict=True):
         ax.axhline(1.0, **TARGET)
-        measured = iter((look("other"), style(name)))
+        measured = iter((look("other"), look(CASE_MARKS[name])))
         for label, curve in curves.items():
             ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else next(measured)))
         _finish_case(ax, name, "share of the step", until)
@@ -195,3 +204,19 @@ def grid_maps(
         ax.set(xlabel="KV [N·m·s/rad]", ylabel="KP [N·m/rad]")
         ax.label_outer()
     return axes
+
+
+def film_strip(axes: Sequence[Axes], frames: Mapping[int, np.ndarray], dt: float) -> Sequence[Axes]:
+    """Show frames by sample number, each below its time [s]."""
+    for ax, (sample, frame) in zip(axes, sorted(frames.items()), strict=True):
+        ax.imshow(frame[FILM_VIEW])
+        ax.set_axis_off()
+        ax.set_title(f"t = {sample * dt:.2f} s", fontsize="small")
+    return axes
+
+
+def jpeg(figure: Figure) -> bytes:
+    """Return a figure of photographs as JPEG: an SVG file would be ten times as large."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="jpeg", dpi=90, pil_kwargs={"quality": JPEG_QUALITY})
+    return stream.getvalue()

@@ -11,25 +11,19 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.scene import (
-    DT,
-    EFFORT_LIMIT,
-    FRANKA_MJCF,
-    FRANKA_MODEL,
-    FRANKA_TYPES,
-    JOINT_NAMES,
-    KP_BASELINE,
-    KV_BASELINE,
-    Q_START,
-    FloatArray,
-)  # fmt: skip
+from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
+from robo_genesis.sim import franka
+from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import ControlCase
 
 LESSON = "l04"
 MINIMUM_HARDWARE = "cpu"
 
 STEPPED_JOINT = "joint4"
+ENTRY = JOINT_NAMES.index(STEPPED_JOINT)
+"""Column of the stepped joint in all arrays."""
+
 STEP = 0.25
 """Height of the commanded step [rad]."""
 
@@ -38,7 +32,7 @@ WINDOW = 1.2
 
 STEPS = round(WINDOW / DT)
 
-EXPECTED_MODEL, EXPECTED_TYPES = FRANKA_MODEL, FRANKA_TYPES
+EXPECTED_MODEL, EXPECTED_TYPES = franka.MODEL_COUNTS, franka.JOINT_TYPES
 
 RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "N·m": 1e-2, "1": 0.5}
 """By unit: values that differ by no more than this are called equal, the noise floor."""
@@ -47,26 +41,28 @@ RESOLUTION = {"rad": 1e-4, "rad/s": 1e-3, "s": DT / 2, "N·m": 1e-2, "1": 0.5}
 def with_entry(values: FloatArray, value: float) -> FloatArray:
     """Return a read-only copy of `values` (9,) in which only the stepped joint's entry differs."""
     changed = np.array(values)
-    changed[JOINT_NAMES.index(STEPPED_JOINT)] = value
+    changed[ENTRY] = value
     changed.setflags(write=False)
     return changed
 
 
-START_OF_STEP = float(Q_START[JOINT_NAMES.index(STEPPED_JOINT)])
+START_OF_STEP = float(franka.Q_START[ENTRY])
 
 BASELINE = ControlCase(
-    q_start=Q_START,
-    q_target=with_entry(Q_START, START_OF_STEP + STEP),
-    kp=KP_BASELINE,
-    kv=KV_BASELINE,
-    effort_limit=EFFORT_LIMIT,
+    q_start=franka.Q_START,
+    q_target=with_entry(franka.Q_START, START_OF_STEP + STEP),
+    kp=franka.KP_BASELINE,
+    kv=franka.KV_BASELINE,
+    effort_limit=franka.EFFORT_LIMIT,
     steps=STEPS,
 )
-G1 = replace(BASELINE, kp=with_entry(KP_BASELINE, 3500.0), kv=with_entry(KV_BASELINE, 100.0))
-G2 = replace(G1, kp=with_entry(KP_BASELINE, 7000.0))
-G3 = replace(G2, kv=with_entry(KV_BASELINE, 300.0))
+G1 = replace(BASELINE, kp=with_entry(BASELINE.kp, 3500.0), kv=with_entry(BASELINE.kv, 100.0))
+G2 = replace(G1, kp=with_entry(G1.kp, 7000.0))
+G3 = replace(G2, kv=with_entry(G2.kv, 300.0))
 
 CASES = {"baseline": BASELINE, "G1": G1, "G2": G2, "G3": G3}
+CASE_MARKS = {"baseline": "baseline", "G1": "first", "G2": "second", "G3": "third"}
+"""The mark of each case in the palette."""
 
 ONE_FACTOR = {("G1", "G2"): [f"kp[{STEPPED_JOINT}]"], ("G2", "G3"): [f"kv[{STEPPED_JOINT}]"]}
 """The only entry that may differ between two compared cases."""

@@ -4,15 +4,15 @@ from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import Any
 
-from robo_genesis.core.scene import DT, JOINT_NAMES, SUBSTEPS
+from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 from robo_genesis.lessons.l04.spec import (
+    ENTRY,
     G1,
     G2,
     G3,
     START_OF_STEP,
     STEP,
-    STEPPED_JOINT,
     case_parameters,
     with_entry,
 )  # fmt: skip
@@ -84,6 +84,10 @@ SMALL_STEP_TOLERANCE = 0.03
 """Largest difference in overshoot between theory and a small unsaturated step, as a share of the
 step."""
 
+AT_REST = 0.01
+"""Speed up to which a run ends nearly at rest [rad/s]. Only at rest can gravity alone explain the
+final error, so this selects the cases that `gravity_support` checks."""
+
 GRAVITY_AGREEMENT = 0.01
 """Share within which KP × final error and gravity agree."""
 
@@ -101,6 +105,7 @@ def parameters() -> dict[str, Any]:
         "studies": {
             "second_runs": {name: asdict(run) for name, run in SECOND_RUNS.items()},
             "cases": case_parameters(STEP_CASES | SUBSTEP_CASES),
+            "at_rest_rad_s": AT_REST,
         }
     }
 
@@ -136,9 +141,9 @@ POINTS = tuple(GridPoint(*values) for values in product(STEP_SIZES, KP, KV))
 
 def point_of(case: ControlCase) -> GridPoint:
     """Return the grid point of a case."""
-    k = JOINT_NAMES.index(STEPPED_JOINT)
-    step = round(float(case.q_target[k]) - START_OF_STEP, 9)  # without rounding errors of the sum
-    return GridPoint(step, float(case.kp[k]), float(case.kv[k]))
+    step = float(case.q_target[ENTRY]) - START_OF_STEP
+    gains = float(case.kp[ENTRY]), float(case.kv[ENTRY])
+    return GridPoint(round(step, 9), *gains)  # without rounding errors of the difference
 
 
 CASE_POINTS = {name: point_of(case) for name, case in COMPARED.items()}

@@ -8,7 +8,7 @@ from itertools import groupby
 
 import numpy as np
 
-from robo_genesis.core.comparison import INSPECT, compare, comparison_sentence, prediction_sentence
+from robo_genesis.core.comparison import compare, comparison_sentence, prediction_sentence
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block
 from robo_genesis.core.trace import Trace
@@ -18,12 +18,15 @@ from robo_genesis.lessons.l04.metrics import (
     StepMetrics,
     is_saturated,
 )  # fmt: skip
+from robo_genesis.lessons.l04.study_spec import AT_REST
+
+INSPECT = (
+    "Before blaming the model, inspect saturation, the time stamps, the initial states and "
+    "the length of the window."
+)
 
 COMPARED_METRICS = ("rise_time", "peak_speed", "overshoot", "settling_time")
 """Metrics that the text compares between two cases."""
-
-AT_REST = 0.01
-"""Speed below which the last sample is called nearly at rest [rad/s]."""
 
 
 def pair_sentences(
@@ -49,7 +52,10 @@ def pair_sentences(
     return [
         factor_sentence(names, changed),
         *(comparison_sentence(names, of_metric[metric]) for metric in COMPARED_METRICS),
-        *(prediction_sentence(names, of_metric[metric], order) for metric, order in predictions),
+        *(
+            prediction_sentence(names, of_metric[metric], order, INSPECT)
+            for metric, order in predictions
+        ),
     ]
 
 

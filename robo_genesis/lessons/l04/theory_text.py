@@ -1,14 +1,13 @@
 """Theory and gravity compared with the measurement of L04: rows and sentences."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import listed
-from robo_genesis.lessons.l04 import spec, study_spec
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.study import Studies
-from robo_genesis.lessons.l04.text import AT_REST
 from robo_genesis.lessons.l04.theory import IdealJoint, Parting, overshoot_share, parting
 
 
@@ -24,7 +23,7 @@ def damping_word(zeta: float) -> str:
     return "underdamped" if zeta < 1 else "overdamped"
 
 
-def ideal_rows(run: Studies) -> list[dict[str, Any]]:
+def ideal_rows(run: Experiment) -> list[dict[str, Any]]:
     """Return the linear joint's parameters and overshoot for each compared case."""
     return [
         {
@@ -36,17 +35,17 @@ def ideal_rows(run: Studies) -> list[dict[str, Any]]:
             "ideal overshoot [share of step]": share_text(ideal.overshoot),
         }
         for case in study_spec.COMPARED
-        for ideal in [run.ideal(case)]
+        for ideal in [study.ideal(run, case)]
     ]
 
 
-def part(run: Studies, case: str) -> Parting:
+def part(run: Experiment, case: str) -> Parting:
     """Find where a compared case's position leaves the ideal joint's, which has no gravity."""
     trace = run.traces[case]
-    q = trace.q[:, run.entry].astype(float)
-    step = float(study_spec.COMPARED[case].q_target[run.entry]) - q[0]
-    ideal = q[0] + step * run.ideal(case).response(trace.t)
-    return parting(trace, q, ideal, run.entry, study_spec.PARTING_THRESHOLD)
+    q = trace.q[:, spec.ENTRY].astype(float)
+    step = float(study_spec.COMPARED[case].q_target[spec.ENTRY]) - q[0]
+    ideal = q[0] + step * study.ideal(run, case).response(trace.t)
+    return parting(trace, q, ideal, spec.ENTRY, study_spec.PARTING_THRESHOLD)
 
 
 def parting_sentence(case: str, ideal: IdealJoint, found: Parting) -> str:
@@ -77,20 +76,20 @@ def parting_sentence(case: str, ideal: IdealJoint, found: Parting) -> str:
     )
 
 
-def parting_sentences(run: Studies) -> list[str]:
+def parting_sentences(run: Experiment) -> list[str]:
     """Return one sentence for each compared case."""
-    return [parting_sentence(c, run.ideal(c), part(run, c)) for c in study_spec.COMPARED]
+    return [parting_sentence(c, study.ideal(run, c), part(run, c)) for c in study_spec.COMPARED]
 
 
-def step_size_rows(run: Studies) -> list[dict[str, Any]]:
+def step_size_rows(run: Experiment) -> list[dict[str, Any]]:
     """Return for each case with a small step: overshoot and distance from theory at both sizes."""
     rows = []
     for case in study_spec.SMALL_STEPPED:
-        ideal = run.ideal(case)
+        ideal = study.ideal(run, case)
         response = ideal.response(run.traces[case].t)
         row: dict[str, Any] = {"case": case, "overshoot, ideal": share_text(ideal.overshoot)}
         for height, kind in ((study_spec.SMALL_STEP, "small"), (spec.STEP, "")):
-            share = run.share(case, kind)
+            share = study.share(run, case, kind)
             row[f"overshoot, +{height:g} rad"] = share_text(overshoot_share(share))
             distance = float(abs(share - response).max())
             row[f"largest distance, +{height:g} rad"] = share_text(distance)
@@ -117,14 +116,14 @@ def step_size_sentence(case: str, ideal: float, small: float, large: float) -> s
     return f"{lead} The large step does not."
 
 
-def step_size_sentences(run: Studies) -> list[str]:
+def step_size_sentences(run: Experiment) -> list[str]:
     """Return one sentence for each case with a small step."""
     return [
         step_size_sentence(
             case,
-            run.ideal(case).overshoot,
-            overshoot_share(run.share(case, "small")),
-            overshoot_share(run.share(case)),
+            study.ideal(run, case).overshoot,
+            overshoot_share(study.share(run, case, "small")),
+            overshoot_share(study.share(run, case)),
         )
         for case in study_spec.SMALL_STEPPED
     ]
@@ -161,9 +160,9 @@ def gravity_rows(
 
 def gravity_sentences(
     kp: Mapping[str, float], metrics: Mapping[str, StepMetrics], gravity: Mapping[str, float]
-) -> list[str]:
+) -> Iterator[str]:
     """Say what the table of `gravity_rows` supports, and what it does not prove."""
-    moving = [name for name in gravity if abs(metrics[name].final_velocity) > AT_REST]
+    moving = [name for name in gravity if abs(metrics[name].final_velocity) > study_spec.AT_REST]
     agree = [
         name
         for name, effort in gravity.items()
@@ -173,25 +172,23 @@ def gravity_sentences(
     ]
     differ = [name for name in gravity if name not in (*agree, *moving)]
     limit = share_text(study_spec.GRAVITY_AGREEMENT)
-    sentences = []
     if agree:
-        sentences.append(
+        yield (
             f"{listed(agree)} ended nearly at rest, with a support within {limit} of gravity. A "
             "balance of the two would look like this, without an integral term in the controller."
         )
     if differ:
-        sentences.append(
+        yield (
             f"{listed(differ)} ended nearly at rest, with a support more than {limit} off gravity. "
             "Gravity alone does not explain the error. Look at tail, saturation, contacts."
         )
     if moving:
-        sentences.append(
+        yield (
             f"{listed(moving)} still moved at the last sample. The error there belongs to the "
             "transient and supports nothing about gravity."
         )
     if agree or differ:
-        sentences.append(
+        yield (
             "This does not prove that the error would remain beyond this window, that nothing else "
             "contributes to it within the tolerance, or that another pose would leave the same one."
         )
-    return sentences

@@ -4,7 +4,7 @@ A page writes ```` ```{ledger} runs ```` and ```` ```{ledger} items ````. Both a
 all pages are read.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,8 @@ from sphinx.util.osutil import relative_uri
 
 from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger_data import Run
-from robo_genesis.site.evidence.measured import badge_node, make_command
+from robo_genesis.site.evidence.measured import badge_node
+from robo_genesis.site.evidence.plain_nodes import table
 from robo_genesis.site.evidence.provenance import all_items, all_runs, measured_pages
 
 LEDGER = "evidence/ledger"
@@ -77,7 +78,7 @@ def run_block(docname: str, run: Run) -> nodes.Node:
     if run.status.summary or run.predicate is None:
         block += nodes.paragraph("", run.status.summary or run.status.reason)
     if run.predicate is None:
-        block += make_command(run.page.split("/")[0], run.status.backend, run.recorded)
+        block += nodes.literal_block(run.command, run.command, language="console")
         return block
     facts: dict[str, nodes.Node] = {
         name: nodes.Text(value)
@@ -161,26 +162,8 @@ def scroll(
     rows: Sequence[Sequence[nodes.Node | Sequence[nodes.Node]]],
     anchors: Sequence[str] = (),
 ) -> nodes.Node:
-    """Return a table in a scroll box; `head` may be empty, `anchors` names the rows.
-
-    A cell is one node, or several that become paragraphs.
-    """
-    width = len(rows[0])
-    group = nodes.tgroup("", *(nodes.colspec(colwidth=1) for _ in range(width)), cols=width)
-    if head:
-        group += nodes.thead("", _row(map(nodes.Text, head)))
-    body = nodes.tbody("", *(_row(line) for line in rows))
-    for row, anchor in zip(body, anchors, strict=False):
-        row["ids"].append(anchor)
-    group += body
-    return scroll_box("", nodes.table("", group), label=label)
-
-
-def _row(cells: Iterable[nodes.Node | Sequence[nodes.Node]]) -> nodes.row:
-    parts = ([cell] if isinstance(cell, nodes.Node) else cell for cell in cells)
-    return nodes.row(
-        "", *(nodes.entry("", *(nodes.paragraph("", "", n) for n in cell)) for cell in parts)
-    )
+    """Return a table in a scroll box; see `plain_nodes.table`."""
+    return scroll_box("", table(head, rows, anchors), label=label)
 
 
 def write_downloads(app: Sphinx, exception: Exception | None) -> None:

@@ -38,6 +38,18 @@ class Run:
         return f"{self.page}/{self.status.backend}{'/recorded' if self.recorded else ''}"
 
     @property
+    def lesson(self) -> str:
+        """The lesson of its page."""
+        return self.page.split("/")[0]
+
+    @property
+    def command(self) -> str:
+        """The command that creates it, as a console shows it."""
+        if self.recorded:
+            return f"$ make evidence LESSON={self.lesson} BACKEND={self.status.backend}"
+        return "$ make book"
+
+    @property
     def predicate(self) -> Predicate | None:
         """The predicate of the accepted manifest, None where there is none."""
         return self.status.manifest.predicate if self.status.manifest else None

@@ -25,7 +25,14 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 from robo_genesis.core import project
 from robo_genesis.core.quantities import format_value
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.status import Status, page_status, recorded_folders, recorded_status
+from robo_genesis.evidence.status import (
+    RECORDED_PAGE,
+    Status,
+    bundle_status,
+    recorded_folders,
+    recorded_status,
+)
+from robo_genesis.site.evidence.ledger_data import Run
 
 BUILD_OUTPUTS = "ROBO_GENESIS_BUILD_OUTPUTS"
 BACKEND = project.BUILD_BACKEND
@@ -84,28 +91,28 @@ class Measured(SphinxRole):
         return [node], []
 
 
-def lesson_backends(book: Path, lesson: str) -> list[str]:
-    """Return the backends of a lesson's recorded runs, the reference first, recorded or not."""
-    recorded = [path.name for path in recorded_folders(book) if path.parent.name == lesson]
-    return [REFERENCE, *(name for name in recorded if name != REFERENCE)]
+@lru_cache(maxsize=64)
+def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> Run:
+    """Return a page's run of this build; it does not change while Sphinx runs."""
+    folder = outputs_folder() / lesson / page / BACKEND
+    absent = f"No bundle was recorded for {lesson}/{page}."
+    return Run(f"{lesson}/{page}", folder, bundle_status(folder, lesson, page, absent, book))
 
 
 @lru_cache(maxsize=64)
-def page_state(outputs: Path, lesson: str, page: str, book: Path) -> Status:
-    """Return the state of a page's bundle of this build; it does not change while Sphinx runs."""
-    return page_status(outputs, lesson, page, BACKEND, book)
-
-
-@lru_cache(maxsize=64)
-def recorded_state(book: Path, lesson: str, backend: str) -> Status:
-    """Return the state of a recorded run; it does not change while Sphinx runs."""
-    return recorded_status(book, lesson, backend)
+def recorded_runs(book: Path, lesson: str) -> tuple[Run, ...]:
+    """Return the recorded runs of a lesson's lab, the reference first, recorded or not."""
+    folder, name = book / "evidence" / lesson, f"{lesson}/{RECORDED_PAGE}"
+    recorded = (path.name for path in recorded_folders(book) if path.parent == folder)
+    return tuple(
+        Run(name, folder / backend, recorded_status(book, lesson, backend), recorded=True)
+        for backend in dict.fromkeys((REFERENCE, *recorded))
+    )
 
 
 def lesson_statuses(book: Path, lesson: str) -> list[Status]:
     """Return the states of a lesson's lab: of this build on CPU, then of the recorded runs."""
-    recorded = [recorded_state(book, lesson, name) for name in lesson_backends(book, lesson)]
-    return [page_state(outputs_folder(), lesson, "lab", book), *recorded]
+    return [run.status for run in (page_run(book, lesson), *recorded_runs(book, lesson))]
 
 
 class evidence_badge(nodes.inline):  # noqa: N801
@@ -121,18 +128,6 @@ def lesson_badges(book: Path, lesson: str) -> list[nodes.Node]:
     """Return the badges of a lesson's lab with spaces between them."""
     badges = [badge_node(status) for status in lesson_statuses(book, lesson)]
     return [node for badge in badges for node in (badge, nodes.Text(" "))][:-1]
-
-
-def make_command(lesson: str, backend: str, recorded: bool) -> nodes.Node:
-    """Return the command that creates missing evidence.
-
-    Args:
-        lesson: as `l04`.
-        backend: on which it is missing.
-        recorded: whether it is committed with the book; otherwise each build measures it.
-    """
-    command = f"$ make evidence LESSON={lesson} BACKEND={backend}" if recorded else "$ make book"
-    return nodes.literal_block(command, command, language="console")
 
 
 class LessonStatus(SphinxDirective):

@@ -7,7 +7,7 @@ creates one.
 
 import io
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -17,19 +17,20 @@ from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.core import plotting, project, tables
+from robo_genesis.core import plotting, project
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import listed
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.compare import Comparison, compare, specification
+from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence.compare import BundleComparison, compare, specification
 from robo_genesis.evidence.findings import DIFFERS
 from robo_genesis.evidence.replay_data import read_runs
-from robo_genesis.evidence.status import RECORDED_PAGE, Status
 from robo_genesis.lessons.declaration import Compared, Filmed, Moving
-from robo_genesis.lessons.registry import compared_cases, filmed, find_lesson
+from robo_genesis.lessons.registry import COURSE_MARKS, compared_cases, filmed, find_lesson
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import Run
 from robo_genesis.site.evidence.measured import BACKEND
+from robo_genesis.site.evidence.plain_nodes import marked, text_table
 from robo_genesis.site.replay.directive import replay_block
 
 
@@ -45,6 +46,7 @@ class Picture:
 
 
 VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
+RECORDING = "{doc}`/evidence/recording` says what that machine needs."
 
 
 class Evidence(SphinxDirective):
@@ -54,33 +56,29 @@ class Evidence(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Return one panel per backend; the reference backend has one even without a run."""
-        lesson, book = self.arguments[0], Path(self.env.srcdir)
-        backends = measured.lesson_backends(book, lesson)
-        return [
-            self.panel(lesson, measured.recorded_state(book, lesson, name)) for name in backends
-        ]
+        runs = measured.recorded_runs(Path(self.env.srcdir), self.arguments[0])
+        return [self.panel(run) for run in runs]
 
-    def panel(self, lesson: str, status: Status) -> nodes.Node:
+    def panel(self, run: Run) -> nodes.Node:
         """Return the panel of one backend."""
+        lesson, folder, status = run.lesson, run.folder, run.status
         panel = nodes.container(classes=["evidence-panel", f"status-{status.state}"])
-        if status.manifest is None:
-            panel += self.parse_text_to_nodes(missing_text(lesson, status))
+        if run.predicate is None:
+            panel += missing(run)
+            panel += self.parse_text_to_nodes(RECORDING)
             return panel
-        folder = Path(self.env.srcdir) / "evidence" / lesson / status.backend
-        here = measured.outputs_folder() / lesson / RECORDED_PAGE / BACKEND
-        panel += self.parse_text_to_nodes(backend_text(status))
-        recorded = Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True).key
-        panel["evidence_runs"] = (recorded,)
+        panel += backend_facts(status.sentence, run.predicate)
+        panel["evidence_runs"] = (run.key,)
         compared = compared_cases(lesson)
         drawn = [response(folder, compared, status.backend)] if compared else []
-        for picture in (*drawn, *frames(folder, filmed(lesson), status)):
+        for picture in (*drawn, *frames(folder, filmed(lesson), status.backend)):
             panel += figure(self, f"{lesson}-{status.backend}-{picture.name}", picture)
         if compared:
-            panel += replay_block(self, recorded, folder)
-        tables = self.parse_text_to_nodes(metrics_text(lesson, here, folder))
-        both = (f"{lesson}/{RECORDED_PAGE}/{BACKEND}", recorded)
-        panel += nodes.container("", *tables, evidence_runs=both)
-        panel += nodes.raw("", warnings_html(status.manifest.predicate.warnings), format="html")
+            panel += replay_block(self, run.key, folder)
+        here = measured.page_run(Path(self.env.srcdir), lesson)
+        found = comparison(here.folder, folder)
+        panel += nodes.container("", *found, evidence_runs=(here.key, run.key))
+        panel += nodes.raw("", warnings_html(run.predicate.warnings), format="html")
         return panel
 
 
@@ -93,22 +91,22 @@ def figure(directive: SphinxDirective, anchor: str, picture: Picture) -> nodes.N
     return nodes.figure("", image, nodes.caption("", picture.caption), ids=[anchor])
 
 
-def missing_text(lesson: str, status: Status) -> str:
-    """Return the missing evidence, the reason, and the command that creates it, as Markdown."""
-    return (
-        f"**No evidence from {status.backend} for Genesis {project.engine_pin()} "
-        f"({status.badge}).** {status.summary or status.reason} On a machine with this backend, "
-        "this makes it:\n\n"
-        f"```console\n$ make evidence LESSON={lesson} BACKEND={status.backend}\n```\n\n"
-        "{doc}`/evidence/recording` says what that machine needs.\n"
-    )
+def missing(run: Run) -> list[nodes.Node]:
+    """Return the missing evidence, the reason, and the command that creates it."""
+    status = run.status
+    what = f"No evidence from {status.backend} for Genesis {project.engine_pin()} ({status.badge})."
+    why = f" {status.summary or status.reason} On a machine with this backend, this makes it:"
+    return [
+        nodes.paragraph("", "", nodes.strong("", what), nodes.Text(why)),
+        nodes.literal_block(run.command, run.command, language="console"),
+    ]
 
 
-def backend_text(status: Status) -> str:
-    """Return the run's state and the facts of its backend as Markdown."""
-    assert status.manifest is not None
-    predicate = status.manifest.predicate
+def backend_facts(sentence: str, predicate: Predicate) -> list[nodes.Node]:
+    """Return the sentence on a run's state and the facts of its backend."""
     backend = predicate.backend
+    pairs = (f"{name}={value}" for name, value in predicate.environment.items())
+    switches = [nodes.literal("", pair) for pair in pairs]
     facts = {
         "device": backend.device_name,
         "backend requested, actual": f"{backend.requested}, {backend.actual}",
@@ -116,19 +114,13 @@ def backend_text(status: Status) -> str:
         "HIP, CUDA": f"{backend.hip_version or '–'}, {backend.cuda_version or '–'}",
         "driver": backend.driver or "–",
         "renderer": predicate.render.renderer or "SKIP",
-        "engine switches": switches_text(predicate.environment),
+        "engine switches": switches or "none set",
         "recorded": predicate.started[:10],
         "run": predicate.run_id[:8],
     }
     rows = [{"what": name, "value": value} for name, value in facts.items()]
-    return f"**Reference run.** {status.sentence}\n\n{tables.markdown(rows)}"
-
-
-def switches_text(switches: Mapping[str, str]) -> str:
-    """Return the variables that were set for the engine as code for a cell of a table."""
-    pairs = (" ".join(f"{name}={value}".split()) for name, value in switches.items())
-    marks = str.maketrans({"`": "'", "|": "\\|"})
-    return ", ".join(f"`{pair.translate(marks)}`" for pair in pairs) or "none set"
+    title = nodes.strong("", "Reference run.")
+    return [nodes.paragraph("", "", title, nodes.Text(f" {sentence}")), text_table(rows)]
 
 
 def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture:
@@ -139,7 +131,8 @@ def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture
         figure = Figure(figsize=(7, 1 + 2.5 * count))
         axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
         for ax, drawn in zip(axes, runs.channels, strict=True):
-            plotting.channel(ax, runs.t, drawn, runs.subject, runs.levels_of(drawn))
+            levels = runs.levels_of(drawn)
+            plotting.channel(ax, runs.t, drawn, runs.subject, COURSE_MARKS, levels)
             ax.label_outer()
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     names = listed([channel.name for channel in runs.channels])
@@ -150,29 +143,30 @@ def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture
     return Picture("response", ".svg", stream.getvalue(), alt, caption)
 
 
-def frames(folder: Path, shown: Filmed, status: Status) -> Iterator[Picture]:
+def frames(folder: Path, shown: Filmed, backend: str) -> Iterator[Picture]:
     """Yield the unchanged camera frames, nothing where rendering was off."""
     for name in ("initial", "final"):
         path = folder / "frames" / f"{name}.png"
         if path.is_file():
             what, state = f"Camera frame of {shown.thing}", f"{name} state of {shown.case}"
-            alt = f"{what}, {state} on {status.backend}."
-            caption = f"Camera frame on {status.backend}, {state}."
+            alt = f"{what}, {state} on {backend}."
+            caption = f"Camera frame on {backend}, {state}."
             yield Picture(name, ".png", path.read_bytes(), alt, caption)
 
 
-def metrics_text(lesson: str, here: Path, folder: Path) -> str:
+def comparison(here: Path, folder: Path) -> list[nodes.Node]:
     """Return the comparison of this build's CPU run with the recorded run, as `make compare` does.
 
     Args:
-        lesson: its tolerances and orderings apply.
         here: bundle of this build.
         folder: the recorded bundle.
     """
-    found = compare(here, folder, specification(lesson))
+    found = compare(here, folder)
     if found.obstacles:
-        reasons = "".join(f"- {reason}\n" for reason in found.obstacles)
-        return f"**Not comparable with this build's run on {BACKEND}.**\n\n{reasons}"
+        title = nodes.strong("", f"Not comparable with this build's run on {BACKEND}.")
+        reasons = (nodes.paragraph("", reason) for reason in found.obstacles)
+        items = (nodes.list_item("", reason) for reason in reasons)
+        return [nodes.paragraph("", "", title), nodes.bullet_list("", *items)]
     both = f"{BACKEND}, this build", f"{found.new.backend.actual}, recorded"
     elsewhere = [
         section.title.lower()
@@ -180,22 +174,26 @@ def metrics_text(lesson: str, here: Path, folder: Path) -> str:
         if section.title not in (*VALUES, RELATIONS) and section.state == DIFFERS
     ]
     more = f" They also differ in {' and '.join(elsewhere)}: see `make compare`." * bool(elsewhere)
-    orderings = "The lesson claims no ordering between cases."
-    if rows := ordering_rows(found, both):
-        claimed = "The orderings that the lesson claims, in both runs:"
-        orderings = f"{claimed}\n\n{tables.markdown(rows)}"
-    return (
+    intro = (
         f"**Compared with this build's run on {BACKEND}: {found.state}.**{more} The lesson's "
-        "specification declares tolerances and orderings; counts must be equal.\n\n"
-        f"{tables.markdown(value_rows(found, both, (here, folder)))}\n{orderings}"
+        "specification declares tolerances and orderings; counts must be equal."
     )
+    shown = [
+        nodes.paragraph("", "", *marked(intro)),
+        text_table(value_rows(found, both, (here, folder))),
+    ]
+    rows = ordering_rows(found, both)
+    if not rows:
+        return [*shown, nodes.paragraph("", "The lesson claims no ordering between cases.")]
+    claimed = nodes.paragraph("", "The orderings that the lesson claims, in both runs:")
+    return [*shown, claimed, text_table(rows)]
 
 
 def value_rows(
-    found: Comparison, both: tuple[str, str], folders: tuple[Path, Path]
+    found: BundleComparison, both: tuple[str, str], folders: tuple[Path, Path]
 ) -> list[dict[str, str]]:
     """Return a row for each metric of each case, in the lesson's order, with values as in prose."""
-    spec = specification(found.new.lesson)
+    spec = specification(found.new.lesson, found.new.page)
     ours, theirs = (bundle.read_metrics(folder) for folder in folders)
     rows = {f.what: f for s in found.sections if s.title in VALUES for f in s.findings}
     labels = find_lesson(found.new.lesson).about_metrics("label")
@@ -214,7 +212,7 @@ def value_rows(
     ]
 
 
-def ordering_rows(found: Comparison, both: tuple[str, str]) -> list[dict[str, str]]:
+def ordering_rows(found: BundleComparison, both: tuple[str, str]) -> list[dict[str, str]]:
     """Return a row for each ordering that the lesson claims, with the result in each run."""
     rows = []
     labels = find_lesson(found.new.lesson).about_metrics("label")

@@ -9,6 +9,7 @@ import re
 import textwrap
 from collections.abc import Mapping
 from functools import lru_cache
+from itertools import chain
 from pathlib import Path
 
 from docutils import nodes
@@ -16,7 +17,6 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util import logging
 
-from robo_genesis.evidence.status import RECORDED_PAGE
 from robo_genesis.lessons.book_pages import find_pages
 from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
@@ -38,16 +38,9 @@ def measured_pages(book: Path) -> dict[str, str]:
 @lru_cache(maxsize=4)
 def all_runs(book: Path) -> dict[str, Run]:
     """Return the runs of this build and the recorded ones by key, missing runs included."""
-    outputs, runs, recorded = measured.outputs_folder(), [], []
-    for name in measured_pages(book).values():
-        lesson, page = name.split("/")
-        status = measured.page_state(outputs, lesson, page, book)
-        runs.append(Run(name, outputs / name / measured.BACKEND, status))
-        for backend in measured.lesson_backends(book, lesson):
-            folder = book / "evidence" / lesson / backend
-            status = measured.recorded_state(book, lesson, backend)
-            recorded.append(Run(f"{lesson}/{RECORDED_PAGE}", folder, status, recorded=True))
-    return {run.key: run for run in runs + recorded}
+    runs = [measured.page_run(book, *name.split("/")) for name in measured_pages(book).values()]
+    recorded = chain.from_iterable(measured.recorded_runs(book, run.lesson) for run in runs)
+    return {run.key: run for run in (*runs, *recorded)}
 
 
 def read_page(app: Sphinx, doctree: nodes.document) -> None:

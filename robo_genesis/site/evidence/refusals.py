@@ -20,7 +20,7 @@ OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
 }
 """Class → the nodes that may have it while a page is read, and the alternative for a page."""
 
-PICTURES = ("img", "picture")
+PICTURES: tuple[str, ...] = ("img", "picture")
 SHOWN = (*PICTURES, "table", "svg", "canvas", "video", "object", "embed", "iframe")
 """Elements with content; as raw HTML they would have no provenance line and no ledger row."""
 
@@ -73,14 +73,11 @@ def _past_its_check(node: nodes.Element, book: Path) -> Iterator[str]:
 
 
 def _raw(node: nodes.Element, html: BeautifulSoup) -> Iterator[str]:
-    in_cell = origin(node, None) is not None
-    for name in sorted({tag.name for tag in html.find_all(SHOWN if in_cell else PICTURES)}):
-        where, instead = "the page has", "Use the {figure} directive."
-        if in_cell:
-            where, instead = (
-                "a cell outputs",
-                "Display Markdown (robo_genesis.core.tables) or a figure.",
-            )
+    where, names, instead = "the page has", PICTURES, "Use the {figure} directive."
+    if origin(node, None) is not None:
+        where, names = "a cell outputs", SHOWN
+        instead = "Display Markdown (robo_genesis.core.tables) or a figure."
+    for name in sorted({tag.name for tag in html.find_all(names)}):
         yield f"{where} <{name}> as raw HTML, which would have no line in the ledger. {instead}"
 
 

@@ -8,6 +8,7 @@ from robo_genesis.core import tables
 from robo_genesis.core.channels import Runs
 from robo_genesis.core.palette import css_name, marks_of
 from robo_genesis.core.text import time_digits
+from robo_genesis.lessons.registry import COURSE_MARKS
 
 SPEEDS = {"1": "real time", "0.25": "1/4", "0.1": "1/10"}
 SLOW = "0.1"
@@ -85,7 +86,7 @@ def _data(name: str, runs: Runs) -> str:
 
 def _cases(name: str, runs: Runs) -> str:
     """Return one radio button per case, with its mark and the levels of its run as JSON."""
-    marks = marks_of(list(runs.traces))
+    marks = marks_of(list(runs.traces), COURSE_MARKS)
     return "".join(
         f'<span><input type="radio" name="{name}" id="{name}-{case}" value="{case}" '
         f'data-mark="{css_name(mark)}" data-levels="{escape(_levels(runs, case))}"'
@@ -102,7 +103,7 @@ def _levels(runs: Runs, case: str) -> str:
                 "channel": level.channel,
                 "mark": css_name(level.mark),
                 "values": [float(f"{value:.6g}") for value in level.values[case]],
-                "said": level.said[case],
+                "text": level.texts[case],
             }
             for level in runs.levels
         ]

@@ -8,6 +8,7 @@ and curves come from the record; the shape comes from the model, which the lectu
 import base64
 import gzip
 from collections.abc import Iterator
+from html import escape
 from pathlib import Path
 
 from docutils import nodes
@@ -23,6 +24,7 @@ from robo_genesis.lessons.registry import drawn_cases
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND, outputs_folder
+from robo_genesis.site.evidence.plain_nodes import marked
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
 
@@ -80,7 +82,8 @@ def replay_block(
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     block += nodes.raw("", html, format="html")
-    block += directive.parse_text_to_nodes("\n".join(f"- {text}" for text in runs.moves.values()))
+    lines = (nodes.paragraph("", "", *marked(text)) for text in runs.moves.values())
+    block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
     block += scroll_box("", *directive.parse_text_to_nodes(controls.samples(runs)), label=summary)
     origin = origin_html(name, folder, up, runs.view.credit)
@@ -134,8 +137,9 @@ def origin_html(name: str, folder: Path, up: str, credit: str | None) -> str:
     links += f'<a href="{up}/{VIEWER_LICENCE}">licence</a>'
     shape = f"{credit} ({links})." if credit else f"shapes of the scene itself. Viewer: {links}."
     return (
-        f'<p class="credit">Poses and samples: {run.backend.actual}, Genesis {run.engine.version}, '
-        f'run {run.run_id[:8]}. 3D model: <a href="{up}/{name}.glb" download>GLB</a>, {shape}</p>'
+        f'<p class="credit">Poses and samples: {run.backend.actual}, Genesis '
+        f"{escape(run.engine.version)}, run {run.run_id[:8]}. "
+        f'3D model: <a href="{up}/{name}.glb" download>GLB</a>, {shape}</p>'
     )
 
 

@@ -34,6 +34,11 @@ Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 """Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it."""
 
 
+COMPONENTS = {
+    "float32": gltf.FLOAT, "uint16": gltf.UNSIGNED_SHORT, "uint32": gltf.UNSIGNED_INT,
+}  # fmt: skip
+
+
 class Binary:
     """The binary chunk of a GLB and its accessors; equal arrays are stored once."""
 
@@ -49,15 +54,12 @@ class Binary:
         """
         packed = array.tobytes()
         if (kind, packed) not in self.known:
-            component = {"f": gltf.FLOAT, "u": gltf.UNSIGNED_INT}[array.dtype.kind]
-            if array.dtype == np.uint16:
-                component = gltf.UNSIGNED_SHORT
             view = gltf.BufferView(
                 buffer=0, byteOffset=len(self.data), byteLength=len(packed), target=target
             )
             accessor = gltf.Accessor(
                 bufferView=len(self.model.bufferViews),
-                componentType=component,
+                componentType=COMPONENTS[array.dtype.name],
                 count=len(array),
                 type=kind,
                 min=np.atleast_1d(array.min(axis=0)).tolist() if bounds else None,

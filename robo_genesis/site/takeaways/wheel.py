@@ -8,6 +8,7 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
+from robo_genesis.build.kernels import end_with_parent
 from robo_genesis.core.project import ROOT, ProjectError
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
@@ -45,6 +46,7 @@ def build_wheel(folder: Path, root: Path = ROOT) -> Path:
             capture_output=True,
             text=True,
             check=False,
+            preexec_fn=end_with_parent(),
         )
     if done.returncode != 0:
         raise ProjectError(f"The package's wheel cannot be built:\n{done.stdout}{done.stderr}")

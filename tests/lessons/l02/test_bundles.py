@@ -5,45 +5,41 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bundles import written
-from lessons.body_bundles import in_archive, in_json, metric, pop, recomputed, refused, table
+from lessons.body_runs import make_drop
+from lessons.lesson_bundles import (
+    in_archive,
+    in_json,
+    metric,
+    pop,
+    recomputed,
+    recorded,
+    refused,
+    table,
+    without_run,
+)  # fmt: skip
 from spoilers import predicate
 
+from robo_genesis.core.trace import BodyTrace
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.evidence.compare import compare, specification
-from robo_genesis.evidence.recorder import Measured
-from robo_genesis.evidence.trace_files import read_any_trace, read_body_trace, read_trace
+from robo_genesis.evidence.compare import compare
+from robo_genesis.evidence.trace_files import read_any_trace, read_run, read_trace
 from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.l02 import checks, life_cycle, spec, study
-from robo_genesis.lessons.l02.metrics import measure, metric_records
-from robo_genesis.sim import session
-
-CASES = spec.CASES | spec.SUBSTEP_CASES
-COUNTED = {name: int(accepted) for name, accepted in life_cycle.expected(rendered=True).items()}
+from robo_genesis.lessons.l02 import checks, life_cycle, spec
 
 
 @pytest.fixture(scope="module")
-def sound(tmp_path_factory, engine, frames, make_drop) -> Path:
+def sound(tmp_path_factory, engine, frames) -> Path:
     """The lecture's bundle."""
-    traces = {name: make_drop(case) for name, case in CASES.items()}
-    metrics = measure(traces, CASES)
-    run = checks.DropExperiment(spec.EXPECTED_MODEL, 0.5, CASES, traces, metrics, "camera", frames)
-    measured = Measured(
-        joints=None,
-        links=(spec.LINK,),
-        traces=traces,
-        metrics=metric_records(metrics, spec.EXPECTED_MODEL, 0.5) | life_cycle.records(COUNTED),
-        checks=[
-            *checks.run_checks(run),
-            *study.run_checks(metrics, CASES),
-            life_cycle.check(COUNTED, rendered=True),
-        ],
-        frames=frames,
-        parameters=spec.study_parameters(),
-        renderer=session.Renderer("Mesa", "llvmpipe"),
-    )
-    return written(engine, tmp_path_factory.mktemp("dropped"), "l02", "lecture", measured)
+    traces = {name: make_drop(case) for name, case in (spec.CASES | spec.SUBSTEP_CASES).items()}
+    counted = life_cycle.expected(rendered=True)
+    readings = {
+        "model": spec.EXPECTED_MODEL,
+        "body": {"mass": spec.BASELINE.mass},
+        life_cycle.GROUP: {name: int(accepted) for name, accepted in counted.items()},
+    }
+    outputs = tmp_path_factory.mktemp("dropped")
+    return recorded(engine, outputs, "l02", "lecture", traces, [spec.LINK], readings, frames)
 
 
 @pytest.fixture
@@ -53,15 +49,16 @@ def dropped(sound, tmp_path) -> Path:
 
 
 def test_a_sound_one_is_accepted_and_has_no_joints(dropped):
-    accepted = verify_bundle(dropped)
-    assert [check.name for check in accepted.predicate.checks][-1] == "sides_of_build"
+    names = [check.name for check in verify_bundle(dropped).predicate.checks]
+    own = [check.__name__ for check in checks.CHECKS]
+    assert names == [*own, "one_factor", "shrinks", "first_order", "sides_of_build"]
     arrays = bundle.read_arrays(dropped)
     assert (arrays.joints, arrays.coords) == ([], {"link": [spec.LINK]})
     units = {n: v.unit for n, v in arrays.cases["baseline"].variables.items()}
     assert units["link_vel_m_s"] == "m/s"
 
 
-def test_its_runs_are_read_as_they_were_recorded(dropped, make_drop):
+def test_its_runs_are_read_as_they_were_recorded(dropped):
     arrays = bundle.read_arrays(dropped)
     found = read_any_trace(dropped, arrays, "baseline")
     assert np.array_equal(found.link_pos, make_drop(spec.BASELINE).link_pos)
@@ -72,11 +69,11 @@ def test_its_runs_are_read_as_they_were_recorded(dropped, make_drop):
 def test_runs_of_joints_are_no_runs_of_bodies(folder):
     arrays = bundle.read_arrays(folder)
     with pytest.raises(BundleRefused, match=r"number of joints of free bodies"):
-        read_body_trace(folder, arrays, "G1")
+        read_run(folder, arrays, "G1", BodyTrace)
 
 
 def test_it_compares_with_itself(dropped):
-    found = compare(dropped, dropped, specification("l02"))
+    found = compare(dropped, dropped)
     assert found.state == "equal"
     titles = {section.title: section for section in found.sections}
     assert titles["Relations"].findings == ()
@@ -93,11 +90,6 @@ def test_it_becomes_a_table_with_units(dropped):
     assert float(rows[-1]["link_vel box_baselink z [m/s]"]) == pytest.approx(-9.81 * 0.2)
 
 
-def missing_run(folder):
-    (folder / "arrays" / "substeps_10.npz").unlink()
-    pop("arrays.json", "cases", "substeps_10")(folder)
-
-
 def moved(where, by):
     return in_archive("baseline", lambda a: a["link_pos_m"][where, 0, 2].__iadd__(by))
 
@@ -112,7 +104,7 @@ def invented_contacts(folder):
 
 SPOILED = {
     "contacts that nobody checks": ("labels", invented_contacts),
-    "a run of the study is missing": ("cases", missing_run),
+    "a run of the study is missing": ("cases", without_run("substeps_10")),
     "a position was moved": ("metrics", moved(slice(5, 6), 1e-3)),
     "another rule of stepping": ("failed", recomputed(moved(slice(1, None), 1e-5))),
     "a metric was written": ("metrics", metric("baseline", "drop", 0.1962)),

@@ -5,18 +5,20 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from lessons.body_runs import make_drop
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting, tables
-from robo_genesis.core.checks import require
+from robo_genesis.core.checks import evaluate, require
 from robo_genesis.core.free_fall import (
     ahead_of_continuous,
     continuous_drop,
     stepped_drop,
     summed_drop,
 )
-from robo_genesis.lessons.l02 import checks, plots, spec, study, text
-from robo_genesis.lessons.l02.metrics import DropMetrics, fallen, measure, metric_records, predicted
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l02 import LAB, LECTURE, checks, plots, spec, study, text
+from robo_genesis.lessons.l02.metrics import drop_metrics, fallen, predicted
 from robo_genesis.sim.rigid_bodies import Drop, DropError, run_drop
 
 ALL_CASES = spec.CASES | spec.SUBSTEP_CASES
@@ -48,8 +50,8 @@ def test_a_case_knows_its_step_mass_and_clearance():
     assert (case.h, case.mass, case.clearance) == pytest.approx((0.005, 0.5, 0.45))
 
 
-def test_metrics_of_a_fall_that_follows_the_formula(make_drop):
-    found = measure({"baseline": make_drop(spec.BASELINE)}, spec.CASES)["baseline"]
+def test_metrics_of_a_fall_that_follows_the_formula():
+    found = drop_metrics(make_drop(spec.BASELINE), spec.BASELINE)
     assert found.duration == pytest.approx(0.2)
     assert found.drop == pytest.approx(9.81 * 0.005**2 * 40 * 41 / 2, abs=1e-7)
     assert found.final_speed == pytest.approx(9.81 * 0.2, rel=1e-6)
@@ -58,50 +60,41 @@ def test_metrics_of_a_fall_that_follows_the_formula(make_drop):
     assert (found.sideways, found.turning) == (0, 0)
 
 
-def test_sideways_and_turning_are_the_largest_of_all_samples(make_drop):
+def test_sideways_and_turning_are_the_largest_of_all_samples():
     trace = make_drop(spec.BASELINE)
     aside, turn = np.array(trace.link_pos), np.array(trace.link_ang)
     aside[3, 0, :2] = (0.03, 0.04)
     turn[5, 0] = (0, 2, 0)
-    found = measure({"baseline": replace(trace, link_pos=aside, link_ang=turn)}, spec.CASES)
-    assert found["baseline"].sideways == pytest.approx(0.05)
-    assert found["baseline"].turning == 2
-
-
-def test_each_metric_has_unit_and_source_and_counts_are_exact(make_drop):
-    metrics = measure({"baseline": make_drop(spec.BASELINE)}, spec.CASES)
-    records = metric_records(metrics, spec.EXPECTED_MODEL, 0.5)
-    exact = {"value": 6, "unit": "1", "class": "exact", "from": ["engine"]}
-    assert records["model"]["dofs"] == exact
-    assert records["body"]["mass"]["unit"] == "kg"
-    units = DropMetrics.about("unit")
-    assert {name: of["unit"] for name, of in records["baseline"].items()} == units
-    assert set(units.values()) <= spec.TOLERANCES.keys() & spec.RESOLUTION.keys()
+    found = drop_metrics(replace(trace, link_pos=aside, link_ang=turn), spec.BASELINE)
+    assert found.sideways == pytest.approx(0.05)
+    assert found.turning == 2
 
 
 @pytest.fixture(scope="module")
-def experiment(make_drop, frames) -> checks.DropExperiment:
+def experiment(frames) -> Experiment:
+    """The lecture's runs as the lab judges them."""
     traces = {name: make_drop(case) for name, case in ALL_CASES.items()}
-    metrics = measure(traces, ALL_CASES)
-    return checks.DropExperiment(
-        spec.EXPECTED_MODEL, 0.5, ALL_CASES, traces, metrics, "camera", frames
-    )
+    page = replace(LAB, runs=LECTURE.runs)
+    return Experiment(page, traces, [spec.LINK], readings(), frames, rendered=True)
+
+
+def readings(links=1, mass=0.5):
+    return {"model": spec.EXPECTED_MODEL | {"links": links}, "body": {"mass": mass}}
 
 
 def failing(run) -> list[str]:
-    return [check.name for check in checks.run_checks(run) if not check.passed]
+    return [check.name for check in run.outcomes() if not check.passed]
 
 
 def with_trace(run, **arrays):
-    """Return the experiment with other arrays in the baseline, and metrics of these."""
+    """Return the experiment with other arrays in the baseline."""
     trace = replace(run.traces["baseline"], **arrays)
-    traces = run.traces | {"baseline": trace}
-    return replace(run, traces=traces, metrics=measure(traces, run.cases))
+    return replace(run, traces=run.traces | {"baseline": trace})
 
 
 def test_a_sound_experiment_passes_every_check(experiment):
     assert failing(experiment) == []
-    assert require("l02", checks.run_checks(experiment)) == "L02 CHECK: PASSED"
+    assert require("l02", experiment.outcomes()) == "L02 CHECK: PASSED"
 
 
 def changed(field, where, values):
@@ -115,10 +108,6 @@ def changed(field, where, values):
     return change
 
 
-def too_high(run):
-    return with_trace(run, link_pos=run.traces["baseline"].link_pos + np.float32([0, 0, 0.01]))
-
-
 def too_short(run):
     trace = run.traces["baseline"]
     return with_trace(run, **{f: getattr(trace, f)[:-1] for f in trace.__dataclass_fields__})
@@ -128,23 +117,17 @@ def hovering(run):
     return changed("link_pos", 8, run.traces["baseline"].link_pos[7])(run)
 
 
-def by_other_steps(run):
-    return with_trace(run, link_pos=run.traces["substeps_4"].link_pos)
-
-
-def one_picture_twice(run):
-    return replace(run, frames=dict.fromkeys(("initial", "final"), run.frames["initial"]))
-
-
 FAILING = {
     "one more link": (
-        lambda run: replace(run, model=spec.EXPECTED_MODEL | {"links": 2}), ["structure"]),
-    "a wrong mass": (lambda run: replace(run, mass=0.51), ["mass"]),
-    "a start elsewhere": (too_high, ["start"]),
+        lambda run: replace(run, readings=readings(links=2)), ["structure"]),
+    "a wrong mass": (lambda run: replace(run, readings=readings(mass=0.51)), ["mass"]),
+    "a start elsewhere": (lambda run: with_trace(
+        run, link_pos=run.traces["baseline"].link_pos + np.float32([0, 0, 0.01])), ["start"]),
     "a start in motion": (changed("link_vel", (0, 0, 0), 0.1), ["start"]),
     "a run that is too short": (too_short, ["stamps"]),
     "a box that hovers": (hovering, ["falls", "stepped_formula"]),
-    "another rule of stepping": (by_other_steps, ["stepped_formula"]),
+    "another rule of stepping": (lambda run: with_trace(
+        run, link_pos=run.traces["substeps_4"].link_pos), ["stepped_formula"]),
     "a box that reaches the ground": (
         changed("link_pos", (-1, 0, 2), 0.049), ["clear_of_ground", "stepped_formula"]),
     "a push from the side": (changed("link_pos", (4, 0, 0), 1e-4), ["straight_down"]),
@@ -154,7 +137,8 @@ FAILING = {
         changed("link_quat", slice(5, None), (0, 1, 0, 0)), ["straight_down"]),
     "a box without an orientation": (
         changed("link_quat", slice(5, None), (7, 0, 0, 0)), ["straight_down"]),
-    "one picture twice": (one_picture_twice, ["posture"]),
+    "one picture twice": (lambda run: replace(
+        run, frames=dict.fromkeys(run.frames, run.frames["initial"])), ["posture"]),
 }  # fmt: skip
 
 
@@ -168,14 +152,11 @@ def test_a_wrong_experiment_fails_its_checks(experiment, name):
     ("changes", "names"),
     [({"density": 1000}, ["mass"]), ({"height": 0.6}, ["start"]), ({"steps": 10}, ["stamps"])],
 )
-def test_the_hands_on_task_fails_the_checks_that_its_answer_names(
-    make_drop, experiment, changes, names
-):
+def test_the_hands_on_task_fails_the_checks_that_its_answer_names(experiment, changes, names):
     case = replace(spec.BASELINE, **changes)
     traces = {"baseline": make_drop(case)}
-    metrics = measure(traces, spec.CASES)
-    assert failing(replace(experiment, mass=case.mass, cases=spec.CASES, traces=traces,
-                           metrics=metrics)) == names  # fmt: skip
+    run = replace(experiment, page=LAB, traces=traces, readings=readings(mass=case.mass))
+    assert failing(run) == names
 
 
 def test_boxes_that_end_apart_are_named():
@@ -186,7 +167,8 @@ def test_boxes_that_end_apart_are_named():
 
 
 def failing_study(metrics, cases=ALL_CASES) -> list[str]:
-    return [check.name for check in study.run_checks(metrics, cases) if not check.passed]
+    run = SimpleNamespace(metrics=metrics, cases=cases)
+    return [check.name for check in evaluate(study.CHECKS, run) if not check.passed]
 
 
 def test_the_study_passes_on_formula_runs(experiment):
@@ -277,56 +259,18 @@ def test_figures_show_what_they_are_given(experiment):
     assert all(ax.get_xlabel() and ax.get_ylabel() for ax in axes)
 
 
-class Scene:
-    """A scene that lets its only box fall by the formula, without an engine."""
-
-    dt, substeps, is_built = 0.01, 2, True
-
-    def __init__(self, height=0.5):
-        self.height, self.count = height, 0
-
-    def reset(self):
-        self.count = 0
-
-    def step(self):
-        self.count += 1
-
-    def get_links_pos(self):
-        fallen = summed_drop(0.005, self.count * self.substeps)
-        return tensor(0, 0, self.height - fallen)
-
-    def get_links_vel(self):
-        return tensor(0, 0, -9.81 * 0.01 * self.count)
-
-    def get_links_ang(self):
-        return tensor(0, 0, 0)
-
-    def get_links_quat(self):
-        return tensor(1, 0, 0, 0)
-
-
-def tensor(*values):
-    """Return an array with the methods of a tensor that the package calls."""
-    found = SimpleNamespace(numpy=lambda: np.array([values], np.float32))
-    found.detach = found.cpu = lambda: found
-    return found
-
-
-def test_a_run_keeps_the_state_before_the_first_step():
-    scene = Scene()
-    trace = run_drop(scene, scene, spec.BASELINE)
-    assert (trace.steps, len(trace.t), trace.link_pos.shape) == (20, 21, (21, 1, 3))
-    assert trace.link_pos[0, 0, 2] == np.float32(0.5)
-    assert trace.dt == 0.01
-
-
-def test_a_run_that_was_not_made_ready_is_refused():
-    scene = Scene()
-    with pytest.raises(DropError, match=r"built with dt=0.01, substeps=2.*asks for dt=0.01, sub"):
-        run_drop(scene, scene, replace(spec.BASELINE, substeps=4))
-    low = Scene(height=0.4)
-    with pytest.raises(DropError, match=r"starts at a height of 0\.4 m.*asks for 0\.5 m"):
-        run_drop(low, low, spec.BASELINE)
-    scene.is_built = False
-    with pytest.raises(DropError, match=r"call scene\.build\(\)"):
+@pytest.mark.parametrize(
+    ("found", "message"),
+    [
+        ({"substeps": 4}, r"built with dt=0.01, substeps=4.*asks for dt=0.01, substeps=2"),
+        ({"is_built": False}, r"call scene\.build\(\)"),
+        ({"get_links_pos": lambda: [[0, 0, 0.4]]}, r"a height of 0\.4 m.*asks for 0\.5 m, at rest"),
+        ({"get_links_vel": lambda: [[0, 0, 1.5]]}, r"with velocity \[0\.0, 0\.0, 1\.5\] m/s"),
+    ],
+)
+def test_a_scene_that_was_not_made_ready_for_the_case_is_refused(found, message):
+    ready = {"dt": 0.01, "substeps": 2, "is_built": True, "reset": lambda: None}
+    ready |= {f"get_links_{name}": lambda: [[0, 0, 0]] for name in ("quat", "vel", "ang")}
+    scene = SimpleNamespace(**ready | {"get_links_pos": lambda: [[0, 0, 0.5]]} | found)
+    with pytest.raises(DropError, match=message):
         run_drop(scene, scene, spec.BASELINE)

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from robo_genesis.core import checks
-from robo_genesis.lessons.l02 import checks as l02_checks
-from robo_genesis.lessons.l02 import life_cycle, spec
-from robo_genesis.lessons.l02.metrics import measure
-from robo_genesis.sim import rigid_bodies, session
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l02 import LAB, life_cycle, spec
+from robo_genesis.sim import rigid_bodies
+from robo_genesis.sim.camera import capture
 
 pytestmark = pytest.mark.engine
 
@@ -31,22 +31,17 @@ def dropped(real_engine):
     )
     camera = scene.add_camera(**spec.VIEW)
     scene.build()
-    frames = {"initial": session.capture(camera)}
+    frames = {"initial": capture(camera)}
     traces = {"baseline": rigid_bodies.run_drop(scene, box, case)}
-    frames["final"] = session.capture(camera)
+    frames["final"] = capture(camera)
     return SimpleNamespace(gs=gs, scene=scene, box=box, traces=traces, frames=frames)
 
 
-def experiment(dropped) -> l02_checks.DropExperiment:
-    box, model = dropped.box, rigid_bodies.read_model(dropped.scene, dropped.box)
-    metrics = measure(dropped.traces, spec.CASES)
-    return l02_checks.DropExperiment(
-        model, float(box.get_mass()), spec.CASES, dropped.traces, metrics, "camera", dropped.frames
-    )
-
-
 def test_the_lab_passes_its_checks(dropped):
-    assert checks.require("l02", l02_checks.run_checks(experiment(dropped))) == "L02 CHECK: PASSED"
+    model = rigid_bodies.read_model(dropped.scene, dropped.box)
+    readings = {"model": model, "body": {"mass": float(dropped.box.get_mass())}}
+    run = Experiment(LAB, dropped.traces, [spec.LINK], readings, dropped.frames, rendered=True)
+    assert checks.require("l02", run.outcomes()) == "L02 CHECK: PASSED"
 
 
 def test_a_second_drop_is_the_same_to_the_last_bit(dropped):

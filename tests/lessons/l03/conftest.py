@@ -1,40 +1,42 @@
 """Landings, slides and bounces without Genesis."""
 
-from collections.abc import Callable
+from collections.abc import Mapping
 
-import numpy as np
 import pytest
+from lessons.body_runs import slide_on_corners
 
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import spec
-from robo_genesis.sim import mujoco_contacts
+from robo_genesis.lessons.l03 import spec, study
+from robo_genesis.sim import contacts, mujoco_contacts
 from robo_genesis.sim.contacts import ContactCase
 
+MASSES = {"cube": spec.BASELINE.mass, "ball": spec.DROPPED_BALL.mass}
+SECONDS = {
+    name: mujoco_contacts.time_constant(study.solver_step(name)) for name in spec.STEPS_STUDIED
+}
+
+
+def settings(cases: Mapping[str, ContactCase]) -> dict[str, dict[str, float]]:
+    """Return the settings of cases as scenes with these cases have them."""
+    return {
+        name: {case: getattr(of, name) for case, of in cases.items()} for name in contacts.SETTINGS
+    }
+
+
+READINGS = {
+    "lab": {"model": spec.EXPECTED_MODEL, "mass": MASSES, **settings(spec.CASES)},
+    "lecture": {
+        "model": spec.EXPECTED_MODEL,
+        "mass": {"cube": MASSES["cube"]},
+        study.GROUP: SECONDS,
+        **settings(spec.BY_GENESIS),
+    },
+}
+"""The engine's values of sound runs, by page."""
+
 
 @pytest.fixture(scope="session")
-def slide_on_corners() -> Callable[[ContactCase], ContactTrace]:
-    """Build a cube that slides on four corners: Coulomb friction by semi-implicit Euler."""
-
-    def build(case: ContactCase) -> ContactTrace:
-        states, friction = case.steps + 1, max(case.friction, case.surface_friction)
-        speed = case.speed - friction * case.gravity * case.h * np.arange(states * case.substeps)
-        speed = np.maximum(speed, 0)
-        x = np.concatenate([[0], np.cumsum(case.h * speed[1:])])[:: case.substeps]
-        position, velocity = (np.zeros((states, 1, 3), np.float32) for _ in range(2))
-        position[:, 0] = case.start
-        position[:, 0, 0] += x
-        velocity[:, 0, 0] = speed[:: case.substeps]
-        upright = np.zeros((states, 1, 4), np.float32)
-        upright[..., 0] = 1
-        t, corners = np.arange(states) * case.dt, np.full((states, 1), 4, np.int32)
-        still, depth = np.zeros_like(position), np.zeros((states, 1), np.float32)
-        return ContactTrace(t, position, upright, velocity, still, corners, depth)
-
-    return build
-
-
-@pytest.fixture(scope="session")
-def contact_traces(slide_on_corners) -> dict[str, ContactTrace]:
+def contact_traces() -> dict[str, ContactTrace]:
     """The runs of the lab and the lecture of L03, all computed by MuJoCo."""
     traces = {
         name: mujoco_contacts.run_case(case, own_defaults=name == spec.OWN_DEFAULTS)

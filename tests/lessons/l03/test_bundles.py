@@ -5,93 +5,68 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bundles import written
-from lessons.body_bundles import in_archive, in_json, metric, pop, recomputed, refused, table
+from lessons.l03.conftest import READINGS
+from lessons.lesson_bundles import (
+    in_archive,
+    in_json,
+    metric,
+    pop,
+    recomputed,
+    recorded,
+    refused,
+    table,
+)  # fmt: skip
 from spoilers import predicate
 
-from robo_genesis.core.metrics import reading_records
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.compare import compare, specification
-from robo_genesis.evidence.recorder import Measured
+from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.l03 import checks, spec, study
-from robo_genesis.lessons.l03.metrics import measure, metric_records
-from robo_genesis.sim import contacts, mujoco_contacts, session
-
-MASSES = {"cube": spec.BASELINE.mass, "ball": spec.DROPPED_BALL.mass}
-SECONDS = {
-    name: mujoco_contacts.time_constant(study.solver_step(name)) for name in spec.STEPS_STUDIED
-}
-
-
-def measured(contact_traces, frames, page):
-    """Return what the lab or the lecture records, with MuJoCo in the place of both engines."""
-    lab = page == "lab"
-    cases, by_genesis = (spec.CASES,) * 2 if lab else (spec.STUDY_CASES, spec.BY_GENESIS)
-    masses = MASSES if lab else {"cube": MASSES["cube"]}
-    traces = {name: contact_traces[name] for name in cases}
-    metrics = measure(traces, cases)
-    settings = {
-        name: {n: getattr(case, name) for n, case in by_genesis.items()}
-        for name in contacts.SETTINGS
-    }
-    run = checks.ContactExperiment(
-        spec.EXPECTED_MODEL, masses, settings, cases, traces, metrics, "camera", frames
-    )
-    records = metric_records(metrics, spec.EXPECTED_MODEL, masses, settings)
-    outcomes, parameters = checks.run_checks(run), spec.parameters()
-    if not lab:
-        studies = study.Studies(traces, metrics, SECONDS)
-        outcomes = checks.run_study_checks(run) + study.run_checks(studies)
-        records |= {study.GROUP: reading_records(SECONDS, "s")}
-        parameters = spec.study_parameters()
-    renderer = session.Renderer("Mesa", "llvmpipe")
-    return Measured(None, (spec.LINK,), traces, records, outcomes, frames, parameters, renderer)
+from robo_genesis.lessons.l03 import LESSON, checks, spec, study
 
 
 @pytest.fixture(scope="module")
 def bundles(tmp_path_factory, engine, frames, contact_traces) -> dict[str, Path]:
-    """The bundles of both pages, by page."""
+    """The bundles of both pages, by page, with MuJoCo in the place of both engines."""
     outputs = tmp_path_factory.mktemp("landed")
     return {
-        page: written(engine, outputs, "l03", page, measured(contact_traces, frames, page))
-        for page in ("lab", "lecture")
+        page: recorded(
+            engine, outputs, "l03", page, {name: contact_traces[name] for name in of.runs},
+            [spec.LINK], READINGS[page], frames,
+        )
+        for page, of in LESSON.pages.items()
+    }  # fmt: skip
+
+
+@pytest.fixture
+def landed(bundles, tmp_path) -> dict[str, Path]:
+    """Copies of both bundles, to spoil."""
+    return {
+        page: Path(shutil.copytree(folder, tmp_path / "l03" / page / "cpu"))
+        for page, folder in bundles.items()
     }
 
 
-@pytest.fixture
-def landed(bundles, tmp_path) -> Path:
-    """A copy of the lab's bundle, to spoil."""
-    return Path(shutil.copytree(bundles["lab"], tmp_path / "l03" / "lab" / "cpu"))
-
-
-@pytest.fixture
-def studied(bundles, tmp_path) -> Path:
-    """A copy of the lecture's bundle."""
-    return Path(shutil.copytree(bundles["lecture"], tmp_path / "l03" / "lecture" / "cpu"))
-
-
-def test_sound_ones_are_accepted(landed, studied):
-    names = [check.name for check in verify_bundle(landed).predicate.checks]
+def test_sound_ones_are_accepted(landed):
+    names = [check.name for check in verify_bundle(landed["lab"]).predicate.checks]
     assert names == [check.__name__ for check in checks.CHECKS]
-    names = [check.name for check in verify_bundle(studied).predicate.checks]
-    assert names == [check.__name__ for check in (*checks.STUDY_CHECKS, *study.STUDIED)]
+    names = [check.name for check in verify_bundle(landed["lecture"]).predicate.checks]
+    assert names == [check.__name__ for check in (*checks.STUDY_CHECKS, *study.CHECKS)]
 
 
 def test_contacts_are_read_as_they_were_recorded(landed, contact_traces):
-    found = read_any_trace(landed, bundle.read_arrays(landed), "baseline")
+    found = read_any_trace(landed["lab"], bundle.read_arrays(landed["lab"]), "baseline")
     assert isinstance(found, ContactTrace)
     assert found.contacts.dtype == np.int32
     assert np.array_equal(found.contacts, contact_traces["baseline"].contacts)
     assert np.array_equal(found.penetration, contact_traces["baseline"].penetration)
 
 
-def test_each_page_compares_with_itself_by_its_own_cases(landed, studied):
+def test_each_page_compares_with_itself_by_its_own_cases(landed):
     claims = {}
-    for folder, page in ((landed, "lab"), (studied, "lecture")):
-        found = compare(folder, folder, specification("l03", page))
+    for page, folder in landed.items():
+        found = compare(folder, folder)
         assert found.state == "equal"
         claims[page] = {section.title: section for section in found.sections}["Relations"].findings
     assert len(claims["lab"]) == len(spec.RELATIONS)
@@ -101,7 +76,7 @@ def test_each_page_compares_with_itself_by_its_own_cases(landed, studied):
 
 
 def test_it_becomes_a_table_with_contacts(landed):
-    rows = table(landed, "dt20_sub1")
+    rows = table(landed["lab"], "dt20_sub1")
     assert len(rows) == 76
     assert rows[-1]["contacts body [1]"] == "4"
     assert float(rows[-1]["penetration body [m]"]) > 0
@@ -148,15 +123,9 @@ LECTURE = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", LAB)
-def test_a_spoiled_lab_is_refused_by_its_code(landed, name):
-    code, spoil = LAB[name]
-    spoil(landed)
-    assert refused(landed).startswith(code), name
-
-
-@pytest.mark.parametrize("name", LECTURE)
-def test_a_spoiled_lecture_is_refused_by_its_code(studied, name):
-    code, spoil = LECTURE[name]
-    spoil(studied)
-    assert refused(studied).startswith(code), name
+@pytest.mark.parametrize("name", [*LAB, *LECTURE])
+def test_a_spoiled_bundle_is_refused_by_its_code(landed, name):
+    code, spoil = (LAB | LECTURE)[name]
+    folder = landed["lab" if name in LAB else "lecture"]
+    spoil(folder)
+    assert refused(folder).startswith(code), name

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from robo_genesis.core import checks
-from robo_genesis.lessons.l03 import checks as l03_checks
-from robo_genesis.lessons.l03 import spec, study
-from robo_genesis.lessons.l03.metrics import measure
-from robo_genesis.sim import contacts, mujoco_contacts, rigid_bodies, session, visual_shape
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l03 import LAB, LECTURE, spec, study
+from robo_genesis.sim import contacts, mujoco_contacts, rigid_bodies, visual_shape
+from robo_genesis.sim.camera import capture
 
 pytestmark = pytest.mark.engine
 FIELDS = ("link_pos", "link_quat", "link_vel", "link_ang", "contacts", "penetration")
@@ -18,9 +18,9 @@ def ran(real_engine):
     """All runs of the lab, with the baseline's world and camera frames."""
     gs, traces, settings, masses = real_engine.gs, {}, {}, {}
     baseline = contacts.build_world(gs, {"baseline": spec.BASELINE}, spec.VIEW)
-    frames = {"initial": session.capture(baseline.camera)}
+    frames = {"initial": capture(baseline.camera)}
     contacts.record_world(baseline, traces, settings)
-    frames["final"] = session.capture(baseline.camera)
+    frames["final"] = capture(baseline.camera)
     for name, case in (spec.LANDINGS | spec.BOUNCES).items():
         world = contacts.build_world(gs, {name: case})
         contacts.record_world(world, traces, settings)
@@ -29,14 +29,13 @@ def ran(real_engine):
         pair = {name: case for name, case in spec.SLIDES.items() if name.endswith(surface)}
         contacts.record_world(contacts.build_world(gs, pair), traces, settings)
     model = rigid_bodies.read_model(baseline.scene, baseline.bodies["baseline"])
-    return l03_checks.ContactExperiment(
-        model, masses, settings, spec.CASES, traces, measure(traces, spec.CASES), "camera", frames
-    ), baseline
+    readings = {"model": model, "mass": masses} | settings
+    return Experiment(LAB, traces, [spec.LINK], readings, frames, True), baseline
 
 
 def test_the_lab_passes_its_checks(ran):
     experiment, _ = ran
-    assert checks.require("l03", l03_checks.run_checks(experiment)) == "L03 CHECK: PASSED"
+    assert checks.require("l03", experiment.outcomes()) == "L03 CHECK: PASSED"
 
 
 def test_a_second_run_of_one_scene_is_the_same_to_the_last_bit(ran):
@@ -80,5 +79,5 @@ def test_the_studies_hold(real_engine, ran):
     traces |= {name: mujoco_contacts.run_case(case) for name, case in spec.OTHER_ENGINE.items()}
     traces[spec.OWN_DEFAULTS] = mujoco_contacts.run_case(spec.BASELINE, own_defaults=True)
     traces |= {name: ran[0].traces[name] for name in spec.REPEATED}
-    run = study.Studies(traces, measure(traces, spec.STUDY_CASES), seconds)
-    assert checks.require("l03", study.run_checks(run)) == "L03 CHECK: PASSED"
+    run = Experiment(LECTURE, traces, [spec.LINK], {study.GROUP: seconds}, {}, False)
+    assert checks.require("l03", checks.evaluate(study.CHECKS, run)) == "L03 CHECK: PASSED"

@@ -1,8 +1,7 @@
 """The decimal numbers that prose of L04 may hold: configured inputs."""
 
-from robo_genesis.core.scene import Q_START
 from robo_genesis.lessons.l04 import metrics, spec, study_spec
-from robo_genesis.lessons.l04.text import AT_REST
+from robo_genesis.sim.franka import Q_START
 
 CONFIGURED = {
     "window [s]": spec.WINDOW,
@@ -12,5 +11,5 @@ CONFIGURED = {
     "rise fraction": metrics.RISE_FRACTION,
     "settling band [rad]": metrics.SETTLING_BAND,
     "saturation threshold": metrics.SATURATION_THRESHOLD,
-    "speed nearly at rest [rad/s]": AT_REST,
+    "speed nearly at rest [rad/s]": study_spec.AT_REST,
 }

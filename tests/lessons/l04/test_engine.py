@@ -4,17 +4,18 @@ import numpy as np
 import pytest
 
 from robo_genesis.core import project
-from robo_genesis.core.scene import DT, JOINT_NAMES, SUBSTEPS
+from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.trace import Trace
 from robo_genesis.evidence.bundle import read_arrays
 from robo_genesis.evidence.evidence_key import page_digest
-from robo_genesis.evidence.recorder import Measured, Recorder
+from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.evidence.trace_files import read_trace
 from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.l04 import checks as step_checks
-from robo_genesis.lessons.l04 import spec
-from robo_genesis.lessons.l04.metrics import measure, metric_records
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l04 import LAB, spec
 from robo_genesis.sim import session
+from robo_genesis.sim.camera import capture, read_renderer
+from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import CaseError, reset, run_case
 from robo_genesis.sim.joints import JointError, one_dof_joint, resolve_joints, to_numpy
 
@@ -26,30 +27,18 @@ BALL = """<mujoco><worldbody><body name="arm" pos="0 0 1">
 
 
 @pytest.fixture(scope="module")
-def run(lab):
-    """Control cases on the lab's robot."""
-    return lambda case: run_case(lab.scene, lab.franka, lab.joints, case)
-
-
-@pytest.fixture(scope="module")
 def measured_run(lab, run):
     """The lab as its page does it: first frame, four cases, last frame of the baseline."""
     reset(lab.scene, lab.franka, lab.joints, spec.BASELINE)
-    frames = {"initial": session.capture(lab.camera)}
+    frames = {"initial": capture(lab.camera)}
     traces = {"baseline": run(spec.BASELINE)}
-    frames["final"] = session.capture(lab.camera)
+    frames["final"] = capture(lab.camera)
     traces |= {name: run(spec.CASES[name]) for name in ("G1", "G2", "G3")}
     robot = lab.franka
     counts = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    return step_checks.StepExperiment(
-        joints=lab.joints,
-        model=dict(zip(spec.EXPECTED_MODEL, counts, strict=True)),
-        cases=spec.CASES,
-        traces=traces,
-        metrics=measure(traces, spec.CASES, lab.joints.entry(spec.STEPPED_JOINT)),
-        end_state="camera",
-        frames=frames,
-    )
+    readings = {"model": dict(zip(spec.EXPECTED_MODEL, counts, strict=True))}
+    links = [link.name for link in robot.links]
+    return Experiment(LAB, traces, links, readings, frames, rendered=True, joints=lab.joints)
 
 
 @pytest.fixture(scope="module")
@@ -58,18 +47,7 @@ def bundle_folder(lab, measured_run):
         patch.delenv("ROBO_GENESIS_RUN_ID", raising=False)
         patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lab", project.BOOK))
         recorder = Recorder("l04", "lab", lab.contract, lab.engine)
-        return recorder.write(
-            Measured(
-                joints=lab.joints,
-                links=[link.name for link in lab.franka.links],
-                traces=measured_run.traces,
-                metrics=metric_records(measured_run.metrics, measured_run.model),
-                checks=step_checks.run_checks(measured_run),
-                frames=measured_run.frames,
-                parameters=spec.parameters(),
-                renderer=session.read_renderer(lab.scene),
-            )
-        )
+        return recorder.write(measured_run, read_renderer(lab.scene))
 
 
 @pytest.fixture(scope="module")
@@ -182,18 +160,18 @@ def test_control_force_belongs_to_the_state_at_its_stamp(measured_run, name):
     at_stamp = pd_effort(case, trace.q[1:], trace.qd)
     before = pd_effort(case, trace.q[:-1], np.vstack([trace.start_qd, trace.qd[:-1]]))
     assert np.abs(trace.control_force - at_stamp).max() < 1e-3
-    assert np.abs(trace.control_force - before)[:, measured_run.entry].max() > 10
+    assert np.abs(trace.control_force - before)[:, spec.ENTRY].max() > 10
 
 
 @pytest.mark.parametrize("name", spec.CASES)
 def test_the_demand_before_the_first_step_is_clipped_to_the_limit(measured_run, name):
-    trace, k = measured_run.traces[name], measured_run.entry
+    trace, k = measured_run.traces[name], spec.ENTRY
     assert trace.start_control_force[k] == trace.effort_limit[k]
     assert np.delete(trace.start_control_force, k) == pytest.approx(np.zeros(8), abs=1e-3)
 
 
 def test_the_two_force_getters_differ(measured_run):
-    trace, k = measured_run.traces["G1"], measured_run.entry
+    trace, k = measured_run.traces["G1"], spec.ENTRY
     assert np.abs(trace.control_force - trace.internal_force)[:, k].max() > 10
     assert abs(trace.internal_force[-1, k]) < 1 < abs(trace.control_force[-1, k])
 
@@ -203,7 +181,7 @@ def test_a_recorded_run_is_accepted(bundle_folder, lab):
     assert predicate.source.page == page_digest("l04", "lab", project.BOOK)
     assert predicate.engine.files_match_wheel
     assert predicate.render.mode == "camera"
-    renderer = session.read_renderer(lab.scene)
+    renderer = read_renderer(lab.scene)
     assert renderer.vendor
     assert renderer.name
     assert predicate.warnings == lab.engine.log.warnings
@@ -213,13 +191,3 @@ def test_a_recorded_run_is_accepted(bundle_folder, lab):
 def test_the_bundle_holds_the_arrays_bit_for_bit(bundle_folder, measured_run, name):
     stored = read_trace(bundle_folder, read_arrays(bundle_folder), name)
     assert same(stored, measured_run.traces[name])
-
-
-def test_figures_redrawn_from_the_bundle_are_the_same_bytes(
-    bundle_folder, measured_run, lab, draw_svg
-):
-    arrays = read_arrays(bundle_folder)
-    names = ("G1", "G2", "G3")
-    stored = {name: read_trace(bundle_folder, arrays, name) for name in names}
-    shown = {name: measured_run.traces[name] for name in names}
-    assert draw_svg(stored, lab.joints) == draw_svg(shown, lab.joints)

@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robo_genesis.core.scene import DT, FRANKA_MJCF, JOINT_NAMES, SUBSTEPS
+from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l04 import batch as sweep
 from robo_genesis.lessons.l04 import spec, study_checks, study_spec
+from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import CaseError, run_case
 from robo_genesis.sim.joints import resolve_joints
 

@@ -5,27 +5,23 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
+from lessons.l04.conftest import LINKS
 
-from robo_genesis.core.scene import DT, FRANKA_MJCF, JOINT_NAMES, Q_START
-from robo_genesis.lessons.l04 import spec, study, study_spec
+from robo_genesis.core.scene import DT
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l04 import LECTURE, spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import step_metrics
 from robo_genesis.lessons.l04.theory import overshoot_share, step_share
 from robo_genesis.sim import dynamics, mujoco_joints
+from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES, Q_START
 from robo_genesis.sim.joint_control import run_case
 from robo_genesis.sim.joints import resolve_joints
 
 pytestmark = pytest.mark.engine
 
 K = JOINT_NAMES.index(spec.STEPPED_JOINT)
-LINKS = ["link0", "link4", "hand"]
 EULER_AGREEMENT = 5e-4
 """What both engines' overshoot may differ by [rad] with one explicit integrator and step."""
-
-
-@pytest.fixture(scope="module")
-def run(lab):
-    """Control cases on the lab's robot."""
-    return lambda case: run_case(lab.scene, lab.franka, lab.joints, case)
 
 
 def overshoot(trace):
@@ -135,9 +131,8 @@ def test_with_one_explicit_integrator_both_engines_agree(lab):
 def test_a_small_step_goes_as_theory_says(lab, run, name):
     step, hold = (run(study_spec.STEP_CASES[f"{name}_{kind}"]) for kind in ("small", "hold"))
     inertia = float(dynamics.effective_inertia(lab.scene, lab.franka, lab.joints, Q_START)[K])
-    found = study.Studies(
-        lab.joints, {name: run(spec.CASES[name])}, {"Genesis": inertia}, {}, 1.0, {}
-    )
+    readings = {study.GROUP: {"inertia_Genesis": inertia, "passive_damping": 1.0}}
+    found = Experiment(LECTURE, {}, LINKS, readings, {}, rendered=False)
     share = overshoot_share(step_share(step, hold, K))
-    assert share == pytest.approx(found.ideal(name).overshoot, abs=0.03)
+    assert share == pytest.approx(study.ideal(found, name).overshoot, abs=0.03)
     assert np.abs(step.control_force[:, K]).max() < 0.5 * step.effort_limit[K]

@@ -53,7 +53,7 @@ def shown(page):
 def expected(data, step, kp, kv):
     sizes = [len(axis["values"]) for axis in data["axes"]]
     point = data["points"][(step * sizes[1] + kp) * sizes[2] + kv]
-    return point["said"], dict(zip(data["labels"], point["metrics"], strict=True))
+    return point["sentence"], dict(zip(data["labels"], point["metrics"], strict=True))
 
 
 def test_keys_move_to_a_run_and_all_of_it_is_shown(page, data):

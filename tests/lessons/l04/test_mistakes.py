@@ -8,24 +8,15 @@ import pytest
 
 from robo_genesis.core import checks
 from robo_genesis.core.mistakes import Failure
-from robo_genesis.core.scene import DT, FRANKA_MJCF, JOINT_NAMES, SUBSTEPS
-from robo_genesis.lessons.l04 import spec
+from robo_genesis.core.scene import DT, SUBSTEPS
+from robo_genesis.lessons.l04 import mistakes, spec
 from robo_genesis.lessons.l04.backend_mistake import absent_backend, absent_backend_failure
-from robo_genesis.lessons.l04.mistakes import (
-    assigned_each_step,
-    fingers_without_gains,
-    gains_without_reset,
-    lengths_differ,
-    past_a_limit,
-    stale_target,
-    time_shift,
-    wrong_getter,
-    wrong_index,
-)  # fmt: skip
+from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joints import resolve_joints
 
 JOINT = spec.STEPPED_JOINT
 STAY = replace(spec.BASELINE, q_target=spec.BASELINE.q_start)
+PAIR, AT_START = (spec.G2, spec.G3), replace(spec.G2, q_target=spec.G2.q_start)
 BALL = """<mujoco><worldbody><body name="bob">
 <joint name="ball" type="ball"/><geom type="sphere" size="0.05" pos="0 0 -0.3"/>
 </body></worldbody></mujoco>"""
@@ -51,7 +42,7 @@ def crowded(lab, tmp_path_factory):
 @pytest.fixture(scope="module")
 def fingers(crowded):
     """What the fingers of a robot do that nobody has set gains for."""
-    return fingers_without_gains(*crowded, spec.BASELINE, opening=0.02)
+    return mistakes.fingers_without_gains(*crowded, spec.BASELINE, opening=0.02)
 
 
 @pytest.fixture
@@ -63,14 +54,14 @@ def robot(lab):
 def test_fingers_close_whatever_is_commanded_until_gains_are_set(crowded, fingers):
     assert fingers.shown
     assert "ended at 0.0000 m before gains were set and at 0.0200 m" in fingers.evidence
-    again = fingers_without_gains(*crowded, spec.BASELINE, opening=0.02)
+    again = mistakes.fingers_without_gains(*crowded, spec.BASELINE, opening=0.02)
     assert not again.shown
     assert "ended at 0.0200 m before" in again.evidence
 
 
 @pytest.mark.engine
 def test_a_solver_level_index_moves_another_joint(crowded, fingers):
-    found = wrong_index(*crowded, spec.BASELINE, JOINT)
+    found = mistakes.wrong_index(*crowded, spec.BASELINE, JOINT)
     assert found.shown
     assert "entity-local DOF 3 and the solver-level DOF 6" in found.evidence
     assert "`joint7` moved most" in found.evidence
@@ -79,57 +70,29 @@ def test_a_solver_level_index_moves_another_joint(crowded, fingers):
 
 
 @pytest.mark.engine
-def test_the_same_mistake_goes_unseen_where_the_indices_agree(robot):
-    found = wrong_index(*robot, spec.BASELINE, JOINT)
-    assert not found.shown
-    assert f"`{JOINT}` moved most" in found.evidence
-
-
-@pytest.mark.engine
-def test_a_state_that_is_assigned_arrives_at_once(robot):
-    found = assigned_each_step(*robot, spec.BASELINE, JOINT)
-    assert found.shown
-    assert "would have needed 24.8" in found.evidence
-    assert not assigned_each_step(*robot, STAY, JOINT).shown
-
-
-@pytest.mark.engine
-def test_a_target_outlives_a_position_that_is_put_back(robot):
-    found = stale_target(*robot, spec.BASELINE, JOINT)
-    assert found.shown
-    stale, held = (np.ptp(q) for _, q in found.curves.values())
-    assert stale > 0.2 > 0.01 > held
-    assert not stale_target(*robot, STAY, JOINT).shown
-
-
-@pytest.mark.engine
-def test_new_gains_without_a_reset_measure_no_step(robot):
-    found = gains_without_reset(*robot, (spec.G2, spec.G3), JOINT)
-    assert found.shown
-    assert "instead of 0.2500 rad" in found.evidence
-    stayed = replace(spec.G2, q_target=spec.G2.q_start)
-    assert not gains_without_reset(*robot, (stayed, spec.G3), JOINT).shown
-
-
-@pytest.mark.engine
-def test_a_target_past_its_limit_is_taken_by_the_engine_and_refused_by_the_course(robot):
-    found = past_a_limit(*robot, spec.BASELINE, JOINT, beyond=0.5)
-    assert found.shown
-    assert "CaseError`: q_target[joint4]" in found.evidence
-    assert "none is clipped" in found.evidence
-    inside = past_a_limit(*robot, spec.BASELINE, JOINT, beyond=-1.0)
-    assert not inside.shown
-    assert "No exception was raised." in inside.evidence
-
-
-@pytest.mark.engine
-def test_seven_values_are_refused_and_a_single_one_goes_to_all_joints(robot):
-    found = lengths_differ(*robot, spec.BASELINE, JOINT)
-    assert found.shown
-    assert "`GenesisException`: Invalid input shape: (7,)" in found.evidence
-    assert "One value for nine joints: No exception was raised." in found.evidence
-    assert "`joint1`" in found.evidence
-    assert "CaseError`: q_target has shape (1,)" in found.evidence
+@pytest.mark.parametrize(
+    ("mistake", "args", "shown", "says"),
+    [
+        (mistakes.wrong_index, (spec.BASELINE, JOINT), False, [f"`{JOINT}` moved most"]),
+        (mistakes.assigned_each_step, (spec.BASELINE, JOINT), True, ["would have needed 24.8"]),
+        (mistakes.assigned_each_step, (STAY, JOINT), False, []),
+        (mistakes.stale_target, (spec.BASELINE, JOINT), True, ["in 120 steps. After a complete"]),
+        (mistakes.stale_target, (STAY, JOINT), False, []),
+        (mistakes.gains_without_reset, (PAIR, JOINT), True, ["instead of 0.2500 rad"]),
+        (mistakes.gains_without_reset, ((AT_START, spec.G3), JOINT), False, []),
+        (mistakes.past_a_limit, (spec.BASELINE, JOINT, 0.5), True,
+         ["CaseError`: q_target[joint4]", "none is clipped"]),
+        (mistakes.past_a_limit, (spec.BASELINE, JOINT, -1.0), False, ["No exception was raised."]),
+        (mistakes.lengths_differ, (spec.BASELINE, JOINT), True,
+         ["`GenesisException`: Invalid input shape: (7,)", "`joint1`",
+          "One value for nine joints: No exception was raised.",
+          "CaseError`: q_target has shape (1,)"]),
+    ],
+)  # fmt: skip
+def test_a_symptom_is_found_where_it_appears_and_nowhere_else(robot, mistake, args, shown, says):
+    found = mistake(*robot, *args)
+    assert found.shown == shown
+    assert [phrase for phrase in says if phrase not in found.evidence] == []
 
 
 @pytest.mark.engine
@@ -166,21 +129,23 @@ def test_the_net_force_at_rest_is_no_motor_torque(joints, traces):
     still = traces["G1"]
     net = np.zeros_like(still.internal_force)
     control = np.full_like(still.control_force, -22.5)
-    found = wrong_getter(replace(still, internal_force=net, control_force=control), joints, JOINT)
+    found = mistakes.wrong_getter(
+        replace(still, internal_force=net, control_force=control), joints, JOINT
+    )
     assert found.shown
     assert "`get_dofs_force` is 0.00 N·m" in found.evidence
     assert "`get_dofs_control_force` is -22.50 N·m" in found.evidence
     moving = replace(still, internal_force=control, control_force=control)
-    assert not wrong_getter(moving, joints, JOINT).shown
+    assert not mistakes.wrong_getter(moving, joints, JOINT).shown
 
 
 def test_a_shift_by_one_sample_shifts_both_times_by_dt(joints, traces):
     trace = traces["G1"]
-    found = time_shift(trace, joints, JOINT)
+    found = mistakes.time_shift(trace, joints, JOINT)
     assert found.shown
     assert re.search(r"give rise time 0\.\d\d s instead of 0\.\d\d s and", found.evidence)
     unobserved = replace(trace, q=np.tile(trace.q[0], (len(trace.t), 1)))
-    found = time_shift(unobserved, joints, JOINT)
+    found = mistakes.time_shift(unobserved, joints, JOINT)
     assert not found.shown
     assert "rise time not observed instead of not observed" in found.evidence
 

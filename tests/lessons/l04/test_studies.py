@@ -5,9 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lessons.l04.conftest import raised
 from matplotlib.figure import Figure
 
-from robo_genesis.core.scene import DT, JOINT_NAMES, Q_START
+from robo_genesis.core.checks import evaluate
+from robo_genesis.core.scene import DT
 from robo_genesis.lessons.l04 import (
     engine_comparison,
     plots,
@@ -20,23 +22,23 @@ from robo_genesis.lessons.l04 import (
 from robo_genesis.lessons.l04.metrics import step_metrics
 from robo_genesis.lessons.l04.theory import IdealJoint, Parting
 from robo_genesis.sim import mujoco_joints
+from robo_genesis.sim.franka import JOINT_NAMES, Q_START
 
-K = JOINT_NAMES.index(spec.STEPPED_JOINT)
-
-
-def raised(trace, overshoot):
-    """Return a run whose highest sample of the stepped joint passes its target by `overshoot`."""
-    q = np.array(trace.q)
-    q[q[:, K].argmax(), K] = trace.target[0, K] + overshoot
-    return replace(trace, q=q)
+K = spec.ENTRY
 
 
 def failed(run):
-    return {check.name: check.detail for check in study_checks.run_checks(run) if not check.passed}
+    outcomes = evaluate(study_checks.CHECKS, run)
+    return {check.name: check.detail for check in outcomes if not check.passed}
 
 
 def spoiled(run, **changes):
     return replace(run, traces=dict(run.traces) | changes)
+
+
+def with_readings(run, **changes):
+    of_joint = run.readings[study.GROUP] | changes
+    return replace(run, readings={**run.readings, study.GROUP: of_joint})
 
 
 def clipped(run, where):
@@ -56,7 +58,7 @@ def as_theory(run):
     """The large step follows the ideal curve."""
     trace, hold = run.traces["G1"], run.traces["G1_hold"]
     q = np.array(trace.q)
-    q[:, K] = hold.q[:, K] + spec.STEP * run.ideal("G1").response(trace.t)
+    q[:, K] = hold.q[:, K] + spec.STEP * study.ideal(run, "G1").response(trace.t)
     return spoiled(run, G1=replace(trace, q=q))
 
 
@@ -81,14 +83,15 @@ def without(run, name):
 SPOILERS = [
     ("study_factors", "", lambda run: spoiled(run, G1_small=run.traces["G1"])),
     ("same_model", "inertia: Genesis 1.5820",
-     lambda run: replace(run, inertia={"Genesis": 1.582, "MuJoCo": 1.077})),
+     lambda run: with_readings(run, inertia_Genesis=1.582, inertia_MuJoCo=1.077)),
     ("same_model", "gravity effort",
-     lambda run: replace(run, gravity_at_start={"Genesis": 22.57, "MuJoCo": 21.0})),
+     lambda run: with_readings(
+         run, gravity_at_start_Genesis=22.57, gravity_at_start_MuJoCo=21.0)),
     ("small_step_unsaturated", "G2_small", lambda run: clipped(run, "start_control_force")),
     ("small_step_unsaturated", "G2_small", lambda run: clipped(run, "control_force")),
     ("theory_small_step", "off the ideal", off_theory),
     ("theory_small_step", "not nearer", as_theory),
-    ("gravity_support", "G2", lambda run: replace(run, gravity={**run.gravity, "G2": 30.0})),
+    ("gravity_support", "G2", lambda run: with_readings(run, gravity_G2=30.0)),
     ("gravity_support", "no case ends nearly at rest", moving),
     ("convergence", "4 substeps", lambda run: with_overshoot(run, "G2_substeps_4", 0.07)),
     ("convergence", "50 substeps", lambda run: with_overshoot(run, "G2_substeps_50", 0.07)),
@@ -155,7 +158,7 @@ def test_step_sizes_are_compared_with_theory(small, large, says):
     ],
 )
 def test_gravity_is_compared_with_kp_times_error(study_runs, effort, velocity, says, not_said):
-    m = replace(study_runs.measure("G1"), final_error=0.0062, final_velocity=velocity)
+    m = replace(study_runs.metrics["G1"], final_error=0.0062, final_velocity=velocity)
     (row,) = theory_text.gravity_rows({"G1": 3500.0}, {"G1": m}, {"G1": effort})
     assert row["KP × final error"] == "21.70 N·m"
     assert row["gravity, engine"] == f"{effort:.2f} N·m"
@@ -174,7 +177,7 @@ def test_convergence_is_read_from_the_spread(fine, says):
         "implicitfast": {2: 0.0212, 50: 0.0195},
         "Euler": {2: 0.0193, 50: 0.0193},
     }
-    told = engine_comparison.convergence_sentences(overshoot, 2)
+    told = list(engine_comparison.convergence_sentences(overshoot, 2))
     assert (
         f"Genesis: from 2 to 50 substeps the overshoot changes from 0.0447 rad to {fine:.4f} rad."
         in told
@@ -194,22 +197,16 @@ def test_the_first_step_tells_engines_whose_kv_acts_while_clipped(study_runs):
     assert "They differ in Genesis: there KV acts although the effort is clipped." in text
 
 
-def test_the_joint_alone_is_the_equation_by_hand(study_runs):
-    case = study_spec.COMPARED["G1"]
-    h, effort = (
-        case.dt / case.substeps,
-        study_runs.traces["G1"].start_control_force[study_runs.entry],
-    )
-    net = effort - study_runs.gravity_at_start["Genesis"]
-    damping = study_runs.passive_damping
-    for term in (0.0, 100.0):
-        mass = study_runs.inertia["Genesis"] + h * (damping + term)
-        after_one = h * net / mass
-        expected = after_one + h * (net - damping * after_one) / mass
-        assert engine_comparison.alone(study_runs, "G1", term) == pytest.approx(expected)
-    assert engine_comparison.alone(study_runs, "G1", 100.0) < engine_comparison.alone(
-        study_runs, "G1", 0
-    )
+@pytest.mark.parametrize("term", [0.0, 100.0])
+def test_the_joint_alone_is_the_equation_by_hand(study_runs, term):
+    case, readings = study_spec.COMPARED["G1"], study_runs.readings[study.GROUP]
+    damping = readings["passive_damping"]
+    h, effort = case.dt / case.substeps, study_runs.traces["G1"].start_control_force[K]
+    net = effort - readings["gravity_at_start_Genesis"]
+    mass = readings["inertia_Genesis"] + h * (damping + term)
+    after_one = h * net / mass
+    expected = after_one + h * (net - damping * after_one) / mass
+    assert engine_comparison.alone(study_runs, "G1", term) == pytest.approx(expected)
 
 
 def test_a_first_step_that_was_not_clipped_isolates_nothing(study_runs):
@@ -245,8 +242,8 @@ def test_rows_of_the_tables_are_the_study_runs_values(study_runs):
     assert theory_text.damping_word(1.0) == "critically damped"
     assert len(theory_text.parting_sentences(study_runs)) == len(study_spec.COMPARED)
     assert len(theory_text.step_size_sentences(study_runs)) == len(study_spec.SMALL_STEPPED)
-    sizes = theory_text.step_size_rows(study_runs)
-    assert sizes[1]["overshoot, ideal"] == theory_text.share_text(study_runs.ideal("G2").overshoot)
+    sizes, ideal = theory_text.step_size_rows(study_runs), study.ideal(study_runs, "G2")
+    assert sizes[1]["overshoot, ideal"] == theory_text.share_text(ideal.overshoot)
 
 
 def test_chatter_is_counted_for_each_joint(study_runs):

@@ -1,10 +1,18 @@
 """The ideal joint against another implementation and known answers; where a run leaves it."""
 
+from dataclasses import astuple
+
 import control
 import numpy as np
 import pytest
 
-from robo_genesis.lessons.l04.theory import IdealJoint, overshoot_share, parting, step_share
+from robo_genesis.lessons.l04.theory import (
+    IdealJoint,
+    Parting,
+    overshoot_share,
+    parting,
+    step_share,
+)
 
 T = np.linspace(0, 1.2, 241)
 REGIMES = {"under": 100.0, "nearly": 122.7, "over": 300.0, "undamped": 0.0}
@@ -66,53 +74,35 @@ def test_a_joint_that_cannot_be_is_refused(spoiled):
         IdealJoint(**({"inertia": 1.0, "damping": 1.0, "kp": 1.0} | spoiled))
 
 
-@pytest.fixture
-def run(make_trace):
-    """Five samples; the effort is clipped at the start and at the first two stamps."""
-
-    def build(q, efforts=(87.0, 87.0, 20.0, 10.0), target=1.0):
-        return make_trace(q, target, control_force=efforts)
-
-    return build
-
-
 IDEAL = np.array([0.0, 0.2, 0.5, 0.8, 1.0])
 
 
-def test_parting_is_the_first_sample_beyond_the_threshold(run):
-    trace = run([0.0, 0.15, 0.3, 0.8, 1.0])
+# State 2 follows from the efforts at t[0], which is not clipped in these runs, and t[1].
+@pytest.mark.parametrize(
+    ("q", "efforts", "expected"),
+    [
+        ([0.0, 0.15, 0.3, 0.8, 1.0], (87.0, 87.0, 20.0, 10.0), Parting(0.02, 0.2, 1, 2)),
+        ([0.0, 0.2, 0.3, 0.8, 1.0], (0.0, 87.0, 87.0, 87.0), Parting(0.02, 0.2, 0, 2)),
+        (IDEAL + 0.05, (87.0, 87.0, 20.0, 10.0), Parting(None, 0.05, 2, 4)),
+    ],
+)
+def test_parting_is_the_first_sample_beyond_the_threshold(make_trace, q, efforts, expected):
+    trace = make_trace(q, 1.0, control_force=efforts)
     found = parting(trace, trace.q[:, 0], IDEAL, 0, 0.1)
-    assert found.time == pytest.approx(0.02)
-    assert found.distance == pytest.approx(0.2)
-    # State 2 follows from the efforts at t[0], not clipped in this trace, and t[1].
-    assert (found.clipped, found.efforts) == (1, 2)
-
-
-def test_an_effort_at_or_after_the_parting_does_not_count(run):
-    trace = run([0.0, 0.2, 0.3, 0.8, 1.0], efforts=(0.0, 87.0, 87.0, 87.0))
-    found = parting(trace, trace.q[:, 0], IDEAL, 0, 0.1)
-    assert (found.clipped, found.efforts) == (0, 2)
-
-
-def test_a_response_that_stays_near_does_not_part(run):
-    trace = run(IDEAL + 0.05)
-    found = parting(trace, trace.q[:, 0], IDEAL, 0, 0.1)
-    assert found.time is None
-    assert found.distance == pytest.approx(0.05)
-    assert (found.clipped, found.efforts) == (2, 4)
+    assert astuple(found) == pytest.approx(astuple(expected))
 
 
 @pytest.mark.parametrize("short", ["measured", "ideal"])
-def test_responses_of_another_length_are_refused(run, short):
-    trace = run(IDEAL)
+def test_responses_of_another_length_are_refused(make_trace, short):
+    trace = make_trace(IDEAL, 1.0)
     given = {"measured": IDEAL, "ideal": IDEAL} | {short: IDEAL[1:]}
     with pytest.raises(ValueError, match="one value for each state"):
         parting(trace, given["measured"], given["ideal"], 0, 0.1)
 
 
-def test_what_acts_on_both_runs_is_gone_from_the_share(run):
+def test_what_acts_on_both_runs_is_gone_from_the_share(make_trace):
     sag = -0.02 * np.arange(5)
-    share = step_share(run(0.5 * IDEAL + sag, target=0.5), run(sag, target=0.0), 0)
+    share = step_share(make_trace(0.5 * IDEAL + sag, 0.5), make_trace(sag, 0.0), 0)
     assert share == pytest.approx(IDEAL)
 
 

@@ -1,19 +1,28 @@
-"""Spoilers and writers of bundles of free bodies, shared by the tests of L02 and L03."""
+"""Writer and spoilers of bundles, shared by the tests of all lessons."""
 
 import csv
 from dataclasses import asdict
 
 import numpy as np
 import pytest
+from bundles import written
 from spoilers import edit, predicate, seal
 
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.evidence.reader import Reader
+from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.registry import find_lesson
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.registry import find_page
 from robo_genesis.site.takeaways.files import csv_text
+
+
+def recorded(engine, outputs, lesson, page, traces, links, readings, frames, joints=None):
+    """Write the bundle of an experiment with camera frames, and return its folder."""
+    declared = find_page(lesson, page)
+    run = Experiment(declared, traces, links, readings, frames, True, joints)
+    return written(engine, outputs, lesson, page, run)
 
 
 def in_json(name, change):
@@ -33,6 +42,16 @@ def pop(file, *path):
         content.pop(path[-1])
 
     return in_json(file, change)
+
+
+def without_run(name):
+    """Remove a run and its description."""
+
+    def spoil(folder):
+        (folder / "arrays" / f"{name}.npz").unlink()
+        pop("arrays.json", "cases", name)(folder)
+
+    return spoil
 
 
 def in_archive(case, change):
@@ -55,9 +74,9 @@ def recomputed(*spoilers):
         for one in spoilers:
             one(folder)
         manifest = bundle.read_manifest(folder)
-        found = find_lesson(manifest.predicate.lesson).recompute(Reader(folder, manifest))
-        edit(folder, "metrics.json", lambda records: records.update(found.metrics))
-        predicate(checks=[asdict(check) for check in found.outcomes])(folder)
+        run = from_bundle(folder, manifest)
+        edit(folder, "metrics.json", lambda records: records.update(run.records()))
+        predicate(checks=[asdict(check) for check in run.outcomes()])(folder)
 
     return spoil
 

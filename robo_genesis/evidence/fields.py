@@ -1,0 +1,43 @@
+"""The types of the fields of a bundle's JSON files: bounded texts, digests, strict records."""
+
+from typing import Annotated
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+LINE_LIMIT = 2**14
+"""Characters of one line of the log, and of one warning. Those of a lesson have less than 400."""
+
+Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
+Index = Annotated[int, Field(ge=0, lt=2**31)]
+Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z$")]
+LARGEST = 2**53
+"""The largest magnitude of a metric: up to here, a float holds every integer."""
+
+
+def _plain(limit: int, other: str = "") -> AfterValidator:
+    """Return a check of length and characters; a page or a terminal may show the text."""
+
+    def check(text: str) -> str:
+        if len(text) > limit:
+            raise ValueError(f"expected at most {limit} characters, found {len(text)}")
+        odd = next((c for c in text if not c.isprintable() and c not in other), None)
+        if odd is not None:
+            raise ValueError(f"expected one line without control characters, found {odd!r}")
+        return text
+
+    return AfterValidator(check)
+
+
+Line = Annotated[str, _plain(200)]
+"""A name, version or unit."""
+LongLine = Annotated[str, _plain(2000)]
+"""A command or a path."""
+Message = Annotated[str, _plain(LINE_LIMIT, "\n\t\N{NO-BREAK SPACE}\N{ZERO WIDTH JOINER}")]
+"""A warning of the engine, which may have several lines, or the finding of a check."""
+
+
+class Strict(BaseModel):
+    """A frozen record that refuses unknown fields and converts no types."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)

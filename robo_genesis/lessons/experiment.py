@@ -1,0 +1,139 @@
+"""The declaration of a page that measures, and the experiment that one run of it is."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.checks import Check, evaluate
+from robo_genesis.core.metrics import CaseMetrics, Record, case_records, reading_records
+from robo_genesis.core.trace import TimeSeries
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """One recorded run of a page.
+
+    `case` holds its settings. `measured` is whether it has metrics. `note` says how its arrays
+    differ from an ordinary run of the engine.
+    """
+
+    case: Any
+    measured: bool = True
+    note: str = ""
+
+
+def runs_of(cases: Mapping[str, Any]) -> dict[str, Run]:
+    """Return an ordinary run of each case."""
+    return {name: Run(case) for name, case in cases.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class Readings:
+    """A group of values that the engine reports and that are in no array.
+
+    `units` are by name. `exact` values are counts, which another run must repeat.
+    """
+
+    units: Mapping[str, str]
+    exact: bool = False
+
+
+def counts(names: Iterable[str]) -> Readings:
+    """Return a group of counts."""
+    return Readings(dict.fromkeys(names, "1"), exact=True)
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuringPage:
+    """A page that runs the engine and writes a bundle.
+
+    | field | meaning |
+    |---|---|
+    | `runs` | by the name of their arrays; a bundle has no others |
+    | `kind` | the class of their traces |
+    | `links` | labels of the arrays' links, none for any different ones |
+    | `joints` | labels of the arrays' DOFs, none for free bodies |
+    | `readings` | the groups of values of the engine in a run with or without a camera |
+    | `measure` | returns the metrics of a case from its trace |
+    | `checks` | named checks in the order of their table |
+    | `parameters` | returns every configured input as JSON values |
+    | `modules` | whose source affects the measurements: a change in one makes evidence stale |
+    | `validate` | refuses arrays that no run can have |
+
+    The `spec` of a lesson is not among the modules, because `parameters` covers it.
+    """
+
+    runs: Mapping[str, Run]
+    kind: type[TimeSeries]
+    readings: Callable[[bool], Mapping[str, Readings]]
+    measure: Callable[[Any, Any], CaseMetrics]
+    checks: Sequence[Callable[["Experiment"], Iterable[str]]]
+    parameters: Callable[[], dict[str, Any]]
+    modules: tuple[str, ...]
+    links: tuple[str, ...] = ()
+    joints: tuple[str, ...] = ()
+    validate: Callable[["Experiment"], None] = field(default=lambda run: None)
+
+    @property
+    def cases(self) -> dict[str, Any]:
+        """The settings of each run."""
+        return {name: run.case for name, run in self.runs.items()}
+
+    def metrics(self, traces: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the metrics of each run that has a trace and metrics.
+
+        Raises:
+            ValueError, IndexError: the arrays of a run give no metrics.
+        """
+        measured = {n: run.case for n, run in self.runs.items() if run.measured and n in traces}
+        return {name: self.measure(traces[name], case) for name, case in measured.items()}
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """What one run of a page measured; the page and the verification build the same object.
+
+    | field | meaning |
+    |---|---|
+    | `page` | its declaration |
+    | `traces` | by run, in the order of the declaration |
+    | `links` | names of the links, in the order of the arrays |
+    | `readings` | by group and name |
+    | `frames` | camera frames by name, each (height, width, 3); none without a camera |
+    | `rendered` | whether the run had a camera |
+    | `joints` | the `JointMap` of the arrays' DOFs, None for free bodies |
+    """
+
+    page: MeasuringPage
+    traces: Mapping[str, Any]
+    links: Sequence[str]
+    readings: Mapping[str, Mapping[str, float]]
+    frames: Mapping[str, np.ndarray]
+    rendered: bool
+    joints: Any = None
+
+    @property
+    def cases(self) -> dict[str, Any]:
+        """The settings of each run."""
+        return self.page.cases
+
+    @cached_property
+    def metrics(self) -> dict[str, Any]:
+        """The metrics of each run that has some; raises as `MeasuringPage.metrics`."""
+        return self.page.metrics(self.traces)
+
+    def records(self) -> dict[str, dict[str, Record]]:
+        """Return the content of `metrics.json`: readings of the engine and metrics of each run."""
+        declared = self.page.readings(self.rendered)
+        of_engine = {
+            name: reading_records(self.readings[name], of.units, of.exact)
+            for name, of in declared.items()
+        }
+        return of_engine | case_records(self.metrics)
+
+    def outcomes(self) -> tuple[Check, ...]:
+        """Return the outcomes of the named checks."""
+        return evaluate(self.page.checks, self)

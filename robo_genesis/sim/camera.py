@@ -1,0 +1,64 @@
+"""Camera frames and the OpenGL renderer that draws them."""
+
+import importlib
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import FRAME_SHAPE
+
+
+class FrameError(ValueError):
+    """A camera returned something else than a usable RGB frame."""
+
+
+@dataclass(frozen=True, slots=True)
+class Renderer:
+    """The OpenGL implementation that renders."""
+
+    vendor: str
+    name: str
+
+    @property
+    def software(self) -> bool:
+        """Whether it is Mesa's software rasteriser."""
+        return any(word in self.name.lower() for word in ("llvmpipe", "softpipe", "swrast"))
+
+
+def read_renderer(scene: Any) -> Renderer:
+    """Read GL_VENDOR and GL_RENDERER from the scene's OpenGL context."""
+    gl = importlib.import_module("OpenGL.GL")
+    context = scene.visualizer._rasterizer._renderer  # Genesis has no public access to it
+    context.make_current()
+    try:
+        vendor, name = (gl.glGetString(item).decode() for item in (gl.GL_VENDOR, gl.GL_RENDERER))
+    finally:
+        context.make_uncurrent()
+    return Renderer(vendor, name)
+
+
+def capture(camera: Any) -> np.ndarray:
+    """Render one frame, shape (540, 720, 3), uint8.
+
+    Raises:
+        FrameError: the frame is not usable.
+    """
+    rgb = camera.render()[0]
+    require_frame(rgb)
+    return np.array(rgb)
+
+
+def require_frame(rgb: Any) -> None:
+    """Raise FrameError unless `rgb` is a finite, non-empty RGB picture of the course's shape."""
+    shape = np.shape(rgb)
+    if shape != FRAME_SHAPE:
+        raise FrameError(f"The camera returned shape {shape}, expected {FRAME_SHAPE}.")
+    picture = np.asarray(rgb)
+    if picture.dtype != np.uint8 and not np.isfinite(picture).all():
+        raise FrameError("The camera returned values that are not finite.")
+    if (picture == picture[0, 0]).all():
+        raise FrameError(
+            f"The camera returned an empty picture: every pixel is {picture[0, 0].tolist()}. "
+            "It shows only the background. Check the camera's `pos` and `lookat`."
+        )

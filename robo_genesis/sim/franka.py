@@ -1,0 +1,39 @@
+"""Constants of the Franka Panda of the course, with units."""
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+
+FRANKA_MJCF = "xml/franka_emika_panda/panda.xml"
+"""The Franka Panda that Genesis bundles, relative to the engine's asset folder."""
+
+JOINT_NAMES = (*(f"joint{number}" for number in range(1, 8)), "finger_joint1", "finger_joint2")
+"""The nine one-DOF joints, in the order of every array of the course."""
+
+MODEL_COUNTS = {"links": 11, "joints": 9, "dofs": 9, "qpos": 9}
+"""Counts of the robot's model, as the engine reports them."""
+
+JOINT_TYPES = ("REVOLUTE",) * 7 + ("PRISMATIC",) * 2
+"""Type of each joint of `JOINT_NAMES`."""
+
+
+def per_joint(*values: float) -> FloatArray:
+    """Return a read-only array of shape (9,), one value for each of `JOINT_NAMES`."""
+    if len(values) != len(JOINT_NAMES):
+        raise ValueError(f"{len(values)} values given, one for each of {len(JOINT_NAMES)} joints")
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array
+
+
+Q_START = per_joint(0, -0.3, 0, -2.0, 0, 1.7, 0.79, 0.04, 0.04)
+"""Start position: arm [rad], fingers [m]."""
+
+KP_BASELINE = per_joint(4500, 4500, 3500, 3500, 2000, 2000, 2000, 100, 100)
+"""Position gains: arm [N·m/rad], fingers [N/m]."""
+
+KV_BASELINE = per_joint(450, 450, 350, 350, 200, 200, 200, 10, 10)
+"""Velocity gains: arm [N·m·s/rad], fingers [N·s/m]."""
+
+EFFORT_LIMIT = per_joint(87, 87, 87, 87, 12, 12, 12, 100, 100)
+"""Symmetric bound of the commanded effort: arm [N·m], fingers [N]."""

@@ -1,0 +1,132 @@
+"""The controls of a replay name what it shows, and its table has every sample."""
+
+import html
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bs4 import BeautifulSoup
+from falling import LINKS, falling
+
+from robo_genesis.core.channels import Runs
+from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.sim import body_channels
+from robo_genesis.site.replay import controls
+
+
+@pytest.fixture(scope="module")
+def joint(pristine) -> Runs:
+    return read_runs(pristine, LESSONS["l04"].compared)
+
+
+@pytest.fixture(scope="module")
+def box() -> Runs:
+    traces = {"high": falling(2.0, dt=0.0025), "low": falling(1.0, dt=0.0025)}
+    return body_channels.runs(traces, LINKS, "box", "box")
+
+
+def parsed(runs: Runs) -> BeautifulSoup:
+    text = controls.markup("replay-x", runs, "replay/a.js", "replay/viewer.js", 560)
+    return BeautifulSoup(text, "html.parser").div
+
+
+SHOWN = {
+    "joint": {
+        "legend": "Run of joint4",
+        "button": "Show the robot in 3D",
+        "alt": "The robot in 3D, in the posture of the sample that is shown. joint4 moves.",
+        "view": ("45deg 72deg 90%", "0.2m 0.52m 0m"),
+        "channels": [("position", "rad", 4), ("velocity", "rad/s", 4), ("control force", "N·m", 2)],
+        "time digits": "2",
+        "last sample": "120",
+        "readout": ["time", "position", "velocity", "control force", "target", "force limit"],
+        "runs": {"G1": "case-g1", "G2": "case-g2", "G3": "case-g3"},
+    },
+    "box": {
+        "legend": "Run of the box",
+        "button": "Show the box in 3D",
+        "alt": "The box in 3D, where it is at the sample that is shown.",
+        "view": ("30deg 72deg auto", ""),
+        "channels": [("height", "m", 4), ("vertical velocity", "m/s", 4)],
+        "time digits": "4",
+        "last sample": "30",
+        "readout": ["time", "height", "vertical velocity"],
+        "runs": {"high": "case-g1", "low": "case-g2"},
+    },
+}  # fmt: skip
+
+
+HEADS = {"joint": ["q [rad]", "q̇ [rad/s]", "force [N·m]"], "box": ["z [m]", "ż [m/s]"]}
+
+
+@pytest.mark.parametrize("kind", HEADS)
+def test_the_table_has_every_sample_of_each_channel(request, kind):
+    runs = request.getfixturevalue(kind)
+    lines = [line.strip("| ").split(" | ") for line in controls.samples(runs).splitlines()]
+    assert lines[0] == [
+        "t [s]",
+        *(f"{case} {head}" for case in runs.traces for head in HEADS[kind]),
+    ]
+    numbers = np.array([[float(c.replace("−", "-")) for c in row] for row in lines[2:]])
+    recorded = [channel.values[case] for case in runs.traces for channel in runs.channels]
+    assert numbers == pytest.approx(np.column_stack([runs.t, *recorded]), abs=6e-5)
+
+
+@pytest.mark.parametrize("kind", SHOWN)
+def test_the_controls_name_their_parts_and_have_the_script_s_data(request, kind):
+    root = parsed(request.getfixturevalue(kind))
+    slider = root.select_one("input[type=range]")
+    assert {
+        "legend": root.legend.get_text(),
+        "button": root.select_one(".show").get_text(),
+        "alt": root["data-alt"],
+        "view": (root["data-orbit"], root["data-target"]),
+        "channels": [
+            (c["name"], c["unit"], c["digits"]) for c in json.loads(root["data-channels"])
+        ],
+        "time digits": root["data-time-digits"],
+        "last sample": slider["max"],
+        "readout": [term.get_text() for term in root.select("dt")],
+        "runs": {one["value"]: one["data-mark"] for one in root.select("input[type=radio]")},
+    } == SHOWN[kind]
+    assert root["class"] == ["replay"]
+    assert root.has_attr("hidden")
+    assert root.select_one(f"label[for={slider['id']}]").get_text() == "Time"
+    assert len(root.select(".plots > .plot")) == len(SHOWN[kind]["channels"])
+
+
+def test_levels_are_given_to_the_script_and_explained(joint):
+    root = parsed(joint)
+    target, limit = json.loads(root.select_one("input[type=radio]")["data-levels"])
+    assert target == {
+        "channel": "position", "mark": "target", "values": [-1.75], "text": "−1.7500 rad",
+    }  # fmt: skip
+    assert (limit["channel"], limit["values"]) == ("control force", [-87, 87])
+    legend = root.select_one(".legend").get_text()
+    assert "Dotted: the target. Short dashes, at the edges of the control force" in legend
+
+
+def test_bodies_have_no_levels_and_no_words_of_a_robot(box):
+    root = parsed(box)
+    assert [run["data-levels"] for run in root.select("input[type=radio]")] == ["[]", "[]"]
+    assert not re.search("robot|joint", str(root))
+
+
+def test_a_joint_s_motion_ends_with_its_quality(joint, traces):
+    far = 100 * traces["G2"].link_pos[:, 2, 0].max()
+    assert re.fullmatch(
+        r"\*\*G2\*\*: `joint4` starts at −2\.0000 rad and gets the target −1\.7500 rad\. "
+        rf"The link `hand` moves farthest, by up to {far:.1f} cm\. "
+        r"Rise time [\d.]+ s, overshoot [\d.]+ rad, final error [\d.]+ rad; "
+        r"at the force limit: \d+ samples?\.",
+        joint.moves["G2"],
+    )
+
+
+def test_words_are_escaped(joint):
+    text = controls.markup("x", replace(joint, subject='a"<b'), "a.js", "b.js", 1)
+    assert 'a"<b' not in text
+    assert html.unescape(re.search('data-subject="([^"]*)"', text)[1]) == 'a"<b'
