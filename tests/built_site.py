@@ -15,8 +15,8 @@ import pytest
 from browsers import launched
 from bs4 import BeautifulSoup
 
-from robo_genesis.core.project import BOOK, ROOT
-from robo_genesis.lessons.book_pages import docnames
+from robo_genesis.core.project import BOOK, ROOT, page_cache_folder
+from robo_genesis.lessons.book_pages import docnames, find_pages, fingerprint
 from robo_genesis.lessons.registry import LESSONS
 
 if TYPE_CHECKING:
@@ -39,6 +39,11 @@ MEASURING_PAGES = [(name, page) for name, lesson in LESSONS.items() for page in 
 OUTSIDE = dict(os.environ)
 """The environment of the tests. The engine sets switches when a test imports it, and a build with
 other switches would execute every page again."""
+
+
+def executed_folder() -> Path:
+    """Return the folder of the executed pages from which the site was built."""
+    return page_cache_folder(fingerprint(find_pages(BOOK), ROOT, OUTSIDE))
 
 
 class QuietHandler(SimpleHTTPRequestHandler):

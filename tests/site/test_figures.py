@@ -10,12 +10,12 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from built_site import MEASURING_PAGES
+from built_site import MEASURING_PAGES, executed_folder
 from nbclient import NotebookClient
 
 from robo_genesis.build.page_cache import PageCache, notebooks_folder, outputs_folder
-from robo_genesis.core.project import BOOK, ROOT, page_cache_folder
-from robo_genesis.lessons.book_pages import Page, cell_sources, find_pages, fingerprint
+from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.lessons.book_pages import Page, cell_sources, find_pages
 
 pytestmark = pytest.mark.engine
 
@@ -62,9 +62,8 @@ def svgs(cells) -> list[str]:
 def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, lesson, name):
     for variable, value in (("ROBO_GENESIS_RENDER", "1"), ("ROBO_GENESIS_BACKEND", "cpu")):
         monkeypatch.setenv(variable, value)
-    pages = find_pages(BOOK)
-    (page,) = (p for p in pages if (p.lesson, p.page) == (lesson, name))
-    folder = page_cache_folder(fingerprint(pages, ROOT))
+    (page,) = (p for p in find_pages(BOOK) if (p.lesson, p.page) == (lesson, name))
+    folder = executed_folder()
     cache = PageCache(notebooks_folder(folder))
     executed = cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
     script = LESSONS / lesson / "redraw.py"

@@ -3,14 +3,13 @@
 import re
 
 import pytest
-from built_site import parsed
+from built_site import executed_folder, parsed
 from PIL import Image
 
 from robo_genesis.build.render import render
 from robo_genesis.build.site_archive import pack
 from robo_genesis.build.site_checks import check_site
 from robo_genesis.core import project
-from robo_genesis.lessons import book_pages
 
 pytestmark = pytest.mark.engine
 ADDRESS = "https://example.org/robot/course/"
@@ -20,11 +19,9 @@ ADDRESS = "https://example.org/robot/course/"
 def html(site, tmp_path_factory):
     """The pages that the site was just built from, rendered once more with an address."""
     folder = tmp_path_factory.mktemp("address")
-    fingerprint = book_pages.fingerprint(book_pages.find_pages(project.BOOK), project.ROOT)
-    executed = project.page_cache_folder(fingerprint)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SITE_URL", ADDRESS.rstrip("/"))
-        html = render(project.BOOK, folder / "staging", executed, folder / "render.log")
+        html = render(project.BOOK, folder / "staging", executed_folder(), folder / "render.log")
     pack(html)
     return html
 
