@@ -21,7 +21,7 @@ STATE_OF_CODE = {"stale": "stale", "older-schema": "stale", "failed": "failed"}
 """State by the code of a refusal; every other code is `refused`."""
 
 PASSING = ("verified", "inconclusive", "missing", "stale")
-"""States with which a build continues; without a manifest, a panel replaces the figures."""
+"""States with which a build continues; a lesson shows the figures of a verified run only."""
 
 UNREADABLE = "The bundle was refused. `make verify` shows the found and the expected value."
 SUMMARIES = {

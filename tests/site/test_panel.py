@@ -34,8 +34,8 @@ FILMED = Filmed("the box", "the first run")
 
 def test_a_missing_run_is_named_with_its_command(tmp_path):
     (missing,) = measured.recorded_runs(tmp_path, "l04")
-    text = " ".join(node.astext() for node in sphinx_panel.missing(missing))
-    assert f"No evidence from amdgpu for Genesis {project.engine_pin()} (amdgpu-missing)." in text
+    text = " ".join(node.astext() for node in sphinx_panel.withheld(missing))
+    assert f"No figures from amdgpu for Genesis {project.engine_pin()} (amdgpu-missing)." in text
     assert "$ make evidence LESSON=l04 BACKEND=amdgpu" in text
 
 
@@ -52,8 +52,7 @@ def test_a_missing_run_is_named_with_its_command(tmp_path):
 def test_backend_facts_are_the_manifest_s(folder, switches, shown):
     predicate(environment=switches)(folder)
     facts = bundle.read_manifest(folder).predicate
-    sentence, table = sphinx_panel.backend_facts("The run passed.", facts)
-    assert sentence.astext() == "Reference run. The run passed."
+    table = sphinx_panel.backend_facts(facts)
     found = dict(rows_of([table]))
     assert found["device"] == facts.backend.device_name
     assert found["run"] == facts.run_id[:8]
@@ -82,7 +81,8 @@ def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(
     part("render", renderer=attack)(folder)
     predicate(environment={"GS_LOG": attack})(folder)
     facts = bundle.read_manifest(folder).predicate
-    sentence, table = sphinx_panel.backend_facts(f"Frames by {attack}.", facts)
+    sentence = sphinx_panel.introduction(f"Frames by {attack}.")
+    table = sphinx_panel.backend_facts(facts)
     assert sentence.astext() == f"Reference run. Frames by {attack}."
     found = dict(rows_of([table]))
     both = f"{attack}, {attack}"
@@ -103,7 +103,7 @@ def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(
 def test_the_reason_of_a_missing_run_is_never_markup(tmp_path, attack):
     folder, status = tmp_path / attack[:3], Status("stale", attack, "", None, "stale", attack)
     block = nodes.container(
-        "", *sphinx_panel.missing(Run("l04/lab", folder, status, recorded=True))
+        "", *sphinx_panel.withheld(Run("l04/lab", folder, status, recorded=True))
     )
     assert block.astext().count(attack) == 4
     made = {n.tagname for n in block.findall(nodes.Element)}
@@ -323,6 +323,28 @@ def test_a_recorded_run_replays_from_its_own_record(tmp_path, record):
     assert [animation.name for animation in model.animations] == ["G1", "G2", "G3"]
     assert trace.link_pos[:, 2].astype(np.float32).tobytes() in model.binary_blob()
     assert len(list(block.findall(nodes.row))) == 1 + len(trace.t)
+
+
+def test_a_lecture_shows_the_compared_metrics_and_no_picture(tmp_path, record, monkeypatch):
+    metrics = [nodes.paragraph("", "The metrics.")]
+    monkeypatch.setattr(sphinx_panel, "comparison", lambda *asked: metrics)
+    panel = Panel(tmp_path / "book", table=None).panel(record())
+    assert "Reference run." in panel.astext()
+    assert "The metrics." in panel.astext()
+    assert not list(panel.findall(nodes.image)) + list(panel.findall(nodes.table))
+
+
+@pytest.mark.parametrize("state", ["inconclusive", "stale", "failed", "refused", "missing"])
+@pytest.mark.parametrize("options", [{}, {"table": None}])
+def test_a_run_that_is_not_verified_shows_its_state_alone(tmp_path, record, state, options):
+    run = record()
+    manifest = run.status.manifest if state == "inconclusive" else None
+    status = Status(state, "amdgpu", "Found a, expected b.", manifest, summary="Why.")
+    panel = Panel(tmp_path / "book", **options).panel(Run("l04/lab", run.folder, status, True))
+    text = f"No figures from amdgpu for Genesis {project.engine_pin()} (amdgpu-{state}). Why."
+    assert panel.astext().startswith(text)
+    shown = (nodes.image, nodes.table, nodes.raw, nodes.bullet_list)
+    assert not [n for n in panel.findall(nodes.Element) if isinstance(n, shown)]
 
 
 def test_another_robot_s_shape_is_an_error_of_the_page(tmp_path, record):

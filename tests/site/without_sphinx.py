@@ -11,7 +11,8 @@ from robo_genesis.site.evidence import panel
 class Panel(panel.Evidence):
     """The panel of recorded runs for a book's page `lessons/page`."""
 
-    def __init__(self, book):
+    def __init__(self, book, **options):
+        self.options = options
         app = SimpleNamespace(outdir=book / "_build" / "html")
         env = SimpleNamespace(srcdir=book, app=app, docname="lessons/page")
         self.state = SimpleNamespace(

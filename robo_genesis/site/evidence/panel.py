@@ -1,8 +1,8 @@
 """The reference run in a lesson: its figures, frames, metrics and backend, or why it is missing.
 
-A page writes ```` ```{evidence} l04 ````. The panel shows only an accepted bundle of
-`book/evidence/<lesson>/<backend>/`. Where there is none, it gives the reason and the command that
-creates one.
+A lab writes ```` ```{evidence} l04 ````, a lecture adds the option `:table:` and gets the metrics
+alone. The panel shows only a verified bundle of `book/evidence/<lesson>/<backend>/`. Otherwise it
+gives the state, the reason and the command that records a new one.
 """
 
 import io
@@ -13,6 +13,7 @@ from html import escape
 from pathlib import Path
 
 from docutils import nodes
+from docutils.parsers.rst.directives import flag
 from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
@@ -50,9 +51,10 @@ RECORDING = "{doc}`/evidence/recording` says what that machine needs."
 
 
 class Evidence(SphinxDirective):
-    """Show the recorded runs of a lesson, the reference backend first."""
+    """Show the recorded runs of a lesson, the reference backend first; `:table:` the metrics."""
 
     required_arguments = 1
+    option_spec = {"table": flag}  # noqa: RUF012 - as docutils declares it
 
     def run(self) -> list[nodes.Node]:
         """Return one panel per backend; the reference backend has one even without a run."""
@@ -63,18 +65,21 @@ class Evidence(SphinxDirective):
         """Return the panel of one backend."""
         lesson, folder, status = run.lesson, run.folder, run.status
         panel = nodes.container(classes=["evidence-panel", f"status-{status.state}"])
-        if run.predicate is None:
-            panel += missing(run)
+        if run.predicate is None or status.state != "verified":
+            panel += withheld(run)
             panel += self.parse_text_to_nodes(RECORDING)
             return panel
-        panel += backend_facts(status.sentence, run.predicate)
         panel["evidence_runs"] = (run.key,)
-        compared = compared_cases(lesson)
-        drawn = [response(folder, compared, status.backend)] if compared else []
-        for picture in (*drawn, *frames(folder, filmed(lesson), status.backend)):
-            panel += figure(self, f"{lesson}-{status.backend}-{picture.name}", picture)
-        if compared:
-            panel += replay_block(self, run.key, folder)
+        if "table" in self.options:
+            panel += introduction(status.sentence)
+        else:
+            panel += [introduction(status.sentence), backend_facts(run.predicate)]
+            compared = compared_cases(lesson)
+            drawn = [response(folder, compared, status.backend)] if compared else []
+            for picture in (*drawn, *frames(folder, filmed(lesson), status.backend)):
+                panel += figure(self, f"{lesson}-{status.backend}-{picture.name}", picture)
+            if compared:
+                panel += replay_block(self, run.key, folder)
         here = measured.page_run(Path(self.env.srcdir), lesson)
         found = comparison(here.folder, folder)
         panel += nodes.container("", *found, evidence_runs=(here.key, run.key))
@@ -91,19 +96,25 @@ def figure(directive: SphinxDirective, anchor: str, picture: Picture) -> nodes.N
     return nodes.figure("", image, nodes.caption("", picture.caption), ids=[anchor])
 
 
-def missing(run: Run) -> list[nodes.Node]:
-    """Return the missing evidence, the reason, and the command that creates it."""
+def withheld(run: Run) -> list[nodes.Node]:
+    """Return the state of a run that is not shown, the reason, and the command that records one."""
     status = run.status
-    what = f"No evidence from {status.backend} for Genesis {project.engine_pin()} ({status.badge})."
-    why = f" {status.summary or status.reason} On a machine with this backend, this makes it:"
+    what = f"No figures from {status.backend} for Genesis {project.engine_pin()} ({status.badge})."
+    why = f" {status.summary or status.reason} On a machine with this backend, this records a run:"
     return [
         nodes.paragraph("", "", nodes.strong("", what), nodes.Text(why)),
         nodes.literal_block(run.command, run.command, language="console"),
     ]
 
 
-def backend_facts(sentence: str, predicate: Predicate) -> list[nodes.Node]:
-    """Return the sentence on a run's state and the facts of its backend."""
+def introduction(sentence: str) -> nodes.Node:
+    """Return the sentence on a run's state as a paragraph."""
+    title = nodes.strong("", "Reference run.")
+    return nodes.paragraph("", "", title, nodes.Text(f" {sentence}"))
+
+
+def backend_facts(predicate: Predicate) -> nodes.Node:
+    """Return the facts of a run's backend as a table."""
     backend = predicate.backend
     pairs = (f"{name}={value}" for name, value in predicate.environment.items())
     switches = [nodes.literal("", pair) for pair in pairs]
@@ -118,9 +129,7 @@ def backend_facts(sentence: str, predicate: Predicate) -> list[nodes.Node]:
         "recorded": predicate.started[:10],
         "run": predicate.run_id[:8],
     }
-    rows = [{"what": name, "value": value} for name, value in facts.items()]
-    title = nodes.strong("", "Reference run.")
-    return [nodes.paragraph("", "", title, nodes.Text(f" {sentence}")), text_table(rows)]
+    return text_table([{"what": name, "value": value} for name, value in facts.items()])
 
 
 def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture:
