@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 INDEXES = ("index.html", "index.htm")
-"""The files that stand for a folder."""
+"""The files that a folder is served as."""
 
 
 class SiteHandler(SimpleHTTPRequestHandler):
