@@ -1,7 +1,8 @@
 """Build the course site: `make book`.
 
 Environment: RENDER=0|1 (default 1: the labs' camera is used), JOBS (pages at once; default one
-for each core), RELEASE=0|1 (1: from a clean tree only, with all required evidence current),
+for each core), RELEASE=0|1 (1: this script runs again in a fresh checkout of HEAD, and all required
+evidence must be current),
 SITE_URL (the address of the published site) and EXECUTED (a folder with all pages as
 `make execute` exports them: then none is executed here).
 Backend is always the CPU; `make evidence` records accelerators.
@@ -12,26 +13,43 @@ Exit status: 0 published, 1 failed, 130 interrupted; unless it is 0, the old sit
 import os
 import sys
 
-from robo_genesis.build.command import choice, collect_rarely, parser, path, run, set_contract
+from robo_genesis.build.command import (
+    absolute,
+    choice,
+    collect_rarely,
+    parser,
+    path,
+    run,
+    run_status,
+    set_contract,
+)
 from robo_genesis.build.up_to_date import nothing_changed
-from robo_genesis.core.project import PUBLISHED, ROOT
+from robo_genesis.core.project import BOOK, PUBLISHED, ROOT
 
 
 def main() -> int:
     """Run the build and return its exit status."""
-    args = parser(__doc__).parse_args()
+    arguments = parser(__doc__)
+    arguments.add_argument(
+        "--to",
+        type=absolute,
+        help="a release: book folder that gets the site; RELEASE=1 sets it in a fresh checkout",
+    )
+    args = arguments.parse_args()
     set_contract()
     release = choice("RELEASE", "0", ("0", "1")) == "1"
     executed, jobs = path("EXECUTED"), os.environ.get("JOBS") or None
     if release and os.environ["ROBO_GENESIS_RENDER"] == "0":
         sys.exit("RENDER='0' is not valid with RELEASE=1, which needs camera frames. Unset one.")
-    if release and executed:
-        sys.exit(
-            f"EXECUTED={os.environ['EXECUTED']!r} is not valid with RELEASE=1, which executes all "
-            "pages anew. Unset one."
-        )
+    if release and args.book != BOOK:
+        sys.exit(f"--book {args.book} is not valid with RELEASE=1, which builds the commit's book.")
     if jobs is not None and not (jobs.isdecimal() and int(jobs) > 0):
         sys.exit(f"JOBS={jobs!r} is not valid. Give the number of pages that run at once, from 1.")
+    if release and args.to is None:
+        from robo_genesis.build.fresh_checkout import release as build_fresh
+
+        options = ["--to", str(args.book), "--timeout", str(args.timeout)]
+        return run_status(lambda: build_fresh(options, args.cache, executed=executed), "published")
     published = args.book / PUBLISHED
     if not (release or executed) and (lines := nothing_changed(ROOT, args.book, published)):
         print("\n".join(lines))

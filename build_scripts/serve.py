@@ -4,8 +4,9 @@ import os
 import sys
 from contextlib import suppress
 from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from http.server import ThreadingHTTPServer
 
+from robo_genesis.build.serve import SiteHandler
 from robo_genesis.core.project import BOOK, PUBLISHED
 
 
@@ -17,7 +18,7 @@ def main() -> int | str:
         return f"No site in {html}. `make book` builds it."
     if not port.isdecimal() or not 0 < int(port) < 65536:
         return f"PORT={port!r} is not valid. Choices: 1 to 65535."
-    handler = partial(SimpleHTTPRequestHandler, directory=str(html))
+    handler = partial(SiteHandler, directory=str(html))
     try:
         server = ThreadingHTTPServer(("127.0.0.1", int(port)), handler)
     except OSError as error:

@@ -87,6 +87,24 @@ def test_the_book_is_built_from_what_the_pages_jobs_export():
     assert "execute" in JOBS["book"]["needs"]
 
 
+def test_what_is_deployed_has_passed_the_gate_of_releases():
+    builds = [
+        one for job in JOBS.values() for one in job["steps"] if "make book" in one.get("run", "")
+    ]
+    (book,) = builds
+    assert book in JOBS["book"]["steps"]
+    assert book["env"]["RELEASE"] == "1"
+    assert "book" in JOBS["deploy"]["needs"]
+    sites = [
+        name
+        for name, job in JOBS.items()
+        for one in job["steps"]
+        if "upload-pages-" in one.get("uses", "")
+    ]
+    assert sites == ["book"]
+    assert "if" not in JOBS["book"]
+
+
 def test_compiled_kernels_are_saved_when_a_page_fails_and_restored_by_the_same_name():
     for name in ("test", "execute"):
         save = step(JOBS[name], "actions/cache/save")

@@ -52,9 +52,19 @@ def run(task: Callable[[], Sequence[str]], done: str) -> int:
     Returns:
         0 done, 1 failed, 130 interrupted.
     """
+
+    def printed() -> int:
+        print("\n".join(task()))
+        return 0
+
+    return run_status(printed, done)
+
+
+def run_status(task: Callable[[], int], done: str) -> int:
+    """Run a task that returns an exit status; see `run`."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        print("\n".join(task()))
+        return task()
     except KeyboardInterrupt:
         print(f"\nInterrupted: nothing was {done}.", file=sys.stderr)
         return 130
@@ -62,8 +72,6 @@ def run(task: Callable[[], Sequence[str]], done: str) -> int:
         report = str(error)
     except OSError as error:
         report = f"A file cannot be used: {error}. Give it free space or write access."
-    else:
-        return 0
     print(f"\n{report}\n\nFAILED: nothing was {done}.", file=sys.stderr)
     return 1
 

@@ -4,12 +4,14 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from robo_genesis.core.git import git
-from robo_genesis.evidence.bundle import GitRecord
-from robo_genesis.evidence.status import Status, bundle_status, recorded_folders, recorded_status
+from robo_genesis.evidence.bundle import GitRecord, Manifest
+from robo_genesis.evidence.status import bundle_status, recorded_folders, recorded_status
 from robo_genesis.lessons.registry import find_lesson
 
 
-def missing_for_release(book: Path, built: Mapping[str, Path | None], root: Path) -> list[str]:
+def missing_for_release(
+    book: Path, built: Mapping[str, Path | None], manifests: Mapping[str, Manifest], root: Path
+) -> list[str]:
     """Return a line for each requirement of a release that the evidence of a book does not meet.
 
     A lesson requires the evidence of its minimum hardware: this build's if that is the CPU, else
@@ -20,15 +22,20 @@ def missing_for_release(book: Path, built: Mapping[str, Path | None], root: Path
         book: the folder of the pages.
         built: the folder of the lab's bundle of this build, by lesson of the book; None for a
             lesson without a lab.
+        manifests: the manifests of all bundles of this build, by page.
         root: the checkout that the build's bundles must name.
     """
-    lines = [line for lesson in built for line in _required(book, lesson, built[lesson], root)]
+    lines = [line for lesson in built for line in _required(book, lesson, built[lesson])]
+    commit = git(root, "rev-parse", "HEAD").strip()
+    for page, manifest in manifests.items():
+        lines += _of_commit(f"{page}, this build", manifest, commit)
     for path in recorded_folders(book):
-        lines += _of_commit(f"{path.relative_to(book)}", recorded_status(book, *path.parts[-2:]))
+        recorded = recorded_status(book, *path.parts[-2:])
+        lines += _of_commit(f"{path.relative_to(book)}", recorded.manifest)
     return lines
 
 
-def _required(book: Path, lesson: str, folder: Path | None, root: Path) -> Iterator[str]:
+def _required(book: Path, lesson: str, folder: Path | None) -> Iterator[str]:
     if folder is None:
         yield f"{lesson} has no lab in the table of contents, so this build measures nothing of it."
         return
@@ -40,16 +47,13 @@ def _required(book: Path, lesson: str, folder: Path | None, root: Path) -> Itera
             f"{lesson} requires evidence of its minimum hardware, {hardware}, which is "
             f"{needed.state}: {needed.reason}"
         )
-    if here.manifest is not None:
-        commit = git(root, "rev-parse", "HEAD").strip()
-        yield from _of_commit(f"{lesson} on {here.backend}, this build", here, commit)
 
 
-def _of_commit(what: str, status: Status, commit: str | None = None) -> Iterator[str]:
+def _of_commit(what: str, manifest: Manifest | None, commit: str | None = None) -> Iterator[str]:
     """Yield why a shown bundle was not made from one commit."""
-    if status.manifest is None:
+    if manifest is None:
         return
-    git: GitRecord | None = status.manifest.predicate.git
+    git: GitRecord | None = manifest.predicate.git
     if git is None or git.dirty:
         found = "outside a git checkout" if git is None else f"from a changed tree ({git.commit})"
         yield f"{what}: recorded {found}. Commit first, then record again."

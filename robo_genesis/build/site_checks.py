@@ -1,4 +1,4 @@
-"""Checks on the built site that need no browser: links, alt texts, third parties, leftovers."""
+"""Checks on the built site that need no browser: links, alt texts, scripts, leftovers."""
 
 import re
 from collections.abc import Iterator
@@ -7,6 +7,8 @@ from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urldefrag, urlsplit
 
 from bs4 import BeautifulSoup, Tag
+
+from robo_genesis.build import site_scripts
 
 ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
 # A link of these kinds names a page for readers or crawlers; the browser does not load it.
@@ -37,10 +39,8 @@ class Site:
 
     def __init__(self, html: Path, base: str = "/"):
         self.root, self.base = html.resolve(), base
-        self.pages = {
-            path: BeautifulSoup(path.read_text("utf8"), "html.parser")
-            for path in sorted(self.root.rglob("*.html"))
-        }
+        self.texts = {p: p.read_text("utf8") for p in sorted(self.root.rglob("*.html"))}
+        self.pages = {p: BeautifulSoup(text, "html.parser") for p, text in self.texts.items()}
         self.anchors: dict[Path, set[str]] = {}
         self.addresses: list[tuple[Path, Tag, str]] = []
         self.styles = [(path, path.read_text("utf8")) for path in sorted(self.root.rglob("*.css"))]
@@ -65,7 +65,7 @@ def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
         base: the path that this folder will have on its server, with a slash at both ends.
     """
     site = Site(html, base)
-    checks = (check_links, check_alt_texts, check_third_parties, check_leftovers)
+    checks = (check_links, check_alt_texts, check_third_parties, check_scripts, check_leftovers)
     return [check(site) for check in checks]
 
 
@@ -115,6 +115,22 @@ def check_third_parties(site: Site) -> SiteCheck:
     found += _style_addresses(site) + _script_addresses(site)
     problems = sorted({f"{site.name(path)}: {url}" for path, url in found if ELSEWHERE.match(url)})
     return SiteCheck("third parties", len(found), tuple(problems))
+
+
+def check_scripts(site: Site) -> SiteCheck:
+    """The site runs the scripts of the theme and of the course only; see `site_scripts`."""
+    pages = [
+        site_scripts.Page(site.root, site.base, path, page, site.texts[path])
+        for path, page in site.pages.items()
+    ]
+    problems = {
+        f"{site.name(page.path)}: {line}"
+        for page in pages
+        for line in site_scripts.page_problems(page)
+    }
+    scripts = sum(len(page.parsed.find_all("script")) for page in pages)
+    found = (*sorted(problems), *site_scripts.file_problems(site.root))
+    return SiteCheck("scripts", scripts, found)
 
 
 def check_leftovers(site: Site) -> SiteCheck:

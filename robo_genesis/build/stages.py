@@ -24,6 +24,7 @@ from robo_genesis.build.render import render
 from robo_genesis.build.site_address import site_address, site_root
 from robo_genesis.build.site_archive import pack
 from robo_genesis.build.site_checks import check_site
+from robo_genesis.build.site_sums import write_sums
 from robo_genesis.core import project
 from robo_genesis.core.files import locked, settle
 from robo_genesis.core.git import unclean
@@ -46,8 +47,9 @@ class Build:
     """What to build, with which resources, and where progress is printed.
 
     `jobs` None means one for each core; `verify` None is the course's own verification. `release`
-    demands a clean tree and every lesson's required evidence, and executes all pages anew.
-    `executed` holds all pages as another machine executed them; then none is executed here.
+    demands a clean tree and every lesson's required evidence, and reuses no executed page of the
+    cache; `fresh_checkout` calls it so. `executed` holds all pages as another machine executed
+    them; then none is executed here. `to` is the book that gets the site, by default `book`.
     `command` is the command that bundles name.
     """
 
@@ -59,6 +61,7 @@ class Build:
     verify: Verify | None = None
     release: bool = False
     executed: Path | None = None
+    to: Path | None = None
     command: str = "make book"
     say: Callable[[str], None] = say
 
@@ -78,12 +81,13 @@ def run_build(build: Build) -> list[str]:
         ProjectError: the checkout or SITE_URL is not fit for a build.
     """
     with build_lock(build.cache), staging_folder(build.cache) as staging:
-        settle(build.book / project.PUBLISHED)
+        target = build.to or build.book
+        settle(target / project.PUBLISHED)
         bundle_store.recover(build.book / "evidence")
         inputs = up_to_date.inputs_digest(build.root, build.book)
         progress = Progress(build.say)
         site_address()  # refused here, because rendering would fail only after minutes
-        npm.packages()
+        npm.require_published()
         engine, pages, folder = _prepare(build)
         verify = build.verify or partial(verify_bundle, book=build.book)
         if build.release:
@@ -95,13 +99,14 @@ def run_build(build: Build) -> list[str]:
         results = _execute(build, pages, folder, progress)
         manifests = _verify(build.book, verify, results, progress)
         if build.release:
-            problems = missing_for_release(build.book, _labs(results), build.root)
+            problems = missing_for_release(build.book, _labs(results), manifests, build.root)
             _require_for_release([*unclean(build.root), *problems])
             progress("release", "clean tree, current evidence")
         progress("render", "all pages")
         executed = [r.page.docname for r in results if r.status == "executed"]
         html = render(build.book, staging, folder, build.cache / "render.log", executed)
-        progress("pack", pack(html).name)  # last of the site's files; the checks look for it
+        progress("pack", pack(html).name)
+        progress("sums", write_sums(html).name)  # last of the site's files; the checks look for it
         checked = _check(html, progress)
         project.forget_old_pages(folder)
         summary = partial(_summary, engine, results, manifests, checked)
@@ -110,7 +115,7 @@ def run_build(build: Build) -> list[str]:
             now = up_to_date.inputs_digest(build.root, build.book)
             up_to_date.record(published, inputs, now, summary(executed=0))
 
-        html = publish(build.book, html, results, finish)  # last: after it, nothing may fail
+        html = publish(target, html, results, finish)  # last: after it, nothing may fail
         progress("publish", str(html))
         return [f"Site: {html / 'index.html'}", *summary(executed=len(executed))]
 

@@ -38,7 +38,7 @@ def derived(
     if content is None:
         content = make()
         with suppress(OSError):  # without a writable cache the result is made again each time
-            write_whole(file, hashlib.sha256(content).digest() + content)
+            write_whole(file, _seal(file, content) + content)
             _forget(file.parent)
     return content
 
@@ -49,14 +49,24 @@ def _installed() -> list[tuple[str, str, int]]:
 
 
 def _get(file: Path) -> bytes | None:
-    """Return the content of a file, None if it is missing or incomplete."""
+    """Return the content of a file, None if it is missing or is not what was stored under its name.
+
+    The digest covers the name, so that one stored file in the place of another is noticed.
+    """
     try:
         os.utime(file)
         stored = file.read_bytes()
     except OSError:
         return None
     digest, content = stored[:DIGEST], stored[DIGEST:]
-    return content if hashlib.sha256(content).digest() == digest else None
+    if digest == _seal(file, content):
+        return content
+    print(f"{file} is not what was stored there: it is made again", file=sys.stderr)
+    return None
+
+
+def _seal(file: Path, content: bytes) -> bytes:
+    return hashlib.sha256(f"{file.parent.name}/{file.name}\0".encode() + content).digest()
 
 
 def _forget(folder: Path) -> None:

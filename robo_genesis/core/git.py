@@ -1,6 +1,8 @@
 """Queries of a git checkout."""
 
+import os
 import subprocess
+from collections.abc import Mapping
 from pathlib import Path
 
 from robo_genesis.core.project import ProjectError
@@ -12,13 +14,20 @@ SHOWN = 5
 def git(root: Path, *arguments: str) -> str:
     """Return the output of git in a folder; a query does not rewrite the user's index.
 
+    Variables such as GIT_DIR, which would let git read another repository, are left out.
+
     Raises:
         ProjectError: git is not installed, or it failed; the message contains its output.
     """
     command = ["git", "--no-optional-locks", "-C", str(root), *arguments]
     try:
         done = subprocess.run(
-            command, capture_output=True, encoding="utf8", errors="replace", check=False
+            command,
+            env=without_git(os.environ),
+            capture_output=True,
+            encoding="utf8",
+            errors="replace",
+            check=False,
         )
     except OSError as error:
         raise ProjectError("Git is not installed. Install it: apt install git.") from error
@@ -26,6 +35,11 @@ def git(root: Path, *arguments: str) -> str:
         output = done.stderr.strip() or f"exit status {done.returncode}"
         raise ProjectError(f"git {arguments[0]} failed in {root}: {output}")
     return done.stdout
+
+
+def without_git(environment: Mapping[str, str]) -> dict[str, str]:
+    """Return an environment without the variables that only git reads."""
+    return {name: value for name, value in environment.items() if not name.startswith("GIT_")}
 
 
 def git_or_none(root: Path, *arguments: str) -> str | None:

@@ -1,11 +1,13 @@
 """What a reader finds on the built pages."""
 
 import json
+import subprocess
 from importlib import import_module
 
 import pytest
 from built_site import LESSON_PAGES, MEASURING_PAGES, parsed
 
+from robo_genesis.build.site_sums import SUMS
 from robo_genesis.core import project
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.registry import LESSONS
@@ -48,6 +50,15 @@ def test_nothing_published_names_a_path_of_the_builder(site):
     texts = [p for p in site.parent.rglob("*") if p.suffix in {".html", ".json", ".txt", ".md"}]
     assert texts
     assert [p.name for p in texts if str(project.ROOT) in p.read_text(errors="ignore")] == []
+
+
+def test_the_sums_cover_every_other_file_of_the_site(site):
+    command = ["sha256sum", "--check", "--strict", SUMS]
+    done = subprocess.run(command, cwd=site, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    files = [path.relative_to(site).as_posix() for path in site.rglob("*") if path.is_file()]
+    assert {f"{name}: OK" for name in files} == {*done.stdout.splitlines(), f"{SUMS}: OK"}
+    assert ".buildinfo" not in files
 
 
 def test_build_ends_with_what_it_was_made_of(build_output):

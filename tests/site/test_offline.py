@@ -8,6 +8,7 @@ from watching import SERVED_ONLY, only_from, page_names, watch
 
 from robo_genesis.build.site_archive import ARCHIVE, FOLDER
 from robo_genesis.build.site_checks import Site, check_site
+from robo_genesis.build.site_sums import SUMS
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -105,7 +106,10 @@ def test_the_theme_switches_and_stays_on_the_next_page(browser, base):
 def test_the_archive_is_a_whole_site_without_itself(unpacked, site):
     assert {c.name: c.problems for c in check_site(unpacked) if c.problems} == {}
     kept = {p.relative_to(unpacked) for p in unpacked.rglob("*") if p.is_file()}
-    assert kept == {p.relative_to(site) for p in site.rglob("*") if p.is_file()} - {Path(ARCHIVE)}
+    assert kept == {p.relative_to(site) for p in site.rglob("*") if p.is_file()} - {
+        Path(ARCHIVE),
+        Path(SUMS),
+    }
 
 
 def test_links_inside_the_site_name_files_so_that_they_work_from_disk(site):

@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -10,11 +9,11 @@ from pathlib import Path
 from sphinx.application import Sphinx
 
 from robo_genesis.build import npm
+from robo_genesis.build.site_scripts import VIEWER
 
 FOLDER = "replay"
 """Folder of the site; Jupyter Book would load every script of `_static` on every page."""
 
-VIEWER = "model-viewer.js"
 VIEWER_LICENCE = "LICENSE-Apache-2.0.txt"
 NOTICE = "NOTICE.txt"
 ELSEWHERE = re.compile(
@@ -41,8 +40,7 @@ The viewer is one file made of these packages; the text of each licence is in th
 @cache
 def viewer() -> bytes:
     """Return the viewer's script without addresses of other hosts."""
-    package = npm.packages() / "@google" / "model-viewer"
-    script = (package / "dist" / "model-viewer-umd.min.js").read_bytes()
+    script = npm.published("@google/model-viewer/dist/model-viewer-umd.min.js")
     return b"/* See " + NOTICE.encode() + b". */\n" + ELSEWHERE.sub(b"", script)
 
 
@@ -65,12 +63,11 @@ def model_credits(folder: Path) -> Iterator[str]:
 
 
 def copy_licences(folder: Path) -> Iterator[str]:
-    """Copy the licence of each package in the viewer; yield a line of the notice for each."""
+    """Write the licence of each package in the viewer; yield a line of the notice for each."""
     for name in PARTS:
-        package = npm.packages() / name
-        about = json.loads((package / "package.json").read_text("utf8"))
+        about = npm.locked(name)
         file = f"LICENSE-{name.strip('@').replace('/', '-')}.txt"
         if name == PARTS[0]:
             file = VIEWER_LICENCE
-        shutil.copyfile(package / "LICENSE", folder / file)
+        (folder / file).write_bytes(npm.published(f"{name}/LICENSE"))
         yield f"- {name} {about['version']}: {about['license']}, {file}\n"
