@@ -1,17 +1,21 @@
-"""Named checks, and the error that names each check that failed."""
+"""Named checks: the values that they find, and the error that names each check that failed.
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+A check is a function that yields findings. Its name is that of the function, and its docstring
+says what it requires. Each finding pairs a measured value with a judgement.
+"""
+
+import math
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from typing import Any, TypeVar
 
 import numpy as np
 
+from robo_genesis.core.check_spec import MASS_SHARE, TIME_TOLERANCE
 from robo_genesis.core.trace import TimeSeries
 
 Subject = TypeVar("Subject")
-
-MASS_SHARE = 1e-5
-"""Relative tolerance of an engine's mass against density times volume: float32."""
+Value = bool | int | float | str | None
 
 
 class CheckFailed(AssertionError):  # noqa: N818 - read aloud: check failed
@@ -19,69 +23,182 @@ class CheckFailed(AssertionError):  # noqa: N818 - read aloud: check failed
 
 
 @dataclass(frozen=True, slots=True)
+class Finding:
+    """One value that a check found, and its judgement.
+
+    `expected` describes the allowed values in a message. A finding that is not `recorded` is about
+    the configuration, or repeats metrics: a bundle has both elsewhere.
+    """
+
+    label: str
+    found: Any
+    passed: bool
+    expected: str
+    recorded: bool = True
+
+    @property
+    def problem(self) -> str:
+        """The message about a value that is not allowed."""
+        return f"{self.label} is {shown(plain(self.found))}, expected {self.expected}"
+
+
+@dataclass(frozen=True, slots=True)
 class Check:
-    """Outcome of one check; `detail` says what was found if it failed, else what it requires."""
+    """Outcome of one check.
+
+    `detail` names the problems if it failed, else what the check requires. `found` has the recorded
+    values by label; neither `detail` nor the allowed values are in a bundle.
+    """
 
     name: str
     passed: bool
     detail: str
+    found: Mapping[str, Value] = field(default_factory=dict)
+
+    def record(self) -> dict[str, Any]:
+        """Return the outcome as JSON values for a bundle."""
+        return {"name": self.name, "passed": self.passed, "found": dict(self.found)}
 
 
-def evaluate(
-    named: Sequence[Callable[[Subject], Iterable[str]]], run: Subject
-) -> tuple[Check, ...]:
-    """Run checks on a subject; each yields the problems that it finds.
-
-    The name and docstring of a function are those of its check.
-    """
-    outcomes = []
-    for check in named:
-        try:
-            problems = list(check(run))
-        except (ValueError, LookupError, ArithmeticError) as error:
-            # Arrays that do not fit together, or values beyond what floats can hold.
-            problems = [f"cannot be evaluated: {error!r}"]
-        requirement = (check.__doc__ or "").strip()
-        outcomes.append(Check(check.__name__, not problems, "; ".join(problems) or requirement))
-    return tuple(outcomes)
+def plain(value: Any) -> Value:
+    """Return a value as JSON can hold it: sequences and numbers that are not finite as text."""
+    if isinstance(value, np.generic | np.ndarray):
+        value = value.tolist()
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    if isinstance(value, list | tuple):
+        return ", ".join(map(str, value))
+    assert value is None or isinstance(value, bool | int | float | str), value
+    return value
 
 
-def wrong_times(cases: Mapping[str, Any], traces: Mapping[str, TimeSeries]) -> Iterator[str]:
-    """Yield which runs do not have a state for t = 0 and one for each outer step, at k · dt.
-
-    Args:
-        cases: by name, with their outer `steps` and `dt` [s].
-        traces: by case.
-    """
-    for name, case in cases.items():
-        t, expected = traces[name].t, np.arange(case.steps + 1) * case.dt
-        if len(t) != len(expected) or not np.allclose(t, expected, rtol=0, atol=1e-9):
-            yield (
-                f"{name} has {len(t) - 1} steps to {t[-1]:g} s, asked for {case.steps} steps of "
-                f"{case.dt:g} s"
-            )
+def shown(value: Value) -> str:
+    """Return a found or expected value as text for a message."""
+    if value is None:
+        return "not observed"
+    return f"{value:g}" if isinstance(value, float) else str(value) or "none"
 
 
-def wrong_counts(found: Mapping[str, float], expected: Mapping[str, float]) -> Iterator[str]:
-    """Yield a message if the engine's counts of a model differ from the expected ones."""
-    if dict(found) != expected:
-        yield f"the model has {dict(found)}, expected {expected}"
+def noted(label: str, found: Any) -> Finding:
+    """Record a value without a judgement of its own."""
+    return Finding(label, found, True, "any value")
 
 
-def wrong_masses(found: Mapping[str, float], expected: Mapping[str, float]) -> Iterator[str]:
-    """Yield the bodies whose mass is not density times volume, or was not read.
+def equal(label: str, found: Any, expected: Any, recorded: bool = True) -> Finding:
+    """Require exactly the expected value."""
+    value, required = plain(found), plain(expected)
+    return Finding(label, value, value == required, shown(required), recorded)
+
+
+def within(label: str, found: float | None, expected: float, tolerance: float) -> Finding:
+    """Require a value that differs from the expected one by no more than the tolerance."""
+    passed = found is not None and abs(found - expected) <= tolerance
+    return Finding(label, found, bool(passed), f"{expected:g} ± {tolerance:g}")
+
+
+def at_most(label: str, found: float | None, limit: float) -> Finding:
+    """Require a value up to the limit."""
+    passed = found is not None and found <= limit
+    return Finding(label, found, bool(passed), f"at most {limit:g}")
+
+
+def below(label: str, found: float | None, limit: float) -> Finding:
+    """Require a value below the limit."""
+    passed = found is not None and found < limit
+    return Finding(label, found, bool(passed), f"less than {limit:g}")
+
+
+def above(label: str, found: float | None, limit: float) -> Finding:
+    """Require a value above the limit."""
+    passed = found is not None and found > limit
+    return Finding(label, found, bool(passed), f"more than {limit:g}")
+
+
+def model_counts(found: Mapping[str, float], expected: Mapping[str, float]) -> Iterator[Finding]:
+    """Require the engine's counts of a model."""
+    for name in dict.fromkeys([*found, *expected]):
+        yield equal(name, found.get(name), expected.get(name))
+
+
+def masses(found: Mapping[str, float], expected: Mapping[str, float]) -> Iterator[Finding]:
+    """Require of each body the engine's mass to be density times volume.
 
     Args:
         found: the engine's mass of each body [kg].
         expected: density times volume of each body [kg].
     """
     for body, mass in expected.items():
-        measured = found.get(body, np.nan)
-        if not abs(measured - mass) <= MASS_SHARE * mass:
-            yield (
-                f"the engine's mass of the {body} is {measured:g} kg, density times volume is "
-                f"{mass:g} kg"
-            )
+        yield within(f"{body}.mass_kg", found.get(body), mass, MASS_SHARE * mass)
+
+
+def sample_times(cases: Mapping[str, Any], traces: Mapping[str, TimeSeries]) -> Iterator[Finding]:
+    """Require of each run one state at t = 0 and one after each outer step, at k · dt.
+
+    Args:
+        cases: by name, with their outer `steps` and `dt` [s].
+        traces: by case.
+    """
+    for name, case in cases.items():
+        t = traces[name].t
+        yield equal(f"{name}.steps", len(t) - 1, case.steps)
+        apart = np.abs(t - np.arange(len(t)) * case.dt).max()
+        yield at_most(f"{name}.time_error_s", apart, TIME_TOLERANCE)
+
+
+def factors(
+    cases: Mapping[str, Any], allowed: Mapping[tuple[str, str], Collection[str]]
+) -> Iterator[Finding]:
+    """Require of each pair of cases, which are dataclasses, to differ in the given fields alone."""
+    for (first, second), fields in allowed.items():
+        a, b = (asdict(cases[name]) for name in (first, second))
+        differ = sorted(name for name in a if a[name] != b[name])
+        label = f"difference of {first} and {second}"
+        yield equal(label, differ, sorted(fields), recorded=False)
+
+
+def conclude(
+    name: str, requirement: str, findings: Sequence[Finding], error: Exception | None = None
+) -> Check:
+    """Return the outcome of a check from its findings; a check without any fails.
+
+    Args:
+        name: of the check.
+        requirement: what the check requires.
+        findings: with different labels.
+        error: the exception that ended the check.
+
+    Raises:
+        ValueError: two findings have one label.
+    """
+    labels = [finding.label for finding in findings]
+    if len(set(labels)) != len(labels):
+        raise ValueError(f"Check {name} repeats a label in {labels}. Give each its own.")
+    problems = [finding.problem for finding in findings if not finding.passed]
+    if error is not None:
+        problems.append(f"cannot be evaluated: {error!r}")
+    elif not findings:
+        problems.append("nothing was found")
+    found = {finding.label: plain(finding.found) for finding in findings if finding.recorded}
+    return Check(name, not problems, "; ".join(problems) or requirement, found)
+
+
+def evaluate(
+    named: Sequence[Callable[[Subject], Iterable[Finding]]], run: Subject
+) -> tuple[Check, ...]:
+    """Run checks on a subject."""
+    outcomes = []
+    for check in named:
+        findings: list[Finding] = []
+        failure = None
+        try:
+            for finding in check(run):
+                findings.append(finding)  # noqa: PERF402 - those before an error are kept
+        except (ValueError, LookupError, ArithmeticError) as error:
+            # Arrays that do not fit together, or values beyond what floats can hold.
+            failure = error
+        requirement = (check.__doc__ or "").strip()
+        outcomes.append(conclude(check.__name__, requirement, findings, failure))
+    return tuple(outcomes)
 
 
 def require(lesson: str, outcomes: Sequence[Check]) -> str:

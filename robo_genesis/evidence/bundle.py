@@ -20,6 +20,7 @@ from pydantic import Field, TypeAdapter, ValidationError
 from robo_genesis.core.refusals import AGAIN, LONGEST_SHOWN, BundleRefused, expect, shown
 from robo_genesis.evidence.fields import (
     LARGEST,
+    Found,
     Index,
     Line,
     LongLine,
@@ -32,8 +33,8 @@ from robo_genesis.evidence.fields import (
 from robo_genesis.evidence.strict_json import read_json
 
 STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
-PREDICATE_TYPE = "urn:robo-genesis:evidence:v1"
-SCHEMA_VERSION = 1
+PREDICATE_TYPE = "urn:robo-genesis:evidence:v2"
+SCHEMA_VERSION = 2
 KEYED = ("schema_version", "lesson", "page", "source", "parameters", "seed")
 KEYED_OF_ENGINE = ("version", "quadrants_version", "precision")
 
@@ -110,11 +111,11 @@ class SourceRecord(Strict):
 
 
 class CheckRecord(Strict):
-    """Outcome of one named check."""
+    """Outcome of one named check: what it found, and whether it passed when it was recorded."""
 
     name: Line
     passed: bool
-    detail: Message
+    found: dict[Line, Found]
 
 
 class Predicate(Strict):
@@ -146,7 +147,7 @@ class Manifest(Strict):
 
     type_: Literal["https://in-toto.io/Statement/v1"] = Field(alias="_type")
     subject: list[Subject]
-    predicate_type: Literal["urn:robo-genesis:evidence:v1"] = Field(alias="predicateType")
+    predicate_type: Literal["urn:robo-genesis:evidence:v2"] = Field(alias="predicateType")
     predicate: Predicate
 
 

@@ -12,7 +12,7 @@ RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
 Index = Annotated[int, Field(ge=0, lt=2**31)]
 Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z$")]
 LARGEST = 2**53
-"""The largest magnitude of a metric: up to here, a float holds every integer."""
+"""The largest magnitude of a number: up to here, a float holds every integer."""
 
 
 def _plain(limit: int, other: str = "") -> AfterValidator:
@@ -34,7 +34,18 @@ Line = Annotated[str, _plain(200)]
 LongLine = Annotated[str, _plain(2000)]
 """A command or a path."""
 Message = Annotated[str, _plain(LINE_LIMIT, "\n\t\N{NO-BREAK SPACE}\N{ZERO WIDTH JOINER}")]
-"""A warning of the engine, which may have several lines, or the finding of a check."""
+"""A warning of the engine, which may have several lines."""
+
+
+def _bounded(value: object) -> object:
+    """Refuse a number whose magnitude is larger than that of any metric."""
+    if isinstance(value, int | float) and abs(value) > LARGEST:
+        raise ValueError("expected a magnitude of at most 2⁵³")
+    return value
+
+
+Found = Annotated[bool | int | float | LongLine | None, AfterValidator(_bounded)]
+"""A value that a check found."""
 
 
 class Strict(BaseModel):

@@ -150,7 +150,7 @@ class Recorder:
             },
             "parameters": run.page.parameters(),
             "seed": self.engine.seed,
-            "checks": [asdict(check) for check in run.outcomes()],
+            "checks": [check.record() for check in run.outcomes()],
             "warnings": self.engine.log.warnings,
             "git": git_record(),
             "source": {"page": os.environ.get("ROBO_GENESIS_PAGE_SHA256"), "modules": modules},

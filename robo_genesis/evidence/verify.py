@@ -1,16 +1,23 @@
 """Accept or refuse a bundle: whatever can be recomputed from its arrays is recomputed."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.core.checks import Check
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
+from robo_genesis.core.checks import Check, Value
+from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, shown
 from robo_genesis.evidence import bundle, bundle_files, evidence_key, manifest_rules
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.strict_json import differences
 from robo_genesis.lessons.experiment import Experiment
+
+SAME_FLOAT = 1e-9
+"""Relative tolerance of a recorded value of a check against the recomputed one."""
+
+ROUNDING = 1e-12
+"""Tolerance of such a value near zero, in its own unit."""
 
 
 def verify_bundle(
@@ -35,7 +42,7 @@ def verify_bundle(
         book: the folder of the pages.
 
     Returns:
-        The accepted manifest.
+        The accepted manifest; its checks have today's verdicts.
 
     Raises:
         BundleRefused: with a code, and a message that names the found and the expected value.
@@ -54,7 +61,7 @@ def verify_bundle(
     experiment = from_bundle(folder, manifest)
     check_metrics(folder, experiment)
     check_outcomes(manifest, experiment.outcomes())
-    return manifest
+    return as_judged_today(manifest)
 
 
 def check_metrics(folder: Path, experiment: Experiment) -> None:
@@ -76,22 +83,43 @@ def check_metrics(folder: Path, experiment: Experiment) -> None:
 
 
 def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:
-    """Require that the recorded outcomes are those of the runs, and that all checks passed.
+    """Require that the checks found what is recorded, and that all pass by today's judgement.
+
+    The recorded verdicts are not used, so a changed tolerance leaves a bundle current.
 
     Raises:
-        BundleRefused: `checks` if they differ; `failed` if they agree and a check failed.
+        BundleRefused: `checks` if names or found values differ; `failed` if a check fails.
     """
     recorded, file = manifest.predicate.checks, "manifest.json"
     names = [check.name for check in outcomes]
     expect("checks", file, "list of checks", [check.name for check in recorded], names)
     for check, computed in zip(recorded, outcomes, strict=True):
-        what = f"outcome of check {check.name}, recomputed as '{computed.detail}',"
-        expect("checks", file, what, check.passed, computed.passed)
-        expect("checks", file, f"detail of check {check.name}", check.detail, computed.detail)
-    failed = [f"[{check.name}] {check.detail}" for check in recorded if not check.passed]
+        for label in sorted(check.found.keys() | computed.found.keys()):
+            here, there = (of.get(label, "absent") for of in (check.found, computed.found))
+            if not agree(here, there):
+                what = f"{label}, found by check {check.name},"
+                values = f"{what} is {shown(here)}, expected {shown(there)}"
+                raise BundleRefused("checks", f"{file}: {values}. {AGAIN}")
+    failed = [f"[{check.name}] {check.detail}" for check in outcomes if not check.passed]
     if failed:
         raise BundleRefused(
             "failed",
             f"{file}: failed checks {' '.join(failed)}, expected none. Correct the lesson or "
             "report the cause to the engine's developers, then record the bundle again.",
         )
+
+
+def as_judged_today(manifest: Manifest) -> Manifest:
+    """Return an accepted manifest with the verdicts of `check_outcomes`: every check passed."""
+    predicate = manifest.predicate
+    passed = [check.model_copy(update={"passed": True}) for check in predicate.checks]
+    return manifest.model_copy(
+        update={"predicate": predicate.model_copy(update={"checks": passed})}
+    )
+
+
+def agree(recorded: Value, computed: Value) -> bool:
+    """Return whether two found values are equal; floats may differ by rounding on another CPU."""
+    if isinstance(recorded, float) and isinstance(computed, float):
+        return math.isclose(recorded, computed, rel_tol=SAME_FLOAT, abs_tol=ROUNDING)
+    return type(recorded) is type(computed) and recorded == computed

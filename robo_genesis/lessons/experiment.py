@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, evaluate
+from robo_genesis.core.checks import Check, Finding, evaluate
 from robo_genesis.core.metrics import CaseMetrics, Record, case_records, reading_records
 from robo_genesis.core.trace import TimeSeries
 
@@ -70,7 +70,7 @@ class MeasuringPage:
     kind: type[TimeSeries]
     readings: Callable[[bool], Mapping[str, Readings]]
     measure: Callable[[Any, Any], CaseMetrics]
-    checks: Sequence[Callable[["Experiment"], Iterable[str]]]
+    checks: Sequence[Callable[["Experiment"], Iterable[Finding]]]
     parameters: Callable[[], dict[str, Any]]
     modules: tuple[str, ...]
     links: tuple[str, ...] = ()

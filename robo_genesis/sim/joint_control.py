@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core.check_spec import LIMIT_TOLERANCE
 from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.joints import JointMap, to_numpy
 from robo_genesis.sim.session import require_built
-
-LIMIT_TOLERANCE = 1e-6
-"""Allowance for float32 when a position is compared with a model limit [rad or m]."""
 
 
 class CaseError(ValueError):

@@ -6,6 +6,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from robo_genesis.core.check_spec import START_TOLERANCE
 from robo_genesis.core.free_fall import GRAVITY
 from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import BodyTrace
@@ -13,9 +14,6 @@ from robo_genesis.sim.joints import to_numpy
 from robo_genesis.sim.session import require_built
 
 Read = TypeVar("Read")
-
-START_TOLERANCE = 1e-6
-"""Allowance for float32 when the start is read back [m]."""
 
 
 class DropError(ValueError):

@@ -11,7 +11,6 @@ import shutil
 import struct
 import warnings
 import zipfile
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -229,7 +228,7 @@ def measured_again(folder):
 def checked_again(folder):
     """Make the recorded checks those of the arrays and joints, failures included."""
     run = from_bundle(folder, bundle.read_manifest(folder))
-    predicate(checks=[asdict(outcome) for outcome in run.outcomes()])(folder)
+    predicate(checks=[outcome.record() for outcome in run.outcomes()])(folder)
 
 
 def arrays(change):
@@ -334,6 +333,30 @@ def check(index, **values):
     return manifest(lambda m: m["predicate"]["checks"][index].update(values))
 
 
+def by_name(manifest, name):
+    """Return the values that a check found."""
+    checks = manifest["predicate"]["checks"]
+    return next(check["found"] for check in checks if check["name"] == name)
+
+
+def found(name, label, value):
+    """Write one value that a check found."""
+    return manifest(lambda m: by_name(m, name).update({label: value}))
+
+
+def found_times(name, label, factor):
+    """Multiply one value that a check found."""
+
+    def change(m):
+        of = by_name(m, name)
+        of[label] *= factor
+
+    return manifest(change)
+
+
+all_passed = manifest(lambda m: [check.update(passed=True) for check in m["predicate"]["checks"]])
+
+
 def frame(name="initial", size=None, run_id=None, copy_of=None):
     """Write a frame anew: of another size, stamp or content."""
 
@@ -410,19 +433,19 @@ SPOILED = {
     "a number as text": ("bad-schema", "bad-schema", predicate(seed="0")),
     "an unknown backend": ("bad-schema", "bad-schema", part("backend", actual="tpu")),
     "metrics as a list": ("digest", "bad-schema", lambda f: (f / "metrics.json").write_text("[]")),
-    "a newer schema": ("schema", "schema", predicate(schema_version=2)),
-    "an older schema": ("older-schema", "older-schema", predicate(schema_version=0)),
+    "a newer schema": ("schema", "schema", predicate(schema_version=3)),
+    "an older schema": ("older-schema", "older-schema", predicate(schema_version=1)),
     "an older schema of other fields": ("older-schema", None, manifest(lambda m: m.update(
-        predicateType="urn:robo-genesis:evidence:v0", predicate={"backend": "cpu"}))),
+        predicateType="urn:robo-genesis:evidence:v1", predicate={"backend": "cpu"}))),
     "an older type of a newer schema": ("schema", "schema", manifest(lambda m: (
-        m.update(predicateType="urn:robo-genesis:evidence:v0"),
-        m["predicate"].update(schema_version=2)))),
+        m.update(predicateType="urn:robo-genesis:evidence:v1"),
+        m["predicate"].update(schema_version=3)))),
     "a schema below all": ("schema", "schema", predicate(schema_version=-1)),
     "a type of no number": ("schema", "schema", manifest(
         lambda m: m.update(predicateType="urn:robo-genesis:evidence:v0x"))),
     "a schema that is true": ("bad-schema", "bad-schema", predicate(schema_version=True)),
     "a newer schema of other fields": ("schema", None, manifest(
-        lambda m: m.update(predicateType="urn:robo-genesis:evidence:v2", more=1))),
+        lambda m: m.update(predicateType="urn:robo-genesis:evidence:v3", more=1))),
     **{f"{name} of {what}": ("bad-schema", "bad-schema", part(record, **{name: value}))
        for record, name in TEXTS for what, value in ODD.items()},
     **{f"a command of {what}": ("bad-schema", "bad-schema", predicate(
@@ -615,14 +638,27 @@ SPOILED = {
         lambda m: m["model"]["links"].update({"from": ["luck"]}))),
     "edited arrays": ("digest", "metrics", rewrite(qd=off_law)),
     "one and the same picture twice": ("digest", "checks", frame("final", copy_of="initial")),
-    "a failure claimed where none is": ("checks", "checks", check(3, passed=False)),
-    "another explanation of a check": ("checks", "checks", check(3, detail="luck")),
+    "another value found by a check": ("checks", "checks", found(
+        "control_law", "G2.distance_to_control_law", 0.001)),
+    "a value found off by a millionth": ("checks", "checks", found_times(
+        "saturation", "G2.saturation_duration_s", 1 + 1e-6)),
+    "a found value of another type": ("checks", "checks", found("mapping", "links", 11.0)),
+    "a found truth as a number": ("checks", "checks", found("posture", "final.usable", 1)),
+    "a found value too many": ("checks", "checks", found("mapping", "luck", 1)),
+    "a found value that is missing": ("checks", "checks", manifest(
+        lambda m: by_name(m, "mapping").pop("links"))),
+    "found values beyond a float": ("bad-schema", "bad-schema", found("mapping", "links", 10**400)),
+    "a found number beyond all metrics": ("bad-schema", "bad-schema", found(
+        "mapping", "links", 1e300)),
+    "found text of two lines": ("bad-schema", "bad-schema", found("mapping", "links", "a\nb")),
+    "a found list": ("bad-schema", "bad-schema", found("mapping", "links", [11])),
+    "words of a check": ("bad-schema", "bad-schema", check(0, detail="luck")),
     "a check left out": ("checks", "checks", manifest(lambda m: m["predicate"]["checks"].pop())),
     "no check": ("checks", "checks", predicate(checks=[])),
-    "a failure of the model claimed": ("checks", "checks", check(
-        0, passed=False, detail="local DOFs are not nine distinct ones")),
     **{f"{how}, kept quiet": ("digest", "checks", FAILING[how]) for how in FAILING},
     **{f"{how}, and it says so": ("digest", "failed", failing(how)) for how in FAILING},
-    "a failure explained otherwise": ("digest", "checks", failing(
-        "two joints on one DOF", check(0, detail="luck"))),
+    **{f"{how}, called passed": ("digest", "failed", failing(how, all_passed))
+       for how in FAILING},
+    "a failure of other values": ("digest", "checks", failing(
+        "two joints on one DOF", found("mapping", "local_dofs", "luck"))),
 }  # fmt: skip

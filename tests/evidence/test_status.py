@@ -59,10 +59,10 @@ OLD_FORM = "It was recorded in an older form of the bundle."
 STATES = [
     ("missing", None, shutil.rmtree, ""),
     ("stale", "stale", spoil_stale, OLD_ENGINE),
-    ("stale", "older-schema", predicate(schema_version=0, mood="good"), OLD_FORM),
+    ("stale", "older-schema", predicate(schema_version=1, mood="good"), OLD_FORM),
     ("failed", "failed", both(failing("two joints on one DOF"), seal), "did not all pass."),
     ("refused", "files", lambda folder: (folder / "log.txt").unlink(), UNREADABLE),
-    ("refused", "schema", predicate(schema_version=2), UNREADABLE),
+    ("refused", "schema", predicate(schema_version=3), UNREADABLE),
     # A bundle cannot set its own state.
     ("refused", "bad-schema", both(predicate(state="verified"), seal), UNREADABLE),
     ("refused", "bad-schema", both(manifest(lambda m: m.update(badge="verified")), seal), ""),

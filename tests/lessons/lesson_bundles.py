@@ -1,16 +1,18 @@
 """Writer and spoilers of bundles, shared by the tests of all lessons."""
 
 import csv
-from dataclasses import asdict
+import re
 
 import numpy as np
 import pytest
 from bundles import written
 from spoilers import edit, predicate, seal
 
-from robo_genesis.evidence import bundle
+from robo_genesis.core import project
+from robo_genesis.evidence import bundle, evidence_key
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.evidence.status import bundle_status
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.experiment import Experiment
@@ -76,7 +78,7 @@ def recomputed(*spoilers):
         manifest = bundle.read_manifest(folder)
         run = from_bundle(folder, manifest)
         edit(folder, "metrics.json", lambda records: records.update(run.records()))
-        predicate(checks=[asdict(check) for check in run.outcomes()])(folder)
+        predicate(checks=[check.record() for check in run.outcomes()])(folder)
 
     return spoil
 
@@ -94,3 +96,44 @@ def table(folder, case) -> list[dict[str, str]]:
     arrays = bundle.read_arrays(folder)
     text = csv_text(read_any_trace(folder, arrays, case), arrays, case)
     return list(csv.DictReader(text.splitlines()))
+
+
+def judged_again(folder, monkeypatch, module, name, value, check):
+    """Require that another judging value changes the verdict of one check, and nothing else.
+
+    Args:
+        folder: a sound bundle.
+        monkeypatch: the fixture of pytest.
+        module: the specification with the value.
+        name: of the value.
+        value: with which the check fails.
+        check: its name.
+    """
+    manifest = bundle.read_manifest(folder)
+    lesson, page = manifest.predicate.lesson, manifest.predicate.page
+    with monkeypatch.context() as context:
+        context.setattr(module, name, value)
+        key = bundle.evidence_key(
+            manifest.predicate.model_dump()
+            | evidence_key.question(lesson, page, project.ROOT, project.BOOK)
+        )
+        status = bundle_status(folder)
+    assert key == manifest.predicate.evidence_key
+    assert (status.state, status.code) == ("failed", "failed")
+    assert re.findall(r"\[(\w+)\] ", status.reason) == [check]
+    claimed = [record.model_dump() for record in manifest.predicate.checks]
+    for record in claimed:
+        record["passed"] = record["name"] != check
+    predicate(checks=claimed)(folder)
+    assert all(record.passed for record in verify_bundle(folder).predicate.checks)
+
+
+def altered(check):
+    """Alter the first value that a check found by more than rounding."""
+
+    def alter(manifest):
+        checks = manifest["predicate"]["checks"]
+        (found,) = [one["found"] for one in checks if one["name"] == check]
+        found[next(iter(found))] += 1e-3
+
+    return in_json("manifest.json", alter)

@@ -6,29 +6,19 @@ A change in what an engine accepts changes the recorded counts.
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from robo_genesis.core.checks import Finding, equal
 from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l02 import spec
+from robo_genesis.lessons.l02.spec import AFTER, BEFORE
 
 GROUP = "life_cycle"
 """Group of a bundle's metrics: 1 where the engine accepted a call, 0 where it refused it."""
-
-BEFORE, AFTER = "before build", "after build"
 
 REFUSAL = "GenesisException"
 """The exception with which the engine refuses a call."""
 
 RENDER = "camera.render"
-
-BELONGS = {
-    "scene.add_entity": BEFORE,
-    "scene.add_camera": BEFORE,
-    "scene.build": BEFORE,
-    "scene.step": AFTER,
-    "scene.reset": AFTER,
-    "box.get_pos": AFTER,
-    "box.set_pos": AFTER,
-    RENDER: AFTER,
-}
-"""The side on which the engine accepts each call; on the other side it must refuse it."""
+"""The call that needs a camera."""
 
 Attempts = Mapping[tuple[str, str], str | None]
 """By call and side: the engine's refusal, None if it accepted the call."""
@@ -96,7 +86,7 @@ def expected(rendered: bool) -> dict[str, bool]:
     """
     return {
         f"{call} {side}": side == belongs
-        for call, belongs in BELONGS.items()
+        for call, belongs in spec.BELONGS.items()
         if rendered or call != RENDER
         for side in (BEFORE, AFTER)
     }
@@ -107,10 +97,8 @@ def counts(attempts: Attempts) -> dict[str, int]:
     return {f"{call} {side}": int(found is None) for (call, side), found in attempts.items()}
 
 
-def sides_of_build(run: Experiment) -> Iterator[str]:
+def sides_of_build(run: Experiment) -> Iterator[Finding]:
     """The engine accepts each call on its own side of build and refuses it on the other."""
     accepted = {name: bool(count) for name, count in run.readings[GROUP].items()}
-    outcome = {None: "not tried", False: "refused", True: "accepted"}
     for name, right in expected(run.rendered).items():
-        if accepted.get(name) != right:
-            yield f"{name}: {outcome[accepted.get(name)]}"
+        yield equal(f"{name}, accepted", accepted.get(name), right)

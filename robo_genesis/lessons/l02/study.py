@@ -2,19 +2,17 @@
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
+from robo_genesis.core.checks import Finding, factors, within
 from robo_genesis.core.free_fall import ahead_of_continuous
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l02 import spec
 from robo_genesis.lessons.l02.metrics import DropMetrics
 from robo_genesis.sim.rigid_bodies import Drop
-
-SHARE = 0.02
-"""Relative tolerance of a measured gap against g h t / 2: at the smallest step the gap is small and
-the rounding of float32 shows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,29 +45,25 @@ def step_study(metrics: Mapping[str, DropMetrics], cases: Mapping[str, Drop]) ->
     return StepStudy(names, np.array(h), np.array(gaps), np.array(expected))
 
 
-def one_factor(run: Experiment) -> Iterator[str]:
+def one_factor(run: Experiment) -> Iterator[Finding]:
     """The cases differ in their substeps alone."""
     first, *others = step_study(run.metrics, run.cases).names
-    for name in others:
-        if replace(run.cases[name], substeps=run.cases[first].substeps) != run.cases[first]:
-            yield f"{name} differs from {first} in more than its substeps"
+    return factors(run.cases, {(first, name): ["substeps"] for name in others})
 
 
-def shrinks(run: Experiment) -> Iterator[str]:
+def shrinks(run: Experiment) -> Iterator[Finding]:
     """The gap to continuous free fall is smaller with every smaller solver step."""
     study = step_study(run.metrics, run.cases)
-    pairs = itertools.pairwise(zip(study.names, study.gaps, strict=True))
-    for (coarse, larger), (fine, gap) in pairs:
-        if not 0 < gap < larger:
-            yield f"{fine} is {gap:g} m ahead, {coarse} {larger:g} m"
+    for (_, larger), (name, gap) in itertools.pairwise(zip(study.names, study.gaps, strict=True)):
+        expected = f"between 0 and {larger:g}"
+        yield Finding(f"{name}.gap_m", gap, bool(0 < gap < larger), expected)
 
 
-def first_order(run: Experiment) -> Iterator[str]:
+def first_order(run: Experiment) -> Iterator[Finding]:
     """The gap is g h t / 2, so half the solver step leaves half of it."""
     study = step_study(run.metrics, run.cases)
     for name, gap, expected in zip(study.names, study.gaps, study.expected, strict=True):
-        if abs(gap - expected) > SHARE * expected:
-            yield f"{name} is {gap:g} m ahead, expected {expected:g} m"
+        yield within(f"{name}.gap_m", gap, expected, spec.FIRST_ORDER_SHARE * expected)
 
 
 CHECKS = (one_factor, shrinks, first_order)

@@ -4,10 +4,14 @@ from collections.abc import Mapping, Sequence
 
 from robo_genesis.core.free_fall import ahead_of_continuous, continuous_drop, summed_drop
 from robo_genesis.core.text import Block, signed
-from robo_genesis.lessons.l02.checks import SPEED_SHARE
 from robo_genesis.lessons.l02.metrics import DropMetrics
-from robo_genesis.lessons.l02.spec import AT_REST, FORMULA_TOLERANCE
-from robo_genesis.lessons.l02.study import SHARE, StepStudy
+from robo_genesis.lessons.l02.spec import (
+    AT_REST,
+    FIRST_ORDER_SHARE,
+    FORMULA_TOLERANCE,
+    SPEED_SHARE,
+)
+from robo_genesis.lessons.l02.study import StepStudy
 from robo_genesis.sim.rigid_bodies import Drop
 
 INSPECT = "Check the times of the samples, the first state, gravity, and contacts first."
@@ -128,7 +132,7 @@ def convergence(study: StepStudy) -> tuple[str, ...]:
         f"with {fine} it is {last} it."
     )
     error = 100 * max(abs(g / e - 1) for g, e in zip(study.gaps, study.expected, strict=True))
-    if error <= 100 * SHARE:
+    if error <= 100 * FIRST_ORDER_SHARE:
         return (
             ends,
             f"All {len(study.names)} runs agree with {TERM} to within {error:.1g} %. The method is "

@@ -1,28 +1,27 @@
 """Named checks of landings, slides and bounces: all pass, or the invariant that failed is named."""
 
 from collections.abc import Iterator
-from dataclasses import asdict
+from itertools import combinations
 
 import numpy as np
 
-from robo_genesis.core.checks import wrong_counts, wrong_masses, wrong_times
+from robo_genesis.core.check_spec import READ_BACK
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    factors,
+    masses,
+    model_counts,
+    sample_times,
+    within,
+)
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, spec
 from robo_genesis.lessons.l03.energy import kept_at_bounces
-from robo_genesis.lessons.l03.metrics import (
-    RESTING_BAND,
-    BounceMetrics,
-    LandingMetrics,
-    SlideMetrics,
-)
+from robo_genesis.lessons.l03.metrics import BounceMetrics, LandingMetrics, SlideMetrics
 from robo_genesis.sim import end_state
 from robo_genesis.sim.contacts import SETTINGS, TOP
-
-DEPTH_TOLERANCE = 1e-4
-"""Tolerance of a reported depth against that of the positions [m]: corners differ a little."""
-
-START_TOLERANCE = 2e-3
-"""Tolerance of a settled cube's position against its start [m]: it sinks in."""
 
 
 def landings(run: Experiment) -> dict[str, LandingMetrics]:
@@ -40,44 +39,42 @@ def bounces(run: Experiment) -> dict[str, BounceMetrics]:
     return {n: m for n, m in run.metrics.items() if isinstance(m, BounceMetrics)}
 
 
-def structure(run: Experiment) -> Iterator[str]:
+def structure(run: Experiment) -> Iterator[Finding]:
     """The scene has two entities; the cube is one link, one geom, one joint, 6 DOFs and 7 qpos."""
-    return wrong_counts(run.readings["model"], spec.EXPECTED_MODEL)
+    return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
-def mass(run: Experiment) -> Iterator[str]:
+def mass(run: Experiment) -> Iterator[Finding]:
     """The engine's masses are density times volume."""
-    expected = {case.shape: case.mass for case in run.cases.values()}
-    return wrong_masses(run.readings["mass"], expected)
+    return masses(run.readings["mass"], {case.shape: case.mass for case in run.cases.values()})
 
 
-def settings(run: Experiment) -> Iterator[str]:
+def settings(run: Experiment) -> Iterator[Finding]:
     """Frictions and substeps read back from the scenes are those of the cases."""
     for name in SETTINGS:
-        for case, value in run.readings.get(name, {}).items():
-            expected = getattr(run.cases[case], name)
-            if not abs(value - expected) <= 1e-6:
-                yield f"{case} has {name} {value:g}, expected {expected:g}"
-    yield from (f"{name} was not read" for name in SETTINGS if not run.readings.get(name))
+        read = run.readings.get(name, {})
+        for case, value in read.items():
+            yield within(f"{case}.{name}", value, getattr(run.cases[case], name), READ_BACK)
+        yield above(f"number of cases with {name}", len(read), 0)
 
 
-def stamps(run: Experiment) -> Iterator[str]:
+def stamps(run: Experiment) -> Iterator[Finding]:
     """The record of each case has one state at t = 0 and one after each outer step."""
-    return wrong_times(run.cases, run.traces)
+    return sample_times(run.cases, run.traces)
 
 
-def start(run: Experiment) -> Iterator[str]:
+def start(run: Experiment) -> Iterator[Finding]:
     """Each run begins at the position of its case, a pushed cube with the speed of its case."""
     for name, case in run.cases.items():
         trace = run.traces[name]
         distance = np.abs(trace.link_pos[0, 0] - np.array(case.start)).max()
-        if not distance <= (START_TOLERANCE if case.settle else spec.SAME_STATE):
-            yield f"{name} starts {distance:g} m from {case.start}"
-        if not abs(float(trace.link_vel[0, 0, 0]) - case.speed) <= 1e-6:
-            yield f"{name} starts with {trace.link_vel[0, 0, 0]:g} m/s along x"
+        allowed = spec.SETTLED_START if case.settle else spec.SAME_STATE
+        yield at_most(f"{name}.distance_to_start_m", distance, allowed)
+        speed = float(trace.link_vel[0, 0, 0])
+        yield within(f"{name}.start_speed_m_s", speed, case.speed, spec.START_SPEED)
 
 
-def one_factor(run: Experiment) -> Iterator[str]:
+def one_factor(run: Experiment) -> Iterator[Finding]:
     """Compared cases differ in the declared factors and in nothing else."""
     allowed = {
         **{pair: {"substeps"} for pair in spec.FINER},
@@ -87,105 +84,97 @@ def one_factor(run: Experiment) -> Iterator[str]:
     }
     finest = max(spec.BOUNCES, key=lambda name: spec.BOUNCES[name].substeps)
     allowed |= {(name, finest): {"substeps"} for name in spec.BOUNCES if name != finest}
-    for (first, second), factors in allowed.items():
-        a, b = (asdict(run.cases[name]) for name in (first, second))
-        differ = {field for field in a if a[field] != b[field]}
-        if differ != factors:
-            yield f"{first} and {second} differ in {sorted(differ)}"
+    return factors(run.cases, allowed)
 
 
-def lands(run: Experiment) -> Iterator[str]:
+def lands(run: Experiment) -> Iterator[Finding]:
     """Each dropped cube touches the surface, and its centre stays above the upper face."""
     for name, found in landings(run).items():
-        lowest = float(run.traces[name].link_pos[:, 0, 2].min())
-        if found.touchdown is None or not (run.traces[name].contacts > 0).any():
-            yield f"{name} never touches the surface"
-        if lowest <= TOP:
-            yield f"{name} falls to {lowest:g} m, the surface is at {TOP:g} m"
+        trace = run.traces[name]
+        yield above(f"{name}.touchdown_s", found.touchdown, 0)
+        yield above(f"{name}.most_contacts", int(trace.contacts.max()), 0)
+        yield above(f"{name}.lowest_m", float(trace.link_pos[:, 0, 2].min()), TOP)
 
 
-def reported_late(run: Experiment) -> Iterator[str]:
+def reported_late(run: Experiment) -> Iterator[Finding]:
     """With one substep, a reported depth belongs to the state before: it is one step old."""
     for name in landings(run):
         case, trace = run.cases[name], run.traces[name]
-        below = case.rest_height - trace.link_pos[:-1, 0, 2].astype(np.float64)
-        error = np.abs(trace.penetration[1:, 0] - np.maximum(below, 0)).max()
-        if case.substeps == 1 and not error <= DEPTH_TOLERANCE:
-            yield f"{name}: reported and earlier depth differ by up to {error:g} m"
+        if case.substeps == 1:
+            below = case.rest_height - trace.link_pos[:-1, 0, 2].astype(np.float64)
+            error = np.abs(trace.penetration[1:, 0] - np.maximum(below, 0)).max()
+            yield at_most(f"{name}.depth_error_m", error, spec.DEPTH_TOLERANCE)
 
 
-def equal_step_equal_states(run: Experiment) -> Iterator[str]:
+def equal_step_equal_states(run: Experiment) -> Iterator[Finding]:
     """Runs with equal solver steps and different outer steps share states at shared times."""
-    short, long = (run.traces[name] for name in spec.EQUAL_STEP)
-    every = round(long.dt / short.dt)
-    for name in ("link_pos", "link_quat", "link_vel", "link_ang"):
-        error = np.abs(getattr(short, name)[::every] - getattr(long, name)).max()
-        if not error <= spec.SAME_STATE:
-            yield f"{name} differs by up to {error:g}"
+    for pair in combinations(landings(run), 2):
+        short, long = sorted(pair, key=lambda name: run.cases[name].dt)
+        if run.cases[short].h != run.cases[long].h or run.cases[short].dt == run.cases[long].dt:
+            continue
+        one, other = run.traces[short], run.traces[long]
+        every = round(other.dt / one.dt)
+        for name in ("link_pos", "link_quat", "link_vel", "link_ang"):
+            error = np.abs(getattr(one, name)[::every] - getattr(other, name)).max()
+            yield at_most(f"{short}.{name}_against_{long}", error, spec.SAME_STATE)
 
 
-def settles(run: Experiment) -> Iterator[str]:
+def settles(run: Experiment) -> Iterator[Finding]:
     """Each dropped cube settles at its resting height within the window."""
     for name, found in landings(run).items():
-        if found.resting_time is None:
-            off = f"{name} ends {found.resting_offset:g} m off its resting height"
-            yield f"{off}, allowed are {RESTING_BAND:g} m"
+        yield above(f"{name}.resting_time_s", found.resting_time, 0)
 
 
-def stops(run: Experiment) -> Iterator[str]:
+def stops(run: Experiment) -> Iterator[Finding]:
     """Each pushed cube stops within the window by the declared rule."""
     for name, found in slides(run).items():
-        if found.stop_distance is None:
-            yield f"{name} does not stop in {run.traces[name].t[-1]:g} s"
+        stopped = found.stop_distance is not None
+        yield Finding(f"{name}.stop_distance_m", found.stop_distance, stopped, "a distance")
 
 
-def friction_orders(run: Experiment) -> Iterator[str]:
+def friction_orders(run: Experiment) -> Iterator[Finding]:
     """With less friction a cube travels farther; the smaller coefficient changes nothing."""
     far = {name: found.stop_distance or np.nan for name, found in slides(run).items()}
     for near, farther in (("high_on_050", "low_on_050"), ("low_on_050", "low_on_030")):
-        if not far[farther] > far[near]:
-            yield f"{farther} stops at {far[farther]:g} m, {near} at {far[near]:g} m"
+        yield above(f"{farther}.farther_than_{near}_m", far[farther] - far[near], 0)
     difference = abs(far["high_on_030"] - far["high_on_050"])
-    if not difference <= spec.SAME_SLIDE:
-        yield f"high_on_030 and high_on_050 stop {difference:g} m apart"
+    yield at_most("high_on_030.distance_to_high_on_050_m", difference, spec.SAME_SLIDE)
 
 
-def near_coulomb(run: Experiment) -> Iterator[str]:
+def near_coulomb(run: Experiment) -> Iterator[Finding]:
     """Each stopping distance is near v² / (2 μ g) with the larger coefficient, despite the hops."""
     for name, found in slides(run).items():
         case = run.cases[name]
         mu = friction.pair_friction(case)
         expected = friction.coulomb_distance(case.speed, mu, case.gravity)
-        measured = found.stop_distance
-        if measured is None or not abs(measured - expected) <= spec.COULOMB_SHARE * expected:
-            yield f"{name} stops at {measured} m, expected {expected:g} m"
+        allowed = spec.COULOMB_SHARE * expected
+        yield within(f"{name}.stop_distance_m", found.stop_distance, expected, allowed)
 
 
-def level_in_flight(run: Experiment) -> Iterator[str]:
+def level_in_flight(run: Experiment) -> Iterator[Finding]:
     """In the air, the energy that semi-implicit Euler conserves is constant to within float32."""
     for name, found in bounces(run).items():
-        drift, start_energy = found.flight_drift, found.start_energy
-        if drift is None or not drift <= spec.LEVEL_SHARE * start_energy:
-            yield f"{name}: it changes by {drift} J of {start_energy:g} J"
+        allowed = spec.LEVEL_SHARE * found.start_energy
+        yield at_most(f"{name}.flight_drift_J", found.flight_drift, allowed)
 
 
-def energy_converges(run: Experiment) -> Iterator[str]:
+def energy_converges(run: Experiment) -> Iterator[Finding]:
     """The finest step keeps at the bounce the energy of a linear spring; a coarse one does not."""
-    by_step = sorted(bounces(run), key=lambda name: run.cases[name].h)
-    kept = {name: bounces(run)[name].first_kept for name in by_step}
-    missing = [f"{name} does not bounce" for name, share in kept.items() if share is None]
-    if missing or not by_step:
-        yield from missing or ["no ball bounces"]
-        return
-    spring = run.cases[by_step[0]].spring or (np.nan, np.nan)
-    errors = [abs(float(share or 0) - 100 * kept_at_bounces(spring[1])) for share in kept.values()]
-    if not (errors[0] <= spec.FINE_SHARE and max(errors) > 5 * spec.FINE_SHARE):
-        yield f"the finest step is {errors[0]:.2f} % off, the worst {max(errors):.2f} %"
+    finest, *coarser = sorted(bounces(run), key=lambda name: run.cases[name].h)
+    spring = run.cases[finest].spring or (np.nan, np.nan)
+    expected = 100 * kept_at_bounces(spring[1])
+    kept = {name: found.first_kept for name, found in bounces(run).items()}
+    yield within(f"{finest}.first_kept_percent", kept[finest], expected, spec.FINE_SHARE)
+    for name in coarser:
+        bounced = kept[name] is not None
+        yield Finding(f"{name}.first_kept_percent", kept[name], bounced, "a share")
+    errors = [abs(share - expected) for share in kept.values() if share is not None]
+    yield above("largest_difference_percent", max(errors, default=0.0), spec.COARSE_SHARE)
 
 
-def posture(run: Experiment) -> list[str]:
+def posture(run: Experiment) -> Iterator[Finding]:
     """The evidence of the first and the last state is complete and shows the cube in two places."""
-    return end_state.problems(run.rendered, run.frames, run.traces["baseline"].link_pos)
+    return end_state.findings(run.rendered, run.frames, run.traces["baseline"].link_pos)
 
 
 CHECKS = (

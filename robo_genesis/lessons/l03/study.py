@@ -1,10 +1,10 @@
 """Effects of the solver step, the friction model and the engine on landings and slides."""
 
-import itertools
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, noted, within
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace
@@ -17,32 +17,8 @@ from robo_genesis.sim.contacts import ContactCase
 GROUP = "time_constant"
 """Group of a bundle's metrics: the engine's time constant of a contact by solver step [s]."""
 
-SCATTER_LEFT = 1e-3
-"""Largest scatter of the depths at the finest step [m]: cubes from higher up are faster."""
-
-HOP_TOLERANCE = 1e-4
-"""Tolerance of a hop between two engines with equal settings [m]."""
-
-STEPPED_TOLERANCE = 2e-4
-"""Tolerance of a slide on four corners against the stepped formula [m]."""
-
-NEARLY = 0.05
-"""Relative tolerance of a stopping distance that counts as nearly Coulomb's."""
-
-HOP = 0.01
-"""Clearance from which a slide counts as a hop [m]."""
-
-RATIO_TOLERANCE = 0.02
-"""Relative tolerance of the ratio of two impulses against the coefficient of friction."""
-
 PUSHED = ("low_on_050", "high_on_050")
 """The slides with the engine's default friction model."""
-
-BLOW = 5.0
-"""Loss of speed, in multiples of μ g dt, above which it is more than friction under the weight."""
-
-RULE_TOLERANCE = 0.02
-"""Tolerance of the coefficient that a clean slide shows against that of a rule."""
 
 
 def landings_at(metrics: Mapping[str, CaseMetrics], step: str) -> list[LandingMetrics]:
@@ -90,138 +66,133 @@ def distance_between(traces: Mapping[str, ContactTrace], first: str, second: str
     return np.asarray(np.linalg.norm(difference - difference[0], axis=1))
 
 
-def time_constants(run: Experiment) -> Iterator[str]:
+def time_constants(run: Experiment) -> Iterator[Finding]:
     """The engine gives a contact a time constant of 10 ms, and never less than two solver steps."""
     for name in spec.STEPS_STUDIED:
         found = run.readings[GROUP][name]
         expected = mujoco_contacts.time_constant(solver_step(name))
-        if not abs(found - expected) <= 1e-8:
-            yield f"{name}: the engine has {found:g} s, expected {expected:g} s"
+        yield within(f"{name}.time_constant_s", found, expected, spec.TIME_CONSTANT)
 
 
-def records_each_step(run: Experiment) -> Iterator[str]:
+def records_each_step(run: Experiment) -> Iterator[Finding]:
     """With every solver step recorded, the baseline falls as with every second one."""
     fine, coarse = run.traces[spec.AS_BASELINE].link_pos, run.traces["baseline"].link_pos
     shared = fine[:: spec.BASELINE.substeps, 0, 2]
     difference = float(np.abs(shared - coarse[: len(shared), 0, 2]).max())
-    if not difference <= spec.SAME_STATE:
-        yield f"they are up to {difference:g} m apart"
+    yield at_most(f"{spec.AS_BASELINE}.distance_to_baseline_m", difference, spec.SAME_STATE)
 
 
-def rebound_goes(run: Experiment) -> Iterator[str]:
+def rebound_goes(run: Experiment) -> Iterator[Finding]:
     """At the baseline's solver step cubes rebound; at all smaller steps studied, none does."""
     for name in spec.STEPS_STUDIED:
         highest = max(found.rebound for found in landings_at(run.metrics, name))
-        if solver_step(name) == spec.BASELINE.h and not highest > CLEAR:
-            yield f"{name}: the highest rebound is {highest:g} m"
-        if solver_step(name) < spec.BASELINE.h and highest > CLEAR:
-            yield f"{name}: one cube rebounds by {highest:g} m"
+        label, step = f"{name}.highest_rebound_m", solver_step(name)
+        if step > spec.BASELINE.h:
+            yield noted(label, highest)
+        elif step == spec.BASELINE.h:
+            yield above(label, highest, CLEAR)
+        else:
+            yield at_most(label, highest, CLEAR)
 
 
-def scatter_shrinks(run: Experiment) -> Iterator[str]:
+def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
     """The scatter of the depth over the heights of fall is smaller with every smaller step."""
-    names = sorted(spec.STEPS_STUDIED, key=solver_step)
-    depths = {name: [of.penetration for of in landings_at(run.metrics, name)] for name in names}
-    scatter = {name: float(np.ptp(of)) for name, of in depths.items()}
-    for fine, coarse in itertools.pairwise(names):
-        if not scatter[fine] < scatter[coarse]:
-            yield f"{fine} scatters by {scatter[fine]:g} m, {coarse} by {scatter[coarse]:g} m"
-    if not scatter[names[0]] <= SCATTER_LEFT:
-        yield f"at the finest step the scatter is {scatter[names[0]]:g} m"
+    limit, finest = np.inf, min(spec.STEPS_STUDIED, key=solver_step)
+    for name in sorted(spec.STEPS_STUDIED, key=solver_step, reverse=True):
+        scatter = float(np.ptp([of.penetration for of in landings_at(run.metrics, name)]))
+        yield below(f"{name}.scatter_m", scatter, limit)
+        limit = scatter
+    yield at_most(f"{finest}.scatter_left_m", limit, spec.SCATTER_LEFT)
 
 
-def without_hop(run: Experiment, names: Iterable[str]) -> Iterator[str]:
-    """Yield the slides that stay near the surface."""
+def hops(run: Experiment, names: Iterable[str]) -> Iterator[Finding]:
+    """Require slides that leave the surface."""
     for name in names:
-        hop = slide(run.metrics, name).hop
-        if not hop > HOP:
-            yield f"{name} rises by at most {hop:g} m"
+        yield above(f"{name}.hop_m", slide(run.metrics, name).hop, spec.HOP)
 
 
-def default_cone_hops(run: Experiment) -> Iterator[str]:
+def default_cone_hops(run: Experiment) -> Iterator[Finding]:
     """With the engine's default friction model, both pushed cubes leave the surface."""
-    return without_hop(run, PUSHED)
+    return hops(run, PUSHED)
 
 
-def stops_nearly_right(run: Experiment) -> Iterator[str]:
+def stops_nearly_right(run: Experiment) -> Iterator[Finding]:
     """The cube with the friction of the surface still stops near v² / (2 μ g)."""
     name = PUSHED[0]
     case, found = spec.REPEATED[name], slide(run.metrics, name).stop_distance
     expected = friction.coulomb_distance(case.speed, case.surface_friction, case.gravity)
-    if found is None or not abs(found - expected) <= NEARLY * expected:
-        yield f"{name} stops at {found} m, expected {expected:g} m"
+    yield within(f"{name}.stop_distance_m", found, expected, spec.NEARLY * expected)
 
 
-def hop_is_paid_by_friction(run: Experiment) -> Iterator[str]:
+def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
     """The first step reduces v_x by μ times the gain of v_z, far more than under the weight."""
     for name in PUSHED:
         case = spec.REPEATED[name]
         lost, gained = first_impulses(run.traces[name], case)
         mu = friction.pair_friction(case)
-        weight, error = mu * case.gravity * case.dt, abs(lost - mu * gained)
-        if not (lost > BLOW * weight and error <= RATIO_TOLERANCE * lost):
-            yield f"{name} loses {lost:g} m/s along x and gains {gained:g} m/s upwards"
+        yield above(f"{name}.lost_m_s", lost, spec.BLOW * mu * case.gravity * case.dt)
+        yield within(f"{name}.mu_times_gained_m_s", mu * gained, lost, spec.RATIO_TOLERANCE * lost)
 
 
-def clean_slides_stay_down(run: Experiment) -> Iterator[str]:
+def clean_slides_stay_down(run: Experiment) -> Iterator[Finding]:
     """With the engine's elliptic cone, cubes slide on four corners at every sample."""
     for name in spec.CLEAN_SLIDES:
-        corners = set(run.traces[name].contacts[:, 0].tolist())
-        if not slide(run.metrics, name).hop <= CLEAR or corners != {4}:
-            yield f"{name} rises by {slide(run.metrics, name).hop:g} m, with {corners} contacts"
+        yield at_most(f"{name}.hop_m", slide(run.metrics, name).hop, CLEAR)
+        contacts = run.traces[name].contacts[:, 0]
+        yield equal(f"{name}.fewest_contacts", contacts.min(), 4)
+        yield equal(f"{name}.most_contacts", contacts.max(), 4)
 
 
-def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[str]:
+def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[Finding]:
     """With the elliptic cone, a cube stops at v² / (2 μ g) − v h / 2: Coulomb's law in steps."""
     for name, case in spec.CLEAN_SLIDES.items():
         mu = friction.pair_friction(case)
         expected = friction.stepped_distance(case.speed, mu, case.h, case.gravity)
         found = slide(run.metrics, name).stop_distance
-        if found is None or not abs(found - expected) <= STEPPED_TOLERANCE:
-            yield f"{name} stops at {found} m, expected {expected:g} m"
+        yield within(f"{name}.stop_distance_m", found, expected, spec.STEPPED_TOLERANCE)
 
 
-def larger_friction_rules(run: Experiment) -> Iterator[str]:
+def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
     """Clean slides show the larger of two coefficients, and fit no other rule."""
     for name, case in spec.CLEAN_SLIDES.items():
-        distance = slide(run.metrics, name).stop_distance
+        label, distance = f"{name}.friction", slide(run.metrics, name).stop_distance
         if distance is None:
-            yield f"{name} does not stop"
+            yield Finding(label, None, False, "a coefficient")
             continue
         continuous = distance + case.speed * case.h / 2
         apparent = friction.apparent_friction(case.speed, continuous, case.gravity)
         fits = [
             rule
             for rule, of in friction.RULES.items()
-            if abs(of(case.friction, case.surface_friction) - apparent) <= RULE_TOLERANCE
+            if abs(of(case.friction, case.surface_friction) - apparent) <= spec.RULE_TOLERANCE
         ]
-        if fits != ["the larger"]:
-            yield f"{name} shows {apparent:.3f}, which fits {fits or 'no rule'}"
+        expected = f"the larger of {case.friction:g} and {case.surface_friction:g}"
+        expected += f" and no other rule; it fits {' and '.join(fits) or 'none'}"
+        yield Finding(label, apparent, fits == ["the larger"], expected)
 
 
-def the_cone_alone_hops(run: Experiment) -> Iterator[str]:
+def the_cone_alone_hops(run: Experiment) -> Iterator[Finding]:
     """With the round cone and the pyramid's resolution cubes hop: the shape does not prevent it."""
-    return without_hop(run, spec.CONVEX_SLIDES)
+    return hops(run, spec.CONVEX_SLIDES)
 
 
-def engines_land_alike(run: Experiment) -> Iterator[str]:
+def engines_land_alike(run: Experiment) -> Iterator[Finding]:
     """With equal settings, cubes land in MuJoCo as in the engine, at every shared sample."""
     for name, other in spec.ENGINE_PAIRS.items():
         if isinstance(run.metrics[other], LandingMetrics):
             pair = [run.traces[n].link_pos[:, 0, 2] for n in (name, other)]
             shared = min(map(len, pair))
             difference = float(np.abs(pair[0][:shared] - pair[1][:shared]).max())
-            if not difference <= spec.ENGINES_APART:
-                yield f"{name} and {other} are up to {difference:g} m apart"
+            yield at_most(f"{name}.distance_to_{other}_m", difference, spec.ENGINES_APART)
 
 
-def engines_hop_alike(run: Experiment) -> Iterator[str]:
+def engines_hop_alike(run: Experiment) -> Iterator[Finding]:
     """With equal settings, pushed cubes make the same hop in MuJoCo, with either cone."""
     for name, other in spec.ENGINE_PAIRS.items():
         if isinstance(run.metrics[other], SlideMetrics):
             first, second = slide(run.metrics, name).hop, slide(run.metrics, other).hop
-            if not abs(first - second) <= HOP_TOLERANCE:
-                yield f"{name} rises by {first:g} m, {other} by {second:g} m"
+            yield within(f"{name}.hop_m", first, second, spec.SAME_HOP)
+            yield noted(f"{other}.hop_m", second)
 
 
 CHECKS = (

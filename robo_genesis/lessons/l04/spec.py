@@ -1,8 +1,8 @@
 """Specification of lesson L04: cases, predictions, margins and tolerances.
 
 Pages, checks, verification and tests read the experiment here. The module is data and computes
-nothing. Every value that decides a measurement or a check is in `parameters()`; only a change there
-makes evidence stale.
+nothing. `parameters()` has the values that decide what runs and how a metric is computed; only a
+change there makes evidence stale. All other values only judge.
 """
 
 from collections.abc import Mapping
@@ -102,6 +102,13 @@ TOLERANCES = {
 backends. A time on the grid of samples must not move at all; counts are exact."""
 
 
+CONTROL_LAW_TOLERANCE = 1e-2
+"""Tolerance for float32 in KP times a position error [N·m or N]."""
+
+LIMIT_EXCESS = 1e-3
+"""Tolerance of a control force above its limit [N·m or N]."""
+
+
 def case_parameters(cases: Mapping[str, ControlCase]) -> dict[str, dict[str, Any]]:
     """Return every field of every case as JSON values."""
     return {
@@ -113,16 +120,14 @@ def case_parameters(cases: Mapping[str, ControlCase]) -> dict[str, dict[str, Any
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lesson as JSON values, for the evidence key.
 
-    Predictions, margins, tolerances and resolutions are not inputs: they judge the measurement and
-    do not change it.
+    Expected values, predictions, margins, tolerances and resolutions are not inputs: they judge the
+    measurement and do not change it.
     """
     return {
         "joints": list(JOINT_NAMES),
         "stepped_joint": STEPPED_JOINT,
         "model": FRANKA_MJCF,
-        "expected_model": dict(EXPECTED_MODEL),
-        "expected_types": list(EXPECTED_TYPES),
-        "one_factor": [[*pair, *entries] for pair, entries in ONE_FACTOR.items()],
+        "counted": list(EXPECTED_MODEL),
         "rise_fraction": RISE_FRACTION,
         "settling_band_rad": SETTLING_BAND,
         "saturation_threshold": SATURATION_THRESHOLD,

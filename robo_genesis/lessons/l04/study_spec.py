@@ -99,17 +99,6 @@ SPREAD_SHARE = 0.2
 lesson's step."""
 
 
-def parameters() -> dict[str, Any]:
-    """Return every configured input of the studies as JSON values, for the evidence key."""
-    return {
-        "studies": {
-            "second_runs": {name: asdict(run) for name, run in SECOND_RUNS.items()},
-            "cases": case_parameters(STEP_CASES | SUBSTEP_CASES),
-            "at_rest_rad_s": AT_REST,
-        }
-    }
-
-
 STEP_SIZES = (0.02, 0.05, 0.1, STEP)
 """Heights of the commanded step in the grid [rad]."""
 
@@ -159,3 +148,14 @@ BOUNDS = {
 AGREEMENT = {"rad": 1e-6, "rad/s": 1e-5, "s": 0.0, "N·m": 1e-3, "1": 0.0}
 """By unit: largest difference between a run in the batch and the same case run alone. Times and
 counts must be equal. A CPU showed 0 rad, 2e-7 rad/s and 6e-5 N·m."""
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input of the studies as JSON values, for the evidence key."""
+    return {
+        "studies": {
+            "second_runs": {name: asdict(run) for name, run in SECOND_RUNS.items()},
+            "cases": case_parameters(STEP_CASES | SUBSTEP_CASES),
+            "grid": {"step_rad": list(STEP_SIZES), "kp": list(KP), "kv": list(KV)},
+        }
+    }

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from lessons.body_runs import make_drop
 from lessons.lesson_bundles import (
+    altered,
     in_archive,
     in_json,
+    judged_again,
     metric,
     pop,
     recomputed,
@@ -128,3 +130,26 @@ def test_a_spoiled_one_is_refused_by_its_code(dropped, name):
     code, spoil = SPOILED[name]
     spoil(dropped)
     assert refused(dropped).startswith(code), name
+
+
+JUDGEMENTS = [
+    ("FORMULA_TOLERANCE", -1.0, "stepped_formula"),
+    ("AT_REST", -1.0, "straight_down"),
+    ("SPEED_SHARE", -1.0, "speed"),
+    ("FIRST_ORDER_SHARE", -1.0, "first_order"),
+    ("EXPECTED_MODEL", spec.EXPECTED_MODEL | {"links": 2}, "structure"),
+    ("BELONGS", spec.BELONGS | {"scene.step": spec.BEFORE}, "sides_of_build"),
+]
+
+
+@pytest.mark.parametrize(("name", "value", "check"), JUDGEMENTS)
+def test_another_judgement_changes_a_verdict_and_nothing_else(
+    dropped, monkeypatch, name, value, check
+):
+    judged_again(dropped, monkeypatch, spec, name, value, check)
+
+
+@pytest.mark.parametrize("check", ["speed", "shrinks"])
+def test_an_altered_finding_is_refused(dropped, check):
+    altered(check)(dropped)
+    assert refused(dropped).startswith("checks: ")

@@ -163,7 +163,7 @@ def test_boxes_that_end_apart_are_named():
     assert checks.same_fall({"ours": 0.3, "blue": 0.3}).passed
     outcome = checks.same_fall({"ours": 0.3, "blue": 0.29})
     assert not outcome.passed
-    assert outcome.detail.startswith("blue ended -0.01 m")
+    assert outcome.detail == "blue.distance_to_first_m is -0.01, expected 0"
 
 
 def failing_study(metrics, cases=ALL_CASES) -> list[str]:

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 from lessons.l03.conftest import READINGS
 from lessons.lesson_bundles import (
+    altered,
     in_archive,
     in_json,
+    judged_again,
     metric,
     pop,
     recomputed,
@@ -129,3 +131,49 @@ def test_a_spoiled_bundle_is_refused_by_its_code(landed, name):
     folder = landed["lab" if name in LAB else "lecture"]
     spoil(folder)
     assert refused(folder).startswith(code), name
+
+
+JUDGEMENTS = {
+    "lab": [
+        ("EXPECTED_MODEL", spec.EXPECTED_MODEL | {"links": 2}, "structure"),
+        ("SETTLED_START", -1.0, "start"),
+        ("START_SPEED", -1.0, "start"),
+        ("FINER", (("baseline", "dt20_sub1"),), "one_factor"),
+        ("EQUAL_STEP", ("baseline", "dt10_sub1"), "one_factor"),
+        ("DEPTH_TOLERANCE", -1.0, "reported_late"),
+        ("SAME_SLIDE", -1.0, "friction_orders"),
+        ("COULOMB_SHARE", -1.0, "near_coulomb"),
+        ("LEVEL_SHARE", -1.0, "level_in_flight"),
+        ("FINE_SHARE", -1.0, "energy_converges"),
+        ("COARSE_SHARE", 1e9, "energy_converges"),
+    ],
+    "lecture": [
+        ("TIME_CONSTANT", -1.0, "time_constants"),
+        ("SCATTER_LEFT", -1.0, "scatter_shrinks"),
+        ("NEARLY", -1.0, "stops_nearly_right"),
+        ("BLOW", 1e9, "hop_is_paid_by_friction"),
+        ("RATIO_TOLERANCE", -1.0, "hop_is_paid_by_friction"),
+        ("STEPPED_TOLERANCE", -1.0, "clean_slides_are_coulomb_s"),
+        ("RULE_TOLERANCE", -1.0, "larger_friction_rules"),
+        ("ENGINES_APART", -1.0, "engines_land_alike"),
+        ("SAME_HOP", -1.0, "engines_hop_alike"),
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    ("page", "name", "value", "check"),
+    [(page, *judgement) for page, judgements in JUDGEMENTS.items() for judgement in judgements],
+)
+def test_another_judgement_changes_a_verdict_and_nothing_else(
+    landed, monkeypatch, page, name, value, check
+):
+    judged_again(landed[page], monkeypatch, spec, name, value, check)
+
+
+@pytest.mark.parametrize(
+    ("page", "check"), [("lab", "near_coulomb"), ("lecture", "larger_friction_rules")]
+)
+def test_an_altered_finding_is_refused(landed, page, check):
+    altered(check)(landed[page])
+    assert refused(landed[page]).startswith("checks: ")

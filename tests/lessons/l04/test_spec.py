@@ -66,9 +66,7 @@ def test_parameters_are_json():
 
 OTHER = {
     "STEPPED_JOINT": "joint2",
-    "EXPECTED_MODEL": {**spec.EXPECTED_MODEL, "links": 12},
-    "EXPECTED_TYPES": ("PRISMATIC",) * 9,
-    "ONE_FACTOR": {("G1", "G3"): ["kp[joint4]"]},
+    "EXPECTED_MODEL": {**spec.EXPECTED_MODEL, "cameras": 1},  # its names are read
     "FRANKA_MJCF": "another.xml",
     "JOINT_NAMES": JOINT_NAMES[::-1],
     "RISE_FRACTION": 0.8,
@@ -77,7 +75,10 @@ OTHER = {
 }
 
 
-JUDGEMENTS = ("PREDICTIONS", "MARGINS", "RELATIONS", "TOLERANCES", "RESOLUTION")
+JUDGEMENTS = (
+    "PREDICTIONS", "MARGINS", "RELATIONS", "TOLERANCES", "RESOLUTION", "EXPECTED_TYPES",
+    "ONE_FACTOR", "CONTROL_LAW_TOLERANCE", "LIMIT_EXCESS",
+)  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -85,7 +86,9 @@ JUDGEMENTS = ("PREDICTIONS", "MARGINS", "RELATIONS", "TOLERANCES", "RESOLUTION")
     [
         *((spec, name, value, True) for name, value in OTHER.items()),
         *((spec, name, {}, False) for name in JUDGEMENTS),
-        (study_spec, "AT_REST", 0.02, True),
+        (spec, "EXPECTED_MODEL", {**spec.EXPECTED_MODEL, "links": 12}, False),
+        (study_spec, "AT_REST", 0.02, False),
+        (study_spec, "KP", (3500.0, 7000.0), True),
     ],
 )
 def test_what_decides_a_run_is_a_parameter_and_a_judgement_is_none(
@@ -104,7 +107,8 @@ def test_every_field_of_a_case_is_a_parameter(field, monkeypatch):
 
 
 def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():
-    names = [name for name in MODULES if name != "lessons.l04.__init__"]  # the declaration
+    others = {"lessons.l04.__init__", "lessons.l04.checks"}  # the declaration, the judgement
+    names = [name for name in MODULES if name not in others]
     files = [PACKAGE.joinpath(*name.split(".")).with_suffix(".py") for name in names]
     trees = [ast.parse(file.read_text("utf8")) for file in files]
     read = {
@@ -113,7 +117,6 @@ def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():
         for node in ast.walk(tree)
         if isinstance(node, ast.Attribute) and getattr(node.value, "id", None) == "spec"
     }
-    assert read
     assert read <= {*OTHER, "CASES", "ENTRY"}  # ENTRY follows from joints and stepped joint
     assert "lessons.l04.spec" not in MODULES
 
@@ -121,7 +124,7 @@ def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():
 def test_the_lab_reads_parameters_predictions_and_resolutions_alone():
     (lab,) = (project.BOOK / "lessons").glob("l04-*/lab.md")
     read = set(re.findall(r"\bspec\.([A-Za-z]\w*)", lab.read_text("utf8")))
-    assert read - {*OTHER, "CASES"} == {"BASELINE", "PREDICTIONS", "RESOLUTION"}
+    assert read - {*OTHER, "CASES"} == {"BASELINE", "ONE_FACTOR", "PREDICTIONS", "RESOLUTION"}
     assert spec.CASES["baseline"] is spec.BASELINE
 
 

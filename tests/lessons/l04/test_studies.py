@@ -82,20 +82,23 @@ def without(run, name):
 
 SPOILERS = [
     ("study_factors", "", lambda run: spoiled(run, G1_small=run.traces["G1"])),
-    ("same_model", "inertia: Genesis 1.5820",
+    ("same_model", "inertia_Genesis is 1.582",
      lambda run: with_readings(run, inertia_Genesis=1.582, inertia_MuJoCo=1.077)),
-    ("same_model", "gravity effort",
+    ("same_model", "gravity_at_start_Genesis is 22.57",
      lambda run: with_readings(
          run, gravity_at_start_Genesis=22.57, gravity_at_start_MuJoCo=21.0)),
     ("small_step_unsaturated", "G2_small", lambda run: clipped(run, "start_control_force")),
     ("small_step_unsaturated", "G2_small", lambda run: clipped(run, "control_force")),
-    ("theory_small_step", "off the ideal", off_theory),
-    ("theory_small_step", "not nearer", as_theory),
+    ("theory_small_step", "G1_small.overshoot_share is", off_theory),
+    ("theory_small_step", "G1_small.distance_to_theory is", as_theory),
     ("gravity_support", "G2", lambda run: with_readings(run, gravity_G2=30.0)),
-    ("gravity_support", "no case ends nearly at rest", moving),
-    ("convergence", "4 substeps", lambda run: with_overshoot(run, "G2_substeps_4", 0.07)),
-    ("convergence", "50 substeps", lambda run: with_overshoot(run, "G2_substeps_50", 0.07)),
-    ("one_limit", "the spread is", lambda run: with_overshoot(run, "G2_substeps_50", 0.0415)),
+    ("gravity_support", "cases_at_rest is none", moving),
+    ("convergence", "fall_from_2_to_4_substeps_rad is -",
+     lambda run: with_overshoot(run, "G2_substeps_4", 0.07)),
+    ("convergence", "fall_from_20_to_50_substeps_rad is -",
+     lambda run: with_overshoot(run, "G2_substeps_50", 0.07)),
+    ("one_limit", "spread_at_finest_step_rad is",
+     lambda run: with_overshoot(run, "G2_substeps_50", 0.0415)),
     *(("second_engine_order", f"{name}: overshoot", lambda run, n=name: with_cases_swapped(run, n))
       for name in study_spec.SECOND_INTEGRATORS),
     *((check, f"'{name}'", lambda run, n=name: without(run, n))

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 from bundles import written
-from lessons.lesson_bundles import pop, refused, without_run
+from lessons.lesson_bundles import altered, judged_again, pop, refused, without_run
 from spoilers import edit, seal
 
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.l04 import checks, study_checks, study_spec
+from robo_genesis.lessons.l04 import checks, spec, study_checks, study_spec
 
 
 @pytest.fixture(scope="module")
@@ -93,3 +93,31 @@ def test_a_comparison_covers_the_studies(studied, tmp_path, group, name, factor,
     values = next(section for section in found.sections if section.title == "Values")
     (row,) = [finding for finding in values.findings if finding.what == f"{group}.{name}"]
     assert row.state == state
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "value", "check"),
+    [
+        (spec, "EXPECTED_MODEL", spec.EXPECTED_MODEL | {"links": 12}, "mapping"),
+        (spec, "EXPECTED_TYPES", ("REVOLUTE",) * 9, "mapping"),
+        (spec, "ONE_FACTOR", {("G1", "G3"): ["kp[joint4]"]}, "one_factor"),
+        (spec, "CONTROL_LAW_TOLERANCE", -1.0, "control_law"),
+        (spec, "LIMIT_EXCESS", -1e3, "measurements"),
+        (spec, "RELATIONS", ((("G1", "G2"), "rise_time", "later", 0.0),), "second_engine_order"),
+        (study_spec, "SMALL_STEP_TOLERANCE", -1.0, "theory_small_step"),
+        (study_spec, "AT_REST", 0.0, "gravity_support"),
+        (study_spec, "GRAVITY_AGREEMENT", -1.0, "gravity_support"),
+        (study_spec, "SAME_MODEL", -1.0, "same_model"),
+        (study_spec, "SPREAD_SHARE", -1.0, "one_limit"),
+    ],
+)
+def test_another_judgement_changes_a_verdict_and_nothing_else(
+    studied, monkeypatch, module, name, value, check
+):
+    judged_again(studied, monkeypatch, module, name, value, check)
+
+
+@pytest.mark.parametrize("check", ["control_law", "one_limit"])
+def test_an_altered_finding_is_refused(studied, check):
+    altered(check)(studied)
+    assert refused(studied).startswith("checks: ")
