@@ -29,10 +29,10 @@ def listed(words: Sequence[str]) -> str:
 
 
 def printable(text: str) -> str:
-    """Return text as one line that a terminal shows and does not obey.
+    r"""Return text as one line that a terminal shows and does not obey.
 
     Line breaks, control characters, reversed directions and other invisible characters become
-    escapes such as `\\x1b`.
+    escapes such as `\x1b`.
     """
     odd = (c for c in {*text} if not c.isprintable())
     return text.translate({ord(c): c.encode("unicode_escape").decode() for c in odd})

@@ -98,10 +98,10 @@ def read_archive(path: Path, where: str, names: Sequence[str]) -> dict[str, np.n
         raise BundleRefused("bad-array", f"{where}: {error}, {expected}. {AGAIN}") from error
 
 
-def _archive(members: Iterable[Member]) -> bytes:
+def _archive(members: Sequence[Member]) -> bytes:
     """Return the bytes of a whole archive."""
-    body, directory, count = b"", b"", 0
-    for count, member in enumerate(members, start=1):
+    body, directory, count = b"", b"", len(members)
+    for member in members:
         directory += member.entry(len(body))
         body += member.local + member.packed
     end = END.pack(b"PK\5\6", 0, 0, count, count, len(directory), len(body), 0)

@@ -185,8 +185,8 @@ def require_complete(run: Experiment) -> None:
     odd = [name for name, value in values.items() if not np.isfinite(value).all()]
     if odd:
         raise RecordError(
-            f"Not all values are finite: {', '.join(odd)}. A bundle takes finite numbers only. Find "
-            "out where the run diverges, then run the page again."
+            f"Not all values are finite: {', '.join(odd)}. A bundle takes finite numbers only. "
+            "Find out where the run diverges, then run the page again."
         )
 
 

@@ -19,9 +19,11 @@ import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
+from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.evidence import bundle, bundle_files, npz_archive, trace_files
 from robo_genesis.evidence.fields import LINE_LIMIT
 from robo_genesis.evidence.npz_archive import UNPACKED_LIMIT
+from robo_genesis.evidence.picture_file import read_picture, write_picture
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import LAB
@@ -146,6 +148,28 @@ def on(actual):
         return there
 
     return change
+
+
+def own_run_id(folder):
+    """Give a bundle another run id, in its frames, too."""
+    predicate(run_id="d" * 32)(folder)
+    for path in (folder / "frames").glob("*.png"):
+        _, frame = read_picture(path, CAMERA_RES)
+        write_picture(path, frame, "d" * 32)
+
+
+def last_bit(array):
+    return np.nextafter(array, np.float32(np.inf))
+
+
+def measured_elsewhere(folder):
+    """Make a bundle that of another run, with an array of each case that differs a little."""
+    own_run_id(folder)
+    name = NAMES["internal_force"]
+    for path in (folder / "arrays").glob("*.npz"):
+        with np.load(path) as archive:
+            kept = {**archive}
+        np.savez_compressed(path, **(kept | {name: last_bit(kept[name])}))
 
 
 # --- files ----------------------------------------------------------------------------------
@@ -654,6 +678,14 @@ SPOILED = {
     "a log of software drawing": ("digest", "log", both(on("cuda"), lambda f: (
         f / "log.txt").write_text((f / "log.txt").read_text("utf8")
                                   + "INFO Software rendering context detected.\n", "utf8"))),
+    "an empty log": ("digest", "log", both(
+        predicate(warnings=[]), bytes_of("log.txt", lambda b: b""))),
+    "a log without a backend": ("digest", "log", log("Running on", "Running at")),
+    "a log without a start": ("digest", "log", log("initialized.", "ready.")),
+    "a log without a seed": ("digest", "log", log("seed: 0", "seeds: none")),
+    "a log without a precision": ("digest", "log", log("precision: ", "digits: ")),
+    "a log with the device of another": ("digest", "log", bytes_of("log.txt", lambda b: b
+        + b"INFO Running on [a GPU] with backend gs.amdgpu. Device memory: 1 GB.\n")),
     "a log of one long line": ("digest", "log", long_log("x")),
     "a long line of one word of the log": ("digest", "log", long_log("initialized. version: ")),
     "a warning of many lines": ("digest", "log", many_lines),
