@@ -267,7 +267,7 @@ def _version(value: Any) -> int:
 def read_metrics(folder: Path) -> dict[str, dict[str, Metric]]:
     """Return metrics by group (a case, or `model`) and name."""
     content = read_json(folder, "metrics.json")
-    return _validated(dict[Line, dict[Line, Metric]], content, "metrics.json")  # type: ignore[no-any-return]
+    return _validated(dict[Line, dict[Line, Metric]], content, "metrics.json")
 
 
 def by_full_name(metrics: Mapping[str, Mapping[str, Metric]]) -> dict[str, Metric]:

@@ -244,5 +244,8 @@ def _largest(
     worst_at = np.unravel_index(over, a.shape)
     state = WITHIN if shares[worst_at] <= 1 else DIFFERS
     place, of = ", ".join(map(str, worst_at)), str(units[worst_at])
-    texts = [six_digits(float(x[worst_at]), of) for x in (here, there, delta, allowed)]
-    return Finding(state, f"{what}[{place}]", *texts, weight=float(shares[worst_at]))
+    old, new, apart, limit = (
+        six_digits(float(x[worst_at]), of) for x in (here, there, delta, allowed)
+    )
+    weight = float(shares[worst_at])
+    return Finding(state, f"{what}[{place}]", old, new, apart, limit, weight)
