@@ -10,8 +10,9 @@ import sys
 from pathlib import Path
 
 from robo_genesis.core.project import CACHE
+from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.core.text import printable
 from robo_genesis.evidence import report
-from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE
 
@@ -20,7 +21,7 @@ STATUS = {DIFFERS: 1, INCONCLUSIVE: 1, NOT_COMPARABLE: 2}
 
 def refused(message: str) -> int:
     """Print why nothing was compared; return the exit status."""
-    print(message, file=sys.stderr)
+    print(printable(message), file=sys.stderr)
     return 2
 
 

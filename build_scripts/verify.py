@@ -1,25 +1,80 @@
 """Verify evidence: `make verify` (BUNDLE=path checks one folder).
 
 One line for each bundle that is recorded in the book and for each of the last build: lesson,
-backend, state, reason. Exit status: 0 all verified, or no bundle; 1 any is inconclusive, stale,
-failed or refused.
+backend, state, reason. For one folder, also what a refusal means for somebody who recorded it at
+home, and how its numbers differ from the last build's run on the CPU of the same page.
+Exit status: 0 all verified, or no bundle; 1 any is inconclusive, stale, failed or refused.
 """
 
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 from robo_genesis.build.command import path
 from robo_genesis.core.project import BOOK, PUBLISHED, ProjectError
-from robo_genesis.evidence.status import Status, bundle_status, recorded_folders, recorded_status
+from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.core.text import printable
+from robo_genesis.evidence import bundle_files, report
+from robo_genesis.evidence.advice import advice
+from robo_genesis.evidence.bundle import read_manifest
+from robo_genesis.evidence.compare import compare
+from robo_genesis.evidence.status import (
+    Status,
+    bundle_status,
+    changes,
+    cpu_runs,
+    recorded_folders,
+    recorded_status,
+)
 
 
 def all_bundles() -> Iterator[tuple[str, Status]]:
     """Yield (place, status) of the recorded bundles, then of the last build's."""
     for folder in recorded_folders(BOOK):
-        yield f"{folder.parent.name} recorded", recorded_status(BOOK, *folder.parts[-2:])
+        lesson, backend = folder.parts[-2:]
+        runs = cpu_runs(folder, {lesson: built(lesson)})
+        yield f"{lesson} recorded", recorded_status(BOOK, lesson, backend, cpu_runs=runs)
     for folder in recorded_folders(BOOK / PUBLISHED):
         lesson = folder.parent.name
         yield f"{lesson} built", bundle_status(folder, lesson, "lab")
+
+
+def built(lesson: str) -> Path:
+    """Return the folder of the last build's bundle of a lab, which may be missing."""
+    return BOOK / PUBLISHED / "evidence" / lesson / "cpu"
+
+
+def one_bundle(folder: Path) -> tuple[Status, list[str]]:
+    """Return the status of one bundle, and lines for the person who recorded it."""
+    try:
+        bundle_files.scan(folder)
+        predicate = read_manifest(folder).predicate
+    except (BundleRefused, OSError):
+        predicate = None
+    reference = built(predicate.lesson) if predicate else None
+    runs = [reference] if reference and reference.is_dir() else []
+    status = bundle_status(folder, book=BOOK, cpu_runs=runs)
+    lines = []
+    if status.code:
+        stale = status.code == "stale"
+        changed = changes(read_manifest(folder), BOOK) if stale else []
+        kinds = tuple(dict.fromkeys(kind for kind, _ in changed))
+        lines += [f"What this means: {text}" for text in advice(status.code, kinds, predicate)]
+    if predicate and runs and folder.resolve() != runs[0].resolve():
+        lines += compared(runs[0], folder, predicate.page)
+    return status, lines
+
+
+def compared(reference: Path, folder: Path, page: str) -> list[str]:
+    """Return lines that compare a bundle with this build's run on the CPU of the same page."""
+    try:
+        if read_manifest(reference).predicate.page != page:
+            return []
+        comparison = compare(reference, folder)
+    except BundleRefused as refusal:
+        return [f"It cannot be compared with this build's run on the CPU: {refusal}"]
+    text = report.summary(comparison).splitlines()
+    return ["Compared with this build's run on the CPU (build → yours):", *text]
 
 
 def line(place: str, status: Status) -> str:
@@ -28,20 +83,26 @@ def line(place: str, status: Status) -> str:
     if not text and status.manifest:
         run = status.manifest.predicate
         text = f"run {run.run_id[:8]} of {run.started[:10]}, Genesis {run.engine.version}"
-    return f"{place:14} {status.backend:8} {status.state:12} {text}"
+    return printable(f"{place:14} {status.backend:8} {status.state:12} {text}")
 
 
 def main() -> int | str:
     """Print the lines and return the exit status, or why nothing can be verified."""
     try:
-        bundle = path("BUNDLE")
-        found = [(bundle.parent.name, bundle_status(bundle))] if bundle else list(all_bundles())
+        more: list[str] = []
+        if bundle := path("BUNDLE"):
+            status, more = one_bundle(bundle)
+            found = [(bundle.parent.name, status)]
+        else:
+            found = list(all_bundles())
     except (ProjectError, OSError) as error:
         return f"Nothing can be verified: {error}"
     if not found:
         print("No bundle is recorded in book/evidence, and none is built. `make book` builds one.")
     for place, status in found:
         print(line(place, status))
+    for text in more:
+        print(printable(text))
     return 0 if all(status.state == "verified" for _, status in found) else 1
 
 

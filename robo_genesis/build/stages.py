@@ -230,7 +230,7 @@ def _verify(
             progress("verify", result.page.docname, "accepted")
         except BundleRefused as error:
             refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
-    refused += refused_records(book)
+    refused += refused_records(book, _labs(results))
     if refused:
         raise BuildError("\n".join(refused))
     return manifests

@@ -2,16 +2,21 @@
 
 import re
 
+from robo_genesis.core.text import printable
+
 AGAIN = "Record the bundle again."
 LONGEST_SHOWN = 160
 
 
 class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepted or refused
-    """A bundle is not valid evidence. `code` is stable; the message says what to do."""
+    """A bundle is not valid evidence. `code` is stable; the message says what to do.
+
+    The message may quote the bundle: its control characters and line breaks are escaped.
+    """
 
     def __init__(self, code: str, message: str) -> None:
-        super().__init__(f"{code}: {message}")
-        self.code = code
+        self.code, self.message = code, printable(message)
+        super().__init__(f"{code}: {self.message}")
 
 
 def shown(value: object) -> str:

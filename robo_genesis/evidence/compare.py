@@ -4,15 +4,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from robo_genesis.core.refusals import BundleRefused, expect
-from robo_genesis.evidence import bundle, findings
+from robo_genesis.core.refusals import BundleRefused, shown
+from robo_genesis.evidence import bundle, bundle_files, findings
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.findings import (
-    EQUAL,
     NOT_COMPARABLE,
     SEVERITY,
     SHOWN,
-    WITHIN,
     PageSpecification,
     Section,
     Side,
@@ -50,9 +48,7 @@ class BundleComparison:
         """The verdict: equal, within tolerance, inconclusive, differs or not comparable."""
         if self.obstacles:
             return NOT_COMPARABLE
-        found = worst([f.state for s in self.sections for f in s.findings if f.state != SHOWN])
-        arrays_differ = any(s.title == "Arrays" and s.state == SHOWN for s in self.sections)
-        return WITHIN if found == EQUAL and arrays_differ else found
+        return worst([f.state for s in self.sections for f in s.findings if f.state != SHOWN])
 
 
 def specification(lesson: str, page: str) -> PageSpecification:
@@ -107,34 +103,28 @@ def _sections(old: Side, new: Side, spec: PageSpecification) -> tuple[Section, .
         section("Relations", claims, "The lesson claims no ordering."),
         of_class("Exact counts", "exact", "There are no counts."),
         of_class("Values", "value", "There are no values."),
-        section("Arrays", findings.arrays(old, new), "There are no arrays."),
+        section("Arrays", findings.arrays(old, new, spec.tolerances), "There are no arrays."),
         of_class("Performance", "performance", "No performance is recorded yet."),
     )
     return tuple(sorted(every, key=lambda s: -SEVERITY.index(s.state)))
 
 
 def read_side(folder: Path) -> Side:
-    """Read one bundle strictly, each file after its digest was compared with the listed one.
+    """Read one bundle strictly, with the verifier's own bounds and digests.
 
     Raises:
-        BundleRefused: a file is missing, damaged, or differs from the one that was listed.
+        BundleRefused: a file is too large, missing, damaged, or differs from the listed one; the
+            message begins with the folder.
     """
-    manifest = bundle.read_manifest(folder)
-    listed = {subject.name: subject.digest.sha256 for subject in manifest.subject}
-    _check_digest(folder, "metrics.json", listed)
-    _check_digest(folder, "arrays.json", listed)
-    metrics, arrays, traces = bundle.read_metrics(folder), bundle.read_arrays(folder), {}
-    for case in arrays.cases:
-        _check_digest(folder, f"arrays/{case}.npz", listed)
-        traces[case] = read_any_trace(folder, arrays, case)
+    try:
+        present = bundle_files.scan(folder)
+        manifest = bundle.read_manifest(folder)
+        bundle_files.check_files(folder, present, manifest)
+        metrics, arrays = bundle.read_metrics(folder), bundle.read_arrays(folder)
+        traces = {case: read_any_trace(folder, arrays, case) for case in arrays.cases}
+    except BundleRefused as refusal:
+        raise BundleRefused(refusal.code, f"{folder}: {refusal.message}") from refusal
     return Side(str(folder), manifest, metrics, arrays, traces)
-
-
-def _check_digest(folder: Path, name: str, listed: dict[str, str]) -> None:
-    file = f"{name} of {folder}"
-    present = name in listed, (folder / name).is_file()
-    expect("files", file, "whether it is listed and exists", present, (True, True))
-    expect("digest", file, "sha256", bundle.sha256(folder / name), listed[name])
 
 
 def axes(old: Predicate, new: Predicate) -> list[str]:
@@ -156,7 +146,7 @@ def _obstacles(old: Predicate, new: Predicate) -> Iterator[str]:
         if was != now:
             yield f"The {what} differs: {was!r} and {now!r}."
     for path, was, now in differences(old.parameters, new.parameters, "parameters"):
-        yield f"{path} differs: {was} and {now}."
+        yield f"{path} differs: {shown(was)} and {shown(now)}."
     for word, side in (("old", old), ("new", new)):
         if side.backend.actual != side.backend.actual_at_end:
             change = f"from {side.backend.actual} to {side.backend.actual_at_end}"

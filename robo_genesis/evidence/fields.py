@@ -4,15 +4,13 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-LINE_LIMIT = 2**14
-"""Characters of one line of the log, and of one warning. Those of a lesson have less than 400."""
+from robo_genesis.core.text import BLANK, LINE_LIMIT
+from robo_genesis.evidence.strict_json import LARGEST
 
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
 Index = Annotated[int, Field(ge=0, lt=2**31)]
 Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{1,9})?Z$")]
-LARGEST = 2**53
-"""The largest magnitude of a number: up to here, a float holds every integer."""
 
 
 def _plain(limit: int, other: str = "") -> AfterValidator:
@@ -33,7 +31,7 @@ Line = Annotated[str, _plain(200)]
 """A name, version or unit."""
 LongLine = Annotated[str, _plain(2000)]
 """A command or a path."""
-Message = Annotated[str, _plain(LINE_LIMIT, "\n\t\N{NO-BREAK SPACE}\N{ZERO WIDTH JOINER}")]
+Message = Annotated[str, _plain(LINE_LIMIT, BLANK)]
 """A warning of the engine, which may have several lines."""
 
 

@@ -202,16 +202,50 @@ def values(
         yield Finding(state, name, *text, *more, weight)
 
 
-def arrays(old: Side, new: Side) -> Iterator[Finding]:
-    """Arrays have the same shape; their largest difference is shown."""
+def arrays(
+    old: Side, new: Side, tolerances: Mapping[str, tuple[float, float]]
+) -> Iterator[Finding]:
+    """Arrays have the same shape, and their values agree within atol + rtol · the larger magnitude.
+
+    A tolerance is declared by the name of an array or by a unit; without one, and for counts,
+    values must be equal. The row names the value that exceeds its tolerance most.
+    """
     for case in [name for name in old.traces if name in new.traces]:
         for field, (name, *_) in fields_of(old.traces[case]).items():
             a, b = (getattr(side.traces[case], field, np.empty(0)) for side in (old, new))
             what, unit = f"{case} {name}", old.arrays.cases[case].variables[name].unit
-            if a.shape != b.shape:
-                yield Finding(DIFFERS, what, f"shape {a.shape}", f"shape {b.shape}")
-                continue
-            apart = float(np.abs(b.astype(np.float64) - a.astype(np.float64)).max(initial=0.0))
-            units = unit if isinstance(unit, str) else " or ".join(dict.fromkeys(unit))
-            shapes, delta = (str(a.shape), str(b.shape)), six_digits(apart, units)
-            yield Finding(SHOWN if apart else EQUAL, what, *shapes, delta, weight=apart)
+            if a.shape != b.shape or a.dtype != b.dtype:
+                here, there = (f"{of.dtype}, shape {of.shape}" for of in (a, b))
+                yield Finding(DIFFERS, what, here, there)
+            elif np.array_equal(a, b):
+                yield Finding(EQUAL, what, str(a.shape), str(b.shape))
+            else:
+                yield _largest(what, a, b, name, unit, tolerances)
+
+
+def _largest(
+    what: str,
+    a: np.ndarray,
+    b: np.ndarray,
+    name: str,
+    unit: str | list[str],
+    tolerances: Mapping[str, tuple[float, float]],
+) -> Finding:
+    """Return the row of two different arrays; `unit` is a list if the last axis has DOFs."""
+    units = np.broadcast_to(np.array(unit), a.shape)
+    declared = {} if np.issubdtype(a.dtype, np.integer) else tolerances
+    limits = {u: declared.get(name, declared.get(u, (0.0, 0.0))) for u in {*units.flat}}
+    atol, rtol = (np.vectorize(lambda u, k=k: limits[u][k])(units) for k in (0, 1))
+    here, there = a.astype(np.float64), b.astype(np.float64)
+    delta, allowed = there - here, atol + rtol * np.maximum(np.abs(here), np.abs(there))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = np.where(delta == 0, 0.0, np.abs(delta) / allowed)  # infinite without a tolerance
+    over = np.argmax(shares if np.isfinite(shares).all() else np.where(allowed, 0, np.abs(delta)))
+    worst_at = np.unravel_index(over, a.shape)
+    state = WITHIN if shares[worst_at] <= 1 else DIFFERS
+    place, of = ", ".join(map(str, worst_at)), str(units[worst_at])
+    old, new, apart, limit = (
+        six_digits(float(x[worst_at]), of) for x in (here, there, delta, allowed)
+    )
+    weight = float(shares[worst_at])
+    return Finding(state, f"{what}[{place}]", old, new, apart, limit, weight)

@@ -23,6 +23,9 @@ TORCH = (
 FORCED = ("GS_TORCH_FORCE_CPU_DEVICE", "QD_ARCH")
 """Switches that can make the engine and Torch use different devices."""
 
+STATED = ("backend", "device", "engine version", "seed", "precision")
+"""The facts that the log of the pinned version states: where it runs, and how it was started."""
+
 LEVELS = ("DEBUG", "INFO", "WARNING", "ERROR", "CRITICAL")
 SOFTWARE_LINE = "Software rendering context detected"
 
@@ -116,10 +119,10 @@ def check_render(manifest: Manifest) -> None:
     expect("render", MANIFEST, what, found, expected)
 
 
-def check_log(folder: Path, manifest: Manifest) -> None:
-    """Require that the engine's own log does not contradict the manifest.
+def check_log(folder: Path, manifest: Manifest, root: Path) -> None:
+    """Require that the engine's own log states what the manifest says.
 
-    A line may be missing, because engine versions write different lines.
+    The pinned version must state each fact; other versions write other lines.
 
     Raises:
         BundleRefused: `log`.
@@ -133,8 +136,13 @@ def check_log(folder: Path, manifest: Manifest) -> None:
     if longest > LINE_LIMIT:
         what = f"a line has {longest} characters, expected at most {LINE_LIMIT}"
         raise BundleRefused("log", f"log.txt: {what}. {AGAIN}")
+    stated = set()
     for what, found, expected in _log_facts(lines, manifest.predicate):
         expect("log", "log.txt", what, found, expected)
+        stated.add(what)
+    if manifest.predicate.engine.version == project.engine_pin(root):
+        missing = [what for what in STATED if what not in stated]
+        expect("log", "log.txt", "list of facts that the engine does not state", missing, [])
 
 
 def _log_facts(lines: Sequence[str], predicate: Predicate) -> Iterator[tuple[str, object, object]]:

@@ -4,15 +4,14 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
 
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.evidence import bundle, trace_files
 from robo_genesis.evidence.bundle import Arrays, Manifest, Metric, Predicate
+from robo_genesis.evidence.picture_file import read_picture
 from robo_genesis.lessons.experiment import Experiment, MeasuringPage
 from robo_genesis.lessons.registry import find_page
-from robo_genesis.sim.camera import require_frame
 
 
 def from_bundle(folder: Path, manifest: Manifest) -> Experiment:
@@ -111,12 +110,8 @@ def read_frames(folder: Path, predicate: Predicate) -> dict[str, np.ndarray]:
     for name in present:
         file = f"frames/{name}"
         try:
-            with Image.open(folder / file, formats=["PNG"]) as picture:
-                if picture.size != CAMERA_RES:  # before decoding: the header may lie
-                    raise ValueError(f"Its size is {picture.size}.")
-                run_id, pixels = picture.info.get("run_id"), np.array(picture)
-            require_frame(pixels)
-        except (OSError, SyntaxError, ValueError) as error:
+            run_id, pixels = read_picture(folder / file, CAMERA_RES)
+        except ValueError as error:
             message = f"{file}: expected a camera frame of size {CAMERA_RES}. {error} {AGAIN}"
             raise BundleRefused("frames", message) from error
         expect("frames", file, "its run_id", run_id, predicate.run_id)

@@ -14,19 +14,23 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
-from PIL.PngImagePlugin import PngInfo
+import numpy as np
 
 from robo_genesis.core import project
 from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.trace_files import write_traces
+from robo_genesis.evidence.picture_file import write_picture
+from robo_genesis.evidence.trace_files import fields_of, write_traces
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.sim import session
 from robo_genesis.sim.camera import Renderer
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"
+
+
+class RecordError(ValueError):
+    """An experiment cannot be recorded; the message names the runs or values."""
 
 
 class Recorder:
@@ -73,6 +77,8 @@ class Recorder:
 
         Raises:
             ContractError: the page rendered although it should not, or the reverse.
+            RecordError: the experiment has other runs than the page declares, or values that are
+                not finite. An earlier bundle is unchanged.
 
         Returns:
             Its folder. An earlier bundle of the same page and backend is replaced.
@@ -83,6 +89,7 @@ class Recorder:
                 f"but the page used {'a' if renderer else 'no'} renderer. Render exactly "
                 "if the contract asks for it."
             )
+        require_complete(experiment)
         partial = self.contract.outputs / f".{self.lesson}-{self.page}-{self.run_id}.partial"
         shutil.rmtree(partial, ignore_errors=True)
         partial.mkdir(parents=True)
@@ -102,9 +109,7 @@ class Recorder:
         _write_json(folder / "metrics.json", run.records())
         for name, frame in run.frames.items():
             (folder / "frames").mkdir(exist_ok=True)
-            text = PngInfo()
-            text.add_text("run_id", self.run_id)
-            Image.fromarray(frame).save(folder / "frames" / f"{name}.png", pnginfo=text)
+            write_picture(folder / "frames" / f"{name}.png", frame, self.run_id)
         (folder / "log.txt").write_text(self.engine.log.text(), encoding="utf-8")
         statement = {
             "_type": bundle.STATEMENT_TYPE,
@@ -156,6 +161,33 @@ class Recorder:
             "source": {"page": os.environ.get("ROBO_GENESIS_PAGE_SHA256"), "modules": modules},
         }
         return predicate | {"evidence_key": bundle.evidence_key(predicate)}
+
+
+def require_complete(run: Experiment) -> None:
+    """Raise RecordError unless an experiment has the declared runs and only finite numbers."""
+    found, declared = sorted(run.traces), sorted(run.page.runs)
+    if found != declared:
+        raise RecordError(
+            f"The page has the runs {', '.join(found) or 'none'}; its declaration names "
+            f"{', '.join(declared)}. Run each declared case, or correct the declaration."
+        )
+    values = {
+        f"{case} {name}": getattr(trace, field)
+        for case, trace in run.traces.items()
+        for field, (name, *_) in fields_of(trace).items()
+    }
+    values |= {
+        f"{group}.{name}": record["value"]
+        for group, records in run.records().items()
+        for name, record in records.items()
+        if record["value"] is not None
+    }
+    odd = [name for name, value in values.items() if not np.isfinite(value).all()]
+    if odd:
+        raise RecordError(
+            f"Not all values are finite: {', '.join(odd)}. A bundle takes finite numbers only. "
+            "Find out where the run diverges, then run the page again."
+        )
 
 
 def files_match_wheel(*distributions: str) -> bool:

@@ -6,9 +6,10 @@ from pathlib import Path
 
 from robo_genesis.core import tables
 from robo_genesis.core.files import write_whole
+from robo_genesis.core.text import printable
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison
-from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, SEVERITY, Section
+from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, SEVERITY, Finding, Section
 
 COLUMNS = ("result", "what", "old", "new", "Δ", "allowed")
 Row = tuple[str, ...]
@@ -49,14 +50,24 @@ def verdict(comparison: BundleComparison) -> str:
 
 
 def summary(comparison: BundleComparison) -> str:
-    """Return the report in a few lines: verdict, obstacles or sections, notes."""
+    """Return the report in a few lines: verdict, obstacles or sections, notes.
+
+    Text of the bundles cannot control a terminal or begin a line of its own.
+    """
     lines = [title(comparison), verdict(comparison), *comparison.obstacles]
     for part in comparison.sections:
         state = part.state if part.findings else part.empty
         lines.append(f"  {part.title.lower()}: {state}")
         worst = [f for f in part.findings if f.state in (DIFFERS, INCONCLUSIVE)]
-        lines += [f"    {f.what}: {f.old} → {f.new}" for f in worst]
-    return "\n".join([*lines, *comparison.notes])
+        lines += [f"    {_words(f)}" for f in worst]
+    return "\n".join(map(printable, [*lines, *comparison.notes]))
+
+
+def _words(row: Finding) -> str:
+    """Return a row as one line: what, both values, and the difference beside its limit."""
+    limit = f", allowed {row.allowed}" if row.allowed else ""
+    more = f" (difference {row.delta}{limit})" if row.delta else limit
+    return f"{row.what}: {row.old} → {row.new}{more}"
 
 
 def markdown(comparison: BundleComparison, level: int = 1) -> str:
@@ -83,7 +94,7 @@ def html_body(comparison: BundleComparison, level: int = 1) -> list[str]:
     body = [f"<{top}>{escape(title(comparison))}</{top}>"]
     state = _css(comparison.state)
     body.append(f'<p class="verdict {state}">{escape(verdict(comparison))}</p>')
-    remarks = "".join(f"<li>{escape(line)}</li>\n" for line in comparison.remarks)
+    remarks = "".join(f"<li>{_escaped(line)}</li>\n" for line in comparison.remarks)
     body += [f"<ul>\n{remarks}</ul>"] if remarks else []
     for part in comparison.sections:
         mark = f': <span class="{_css(part.state)}">{part.state}</span>' if part.findings else ""
@@ -170,7 +181,12 @@ def html_table(label: str, rows: list[Row], empty: str = "") -> str:
 def _cell(text: str) -> str:
     if text in SEVERITY:
         return f'<td class="{_css(text)}">{text}</td>'
-    return f"<td>{escape(text)}</td>"
+    return f"<td>{_escaped(text)}</td>"
+
+
+def _escaped(text: str) -> str:
+    """Return text as HTML of one line, without characters that change how others are shown."""
+    return escape(printable(" ".join(text.split())))
 
 
 def _css(state: str) -> str:
@@ -179,5 +195,5 @@ def _css(state: str) -> str:
 
 def plain(text: str) -> str:
     """Return text with the characters escaped that have a meaning in Markdown."""
-    one_line = " ".join(text.split())
+    one_line = printable(" ".join(text.split()))
     return "".join(f"\\{c}" if c in "\\`*_|[]<>#" else c for c in one_line)

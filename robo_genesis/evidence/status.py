@@ -8,7 +8,7 @@ from pathlib import Path
 from robo_genesis.core import project
 from robo_genesis.core.orderings import HELD, Relation, outcome
 from robo_genesis.core.refusals import BundleRefused
-from robo_genesis.evidence import bundle, evidence_key
+from robo_genesis.evidence import bundle, copies, evidence_key
 from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.compare import specification
 from robo_genesis.evidence.verify import verify_bundle
@@ -78,14 +78,21 @@ class Status:
         )
 
 
-def recorded_status(book: Path, lesson: str, backend: str, *, root: Path = project.ROOT) -> Status:
-    """Return the state of the recorded bundle of a lab on a backend."""
+def recorded_status(
+    book: Path,
+    lesson: str,
+    backend: str,
+    *,
+    root: Path = project.ROOT,
+    cpu_runs: Sequence[Path] = (),
+) -> Status:
+    """Return the state of the recorded bundle of a lab on a backend; see `bundle_status`."""
     absent = f"No run on this backend is recorded for Genesis {project.engine_pin(root)}."
     folder = book / "evidence" / lesson / backend
     if folder.parent.is_symlink():
         reason = f"evidence/{lesson} is a link, expected a folder. Replace the link."
         return Status("refused", backend, reason, None, "path", UNREADABLE)
-    return bundle_status(folder, lesson, RECORDED_PAGE, absent, book, root=root)
+    return bundle_status(folder, lesson, RECORDED_PAGE, absent, book, root=root, cpu_runs=cpu_runs)
 
 
 def bundle_status(
@@ -96,6 +103,7 @@ def bundle_status(
     book: Path = project.BOOK,
     *,
     root: Path = project.ROOT,
+    cpu_runs: Sequence[Path] = (),
 ) -> Status:
     """Return the state of the bundle in a folder that is named after its backend.
 
@@ -106,6 +114,7 @@ def bundle_status(
         absent: the reason if there is no bundle.
         book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
+        cpu_runs: bundles of CPU runs, of which one of an accelerator must not be a copy.
 
     Raises:
         ProjectError, PageError: the checkout itself cannot be read.
@@ -115,6 +124,7 @@ def bundle_status(
         return Status("missing", backend, absent, None)
     try:
         manifest = verify_bundle(folder, lesson=lesson, page=page, root=root, book=book)
+        copies.require_own_run(folder, cpu_runs)
     except BundleRefused as refusal:
         code = refusal.code
         summary = SUMMARIES.get(code, UNREADABLE)
@@ -149,25 +159,38 @@ def why_stale(manifest: Manifest, book: Path, root: Path = project.ROOT) -> str:
         book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
     """
+    changed = changes(manifest, book, root)
+    text = "; ".join(text for _, text in changed) or "it answers an older question"
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def changes(manifest: Manifest, book: Path, root: Path = project.ROOT) -> list[tuple[str, str]]:
+    """Return (kind, words) of each change since a bundle was recorded; see `why_stale`.
+
+    The kinds are those of `advice.BY_CHANGE`.
+    """
     found = manifest.predicate.model_dump()
     now = evidence_key.question(found["lesson"], found["page"], root, book)
     changed = [
-        f"it was recorded with {name} {found['engine'][key]}; this site uses {now['engine'][key]}"
+        (
+            "engine",
+            f"it was recorded with {name} {found['engine'][key]}; "
+            f"this site uses {now['engine'][key]}",
+        )
         for name, key in (("Genesis", "version"), ("Quadrants", "quadrants_version"))
         if found["engine"][key] != now["engine"][key]
     ]
     changed += [
-        f"{what} changed since"
-        for what, before, after in (
-            (f"the {found['page']}'s code", found["source"]["page"], now["source"]["page"]),
-            ("the course's code", found["source"]["modules"], now["source"]["modules"]),
-            ("the parameters", found["parameters"], now["parameters"]),
-            ("the seed", found["seed"], now["seed"]),
+        (kind, f"{what} changed since")
+        for kind, what, before, after in (
+            ("page", f"the {found['page']}'s code", found["source"]["page"], now["source"]["page"]),
+            ("modules", "the course's code", found["source"]["modules"], now["source"]["modules"]),
+            ("parameters", "the parameters", found["parameters"], now["parameters"]),
+            ("seed", "the seed", found["seed"], now["seed"]),
         )
         if before != after
     ]
-    text = "; ".join(changed) or "it answers an older question"
-    return f"{text[0].upper()}{text[1:]}."
+    return changed
 
 
 def recorded_folders(book: Path) -> list[Path]:
@@ -183,11 +206,25 @@ def recorded_folders(book: Path) -> list[Path]:
     ]
 
 
-def refused_records(book: Path) -> list[str]:
-    """Return a line for each recorded bundle of a book with which a build must not continue."""
-    found = [(path, recorded_status(book, *path.parts[-2:])) for path in recorded_folders(book)]
+def refused_records(book: Path, labs: Mapping[str, Path | None]) -> list[str]:
+    """Return a line for each recorded bundle of a book with which a build must not continue.
+
+    Args:
+        book: the folder of the pages.
+        labs: by lesson, the bundle of this build's lab, of which a recorded one must not be a copy.
+    """
+    found = [
+        (path, recorded_status(book, *path.parts[-2:], cpu_runs=cpu_runs(path, labs)))
+        for path in recorded_folders(book)
+    ]
     return [
         f"{path.relative_to(book)}: the recorded bundle is {status.state}: {status.reason}"
         for path, status in found
         if status.state not in PASSING
     ]
+
+
+def cpu_runs(folder: Path, labs: Mapping[str, Path | None]) -> list[Path]:
+    """Return the CPU runs that a recorded bundle must not be a copy of: recorded ones and labs."""
+    recorded, lab = folder.parent / "cpu", labs.get(folder.parent.name)
+    return [recorded, *([lab] if lab else [])]

@@ -7,6 +7,12 @@ from typing import Any
 
 from robo_genesis.core.refusals import AGAIN, BundleRefused, shown
 
+LARGEST = 2**53
+"""The largest magnitude of a number: up to here, a float holds every integer."""
+
+DEEPEST = 32
+"""Levels of lists and objects. Those of a bundle have less than 10."""
+
 
 def read_json(folder: Path, name: str) -> Any:
     """Return the strictly parsed content of one JSON file of a bundle."""
@@ -20,13 +26,21 @@ def read_json(folder: Path, name: str) -> Any:
 
 
 def parse_strict(text: str, where: str) -> Any:
-    """Parse JSON without repeated keys, byte order marks, infinite numbers or lone surrogates.
+    """Parse JSON without repeated keys, byte order marks or lone surrogates.
+
+    Numbers are finite and at most `LARGEST`; lists and objects are at most `DEEPEST` levels deep.
 
     Raises:
         BundleRefused: `bad-json`, naming `where` and what was found.
     """
     try:
-        value = json.loads(text, object_pairs_hook=_no_duplicates)
+        value = json.loads(
+            text,
+            object_pairs_hook=_no_duplicates,
+            parse_int=_integer,
+            parse_float=_float,
+        )
+        _require_depth(value)
         # Infinity and NaN cannot be written as JSON, nor a lone surrogate as UTF-8.
         json.dumps(value, ensure_ascii=False, allow_nan=False).encode()
     except (ValueError, RecursionError) as error:
@@ -34,6 +48,33 @@ def parse_strict(text: str, where: str) -> Any:
             "bad-json", f"{where}: {error}, expected strict JSON in UTF-8. {AGAIN}"
         ) from error
     return value
+
+
+def _integer(text: str) -> int:
+    if len(text) > len(f"-{LARGEST}") or abs(int(text)) > LARGEST:
+        raise ValueError(f"{shown(text)} is a number beyond ±2⁵³")
+    return int(text)
+
+
+def _float(text: str) -> float:
+    value = float(text)
+    if abs(value) > LARGEST:
+        raise ValueError(f"{shown(text)} is a number beyond ±2⁵³")
+    return value
+
+
+def _require_depth(value: Any) -> None:
+    """Raise ValueError if lists and objects are nested too deeply; nothing here is recursive."""
+    level, depth = [value], 0
+    while level := [
+        inner
+        for outer in level
+        if isinstance(outer, dict | list)
+        for inner in (outer.values() if isinstance(outer, dict) else outer)
+    ]:
+        depth += 1
+        if depth > DEEPEST:
+            raise ValueError(f"lists and objects are nested in more than {DEEPEST} levels")
 
 
 def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import numpy as np
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.core.trace import BodyTrace, ContactTrace, TimeSeries, Trace, TraceError
 from robo_genesis.evidence.bundle import Arrays, CaseArrays, JointRecord, Variable
-from robo_genesis.evidence.npz_archive import read_archive
+from robo_genesis.evidence.npz_archive import read_archive, write_archive
 from robo_genesis.sim.joints import EFFORT_UNIT, POSITION_UNIT, JointMap
 
 Field = tuple[str, list[str], str | None, str]
@@ -107,7 +107,7 @@ def write_traces(
                 unit=dof_units(name, types) if unit is None else unit,
                 long_name=long_name,
             )
-        np.savez_compressed(folder / file, **values)
+        write_archive(folder / file, values)
         cases[case] = CaseArrays(file=file, note=(notes or {}).get(case, ""), variables=variables)
     coords = {"dof": list(joints.names)} if joints else {}
     records = joint_records(joints) if joints else []
@@ -193,7 +193,7 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
     described, known = arrays.cases[case], KINDS[kind]
     expect("path", "arrays.json", f"file of case {case}", described.file, f"arrays/{case}.npz")
     _check_labels(arrays, case, known)
-    values = read_archive(folder / described.file, described.file, {n for n, *_ in known.values()})
+    values = read_archive(folder / described.file, described.file, [n for n, *_ in known.values()])
     for name, variable in described.variables.items():
         found = (list(values[name].shape), str(values[name].dtype))
         what = f"shape and type of {name}"

@@ -55,7 +55,7 @@ def verify_bundle(
     manifest_rules.check_backend(folder, manifest)
     manifest_rules.check_environment(manifest)
     manifest_rules.check_render(manifest)
-    manifest_rules.check_log(folder, manifest)
+    manifest_rules.check_log(folder, manifest, root)
     manifest_rules.check_engine_files(manifest)
     evidence_key.check_current(manifest, root, book)
     experiment = from_bundle(folder, manifest)

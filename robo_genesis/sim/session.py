@@ -15,6 +15,7 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.scene import SEED
+from robo_genesis.core.text import LINE_LIMIT, clean_message
 from robo_genesis.sim.backends import BACKENDS, contradictions
 
 CHOICES = {"ROBO_GENESIS_BACKEND": ("cpu", "auto"), "ROBO_GENESIS_RENDER": ("1", "0")}
@@ -84,7 +85,10 @@ class Backend:
 
 
 class EngineLog(logging.Handler):
-    """Keeps every line that the engine logs, without its colour marks."""
+    """Keeps every line that the engine logs, without its colour marks and control characters.
+
+    A message that is too long for a bundle is shortened.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -92,7 +96,8 @@ class EngineLog(logging.Handler):
 
     def emit(self, record: logging.LogRecord) -> None:
         """Keep (level, message)."""
-        self.lines.append((record.levelname, re.sub("~{1,4}<|>~{1,4}", "", record.getMessage())))
+        level, plain = record.levelname, re.sub("~{1,4}<|>~{1,4}", "", record.getMessage())
+        self.lines.append((level, clean_message(plain, LINE_LIMIT - len(f"{level} "))))
 
     @property
     def warnings(self) -> list[str]:

@@ -11,15 +11,19 @@ import shutil
 import struct
 import warnings
 import zipfile
+import zlib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from robo_genesis.evidence import bundle, bundle_files, trace_files
+from robo_genesis.core.scene import CAMERA_RES
+from robo_genesis.evidence import bundle, bundle_files, npz_archive, trace_files
 from robo_genesis.evidence.fields import LINE_LIMIT
 from robo_genesis.evidence.npz_archive import UNPACKED_LIMIT
+from robo_genesis.evidence.picture_file import read_picture, write_picture
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import LAB
@@ -103,6 +107,14 @@ def long_log(line):
     return change
 
 
+def nested(levels):
+    """Return lists in lists."""
+    value = []
+    for _ in range(levels - 1):
+        value = [value]
+    return value
+
+
 def many_lines(folder):
     """Add a warning of two million lines."""
     with (folder / "log.txt").open("a", encoding="utf8") as stream:
@@ -136,6 +148,28 @@ def on(actual):
         return there
 
     return change
+
+
+def own_run_id(folder):
+    """Give a bundle another run id, in its frames, too."""
+    predicate(run_id="d" * 32)(folder)
+    for path in (folder / "frames").glob("*.png"):
+        _, frame = read_picture(path, CAMERA_RES)
+        write_picture(path, frame, "d" * 32)
+
+
+def last_bit(array):
+    return np.nextafter(array, np.float32(np.inf))
+
+
+def measured_elsewhere(folder):
+    """Make a bundle that of another run, with an array of each case that differs a little."""
+    own_run_id(folder)
+    name = NAMES["internal_force"]
+    for path in (folder / "arrays").glob("*.npz"):
+        with np.load(path) as archive:
+            kept = {**archive}
+        np.savez_compressed(path, **(kept | {name: last_bit(kept[name])}))
 
 
 # --- files ----------------------------------------------------------------------------------
@@ -291,6 +325,76 @@ def pickled(folder):
     member("q_rad_or_m.npy", stream.getvalue())(folder)
 
 
+def packed_as(change):
+    """Write the archive of G1 anew, in the recorder's form, after a change of its members."""
+
+    def spoil(folder):
+        path = folder / G1
+        names = [name for name, *_ in trace_files.FIELDS.values()]
+        members = list(npz_archive._members(path.read_bytes(), names))
+        path.write_bytes(npz_archive._archive(change(members)))
+
+    return spoil
+
+
+def first_file(change):
+    """Change the npy file of the first array, and pack it with a right checksum."""
+
+    def spoil(members):
+        file = change(zlib.decompress(members[0].packed, wbits=-zlib.MAX_WBITS))
+        return [deflated(members[0].name, file), *members[1:]]
+
+    return packed_as(spoil)
+
+
+def deflated(name, file):
+    packing = zlib.compressobj(wbits=-zlib.MAX_WBITS)
+    packed = packing.compress(file) + packing.flush()
+    return npz_archive.Member(name, zlib.crc32(file), len(file), packed)
+
+
+def first_packed(**changes):
+    """Change fields of the first member; headers and directory agree with them."""
+
+    def spoil(members):
+        values = {name: new(getattr(members[0], name)) for name, new in changes.items()}
+        return [replace(members[0], **values), *members[1:]]
+
+    return packed_as(spoil)
+
+
+def bytes_of(name, change):
+    """Change the bytes of a file."""
+
+    def spoil(folder):
+        path = folder / name
+        path.write_bytes(change(path.read_bytes()))
+
+    return spoil
+
+
+def comment(folder):
+    with zipfile.ZipFile(folder / G1, "a") as archive:
+        archive.comment = b"luck"
+
+
+def hidden_member(folder):
+    """Add a member, then take its entry out of the directory."""
+    path = folder / G1
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr("hidden.npy", b"x")
+        archive.filelist.pop()
+        archive.NameToInfo.pop("hidden.npy")
+        archive._didModify = True
+
+
+def stored(folder):
+    """Write the archive without packing its members."""
+    with np.load(folder / G1) as archive:
+        kept = {**archive}
+    np.savez(folder / G1, **kept)
+
+
 def header(shape):
     """Write an array that is nothing but its header."""
     text = b"{'descr': '<f4', 'fortran_order': False, 'shape': " + shape + b"\n"
@@ -368,6 +472,63 @@ def frame(name="initial", size=None, run_id=None, copy_of=None):
         if run_id != "":
             stamp.add_text("run_id", run_id or own)
         (copy.resize(size) if size else copy).save(path, pnginfo=stamp)
+
+    return change
+
+
+INITIAL = "frames/initial.png"
+
+
+def png_chunk(kind, content=b""):
+    body = kind + content
+    return struct.pack(">I", len(content)) + body + struct.pack(">I", zlib.crc32(body))
+
+
+def chunk(kind, content=b"", before=b"IDAT"):
+    """Add a chunk to a frame, before the first one of another kind."""
+
+    def change(data):
+        place = data.index(before) - 4
+        return data[:place] + png_chunk(kind, content) + data[place:]
+
+    return bytes_of(INITIAL, change)
+
+
+def pixels(change):
+    """Change the packed bytes of the pixels of a frame."""
+
+    def spoil(data):
+        place, packed = 8, b""
+        while place < len(data):
+            length = int.from_bytes(data[place : place + 4])
+            if data[place + 4 : place + 8] == b"IDAT":
+                packed += data[place + 8 : place + 8 + length]
+            place += 12 + length
+        begin = data.index(b"IDAT") - 4
+        return data[:begin] + png_chunk(b"IDAT", change(packed)) + png_chunk(b"IEND")
+
+    return bytes_of(INITIAL, spoil)
+
+
+def animated(folder):
+    """Make a frame an animation whose second picture is hidden from most readers."""
+    with Image.open(folder / INITIAL) as picture:
+        copy, own = picture.copy(), picture.info["run_id"]
+    stamp = PngInfo()
+    stamp.add_text("run_id", own)
+    other = Image.new("RGB", copy.size, "red")
+    copy.save(folder / INITIAL, pnginfo=stamp, save_all=True, append_images=[other])
+
+
+def as_mode(mode, **options):
+    """Write a frame with other pixels than 8 bits each of RGB."""
+
+    def change(folder):
+        with Image.open(folder / INITIAL) as picture:
+            copy, own = picture.convert(mode), picture.info["run_id"]
+        stamp = PngInfo()
+        stamp.add_text("run_id", own)
+        copy.save(folder / INITIAL, pnginfo=stamp, **options)
 
     return change
 
@@ -460,18 +621,24 @@ SPOILED = {
     "a note with a control character": ("digest", "bad-schema", arrays(
         lambda a: a["cases"]["G1"].update(note="\x1b[2J"))),
     "a long unit": ("digest", "bad-schema", metric(unit="m" * 201)),
-    "a metric of 401 digits": ("digest", "bad-schema", metric(value=10**400)),
-    "a negative metric of 401 digits": ("digest", "bad-schema", metric(value=-(10**400))),
-    "a count of 401 digits": ("digest", "bad-schema", metrics(
+    "a metric of 401 digits": ("digest", "bad-json", metric(value=10**400)),
+    "a negative metric of 401 digits": ("digest", "bad-json", metric(value=-(10**400))),
+    "a count of 401 digits": ("digest", "bad-json", metrics(
         lambda m: m["model"]["links"].update(value=10**400))),
     "a metric of 10,000 digits": ("digest", "bad-json", text(
         "metrics.json", '"value": 0', '"value": 1' + "0" * 10_000)),
+    "a metric of 1e300": ("digest", "bad-json", metric(value=1e300)),
+    "a limit of 1e300": ("digest", "bad-json", joint(0, upper=1e300)),
+    "parameters of 40 levels": ("bad-json", None, part("parameters", deep=nested(40))),
+    "arrays of 900 levels": ("digest", "bad-json", arrays(lambda a: a.update(deep=nested(900)))),
+    "metrics too deep": ("digest", "bad-json", lambda f: (f / "metrics.json").write_text(
+        "[" * 200_000)),
     "a seed of 401 digits": ("bad-json", None, predicate(seed=10**400)),
     "a parameter of 401 digits": ("bad-json", None, part("parameters", rise_fraction=10**400)),
-    "cores of 401 digits": ("bad-schema", "bad-schema", part("host", cores=10**400)),
-    "a limit of 401 digits": ("digest", "bad-schema", joint(0, lower=-(10**400))),
-    "a shape of 401 digits": ("digest", "bad-array", variable(shape=[10**400, 9])),
-    "a DOF of 401 digits": ("digest", "bad-schema", joint(0, dof_idx_local=10**400)),
+    "cores of 401 digits": ("bad-json", None, part("host", cores=10**400)),
+    "a limit of 401 digits": ("digest", "bad-json", joint(0, lower=-(10**400))),
+    "a shape of 401 digits": ("digest", "bad-json", variable(shape=[10**400, 9])),
+    "a DOF of 401 digits": ("digest", "bad-json", joint(0, dof_idx_local=10**400)),
     # Identity.
     "another lesson": ("lesson", "lesson", predicate(lesson="l05")),
     "a page that the book lacks": ("key", "lesson", predicate(page="exam")),
@@ -535,6 +702,14 @@ SPOILED = {
     "a log of software drawing": ("digest", "log", both(on("cuda"), lambda f: (
         f / "log.txt").write_text((f / "log.txt").read_text("utf8")
                                   + "INFO Software rendering context detected.\n", "utf8"))),
+    "an empty log": ("digest", "log", both(
+        predicate(warnings=[]), bytes_of("log.txt", lambda b: b""))),
+    "a log without a backend": ("digest", "log", log("Running on", "Running at")),
+    "a log without a start": ("digest", "log", log("initialized.", "ready.")),
+    "a log without a seed": ("digest", "log", log("seed: 0", "seeds: none")),
+    "a log without a precision": ("digest", "log", log("precision: ", "digits: ")),
+    "a log with the device of another": ("digest", "log", bytes_of("log.txt", lambda b: b
+        + b"INFO Running on [a GPU] with backend gs.amdgpu. Device memory: 1 GB.\n")),
     "a log of one long line": ("digest", "log", long_log("x")),
     "a long line of one word of the log": ("digest", "log", long_log("initialized. version: ")),
     "a warning of many lines": ("digest", "log", many_lines),
@@ -596,7 +771,27 @@ SPOILED = {
     "a member more": ("digest", "bad-array", member("luck.npy", b"")),
     "arrays of another type": ("digest", "bad-array", rewrite(q=np.float64)),
     "arrays in Fortran's order": ("digest", "bad-array", rewrite(q=np.asfortranarray)),
-    "a zip bomb": ("digest", "too-big", member("t_s.npy", bytes(UNPACKED_LIMIT + 1))),
+    "a zip bomb": ("digest", "too-big", first_packed(size=lambda _: UNPACKED_LIMIT + 1)),
+    "a file longer than it says": ("digest", "bad-array", first_packed(size=lambda n: n - 1)),
+    "a file shorter than it says": ("digest", "bad-array", first_packed(size=lambda n: n + 1)),
+    "another checksum": ("digest", "bad-array", first_packed(checksum=lambda c: c ^ 1)),
+    "bytes after a packed array": ("digest", "bad-array", first_packed(packed=lambda p: p + b"x")),
+    "bytes in an array's header": ("digest", "bad-array", first_file(
+        lambda f: f.replace(b"      ", b" 'a':1", 1))),
+    "bytes after an array": ("digest", "bad-array", first_file(lambda f: f + b"x")),
+    "another version of an array's format": ("digest", "bad-array", first_file(
+        lambda f: f[:6] + b"\2\0" + f[8:10] + b"\0\0" + f[10:])),
+    "an archive in other order": ("digest", "bad-array", packed_as(lambda m: m[::-1])),
+    "an archive after other bytes": ("digest", "bad-array", bytes_of(G1, lambda b: b"x" + b)),
+    "an archive before other bytes": ("digest", "bad-array", bytes_of(G1, lambda b: b + b"x")),
+    "an archive before its directory": ("digest", "bad-array", bytes_of(
+        G1, lambda b: b.replace(b"PK\1\2", b"luckPK\1\2", 1))),
+    "an archive with a comment": ("digest", "bad-array", comment),
+    "an archive with a hidden member": ("digest", "bad-array", hidden_member),
+    "an archive with another date": ("digest", "bad-array", bytes_of(
+        G1, lambda b: b.replace(b"\x21\0", b"\x22\0", 1))),
+    "an archive that is not packed": ("digest", "bad-array", stored),
+    "an archive of a byte": ("digest", "bad-array", bytes_of(G1, lambda b: b"P")),
     "arrays that are not finite": ("digest", "bad-trace", rewrite(q=changed_at((-1, 0), np.nan))),
     "a shifted time axis": ("digest", "bad-trace", rewrite(t=lambda t: t + 0.01)),
     "a target that wanders": ("digest", "bad-trace", rewrite(target=changed_at((5, 3), 0.0))),
@@ -616,6 +811,29 @@ SPOILED = {
     "a frame of another size": ("digest", "frames", frame(size=(8, 8))),
     "a frame that is no picture": ("digest", "frames", lambda f: (
         f / "frames" / "final.png").write_text("x")),
+    "an animated frame": ("digest", "frames", animated),
+    "a frame before other bytes": ("digest", "frames", bytes_of(INITIAL, lambda b: b + b"x")),
+    "a frame before another frame": ("digest", "frames", bytes_of(INITIAL, lambda b: b + b)),
+    "a frame with another text": ("digest", "frames", chunk(b"tEXt", b"luck\0x")),
+    "a frame with a comment at its end": ("digest", "frames", chunk(
+        b"tEXt", b"Comment\0x", before=b"IEND")),
+    "a frame with a packed text": ("digest", "frames", chunk(b"zTXt", b"run_id\0\0x")),
+    "a frame with a private chunk": ("digest", "frames", chunk(b"luCK", b"x")),
+    "a frame with an empty chunk": ("digest", "frames", chunk(b"IDAT")),
+    "a frame with another end": ("digest", "frames", bytes_of(
+        INITIAL, lambda b: b[:-12] + png_chunk(b"IEND", b"x"))),
+    "a frame with another checksum": ("digest", "frames", bytes_of(
+        INITIAL, lambda b: b[:-1] + b"x")),
+    "a frame with bytes after its pixels": ("digest", "frames", pixels(lambda p: p + b"x")),
+    "a frame with pixels too many": ("digest", "frames", pixels(
+        lambda p: zlib.compress(zlib.decompress(p) + b"x"))),
+    "a frame with pixels too few": ("digest", "frames", pixels(
+        lambda p: zlib.compress(zlib.decompress(p)[:-1]))),
+    "a frame of bombs": ("digest", "frames", pixels(lambda p: zlib.compress(bytes(2**27)))),
+    "a frame of pixels that cannot be unpacked": ("digest", "frames", pixels(lambda p: b"x")),
+    "a frame with a palette": ("digest", "frames", as_mode("P")),
+    "a frame that may be transparent": ("digest", "frames", as_mode("RGBA")),
+    "a frame without colours": ("digest", "frames", as_mode("L")),
     "frames without a camera": ("frames", "frames", part(
         "render", mode="skip", vendor=None, renderer=None, software=None)),
     # Metrics and checks.
@@ -647,8 +865,8 @@ SPOILED = {
     "a found value too many": ("checks", "checks", found("mapping", "luck", 1)),
     "a found value that is missing": ("checks", "checks", manifest(
         lambda m: by_name(m, "mapping").pop("links"))),
-    "found values beyond a float": ("bad-schema", "bad-schema", found("mapping", "links", 10**400)),
-    "a found number beyond all metrics": ("bad-schema", "bad-schema", found(
+    "found values beyond a float": ("bad-json", "bad-json", found("mapping", "links", 10**400)),
+    "a found number beyond all metrics": ("bad-json", "bad-json", found(
         "mapping", "links", 1e300)),
     "found text of two lines": ("bad-schema", "bad-schema", found("mapping", "links", "a\nb")),
     "a found list": ("bad-schema", "bad-schema", found("mapping", "links", [11])),

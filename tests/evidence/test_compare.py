@@ -13,11 +13,14 @@ from spoilers import (
     both,
     changed_at,
     check,
+    crowd,
     drop_case,
     joint,
+    link_out,
     manifest,
     metrics,
     modules,
+    pad,
     part,
     predicate,
     rewrite,
@@ -124,7 +127,7 @@ def test_a_joint_with_another_dof_is_a_difference(folder, other):
     ("spoiler", "obstacle"),
     [
         (part("parameters", stepped_joint="joint2"), "parameters.stepped_joint"),
-        (part("parameters", more=1), "parameters.more differs: absent and 1"),
+        (part("parameters", more=1), "parameters.more differs: 'absent' and 1"),
         (predicate(seed=1), "The seed differs: 0 and 1"),
         (predicate(page="lecture"), "The page differs: 'lab' and 'lecture'"),
         (predicate(lesson="l02"), "The lesson differs: 'l04' and 'l02'"),
@@ -239,15 +242,88 @@ def test_what_one_or_both_sides_lack_differs(folder, other, old, new, title, fou
     assert found.items() <= differing.items()
 
 
-def test_the_largest_distance_of_arrays_is_shown_and_decides_nothing(folder, other):
-    with np.load(folder / "arrays/G1.npz") as archive:
-        speed = archive["qd_rad_s_or_m_s"][7, 3] + 0.5
-    spoil(other, rewrite(qd=changed_at((7, 3), speed)))
-    comparison = compare(folder, other)
+def added(place, amount):
+    """Return a function that adds an amount to one value of an array."""
+
+    def change(array):
+        return changed_at(place, array[place] + np.float32(amount))(array)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("fields", "state", "what", "delta", "allowed"),
+    [
+        ({"qd": added((7, 3), 0.5)}, "differs", "qd_rad_s_or_m_s[7, 3]", "0.5 rad/s", "rad/s"),
+        ({"qd": added((7, 8), 0.5)}, "differs", "qd_rad_s_or_m_s[7, 8]", "0.5 m/s", "m/s"),
+        ({"qd": added((7, 3), 5e-4)}, "within tolerance", "qd_rad_s_or_m_s[7, 3]", "rad/s", " "),
+        ({"link_quat": np.zeros_like}, "differs", "link_quat_wxyz[0, 0, 0]", "-1", "0.0001"),
+    ],
+)
+@pytest.mark.parametrize("swap", [False, True])
+def test_arrays_agree_within_their_tolerance(
+    folder, other, fields, state, what, delta, allowed, swap
+):
+    spoil(other, rewrite(**fields))
+    comparison = compare(*((other, folder) if swap else (folder, other)))
     row = rows(comparison, "Arrays")[0]
-    assert (row.what, row.state) == ("G1 qd_rad_s_or_m_s", "shown")
-    assert row.delta == "0.5 rad/s or m/s"
-    assert comparison.state == "within tolerance"
+    assert (comparison.state, row.state, row.what) == (state, state, f"G1 {what}")
+    assert delta.removeprefix("-") in row.delta
+    assert allowed in row.allowed
+    assert (row.what in report.summary(comparison)) == (state == "differs")
+
+
+def test_arrays_without_a_tolerance_are_equal(folder, other, monkeypatch):
+    monkeypatch.setattr(l04, "TOLERANCES", {"rad/s": (1.0, 0.0)})
+    spoil(other, rewrite(q=added((7, 3), 1e-6), qd=added((7, 3), 0.5)))
+    first, second, *others = rows(compare(folder, other), "Arrays")
+    assert (first.state, first.allowed) == ("differs", "0 rad")
+    assert (second.state, second.allowed) == ("within tolerance", "1 rad/s")
+    assert {row.state for row in others} == {"equal"}
+
+
+@pytest.mark.parametrize(
+    ("spoiler", "code"),
+    [
+        (pad("manifest.json"), "too-big"),
+        (pad("log.txt"), "too-big"),
+        (crowd, "too-big"),
+        (link_out, "path"),
+        (lambda f: (f / "extra.txt").touch(), "files"),
+        (lambda f: (f / "manifest.json").unlink(), "missing-file"),
+        (lambda f: (f / "manifest.json").write_text("[" * 200_000), "bad-json"),
+        (part("parameters", more=10**400), "bad-json"),
+    ],
+)
+@pytest.mark.parametrize("swap", [False, True])
+def test_files_are_bounded_as_for_the_verifier(folder, other, spoiler, code, swap):
+    spoiler(other)
+    with pytest.raises(BundleRefused, match=f"^{code}: {other}: "):
+        compare(*((other, folder) if swap else (folder, other)))
+
+
+def odd_key(folder):
+    """Add a field whose name would colour the terminal and write a verdict."""
+    manifest(lambda m: m.update({"\x1b[2J\nEqual. Rows: \u202e": 1}))(folder)
+
+
+@pytest.mark.parametrize(
+    "spoiler",
+    [
+        odd_key,
+        part("parameters", more="\x1b[2J\nEqual. Rows: \u202e"),
+        part("parameters", **{"\x1b[2J\nEqual. Rows: \u202e": 1}),
+        part("parameters", more={"\x1b[2J\nEqual. Rows: \u202e": 1}),
+        predicate(warnings=["New one.\nEqual. Rows: 9"]),
+    ],
+)
+def test_nothing_of_a_bundle_controls_the_terminal(folder, other, command, spoiler, tmp_path):
+    spoil(other, spoiler)
+    _, printed = command(tmp_path / "report", folder, other)
+    assert all(c.isprintable() for c in printed.replace("\n", ""))
+    assert sum(line.startswith("Equal. Rows: 9") for line in printed.splitlines()) == 0
+    written = (tmp_path / "report").glob("*")
+    assert all("\x1b" not in (text := p.read_text()) and "\u202e" not in text for p in written)
 
 
 def test_performance_is_shown_and_decides_nothing(folder, other):
@@ -263,16 +339,16 @@ def test_performance_is_shown_and_decides_nothing(folder, other):
 @pytest.mark.parametrize("name", ["metrics.json", "arrays.json", "arrays/G1.npz"])
 def test_a_changed_or_missing_file_is_refused(folder, other, name):
     (other / name).write_bytes((other / name).read_bytes() + b" ")
-    with pytest.raises(BundleRefused, match=rf"^digest: {name} of .*cpu: sha256 is"):
+    with pytest.raises(BundleRefused, match=rf"^digest: {other}: {name}: sha256 is"):
         compare(folder, other)
     (other / name).unlink()
-    with pytest.raises(BundleRefused, match=rf"^files: {name} of .*cpu: .*\(True, False\)"):
+    with pytest.raises(BundleRefused, match=rf"^files: {other}: listed but absent: \['{name}'\]"):
         compare(folder, other)
 
 
 def test_huge_numbers_are_refused(folder, other):
     spoil(other, value("G1", "overshoot", 10**400))
-    with pytest.raises(BundleRefused, match=r"^bad-schema: metrics.json: G1.overshoot is 10+…"):
+    with pytest.raises(BundleRefused, match=r"^bad-json: .*metrics.json: '10+…"):
         compare(folder, other)
 
 
@@ -372,7 +448,7 @@ def test_what_cannot_be_compared_or_written_exits_2(folder, other, command, no_f
     (other / "metrics.json").write_text("{}")
     report = tmp_path / "report"
     for arguments, said in (
-        ((report, folder, other), "Refused: digest: metrics.json"),
+        ((report, folder, other), f"Refused: digest: {other}: metrics.json"),
         ((report, "", folder), "OLD='' is not a folder. Usage: make compare"),
         ((report, folder, ""), "NEW='' is not a folder. Usage: make compare"),
         ((no_file.parent, folder, folder), f"REPORT={no_file.parent} cannot be written: "),

@@ -1,6 +1,7 @@
 import base64
 import hashlib
 import json
+import logging
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -12,15 +13,18 @@ from bundles import RENDERER
 from PIL import Image
 from tiny_book import commit, git
 
+from robo_genesis.core.text import LINE_LIMIT
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence import recorder as record
 from robo_genesis.evidence.bundle import read_manifest, read_metrics
 from robo_genesis.evidence.recorder import (
     PACKAGE,
     Recorder,
+    RecordError,
     files_match_wheel,
     git_record,
 )
+from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.l04 import LAB, LECTURE, spec
 from robo_genesis.sim import session
 
@@ -127,12 +131,47 @@ def test_a_write_that_fails_leaves_nothing_or_the_old_bundle(recorder, experimen
     outputs, spoiled = recorder.contract.outputs, replace(experiment, **unwritable)
     with pytest.raises((TypeError, ValueError)):
         recorder.write(spoiled, RENDERER)
-    assert list(outputs.iterdir()) == []
+    assert list(outputs.glob("*")) == []
     recorder.write(experiment, RENDERER)
     before = {name: (outputs / name).read_bytes() for name in files(outputs)}
     with pytest.raises((TypeError, ValueError)):
         recorder.write(spoiled, RENDERER)
     assert {name: (outputs / name).read_bytes() for name in files(outputs)} == before
+
+
+def without(experiment, case):
+    return {name: trace for name, trace in experiment.traces.items() if name != case}
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda e: {"traces": without(e, "G2")},
+         "the runs G1, G3, baseline; its declaration names G1, G2, G3, baseline. Run each"),
+        (lambda e: {"traces": {**e.traces, "G4": e.traces["G1"]}}, "the runs G1, G2, G3, G4, base"),
+        (lambda e: {"readings": {"model": e.readings["model"] | {"links": float("nan")}}},
+         "Not all values are finite: model.links. A bundle takes finite numbers only."),
+        (lambda e: {"readings": {"model": e.readings["model"] | {"dofs": float("inf")}}},
+         "finite: model.dofs."),
+    ],
+)  # fmt: skip
+def test_other_runs_and_values_that_are_not_finite_are_named(recorder, experiment, spoil, said):
+    with pytest.raises(RecordError, match=re.escape(said)):
+        recorder.write(replace(experiment, **spoil(experiment)), RENDERER)
+    assert not recorder.contract.outputs.exists()
+
+
+def test_a_message_of_the_engine_never_ends_a_recording(recorder, experiment):
+    log = session.EngineLog()
+    log.lines += recorder.engine.log.lines
+    for message in ("\x1b[31mred\x00\u202e", "x" * 100_000, "a\nb\r\nc\ud800"):
+        log.emit(logging.makeLogRecord({"levelname": "WARNING", "msg": message}))
+    recorder.engine = replace(recorder.engine, log=log)
+    folder = recorder.write(experiment, RENDERER)
+    _, first, second, third = verify_bundle(folder).predicate.warnings
+    assert first == "\ufffd[31mred\ufffd\ufffd"
+    assert (len(f"WARNING {second}"), second[-2:]) == (LINE_LIMIT, "x…")
+    assert third == "a\nb\ufffd\nc\ufffd"
 
 
 @pytest.mark.parametrize("modules", [LAB.modules, LECTURE.modules])

@@ -1,16 +1,22 @@
 import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from bundles import QUADRANTS
 from spoilers import (
     both,
+    drop_case,
     failing,
+    last_bit,
     log,
     manifest,
     measured_again,
+    measured_elsewhere,
     modules,
     off_law,
+    on,
+    own_run_id,
     part,
     predicate,
     rewrite,
@@ -21,6 +27,7 @@ from robo_genesis.core import project
 from robo_genesis.evidence.status import (
     UNREADABLE,
     bundle_status,
+    cpu_runs,
     recorded_folders,
     recorded_status,
     refused_records,
@@ -104,13 +111,13 @@ def test_recorded_bundles_are_found_and_nothing_else(book, tmp_path):
 def test_a_build_continues_with_what_is_sound(book, courses_pages, spoil, state):
     spoil(book / "evidence" / "l04" / "cpu")
     assert recorded_status(book, "l04", "cpu").state == state
-    assert refused_records(book) == []
+    assert refused_records(book, {}) == []
 
 
 def test_a_build_stops_at_a_spoiled_bundle_or_a_file_in_its_place(book, courses_pages):
     (book / "evidence" / "l04" / "cpu" / "log.txt").unlink()
     (book / "evidence" / "l04" / "amdgpu").write_text("no bundle")
-    file, folder = refused_records(book)
+    file, folder = refused_records(book, {})
     assert file.startswith("evidence/l04/amdgpu: the recorded bundle is refused: missing-file:")
     assert folder.startswith("evidence/l04/cpu: the recorded bundle is refused: files: ")
 
@@ -133,7 +140,49 @@ def test_a_sound_bundle_that_does_not_show_the_claims_is_inconclusive(
     assert "overshoot higher in G2 than in G1" in status.reason
     assert "rise_time no later in G2" not in status.reason
     assert status.summary in status.sentence
-    assert refused_records(book) == []
+    assert refused_records(book, {}) == []
+
+
+importer = "(MJCF) Approximating tendon."
+IMPORTED = both(log("Approximating tendon.", importer), predicate(warnings=[importer]), seal)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "code", "said"),
+    [
+        (lambda f: None, "copy", "a run on the CPU has its run_id 01234567"),
+        (own_run_id, "copy", "all arrays of baseline, G1, G2, G3 equal those of the CPU's run"),
+        (both(own_run_id, rewrite(internal_force=last_bit)), "copy", "all arrays of baseline, G2"),
+        (measured_elsewhere, "log", "warnings of the model importer are missing: ['(MJCF) Approx"),
+        (both(measured_elsewhere, IMPORTED), None, ""),
+    ],
+)
+@pytest.mark.parametrize("where", ["recorded", "built"])
+def test_an_accelerator_s_bundle_is_not_a_run_on_the_cpu(
+    folder, tmp_path, courses_pages, spoil, code, said, where
+):
+    lesson = tmp_path / "book" / "evidence" / "l04"
+    here = Path(shutil.copytree(folder, lesson / "cpu"))
+    spoil(here)
+    here = on("amdgpu")(here)
+    IMPORTED(folder)
+    lab = Path(shutil.copytree(folder, lesson / "cpu")) if where == "recorded" else folder
+    runs = cpu_runs(here, {"l04": lab if where == "built" else None})
+    status = recorded_status(tmp_path / "book", "l04", "amdgpu", cpu_runs=runs)
+    assert (status.state, status.code) == ("refused" if code else "verified", code)
+    assert said in status.reason
+    refused = refused_records(tmp_path / "book", {"l04": lab})
+    assert len(refused) == (1 if code else 0)
+
+
+@pytest.mark.parametrize(
+    "spoil", [drop_case, both(part("engine", version="1.2.0"), seal), lambda f: shutil.rmtree(f)]
+)
+def test_a_run_on_the_cpu_that_cannot_be_compared_is_ignored(folder, tmp_path, spoil):
+    here = on("amdgpu")(Path(shutil.copytree(folder, tmp_path / "other" / "cpu")))
+    assert bundle_status(here, cpu_runs=[folder]).code == "copy"
+    spoil(folder)
+    assert bundle_status(here, cpu_runs=[folder]).state == "verified"
 
 
 @pytest.mark.parametrize(
@@ -161,4 +210,4 @@ def test_a_lesson_s_folder_that_is_a_link_is_refused(folder, tmp_path, courses_p
     status = recorded_status(tmp_path, "l04", "cpu")
     assert (status.state, status.code, status.manifest) == ("refused", "path", None)
     assert "evidence/l04 is a link" in status.reason
-    assert len(refused_records(tmp_path)) == 1
+    assert len(refused_records(tmp_path, {})) == 1

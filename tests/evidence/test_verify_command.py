@@ -5,9 +5,24 @@ import shutil
 
 import pytest
 from loading import ENGINE, JUPYTER, run_watched
-from spoilers import both, on, part, seal
+from spoilers import (
+    SPOILED,
+    both,
+    check,
+    drop_case,
+    failing,
+    log,
+    measured_elsewhere,
+    metric,
+    modules,
+    on,
+    part,
+    predicate,
+    seal,
+)
 
 from robo_genesis.core.project import ROOT, engine_pin
+from robo_genesis.evidence import advice
 
 
 @pytest.fixture
@@ -24,7 +39,9 @@ def command(tmp_path, monkeypatch, courses_pages):
 @pytest.fixture
 def recorded(folder, tmp_path):
     place = tmp_path / "book" / "evidence" / "l04"
-    return on("amdgpu")(shutil.copytree(folder, place / "cpu"))
+    there = shutil.copytree(folder, place / "cpu")
+    measured_elsewhere(there)
+    return on("amdgpu")(there)
 
 
 @pytest.fixture
@@ -79,6 +96,68 @@ def test_one_folder_is_checked_alone(command, recorded, folder, tmp_path, monkey
     monkeypatch.setenv("BUNDLE", str(tmp_path / "cpu"))
     assert command.main() == 1
     assert "missing      There is no such folder." in capsys.readouterr().out
+
+
+OLDER = both(part("engine", version="1.2.0"), log("version: ", "version: 1.2.0, was: "), seal)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (OLDER, "Another version of the engine computed. Install the course's versions"),
+        (both(part("source", page="0" * 64), seal), "Your code cells differ from the page's. Your"),
+        (both(part("source", page=None), seal), "A notebook that is run by hand does not name"),
+        (both(modules(metrics="0" * 64), seal), "Your copy of the course's modules differs"),
+        (both(part("parameters", rise_fraction=0.5), seal), "Your run has other settings. Your"),
+        (both(predicate(seed=1), log("seed: 0", "seed: 1"), seal), "Your run started from another"),
+        (predicate(schema_version=0), "The bundle was recorded with an older state"),
+        (part("engine", files_match_wheel=False), "A file of your installed engine differs"),
+        (part("backend", torch_device="cuda"), "Genesis and Torch used different devices"),
+        (both(metric(value=0.0), seal), "The recorded metrics are not those of the recorded"),
+        (check(3, passed=False), "The recorded outcomes of the checks are not those"),
+        (failing("off its control law", seal), "The files are sound, but a check of the run"),
+        (both(drop_case, seal), "The bundle does not have exactly the page's runs."),
+    ],
+)  # fmt: skip
+def test_a_student_learns_what_a_refusal_means(command, folder, monkeypatch, capsys, spoil, said):
+    spoil(folder)
+    monkeypatch.setenv("BUNDLE", str(folder))
+    assert command.main() == 1
+    assert f"What this means: {said}" in capsys.readouterr().out
+
+
+def test_damage_gets_no_advice(command, folder, monkeypatch, capsys):
+    (folder / "log.txt").unlink()
+    monkeypatch.setenv("BUNDLE", str(folder))
+    assert command.main() == 1
+    assert len(capsys.readouterr().out.splitlines()) == 1
+
+
+def test_every_advice_is_for_a_code_or_change_that_exists():
+    codes = {code for *both_codes, _ in SPOILED.values() for code in both_codes}
+    assert {*advice.BY_CODE} <= codes
+
+
+def test_one_folder_is_compared_with_the_build(command, folder, built, monkeypatch, capsys):
+    both(OLDER, metric(value=0.5), seal)(folder)
+    monkeypatch.setenv("BUNDLE", str(folder))
+    assert command.main() == 1
+    out = capsys.readouterr().out
+    assert "Compared with this build's run on the CPU (build → yours):\nL04 lab: engine" in out
+    assert "\n    G2.overshoot: " in out
+    monkeypatch.setenv("BUNDLE", str(built))
+    assert command.main() == 0
+    assert len(capsys.readouterr().out.splitlines()) == 1
+
+
+def test_a_copy_of_the_build_s_run_is_not_an_accelerator_s(
+    command, folder, built, monkeypatch, capsys
+):
+    monkeypatch.setenv("BUNDLE", str(on("amdgpu")(folder)))
+    assert command.main() == 1
+    assert "refused      copy: manifest.json: backend.actual is 'amdgpu', but a run on the CPU" in (
+        capsys.readouterr().out
+    )
 
 
 def test_neither_verification_nor_comparison_loads_the_engine_or_jupyter(folder):

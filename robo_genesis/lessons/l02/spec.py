@@ -66,8 +66,9 @@ RESOLUTION = {"m": 1e-6, "m/s": 1e-5, "rad/s": 1e-6, "s": DT / 2, "kg": 1e-6, "1
 
 TOLERANCES = {
     "m": (2e-6, 0.0), "m/s": (2e-5, 0.0), "rad/s": (1e-6, 0.0), "s": (0.0, 0.0), "kg": (1e-6, 0.0),
+    "link_quat_wxyz": (1e-6, 0.0),
 }  # fmt: skip
-"""By unit, (atol, rtol) of one metric between engine versions or backends."""
+"""By unit or array, (atol, rtol) of one value between engine versions or backends."""
 
 RELATIONS = ()
 """A single run claims no ordering."""

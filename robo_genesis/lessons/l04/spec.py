@@ -97,9 +97,13 @@ TOLERANCES = {
     "kg·m²": (1e-4, 1e-3),
     "N·m·s/rad": (1e-6, 0.0),
     "initial_error": (1e-6, 0.0),
+    "m": (1e-4, 1e-3),
+    "m/s": (1e-3, 1e-3),
+    "N": (1e-2, 1e-3),
+    "link_quat_wxyz": (1e-4, 0.0),
 }
-"""By unit, or by metric where that is stricter: (atol, rtol) of a metric between engine versions or
-backends. A time on the grid of samples must not move at all; counts are exact."""
+"""By unit, or by metric or array: (atol, rtol) of a value between engine versions
+or backends. A time on the grid of samples must not move at all; counts are exact."""
 
 
 CONTROL_LAW_TOLERANCE = 1e-2

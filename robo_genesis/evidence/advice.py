@@ -1,0 +1,67 @@
+"""What a refusal means for somebody who recorded a bundle at home, and what to do."""
+
+from robo_genesis.evidence.bundle import Predicate
+
+LOCK = "Install the course's versions: pip install -r requirements.lock. Then run the page again."
+OWN = "Your bundle answers your own question and is not evidence for the course's page."
+
+BY_CODE = {
+    "older-schema": (
+        "The bundle was recorded with an older state of this course. "
+        "Run the page again with the present one."
+    ),
+    "failed": (
+        "The files are sound, but a check of the run itself failed. If you changed the experiment, "
+        "this can be your result; otherwise, restart the kernel and run all cells in order."
+    ),
+    "engine-files": (
+        "A file of your installed engine differs from the published package. "
+        "Install it again: pip install --force-reinstall -r requirements.lock."
+    ),
+    "torch": (
+        "Genesis and Torch used different devices, or a switch forced one. Unset "
+        "GS_TORCH_FORCE_CPU_DEVICE and QD_ARCH, restart the kernel and run the page again."
+    ),
+    "metrics": (
+        "The recorded metrics are not those of the recorded arrays. If you edited neither file, "
+        "your copy of the course computes metrics in another way: use one copy for both."
+    ),
+    "checks": (
+        "The recorded outcomes of the checks are not those of the recorded runs. If you edited "
+        "neither file, your copy of the course has other checks: use one copy for both."
+    ),
+    "cases": (
+        "The bundle does not have exactly the page's runs. If you added or removed runs, that is "
+        f"no fault. {OWN}"
+    ),
+}
+"""Advice by the code of a refusal; other codes mean damage, for which the message is enough."""
+
+RUN_BY_HAND = (
+    "A notebook that is run by hand does not name its code cells, so nobody can tell whether they "
+    "are the page's. To record them, run: make evidence LESSON={lesson} BACKEND=cpu TO=folder."
+)
+BY_CHANGE = {
+    "engine": f"Another version of the engine computed. {LOCK}",
+    "page": f"Your code cells differ from the page's. {OWN}",
+    "modules": f"Your copy of the course's modules differs from this one. {OWN}",
+    "parameters": f"Your run has other settings. {OWN}",
+    "seed": f"Your run started from another seed. {OWN}",
+}
+"""Advice by what changed in a stale bundle."""
+
+
+def advice(code: str, changes: tuple[str, ...], predicate: Predicate | None) -> list[str]:
+    """Return sentences that say what a refusal means and what to do; none for a damaged bundle.
+
+    Args:
+        code: of the refusal.
+        changes: for `stale`, what changed, as in `BY_CHANGE`.
+        predicate: of the bundle, None if it cannot be read.
+    """
+    if code != "stale":
+        return [BY_CODE[code]] if code in BY_CODE else []
+    texts = BY_CHANGE
+    if predicate is not None and predicate.source.page is None:
+        texts = BY_CHANGE | {"page": RUN_BY_HAND.format(lesson=predicate.lesson)}
+    return [texts[change] for change in changes]
