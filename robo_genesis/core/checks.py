@@ -26,6 +26,11 @@ class Check:
     passed: bool
     detail: str
 
+    @property
+    def found(self) -> str:
+        """What was found if it failed, else nothing: bundles do not repeat what it requires."""
+        return "" if self.passed else self.detail
+
 
 def evaluate(
     named: Sequence[Callable[[Subject], Iterable[str]]], run: Subject

@@ -16,12 +16,12 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence import recorder as record
 from robo_genesis.evidence.bundle import read_manifest, read_metrics
 from robo_genesis.evidence.recorder import (
-    PACKAGE,
     Recorder,
     files_match_wheel,
     git_record,
 )
-from robo_genesis.lessons.l04 import LAB, LECTURE, spec
+from robo_genesis.lessons.l04 import LAB, spec
+from robo_genesis.lessons.sources import measuring_modules
 from robo_genesis.sim import session
 
 
@@ -135,12 +135,18 @@ def test_a_write_that_fails_leaves_nothing_or_the_old_bundle(recorder, experimen
     assert {name: (outputs / name).read_bytes() for name in files(outputs)} == before
 
 
-@pytest.mark.parametrize("modules", [LAB.modules, LECTURE.modules])
-def test_each_computing_module_of_a_page_is_digested(recorder, experiment, modules):
-    files = {name: PACKAGE / f"{name.replace('.', '/')}.py" for name in modules}
-    digests = {name: hashlib.sha256(file.read_bytes()).hexdigest() for name, file in files.items()}
-    run = replace(experiment, page=replace(LAB, modules=modules))
-    assert read_manifest(recorder.write(run, RENDERER)).predicate.source.modules == digests
+def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(
+    quiet, tmp_path, engine, experiment
+):
+    quiet.setenv("ROBO_GENESIS_PAGE_IMPORTS", "robo_genesis.sim.film robo_genesis.core.plotting")
+    recorder = Recorder("l04", "lab", session.Contract("cpu", True, tmp_path), engine)
+    found = read_manifest(recorder.write(experiment, RENDERER)).predicate.source.modules
+    expected = measuring_modules("l04", ["robo_genesis.sim.film"])
+    assert found == expected != measuring_modules("l04", [])
+
+
+def test_a_passed_check_records_no_words(predicate):
+    assert {(check.passed, check.detail) for check in predicate.checks} == {(True, "")}
 
 
 @pytest.fixture
