@@ -26,10 +26,10 @@ class Check:
     passed: bool
     detail: str
 
-    @property
-    def found(self) -> str:
-        """What was found if it failed, else nothing: bundles do not repeat what it requires."""
-        return "" if self.passed else self.detail
+    def record(self) -> dict[str, Any]:
+        """Return its form in a bundle, which does not repeat what the check requires."""
+        detail = "" if self.passed else self.detail
+        return {"name": self.name, "passed": self.passed, "detail": detail}
 
 
 def evaluate(

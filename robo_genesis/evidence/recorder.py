@@ -155,10 +155,7 @@ class Recorder:
             },
             "parameters": run.page.parameters(),
             "seed": self.engine.seed,
-            "checks": [
-                {"name": check.name, "passed": check.passed, "detail": check.found}
-                for check in run.outcomes()
-            ],
+            "checks": [check.record() for check in run.outcomes()],
             "warnings": self.engine.log.warnings,
             "git": git_record(),
             "source": self._source,

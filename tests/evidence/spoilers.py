@@ -11,7 +11,6 @@ import shutil
 import struct
 import warnings
 import zipfile
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -229,7 +228,7 @@ def measured_again(folder):
 def checked_again(folder):
     """Make the recorded checks those of the arrays and joints, failures included."""
     run = from_bundle(folder, bundle.read_manifest(folder))
-    predicate(checks=[asdict(outcome) for outcome in run.outcomes()])(folder)
+    predicate(checks=[outcome.record() for outcome in run.outcomes()])(folder)
 
 
 def arrays(change):

@@ -1,7 +1,6 @@
 """Writer and spoilers of bundles, shared by the tests of all lessons."""
 
 import csv
-from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -76,7 +75,7 @@ def recomputed(*spoilers):
         manifest = bundle.read_manifest(folder)
         run = from_bundle(folder, manifest)
         edit(folder, "metrics.json", lambda records: records.update(run.records()))
-        predicate(checks=[asdict(check) for check in run.outcomes()])(folder)
+        predicate(checks=[check.record() for check in run.outcomes()])(folder)
 
     return spoil
 
