@@ -87,13 +87,8 @@ def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:
     for check, computed in zip(recorded, outcomes, strict=True):
         what = f"outcome of check {check.name}, recomputed as '{computed.detail}',"
         expect("checks", file, what, check.passed, computed.passed)
-        expect(
-            "checks",
-            file,
-            f"detail of check {check.name}",
-            check.detail,
-            computed.record()["detail"],
-        )
+        detail = computed.record()["detail"]
+        expect("checks", file, f"detail of check {check.name}", check.detail, detail)
     failed = [f"[{check.name}] {check.detail}" for check in recorded if not check.passed]
     if failed:
         raise BundleRefused(

@@ -35,7 +35,7 @@ COMPUTING = ("core", "sim", "lessons")
 """The sub-packages with modules that compute."""
 
 NOT_COMPUTING = {
-    "spec", "plausibility",  # what is asked for (see `parameters`), and what is refused
+    "spec", "plausibility",  # what a run is given (see `parameters`), and what is refused
     "channels", "comparison", "explorer", "mistake", "mistakes", "palette", "plots", "plotting",
     "tables", "text",  # what is shown
     "project",  # where files are
@@ -50,7 +50,7 @@ DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 def syntax_digest(source: str, docstrings: bool = False) -> str:
     """Return the sha256 of what a module does: of its syntax tree, not of its text.
 
-    Comments, layout, quotes and every string that stands alone as a statement do not count. Python
+    Comments, layout, quotes and strings that are statements of their own do not count. Python
     3.11 to 3.14 give the same digest, because fields that are empty or have to do with positions
     are left out, and the constant parts of f-strings are joined. An exception is a backslash in the
     format of an f-string: Python 3.11 and later versions read it differently.
@@ -70,8 +70,8 @@ def syntax_digest(source: str, docstrings: bool = False) -> str:
 def cell_digest(source: str) -> str:
     """Return the sha256 of the syntax of one code cell, in which IPython's magics are translated.
 
-    Other than in a module, a string that stands alone may be the output of a cell, and a semicolon
-    at the end hides the output; both count.
+    A string that is a statement counts, other than in a module, because it may be the output of the
+    cell. So does a semicolon at the end, which hides the output.
     """
     try:
         tree = ast.parse(source)
