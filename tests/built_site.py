@@ -16,8 +16,9 @@ from browsers import launched
 from bs4 import BeautifulSoup
 
 from robo_genesis.core.project import BOOK, ROOT, page_cache_folder
-from robo_genesis.lessons.book_pages import docnames, find_pages, fingerprint
+from robo_genesis.lessons.book_pages import docnames, find_pages
 from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.lessons.sources import fingerprint
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

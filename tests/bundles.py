@@ -9,7 +9,7 @@ import pytest
 from robo_genesis.core import project
 from robo_genesis.evidence import evidence_key
 from robo_genesis.evidence import recorder as record
-from robo_genesis.evidence.evidence_key import page_digest
+from robo_genesis.evidence.evidence_key import page_code
 from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec as l04
@@ -45,7 +45,7 @@ def without_engine(backend):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(session, "probe", lambda requested: backend)
         patch.setattr(record, "files_match_wheel", lambda *names: True)
-        for name in ("RUN_ID", "COMMAND", "PAGE_SHA256"):
+        for name in ("RUN_ID", "COMMAND", "PAGE_SHA256", "PAGE_IMPORTS"):
             patch.delenv(f"ROBO_GENESIS_{name}", raising=False)
         yield patch
 
@@ -63,8 +63,15 @@ def recorder(quiet, tmp_path, engine):
 
 def recorder_of(patch, engine, outputs: Path, lesson: str, page: str) -> Recorder:
     patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
-    patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest(lesson, page, project.BOOK))
+    name_code(patch, lesson, page)
     return Recorder(lesson, page, session.Contract("cpu", True, outputs), engine)
+
+
+def name_code(patch, lesson: str, page: str) -> None:
+    """Tell the recorder, as the build does, which page of the course runs."""
+    digest, imports = page_code(lesson, page, project.BOOK)
+    patch.setenv("ROBO_GENESIS_PAGE_SHA256", digest)
+    patch.setenv("ROBO_GENESIS_PAGE_IMPORTS", " ".join(imports))
 
 
 def written(engine, outputs: Path, lesson: str, page: str, experiment: Experiment) -> Path:
@@ -88,7 +95,7 @@ def folder(pristine, tmp_path) -> Path:
 def courses_pages(monkeypatch):
     """Verify bundles of a synthetic book against the pages of the course."""
     monkeypatch.setattr(
-        evidence_key, "page_digest", lambda le, p, book: page_digest(le, p, project.BOOK)
+        evidence_key, "page_code", lambda le, p, book: page_code(le, p, project.BOOK)
     )
 
 

@@ -28,7 +28,8 @@ from robo_genesis.build.page_results import (
     unexpected_outcome,
 )
 from robo_genesis.core.project import ROOT
-from robo_genesis.lessons.book_pages import Page, code_digest
+from robo_genesis.lessons.book_pages import Page, cell_sources, code_digest
+from robo_genesis.lessons.sources import imports_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +61,7 @@ def work(run: PageRun, connection: Connection) -> None:
         "ROBO_GENESIS_RUN_ID": run.run_id,
         "ROBO_GENESIS_OUTPUTS_DIR": str(outputs_folder(run.folder)),
         "ROBO_GENESIS_PAGE_SHA256": code_digest(run.page),
+        "ROBO_GENESIS_PAGE_IMPORTS": " ".join(imports_of(cell_sources(run.page))),
     }
     environment = clean_environment(run.folder / "home", runtime, ROOT, {**run.environment, **own})
     os.environ.clear()

@@ -32,7 +32,8 @@ from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence import bundle_store
 from robo_genesis.evidence.status import refused_records
 from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.book_pages import Page, find_pages, fingerprint
+from robo_genesis.lessons.book_pages import Page, find_pages
+from robo_genesis.lessons.sources import fingerprint
 
 STAGING = "staging"
 """How the names of the folders begin in which builds render."""

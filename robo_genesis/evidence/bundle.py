@@ -10,7 +10,7 @@ log.txt         the engine's own log
 
 import hashlib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
@@ -103,7 +103,7 @@ class GitRecord(Strict):
 
 
 class SourceRecord(Strict):
-    """Digests of the code that computed: code cells of the page, modules of the package."""
+    """Digests of the syntax of what computed: code cells of the page, modules of the package."""
 
     page: Sha256 | None
     modules: dict[Line, Sha256]
@@ -200,11 +200,6 @@ class Arrays(Strict):
 def sha256(path: Path) -> str:
     """Return the hexadecimal SHA-256 of a file."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
-
-
-def module_digests(names: Iterable[str], package: Path) -> dict[str, str]:
-    """Return the digest of each module, such as `core.trace`, of a package folder."""
-    return {name: sha256(package / f"{name.replace('.', '/')}.py") for name in names}
 
 
 def canonical_sha256(value: Any) -> str:

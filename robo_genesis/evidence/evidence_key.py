@@ -14,6 +14,7 @@ from robo_genesis.core.refusals import BundleRefused, expect, shown
 from robo_genesis.core.scene import SEED
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.strict_json import differences
+from robo_genesis.lessons import sources
 from robo_genesis.lessons.registry import find_page
 from robo_genesis.sim import session
 
@@ -34,6 +35,7 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
         measuring = find_page(lesson, page)
     except LookupError as error:
         raise BundleRefused("lesson", f"manifest.json: {error}") from error
+    digest, imports = page_code(lesson, page, book)
     return {
         "schema_version": bundle.SCHEMA_VERSION,
         "lesson": lesson,
@@ -46,8 +48,8 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
         "seed": SEED,
         "parameters": json.loads(json.dumps(measuring.parameters())),
         "source": {
-            "page": page_digest(lesson, page, book),
-            "modules": bundle.module_digests(measuring.modules, root / "robo_genesis"),
+            "page": digest,
+            "modules": sources.measuring_modules(lesson, imports, root),
         },
     }
 
@@ -68,20 +70,20 @@ def locked_version(package: str, root: Path) -> str:
     return str(found[0])
 
 
-def page_digest(lesson: str, page: str, book: Path) -> str:
-    """Return the digest of the code cells of a page in the book.
+def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:
+    """Return the digest of the code cells of a page in the book, and what they import.
 
     Raises:
         BundleRefused: `lesson`, the book has no such page.
     """
     files = _page_files(book)
     versions = tuple((str(path), path.stat().st_mtime_ns, path.stat().st_size) for path in files)
-    digests = _page_digests(book, versions)
-    if (lesson, page) not in digests:
-        found, pages = f"{lesson}/{page}", " or ".join(sorted(map("/".join, digests)))
+    found = _page_codes(book, versions)
+    if (lesson, page) not in found:
+        wanted, pages = f"{lesson}/{page}", " or ".join(sorted(map("/".join, found)))
         remedy = "Put the bundle into the folder of its own lesson."
-        expect("lesson", "manifest.json", "lesson and page", found, pages, remedy)
-    return digests[lesson, page]
+        expect("lesson", "manifest.json", "lesson and page", wanted, pages, remedy)
+    return found[lesson, page]
 
 
 def _page_files(book: Path) -> list[Path]:
@@ -92,18 +94,21 @@ def _page_files(book: Path) -> list[Path]:
 
 
 @lru_cache(maxsize=8)
-def _page_digests(book: Path, versions: tuple[Any, ...]) -> dict[tuple[str, str], str]:
-    """Return the digests by lesson and page; the files are read again if `versions` changed."""
+def _page_codes(
+    book: Path, versions: tuple[Any, ...]
+) -> dict[tuple[str, str], tuple[str, list[str]]]:
+    """Return digest and imports by lesson and page; read again if `versions` changed."""
     files = _page_files(book)
     inputs = [path.relative_to(book).as_posix().encode() for path in files]
-    reader = Path(__file__).parents[1] / "lessons" / "book_pages.py"
-    inputs += [path.read_bytes() for path in (*files, reader)]
-    listed = derived("page-code", inputs, partial(_read_digests, book))
-    return {(lesson, page): digest for lesson, page, digest in json.loads(listed)}
+    lessons = Path(sources.__file__).parent
+    readers = [lessons / "book_pages.py", lessons / "sources.py"]
+    inputs += [path.read_bytes() for path in (*files, *readers)]
+    listed = derived("page-code", inputs, partial(_read_codes, book))
+    return {(lesson, page): (digest, names) for lesson, page, digest, names in json.loads(listed)}
 
 
-def _read_digests(book: Path) -> bytes:
-    """Return lesson, page and digest of each page that declares a bundle, as JSON.
+def _read_codes(book: Path) -> bytes:
+    """Return lesson, page, digest and imports of each page that declares a bundle, as JSON.
 
     The reader of pages is imported here, because MyST-NB and Jupyter take longer to load than a
     whole verification.
@@ -111,7 +116,11 @@ def _read_digests(book: Path) -> bytes:
     from robo_genesis.lessons import book_pages as pages
 
     found = [page for page in pages.find_pages(book) if page.declares_bundle]
-    return json.dumps([(p.lesson, p.page, pages.code_digest(p)) for p in found]).encode()
+    codes = [
+        (p.lesson, p.page, pages.code_digest(p), sources.imports_of(pages.cell_sources(p)))
+        for p in found
+    ]
+    return json.dumps(codes).encode()
 
 
 def check_current(manifest: bundle.Manifest, root: Path, book: Path) -> None:

@@ -21,6 +21,7 @@ from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.picture_file import write_picture
 from robo_genesis.evidence.trace_files import fields_of, write_traces
+from robo_genesis.lessons import sources
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.sim import session
 from robo_genesis.sim.camera import Renderer
@@ -48,6 +49,11 @@ class Recorder:
         self.lesson, self.page, self.contract, self.engine = lesson, page, contract, engine
         self.started = _now()
         self.run_id = os.environ.get("ROBO_GENESIS_RUN_ID") or uuid.uuid4().hex
+        imports = os.environ.get("ROBO_GENESIS_PAGE_IMPORTS", "").split()
+        self._source = {  # as it is now: a later edit has no effect on what runs here
+            "page": os.environ.get("ROBO_GENESIS_PAGE_SHA256"),
+            "modules": sources.measuring_modules(lesson, imports, PACKAGE.parent),
+        }
         reader = ThreadPoolExecutor(1)  # the engine has many files; the page continues meanwhile
         self._match = reader.submit(files_match_wheel, ENGINE, COMPILER)
         reader.shutdown(wait=False)
@@ -129,7 +135,6 @@ class Recorder:
 
     def _predicate(self, run: Experiment, renderer: Renderer | None) -> dict[str, Any]:
         backend = self.engine.backend
-        modules = bundle.module_digests(run.page.modules, PACKAGE)
         predicate: dict[str, Any] = {
             "schema_version": bundle.SCHEMA_VERSION,
             "lesson": self.lesson,
@@ -158,7 +163,7 @@ class Recorder:
             "checks": [check.record() for check in run.outcomes()],
             "warnings": self.engine.log.warnings,
             "git": git_record(),
-            "source": {"page": os.environ.get("ROBO_GENESIS_PAGE_SHA256"), "modules": modules},
+            "source": self._source,
         }
         return predicate | {"evidence_key": bundle.evidence_key(predicate)}
 

@@ -1,15 +1,11 @@
-"""The executed pages of the book, the modules that they import, and the fingerprint of both."""
+"""The executed pages of the book and their code cells."""
 
-import ast
 import hashlib
 import json
-import platform
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib.util import resolve_name
-from itertools import accumulate
 from pathlib import Path
 
 import yaml
@@ -18,16 +14,8 @@ from myst_nb.core.read import is_myst_markdown_notebook, myst_nb_reader_plugin
 from nbformat import NotebookNode
 from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
-from robo_genesis.core.project import (
-    ROOT,
-    ProjectError,
-    environment_contract,
-    installed_packages,
-    lock_digest,
-)
-
-PACKAGE = "robo_genesis"
-DATA_SUFFIXES = (".json", ".toml", ".yaml", ".yml", ".csv")
+from robo_genesis.core.project import ProjectError
+from robo_genesis.lessons.sources import PACKAGE, cell_digest
 
 
 class PageError(ProjectError):
@@ -152,86 +140,6 @@ def cell_sources(page: Page) -> list[str]:
 
 
 def code_digest(page: Page) -> str:
-    """Return the sha256 of the code cells of a page; its text is not covered."""
-    cells = [cell.source for cell in page.notebook.cells if cell.cell_type == "code"]
+    """Return the sha256 of the syntax of a page's code cells; text and comments do not count."""
+    cells = [cell_digest(source) for source in cell_sources(page)]
     return hashlib.sha256(json.dumps(cells).encode()).hexdigest()
-
-
-def imported_modules(sources: Iterable[str], root: Path = ROOT) -> dict[str, Path]:
-    """Return the package's modules that some sources import, directly or through others.
-
-    Args:
-        sources: Python sources. One that does not parse counts as importing nothing, because its
-            page fails when it is executed.
-        root: the folder that holds the package.
-
-    Returns:
-        Module name to file, packages by their `__init__.py`.
-    """
-    found: dict[str, Path] = {}
-    waiting = [name for source in sources for name in _imports(source, "")]
-    while waiting:
-        for name in accumulate(waiting.pop().split("."), "{}.{}".format):
-            path = _module_file(root, name)
-            if path is None or name in found:
-                continue
-            found[name] = path
-            package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-            waiting += _imports(path.read_text("utf8"), package)
-    return found
-
-
-def _imports(source: str, package: str) -> list[str]:
-    """Return the dotted names below the course package that a source imports anywhere."""
-    names: list[str] = []
-    try:
-        for node in ast.walk(ast.parse(source)):
-            if isinstance(node, ast.Import):
-                names += [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom):
-                base = resolve_name("." * node.level + (node.module or ""), package)
-                names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
-    except (SyntaxError, ImportError):
-        return []
-    return [name for name in names if name.split(".")[0] == PACKAGE]
-
-
-def _module_file(root: Path, name: str) -> Path | None:
-    """Return the file of a module, None if the name is not a module."""
-    base = root.joinpath(*name.split("."))
-    candidates = (base.with_name(base.name + ".py"), base / "__init__.py")
-    return next((path for path in candidates if path.is_file()), None)
-
-
-def fingerprint(
-    pages: Iterable[Page], root: Path = ROOT, environment: Mapping[str, str] | None = None
-) -> str:
-    """Return a digest of everything, except the code of the pages, that decides their outputs.
-
-    jupyter-cache compares code cells only. So its folder is named after this digest of the lock,
-    all installed versions, the package modules that the pages import, the data files of the
-    package, the environment contract and the Python version.
-
-    Args:
-        pages: the executed pages.
-        root: the checkout.
-        environment: variables, by default those of this process.
-
-    Returns:
-        20 hex digits.
-    """
-    sources = [source for page in pages for source in cell_sources(page)]
-    files = list(imported_modules(sources, root).values())
-    files += [path for path in (root / PACKAGE).rglob("*") if path.suffix in DATA_SUFFIXES]
-    digests = {
-        path.relative_to(root).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-        for path in files
-    }
-    parts = {
-        "lock": lock_digest(root),
-        "installed": installed_packages(),
-        "python": platform.python_version(),
-        "environment": environment_contract(environment),
-        "files": digests,
-    }
-    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:20]

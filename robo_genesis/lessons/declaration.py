@@ -10,13 +10,6 @@ from robo_genesis.core.orderings import Relation
 from robo_genesis.core.text import listed
 from robo_genesis.lessons.experiment import MeasuringPage
 
-COMMON_MODULES = (
-    "core.checks", "core.metrics", "core.quantities", "core.scene", "core.trace",
-    "lessons.experiment", "sim.backends", "sim.camera", "sim.end_state", "sim.joints",
-    "sim.session",
-)  # fmt: skip
-"""Modules that affect the measurements of every page."""
-
 
 class Specification(Protocol):
     """The data in a lesson's `spec.py` that other sub-packages read."""

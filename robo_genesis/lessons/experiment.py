@@ -60,10 +60,10 @@ class MeasuringPage:
     | `measure` | returns the metrics of a case from its trace |
     | `checks` | named checks in the order of their table |
     | `parameters` | returns every configured input as JSON values |
-    | `modules` | whose source affects the measurements: a change in one makes evidence stale |
     | `validate` | refuses arrays that no run can have |
 
-    The `spec` of a lesson is not among the modules, because `parameters` covers it.
+    The code that measures needs no declaration: `sources.measuring_modules` finds it. The `spec` of
+    a lesson is not in it, because `parameters` covers it.
     """
 
     runs: Mapping[str, Run]
@@ -72,7 +72,6 @@ class MeasuringPage:
     measure: Callable[[Any, Any], CaseMetrics]
     checks: Sequence[Callable[["Experiment"], Iterable[Finding]]]
     parameters: Callable[[], dict[str, Any]]
-    modules: tuple[str, ...]
     links: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
     validate: Callable[["Experiment"], None] = field(default=lambda run: None)

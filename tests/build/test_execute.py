@@ -232,6 +232,16 @@ print(e["PYTHONNOUSERSITE"], e["GIVEN"], len(e["ROBO_GENESIS_RUN_ID"]))"""
     assert output.text == f"{sys.executable} False [] {ROOT}\n1 yes 32\n"
 
 
+def test_a_kernel_learns_what_its_page_imports(tmp_path):
+    code = """\
+import os
+from robo_genesis.core import text
+names = os.environ["ROBO_GENESIS_PAGE_IMPORTS"].split()
+assert names == ["robo_genesis.core", "robo_genesis.core.text"], names"""
+    make_book(tmp_path, page=notebook(cell(code)))
+    assert execute(tmp_path)["page"].status == "executed"
+
+
 def test_a_killed_worker_is_a_failed_page(tmp_path):
     """The kernel kills its parent, as the system does when memory runs out."""
     code = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\nimport time; time.sleep(60)"

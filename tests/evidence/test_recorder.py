@@ -18,14 +18,14 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence import recorder as record
 from robo_genesis.evidence.bundle import read_manifest, read_metrics
 from robo_genesis.evidence.recorder import (
-    PACKAGE,
     Recorder,
     RecordError,
     files_match_wheel,
     git_record,
 )
 from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.l04 import LAB, LECTURE, spec
+from robo_genesis.lessons.l04 import LAB, spec
+from robo_genesis.lessons.sources import measuring_modules
 from robo_genesis.sim import session
 
 
@@ -174,12 +174,14 @@ def test_a_message_of_the_engine_never_ends_a_recording(recorder, experiment):
     assert third == "a\nb\ufffd\nc\ufffd"
 
 
-@pytest.mark.parametrize("modules", [LAB.modules, LECTURE.modules])
-def test_each_computing_module_of_a_page_is_digested(recorder, experiment, modules):
-    files = {name: PACKAGE / f"{name.replace('.', '/')}.py" for name in modules}
-    digests = {name: hashlib.sha256(file.read_bytes()).hexdigest() for name, file in files.items()}
-    run = replace(experiment, page=replace(LAB, modules=modules))
-    assert read_manifest(recorder.write(run, RENDERER)).predicate.source.modules == digests
+def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(
+    quiet, tmp_path, engine, experiment
+):
+    quiet.setenv("ROBO_GENESIS_PAGE_IMPORTS", "robo_genesis.sim.film robo_genesis.core.plotting")
+    recorder = Recorder("l04", "lab", session.Contract("cpu", True, tmp_path), engine)
+    found = read_manifest(recorder.write(experiment, RENDERER)).predicate.source.modules
+    expected = measuring_modules("l04", ["robo_genesis.sim.film"])
+    assert found == expected != measuring_modules("l04", [])
 
 
 @pytest.fixture

@@ -114,7 +114,9 @@ status = bundle_status(Path(sys.argv[1]))
 print(status.state, status.reason)
 """
 LAB = "book/lessons/l04-joint-control/lab.md"
-SPEC, METRICS = (f"robo_genesis/lessons/l04/{name}.py" for name in ("spec", "metrics"))
+SPEC, METRICS, CHECKS = (
+    f"robo_genesis/lessons/l04/{name}.py" for name in ("spec", "metrics", "checks")
+)
 STALE = "stale stale: manifest.json: {} is "
 
 
@@ -125,9 +127,12 @@ STALE = "stale stale: manifest.json: {} is "
         ("requirements.lock", "\nquadrants==", "\nquadrants==9.",
          STALE.format("engine.quadrants_version")),
         (LAB, "plotting.use_course_style()", "pass", STALE.format("source.page")),
-        (METRICS, "Share of the step that counts", "The share that counts",
+        (LAB, "plotting.use_course_style()", "plotting.use_course_style()  # once", "verified"),
+        (METRICS, "Share of the step that counts", "The share that counts", "verified"),
+        (METRICS, "float(qd[-1])", "float(abs(qd[-1]))",
          STALE.format("source.modules.lessons.l04.metrics")),
         (METRICS, "RISE_FRACTION = 0.9", "RISE_FRACTION = 0.8", "stale "),
+        (CHECKS, "Start, target, gains", "Start, gains, target", "verified"),
         (METRICS, "SETTLING_BAND = 0.01", "SETTLING_BAND = 0.02", "stale "),
         (SPEC, "7000.0", "7100.0", STALE.format("parameters.cases.G2.kp")),
         (SPEC, "WINDOW = 1.2", "WINDOW = 1.3", "stale "),

@@ -3,16 +3,10 @@
 from dataclasses import replace
 
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.declaration import COMMON_MODULES, Filmed, Lesson, Moving
+from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.lessons.l02 import checks, life_cycle, spec, study
 from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
-
-MODULES = (
-    *COMMON_MODULES, "core.free_fall", "sim.rigid_bodies",
-    "lessons.l02.__init__", "lessons.l02.checks", "lessons.l02.metrics",
-)  # fmt: skip
-STUDY_MODULES = ("lessons.l02.life_cycle", "lessons.l02.study")
 
 
 def readings(rendered: bool) -> dict[str, Readings]:
@@ -33,7 +27,6 @@ LAB = MeasuringPage(
     measure=drop_metrics,
     checks=checks.CHECKS,
     parameters=spec.parameters,
-    modules=MODULES,
 )
 LECTURE = replace(
     LAB,
@@ -41,7 +34,6 @@ LECTURE = replace(
     readings=study_readings,
     checks=(*checks.CHECKS, *study.CHECKS, life_cycle.sides_of_build),
     parameters=spec.study_parameters,
-    modules=MODULES + STUDY_MODULES,
 )
 
 LESSON = Lesson(

@@ -4,17 +4,11 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.declaration import COMMON_MODULES, Filmed, Lesson, Moving
+from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.lessons.l03 import checks, spec, study
 from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
 from robo_genesis.sim.contacts import SETTINGS
-
-MODULES = (
-    *COMMON_MODULES, "core.free_fall", "sim.contacts", "sim.rigid_bodies", "lessons.l03.__init__",
-    "lessons.l03.checks", "lessons.l03.energy", "lessons.l03.friction", "lessons.l03.metrics",
-)  # fmt: skip
-STUDY_MODULES = ("lessons.l03.study", "sim.mujoco_contacts", "sim.visual_shape")
 
 
 def readings(shapes: Collection[str], cases: Collection[str]) -> dict[str, Readings]:
@@ -40,7 +34,6 @@ LAB = MeasuringPage(
     measure=case_metrics,
     checks=checks.CHECKS,
     parameters=spec.parameters,
-    modules=MODULES,
 )
 LECTURE = replace(
     LAB,
@@ -48,7 +41,6 @@ LECTURE = replace(
     readings=study_readings,
     checks=(*checks.STUDY_CHECKS, *study.CHECKS),
     parameters=spec.study_parameters,
-    modules=MODULES + STUDY_MODULES,
 )
 
 LESSON = Lesson(

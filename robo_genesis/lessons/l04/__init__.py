@@ -5,21 +5,12 @@ from dataclasses import replace
 from robo_genesis.core.channels import View
 from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.declaration import COMMON_MODULES, Compared, Filmed, Lesson
+from robo_genesis.lessons.declaration import Compared, Filmed, Lesson
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.lessons.l04 import checks, plausibility, spec, study, study_checks, study_spec
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics, step_metrics
 from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import ControlCase
-
-MODULES = (
-    *COMMON_MODULES, "sim.franka", "sim.joint_control",
-    "lessons.l04.__init__", "lessons.l04.checks", "lessons.l04.metrics",
-)  # fmt: skip
-STUDY_MODULES = (
-    "core.orderings", "lessons.l04.study", "lessons.l04.study_checks", "lessons.l04.theory",
-    "sim.dynamics", "sim.mujoco_joints",
-)  # fmt: skip
 
 STUDY_RUNS = {
     # A run that holds its start has no step, so it has no metrics.
@@ -60,7 +51,6 @@ LAB = MeasuringPage(
     measure=measure,
     checks=checks.CHECKS,
     parameters=spec.parameters,
-    modules=MODULES,
     validate=plausibility.require_possible_runs,
 )
 LECTURE = replace(
@@ -69,7 +59,6 @@ LECTURE = replace(
     readings=study_readings,
     checks=(*checks.CHECKS, *study_checks.CHECKS),
     parameters=lambda: spec.parameters() | study_spec.parameters(),
-    modules=MODULES + STUDY_MODULES,
 )
 
 LESSON = Lesson(

@@ -2,12 +2,13 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
+from bundles import name_code
 
 from robo_genesis.core import project
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.trace import Trace
 from robo_genesis.evidence.bundle import read_arrays
-from robo_genesis.evidence.evidence_key import page_digest
+from robo_genesis.evidence.evidence_key import page_code
 from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.evidence.trace_files import read_trace
 from robo_genesis.evidence.verify import verify_bundle
@@ -45,7 +46,7 @@ def measured_run(lab, run):
 def bundle_folder(lab, measured_run):
     with pytest.MonkeyPatch.context() as patch:
         patch.delenv("ROBO_GENESIS_RUN_ID", raising=False)
-        patch.setenv("ROBO_GENESIS_PAGE_SHA256", page_digest("l04", "lab", project.BOOK))
+        name_code(patch, "l04", "lab")
         recorder = Recorder("l04", "lab", lab.contract, lab.engine)
         return recorder.write(measured_run, read_renderer(lab.scene))
 
@@ -178,7 +179,7 @@ def test_the_two_force_getters_differ(measured_run):
 
 def test_a_recorded_run_is_accepted(bundle_folder, lab):
     predicate = verify_bundle(bundle_folder).predicate
-    assert predicate.source.page == page_digest("l04", "lab", project.BOOK)
+    assert predicate.source.page == page_code("l04", "lab", project.BOOK)[0]
     assert predicate.engine.files_match_wheel
     assert predicate.render.mode == "camera"
     renderer = read_renderer(lab.scene)

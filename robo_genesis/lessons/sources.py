@@ -1,0 +1,309 @@
+"""The code behind a page: what it imports, a digest of its syntax, and the keys that follow.
+
+Two keys use it. The *evidence key* of a bundle covers the modules that compute its numbers. The
+*fingerprint* of a page decides whether the page has to run again, and covers whatever it imports.
+Nobody lists modules: both follow the import statements of the sources, which are never imported.
+"""
+
+import ast
+import hashlib
+import io
+import json
+import platform
+import tokenize
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import lru_cache
+from importlib.util import resolve_name
+from itertools import accumulate
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from robo_genesis.core.project import (
+    ROOT,
+    environment_contract,
+    installed_packages,
+    lock_digest,
+)
+
+if TYPE_CHECKING:
+    from robo_genesis.lessons.book_pages import Page
+
+PACKAGE = "robo_genesis"
+DATA_SUFFIXES = (".json", ".toml", ".yaml", ".yml", ".csv")
+
+COMPUTING = ("core", "sim", "lessons")
+"""The sub-packages with modules that compute."""
+
+NOT_COMPUTING = {
+    "spec", "plausibility",  # what a run is given (see `parameters`), and what is refused
+    "channels", "comparison", "explorer", "mistake", "mistakes", "palette", "plots", "plotting",
+    "tables", "text",  # what is shown
+    "project",  # where files are
+}  # fmt: skip
+"""The last words of the names of modules that are in no evidence key: `study_spec`, `text` …"""
+
+QUIET = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.ENDMARKER)
+DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+@lru_cache(maxsize=1024)
+def syntax_digest(source: str, docstrings: bool = False) -> str:
+    """Return the sha256 of what a module does: of its syntax tree, not of its text.
+
+    Comments, layout, quotes and strings that are statements of their own do not count. Python
+    3.11 to 3.14 give the same digest, because fields that are empty or have to do with positions
+    are left out, and the constant parts of f-strings are joined. An exception is a backslash in the
+    format of an f-string: Python 3.11 and later versions read it differently.
+
+    Args:
+        source: Python. One that does not parse counts by its text.
+        docstrings: whether the docstrings of functions count.
+    """
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return _sha256(source)
+    return _sha256(_canonical(tree, docstrings))
+
+
+@lru_cache(maxsize=1024)
+def cell_digest(source: str) -> str:
+    """Return the sha256 of the syntax of one code cell, in which IPython's magics are translated.
+
+    A string that is a statement counts, other than in a module, because it may be the output of the
+    cell. So does a semicolon at the end, which hides the output.
+    """
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return _sha256(source)
+    statements = [_canonical(statement, False) for statement in tree.body]
+    return _sha256([statements, _ends_with_semicolon(source)])
+
+
+def _canonical(node: Any, docstrings: bool) -> Any:
+    """Return a syntax tree as nested lists, the same in each version of Python."""
+    if isinstance(node, list):
+        return [_canonical(each, docstrings) for each in node]
+    if isinstance(node, ast.Constant):
+        return ["Constant", type(node.value).__name__, ascii(node.value)]
+    if not isinstance(node, ast.AST):
+        return node
+    fields = dict(ast.iter_fields(node))
+    fields.pop("kind", None)
+    fields.pop("type_comment", None)
+    if isinstance(node, ast.JoinedStr):
+        fields["values"] = list(_joined(node.values))
+    body = fields.get("body")
+    if isinstance(body, list):
+        kept = body[:1] if docstrings and isinstance(node, DEFINITIONS) else []
+        fields["body"] = [s for s in body if s in kept or not _is_text(s)]
+    for name in ("orelse", "finalbody"):
+        if isinstance(fields.get(name), list):
+            fields[name] = [s for s in fields[name] if not _is_text(s)]
+    filled = {
+        name: _canonical(value, docstrings)
+        for name, value in fields.items()
+        if value is not None and value != []
+    }
+    return [type(node).__name__, filled]
+
+
+def _is_text(statement: ast.AST) -> bool:
+    """Whether a statement is only a string, as docstrings are."""
+    return (
+        isinstance(statement, ast.Expr)
+        and isinstance(statement.value, ast.Constant)
+        and isinstance(statement.value.value, str)
+    )
+
+
+def _joined(parts: Iterable[ast.expr]) -> Iterator[ast.expr]:
+    """Yield the parts of an f-string with adjacent constants joined and empty ones left out."""
+    text = ""
+    for part in parts:
+        if isinstance(part, ast.Constant) and isinstance(part.value, str):
+            text += part.value
+            continue
+        if text:
+            yield ast.Constant(text)
+        text = ""
+        yield part
+    if text:
+        yield ast.Constant(text)
+
+
+def _ends_with_semicolon(source: str) -> bool:
+    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
+    words = [token.string for token in tokens if token.type not in QUIET and token.string]
+    return words[-1:] == [";"]
+
+
+def _sha256(value: Any) -> str:
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+@lru_cache(maxsize=1024)
+def imported_names(source: str, package: str = "") -> tuple[str, ...]:
+    """Return the dotted names below the course package that a source imports anywhere.
+
+    A name may be that of a module or of something in a module.
+
+    Args:
+        source: Python. One that does not parse imports nothing: its page fails when it is executed.
+        package: the package of the source, to which relative imports refer.
+    """
+    names: list[str] = []
+    try:
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.Import):
+                names += [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                base = resolve_name("." * node.level + (node.module or ""), package)
+                names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
+    except (SyntaxError, ValueError, ImportError):
+        return ()
+    return tuple(name for name in names if name.split(".")[0] == PACKAGE)
+
+
+def imports_of(sources: Iterable[str]) -> list[str]:
+    """Return the dotted names below the course package that some sources import themselves."""
+    return sorted({name for source in sources for name in imported_names(source)})
+
+
+def import_closure(
+    names: Iterable[str],
+    root: Path = ROOT,
+    enter: Callable[[str, Path], bool] = lambda name, path: True,
+) -> dict[str, Path]:
+    """Return the package's modules behind some dotted names, directly or through others.
+
+    Args:
+        names: of modules or of something in them; others are ignored.
+        root: the folder that holds the package.
+        enter: whether a module belongs to the result; what only others import does not.
+
+    Returns:
+        Module name to file, packages by their `__init__.py`.
+    """
+    found: dict[str, Path] = {}
+    waiting = list(names)
+    seen: set[str] = set()
+    while waiting:
+        for name in accumulate(waiting.pop().split("."), "{}.{}".format):
+            path = None if name in seen else _module_file(root, name)
+            seen.add(name)
+            if path is None or not enter(name, path):
+                continue
+            found[name] = path
+            package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+            waiting += imported_names(path.read_text("utf8"), package)
+    return found
+
+
+def _module_file(root: Path, name: str) -> Path | None:
+    """Return the file of a module, None if the name is not a module."""
+    base = root.joinpath(*name.split("."))
+    candidates = (base.with_name(base.name + ".py"), base / "__init__.py")
+    return next((path for path in candidates if path.is_file()), None)
+
+
+def _lesson_modules(lesson: str, root: Path) -> list[str]:
+    """Return the modules in the folder of a lesson."""
+    folder = root / PACKAGE / "lessons" / lesson
+    return [f"{PACKAGE}.lessons.{lesson}.{path.stem}" for path in sorted(folder.glob("*.py"))]
+
+
+def computes(name: str, path: Path) -> bool:
+    """Whether a module belongs to evidence keys, if a measuring page uses it.
+
+    It is in `core`, `sim` or `lessons`, it is not the `__init__.py` of a package, and the last word
+    of its name is not one of `NOT_COMPUTING`.
+    """
+    sub_package, _, module = name.removeprefix(f"{PACKAGE}.").partition(".")
+    word = module.rpartition(".")[2].rpartition("_")[2]
+    return sub_package in COMPUTING and path.name != "__init__.py" and word not in NOT_COMPUTING
+
+
+def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) -> dict[str, str]:
+    """Return the modules that decide what a page measures, with the digests of their syntax.
+
+    They are all modules of the lesson that compute, what the page itself imports, and what these
+    import; see `computes`.
+
+    Args:
+        lesson: the name of its folder.
+        imports: what the cells of the page import, see `imports_of`.
+        root: the checkout.
+
+    Returns:
+        Module without the package's name, such as `core.trace`, to digest.
+    """
+    modules = import_closure([*_lesson_modules(lesson, root), *imports], root, enter=computes)
+    return {
+        name.removeprefix(f"{PACKAGE}."): syntax_digest(path.read_text("utf8"))
+        for name, path in sorted(modules.items())
+    }
+
+
+def page_fingerprint(
+    page: "Page", root: Path = ROOT, environment: Mapping[str, str] | None = None
+) -> str:
+    """Return a digest of everything that decides the outputs of a page.
+
+    It covers the lock, all installed versions, the version of Python, the environment contract, the
+    syntax of the page's cells, of the modules that they import and of the modules of its lesson,
+    and the data files of the package, except those of other lessons. The docstrings of the lesson's
+    functions count, because that of a check is shown.
+
+    Args:
+        page: an executed page.
+        root: the checkout.
+        environment: variables, by default those of this process.
+
+    Returns:
+        20 hex digits.
+    """
+    # Imported here, because MyST-NB and Jupyter take longer to load than a whole verification.
+    from robo_genesis.lessons.book_pages import cell_sources
+
+    cells = cell_sources(page)
+    own = _lesson_modules(page.lesson, root) if page.lesson else []
+    modules = import_closure([*imports_of(cells), *own], root)
+    parts = {
+        "lock": lock_digest(root),
+        "installed": _installed(),
+        "python": platform.python_version(),
+        "environment": environment_contract(environment),
+        "cells": [cell_digest(cell) for cell in cells],
+        "modules": {
+            name: syntax_digest(path.read_text("utf8"), docstrings=name in own)
+            for name, path in modules.items()
+        },
+        "data": {
+            path.relative_to(root).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in _data_files(page.lesson, root)
+        },
+    }
+    return _sha256(parts)[:20]
+
+
+@lru_cache(maxsize=1)
+def _installed() -> list[str]:
+    return installed_packages()
+
+
+def _data_files(lesson: str | None, root: Path) -> Iterator[Path]:
+    """Yield the data files of the package, except those of other lessons."""
+    lessons = root / PACKAGE / "lessons"
+    others = {path.parent for path in lessons.glob("*/__init__.py") if path.parent.name != lesson}
+    for path in (root / PACKAGE).rglob("*"):
+        if path.suffix in DATA_SUFFIXES and others.isdisjoint(path.parents):
+            yield path
+
+
+def fingerprint(
+    pages: Iterable["Page"], root: Path = ROOT, environment: Mapping[str, str] | None = None
+) -> str:
+    """Return one digest of the fingerprints of some pages, as 20 hex digits."""
+    return _sha256([page_fingerprint(page, root, environment) for page in pages])[:20]
