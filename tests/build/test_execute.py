@@ -141,11 +141,12 @@ def test_a_failed_run_keeps_the_page_so_that_undoing_a_typo_executes_nothing(lab
     assert (after.status, after.run_id) == ("reused", before)
 
 
-def test_a_release_that_fails_keeps_the_page(lab):
-    before = execute(lab)["lab"].run_id
-    failed = execute(lab, reuse=False, environment={"PATH": "/nowhere"}, timeout=0)["lab"]
-    assert failed.status == "failed"
-    assert execute(lab)["lab"].run_id == before
+def test_a_run_that_fails_with_the_same_code_keeps_the_page(tmp_path):
+    make_book(tmp_path, page=notebook(cell("import os\nassert 'FAIL' not in os.environ")))
+    before = execute(tmp_path)["page"].run_id
+    failed = execute(tmp_path, reuse=False, environment={"FAIL": "1"})["page"]
+    assert failed.failure.error == "AssertionError"
+    assert execute(tmp_path)["page"].run_id == before
 
 
 @pytest.mark.parametrize(
