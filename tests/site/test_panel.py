@@ -264,7 +264,7 @@ def accepted(page, folder, **more) -> Run:
 @pytest.fixture
 def record(folder, tmp_path, built, courses_pages):
     """Record the bundle on another backend; this build's outputs and shape are in `tmp_path`."""
-    built({"l04/lecture": tmp_path / "l04" / "lecture"})
+    built({f"l04/{page}": tmp_path / "l04" / page for page in ("lab", "lecture")})
     box = trimesh.creation.box((0.1, 0.1, 0.1))
     links = bundle.read_arrays(folder).coords["link"]
     parts = [Part(link, (9, 9, 9), box.vertices.astype(np.float32), box.faces) for link in links]
