@@ -85,7 +85,7 @@ def unexpected_outcome(source: NotebookNode, executed: NotebookNode) -> Failure 
     """Return the first cell that lacks its figure, or whose exception is not the expected one.
 
     Args:
-        source: the page's notebook now; tags and `expects` are read here, because a cached
+        source: the page's notebook now; tags and `expects` are read here, because a stored
             notebook keeps those of its execution.
         executed: the same code cells with outputs.
     """
