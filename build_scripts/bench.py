@@ -18,17 +18,18 @@ from functools import partial
 import nbformat
 import yaml
 
+from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.command import run
-from robo_genesis.build.page_cache import notebooks_folder
+from robo_genesis.build.page_store import folders
 from robo_genesis.build.worktree import environment, worktree
-from robo_genesis.core import project, tables
+from robo_genesis.core import names, project, tables
 from robo_genesis.lessons.book_pages import Page, find_pages
 
 Sides = tuple[Callable[[], float], Callable[[], float]]
 """Run the course's command, or its bare counterpart, and return the elapsed time [s]."""
 
 TREE = project.CACHE / "bench"
-SETTINGS = ("RENDER", "JOBS", "SITE_URL", "ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND")
+SETTINGS = ("RENDER", "JOBS", "SITE_URL", names.RENDER, names.BACKEND)
 """Further variables that would change a measured command."""
 
 BARE_CONFIG = """\
@@ -77,13 +78,14 @@ def last_lab() -> Page:
 def bare_sphinx() -> Callable[..., float]:
     """Build the site, and its executed pages by bare Sphinx; return what repeats the latter."""
     make("book")
-    built = max((project.CACHE / "pages").iterdir(), key=lambda path: path.stat().st_mtime)
-    book, folder = TREE / "book", TREE / "bare"
+    book, folder, store = TREE / "book", TREE / "bare", project.CACHE / project.STORE
     folder.mkdir(exist_ok=True)
+    newest = {page.docname: folders(store, page)[0] for page in find_pages(book)}
+    built = BuiltPages(folders=newest).write(folder / "executed-pages.json")
     parse = yaml.safe_load((book / "_config.yml").read_text("utf8"))["parse"]
     (folder / "conf.py").write_text(BARE_CONFIG.format(parse["myst_enable_extensions"]), "utf8")
     command = ("-m", "sphinx", "-c", str(folder), str(book), str(folder / "html"))
-    build = partial(python, *command, ROBO_GENESIS_PAGE_CACHE=str(notebooks_folder(built)))
+    build = partial(python, *command, **built)
     build()
     return build
 
@@ -119,7 +121,7 @@ def execute() -> Sides:
     compiled = project.engine_cache_environment(TREE)
 
     def anew() -> float:
-        shutil.rmtree(cache / "pages", ignore_errors=True)
+        shutil.rmtree(cache / project.STORE, ignore_errors=True)
         where = {"PAGE": page.docname, "TO": str(cache / "exported")}
         return python("build_scripts/execute.py", "--cache", str(cache), **where)
 

@@ -24,6 +24,7 @@ from robo_genesis.build.command import (
     set_contract,
 )
 from robo_genesis.build.up_to_date import nothing_changed
+from robo_genesis.core.names import RENDER
 from robo_genesis.core.project import BOOK, PUBLISHED, ROOT
 
 
@@ -39,7 +40,7 @@ def main() -> int:
     set_contract()
     release = choice("RELEASE", "0", ("0", "1")) == "1"
     executed, jobs = path("EXECUTED"), os.environ.get("JOBS") or None
-    if release and os.environ["ROBO_GENESIS_RENDER"] == "0":
+    if release and os.environ[RENDER] == "0":
         sys.exit("RENDER='0' is not valid with RELEASE=1, which needs camera frames. Unset one.")
     if release and args.book != BOOK:
         sys.exit(f"--book {args.book} is not valid with RELEASE=1, which builds the commit's book.")

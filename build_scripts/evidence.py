@@ -10,10 +10,11 @@ import sys
 
 from robo_genesis.build.command import choice, parser, path, run
 from robo_genesis.build.recording import Recording, record
+from robo_genesis.core.names import RENDER
 
 if __name__ == "__main__":
     args = parser(__doc__).parse_args()
-    for name in ("RENDER", "ROBO_GENESIS_RENDER"):
+    for name in ("RENDER", RENDER):
         choice(name, "1", ("1",), " for a recording, which always has camera frames. Unset it")
     recording = Recording(
         lesson=os.environ.get("LESSON") or "",

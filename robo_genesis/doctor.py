@@ -19,6 +19,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from robo_genesis.core import project
+from robo_genesis.core.names import OUTPUTS_DIR
 from robo_genesis.sim.diagnosis import STEPS, Bench, Finding, examine, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
@@ -80,7 +81,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print(f"{len(STEPS)} steps; the first start of the engine takes minutes", file=sys.stderr)
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
         # Without it, the outputs would go to the working directory.
-        bench = Bench({"ROBO_GENESIS_OUTPUTS_DIR": folder} | os.environ)
+        bench = Bench({OUTPUTS_DIR: folder} | os.environ)
         findings = examine(bench)
     print(report(findings, bench) if options.json else table(findings))
     return 0 if all(f.state == "ok" for f in findings) else 1

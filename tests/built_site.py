@@ -15,10 +15,11 @@ import pytest
 from browsers import launched
 from bs4 import BeautifulSoup
 
-from robo_genesis.core.project import BOOK, ROOT, page_cache_folder
+from robo_genesis.build.built_pages import BuiltPages
+from robo_genesis.build.page_store import places, stored_result
+from robo_genesis.core.project import BOOK, CACHE, ROOT, STORE
 from robo_genesis.lessons.book_pages import docnames, find_pages
 from robo_genesis.lessons.registry import LESSONS
-from robo_genesis.lessons.sources import fingerprint
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -42,9 +43,12 @@ OUTSIDE = dict(os.environ)
 other switches would execute every page again."""
 
 
-def executed_folder() -> Path:
-    """Return the folder of the executed pages from which the site was built."""
-    return page_cache_folder(fingerprint(find_pages(BOOK), ROOT, OUTSIDE))
+def executed_pages() -> BuiltPages:
+    """Return the executed pages from which the site was built."""
+    pages = find_pages(BOOK)
+    into = places(pages, CACHE / STORE, ROOT, OUTSIDE)
+    results = [stored_result(page, into[page.docname]) for page in pages]
+    return BuiltPages.of(result for result in results if result is not None)
 
 
 class QuietHandler(SimpleHTTPRequestHandler):

@@ -7,7 +7,7 @@ import sys
 from robo_genesis.core.project import ROOT
 
 ENGINE = ("genesis", "quadrants", "torch")
-JUPYTER = ("sphinx", "nbformat", "myst_nb", "jupyter_cache", "IPython")
+JUPYTER = ("sphinx", "nbformat", "myst_nb", "nbclient", "IPython")
 
 WATCHED = """
 import atexit, runpy, sys

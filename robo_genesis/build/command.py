@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
+from robo_genesis.core.names import BACKEND, RENDER
 from robo_genesis.core.project import BOOK, BUILD_BACKEND, CACHE, ProjectError
 from robo_genesis.core.refusals import BundleRefused
 
@@ -104,9 +105,9 @@ def absolute(value: str) -> Path:
 
 def set_contract() -> None:
     """Set the camera as RENDER says, and the CPU; exit with 1 on another setting."""
-    os.environ["ROBO_GENESIS_RENDER"] = choice("RENDER", "1", ("0", "1"))
-    os.environ["ROBO_GENESIS_BACKEND"] = choice(
-        "ROBO_GENESIS_BACKEND",
+    os.environ[RENDER] = choice("RENDER", "1", ("0", "1"))
+    os.environ[BACKEND] = choice(
+        BACKEND,
         BUILD_BACKEND,
         (BUILD_BACKEND,),
         " for a build, which executes its pages on the CPU; `make evidence` records accelerators. "

@@ -1,21 +1,21 @@
-"""Execute the pages' code cells in clean kernels, in parallel, and keep them in the page cache."""
+"""Execute the pages' code cells in clean kernels, in parallel, and keep them in the store."""
 
 import multiprocessing
 import os
-import shutil
 import tempfile
 import uuid
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
 from robo_genesis.build.command import TIMEOUT
 from robo_genesis.build.kernels import interrupts_blocked, kill_with_descendants
-from robo_genesis.build.page_cache import cached_results, outputs_folder, usable
-from robo_genesis.build.page_results import Failure, PageResult, Status, find_bundle
+from robo_genesis.build.page_results import Failure, PageResult, find_bundle
+from robo_genesis.build.page_store import OUTPUTS, PageRefused, last_seconds, stored_result
 from robo_genesis.build.page_worker import PageRun, work
 from robo_genesis.core import project
+from robo_genesis.core.names import COMMAND
 from robo_genesis.lessons.book_pages import Page
 
 HEARTBEAT = 30.0
@@ -25,23 +25,25 @@ Running = dict[Any, tuple[Any, PageRun]]
 
 def execute_pages(
     pages: Sequence[Page],
-    folder: Path,
+    places: Mapping[str, Path],
     *,
+    reuse: bool = True,
     jobs: int = 1,
     timeout: int = TIMEOUT,
     environment: Mapping[str, str] | None = None,
     on_progress: Callable[[str, str], None] = lambda what, event: None,
     heartbeat: float = HEARTBEAT,
 ) -> list[PageResult]:
-    """Execute the pages that this cache folder does not hold yet; try all of them.
+    """Execute the pages that the store does not have yet; try all of them, the longest first.
 
-    jupyter-cache's own parallel executor maps a `multiprocessing.Pool`, which waits for ever when a
-    worker is killed for memory, reports nothing before the last page, and leaves kernels behind on
-    Ctrl-C.
+    A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
+    behind on Ctrl-C.
 
     Args:
         pages: the pages of the book.
-        folder: the cache folder of their fingerprint; holds `notebooks`, `outputs` and `home`.
+        places: where the store has each page, or will have it; see `page_store.places`. A page
+            that fails leaves its place as it is.
+        reuse: whether a page that the store has is not executed again.
         jobs: how many pages run at once.
         timeout: seconds for one cell; a page's front matter may set another.
         environment: variables for the kernels.
@@ -52,14 +54,13 @@ def execute_pages(
         One result for each page, in the order of `pages`.
 
     Raises:
-        ProjectError: the cache folder cannot be used.
+        OSError: the store cannot be used.
     """
-    folder = folder.absolute()
-    with usable(folder):
-        results = cached_results(pages, folder)
-    for result in results.values():
-        on_progress(result.page.docname, result.status)
-    waiting = [page for page in pages if page.docname not in results]
+    results = _reused(pages, places, on_progress) if reuse else {}
+    last = {page.docname: last_seconds(places[page.docname].parents[1], page) for page in pages}
+    waiting = longest_first((page for page in pages if page.docname not in results), last)
+    for page in waiting:
+        places[page.docname].parent.mkdir(parents=True, exist_ok=True)  # fails before any run
     running: Running = {}
     with tempfile.TemporaryDirectory(prefix="robo-") as scratch:
         try:
@@ -67,8 +68,8 @@ def execute_pages(
                 while waiting and len(running) < jobs:
                     page = waiting.pop(0)
                     on_progress(page.docname, "started")
-                    run_id = prepare_outputs(page, outputs_folder(folder))
-                    run = PageRun(page, run_id, folder, Path(scratch), timeout, environment or {})
+                    place, own = places[page.docname], Path(scratch)
+                    run = PageRun(page, uuid.uuid4().hex, place, own, timeout, environment or {})
                     _start(run, running)
                 ended = wait(list(running), timeout=heartbeat)
                 if not ended:
@@ -96,18 +97,41 @@ def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -
     return {
         **project.engine_cache_environment(root, cache),
         **project.environment_contract({**os.environ, **settings}),
-        "ROBO_GENESIS_COMMAND": command,
+        COMMAND: command,
     }
 
 
-def prepare_outputs(page: Page, outputs: Path) -> str:
-    """Remove the bundle of a page's last run and return a fresh run id."""
-    outputs.mkdir(parents=True, exist_ok=True)
-    if page.declares_bundle:
-        shutil.rmtree(outputs / str(page.lesson) / str(page.page), ignore_errors=True)
-        for partial in outputs.glob(f".{page.lesson}-{page.page}-*"):  # a killed run's bundle
-            shutil.rmtree(partial, ignore_errors=True)
-    return uuid.uuid4().hex
+def longest_first(pages: Iterable[Page], seconds: Mapping[str, float | None]) -> list[Page]:
+    """Return pages in the order in which they start.
+
+    Args:
+        pages: the pages to execute.
+        seconds: how long the last execution of each page took, by name. Pages with None come first.
+    """
+
+    def sooner(page: Page) -> float:
+        known = seconds[page.docname]
+        return float("-inf") if known is None else -known
+
+    return sorted(pages, key=sooner)
+
+
+def _reused(
+    pages: Sequence[Page], places: Mapping[str, Path], on_progress: Callable[[str, str], None]
+) -> dict[str, PageResult]:
+    """Return the results of the pages that need no run, by name, and report them."""
+    results = {}
+    for page in pages:
+        try:
+            result = stored_result(page, places[page.docname])
+        except PageRefused as refused:
+            reason = str(refused).splitlines()[0]
+            on_progress(page.docname, f"changed since it was stored; executed again ({reason})")
+            continue
+        if result is not None:
+            results[page.docname] = result
+            on_progress(page.docname, result.status)
+    return results
 
 
 def _start(run: PageRun, running: Running) -> None:
@@ -132,8 +156,7 @@ def _receive(connection: Any, process: Any, run: PageRun) -> PageResult:
         seconds, failure = 0.0, Failure("WorkerDied", message)
     process.join()
     connection.close()
-    bundle = None
-    if run.page.declares_bundle and not failure:
-        bundle = find_bundle(outputs_folder(run.folder), run.page, run.run_id)
-    status: Status = "failed" if failure else "executed"
-    return PageResult(run.page, status, seconds, run.run_id, bundle, failure)
+    if failure:
+        return PageResult(run.page, "failed", seconds, run.run_id, failure=failure)
+    bundle = find_bundle(run.place / OUTPUTS, run.run_id) if run.page.declares_bundle else None
+    return PageResult(run.page, "executed", seconds, run.run_id, bundle, folder=run.place)

@@ -9,6 +9,7 @@ from typing import Literal
 
 from nbformat import NotebookNode
 
+from robo_genesis.core.names import OUTPUTS_DIR, RUN_ID
 from robo_genesis.lessons.book_pages import Page
 
 LOG_LINES = 15
@@ -35,7 +36,11 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class PageResult:
-    """The result of one page in one build; `bundle` is None if the page declares none."""
+    """The result of one page in one build.
+
+    `bundle` is None if the page declares none. `folder` is the page's folder in the store; a failed
+    page may have none.
+    """
 
     page: Page
     status: Status
@@ -43,17 +48,17 @@ class PageResult:
     run_id: str
     bundle: Path | None = None
     failure: Failure | None = None
+    folder: Path | None = None
 
 
-def find_bundle(outputs: Path, page: Page, run_id: str) -> Path | None:
+def find_bundle(left: Path, run_id: str) -> Path | None:
     """Return the bundle folder that a run of a page left, None if there is none of that run.
 
     Args:
-        outputs: the outputs folder of all pages.
-        page: a page that declares a bundle.
+        left: the folder of the files that the page left.
         run_id: the run that the bundle's manifest must name.
     """
-    for manifest in sorted((outputs / str(page.lesson) / str(page.page)).glob("*/manifest.json")):
+    for manifest in sorted(left.glob("*/manifest.json")):
         try:
             found = json.loads(manifest.read_text("utf8"))["predicate"]["run_id"]
         except (ValueError, KeyError, TypeError):
@@ -63,15 +68,15 @@ def find_bundle(outputs: Path, page: Page, run_id: str) -> Path | None:
     return None
 
 
-def missing_bundle(outputs: Path, page: Page, run_id: str) -> Failure | None:
+def missing_bundle(left: Path, page: Page, run_id: str) -> Failure | None:
     """Return the failure of a page that declares a bundle and did not leave it."""
-    if not page.declares_bundle or find_bundle(outputs, page, run_id):
+    if not page.declares_bundle or find_bundle(left, run_id):
         return None
     wanted = f"{page.lesson}/{page.page}/<backend>/manifest.json"
     return Failure(
         "BundleMissing",
         f"the front matter declares a bundle, but the run left no {wanted} with predicate.run_id "
-        f"{run_id}. Write one to ROBO_GENESIS_OUTPUTS_DIR with ROBO_GENESIS_RUN_ID, "
+        f"{run_id}. Write one to {OUTPUTS_DIR} with {RUN_ID}, "
         "or remove `robo_genesis` from the front matter.",
     )
 
@@ -80,7 +85,7 @@ def unexpected_outcome(source: NotebookNode, executed: NotebookNode) -> Failure 
     """Return the first cell that lacks its figure, or whose exception is not the expected one.
 
     Args:
-        source: the page's notebook now; tags and `expects` are read here, because a cached
+        source: the page's notebook now; tags and `expects` are read here, because a stored
             notebook keeps those of its execution.
         executed: the same code cells with outputs.
     """

@@ -1,4 +1,4 @@
-"""Execute one page in a process of its own, and store it in the page cache if it did not fail."""
+"""Execute one page in a process of its own, and put it into the store if it did not fail."""
 
 import os
 import tempfile
@@ -18,7 +18,6 @@ from robo_genesis.build.kernels import (
     clean_environment,
     die_with_parent,
 )
-from robo_genesis.build.page_cache import outputs_folder, store
 from robo_genesis.build.page_results import (
     Failure,
     at_cell,
@@ -27,6 +26,8 @@ from robo_genesis.build.page_results import (
     missing_bundle,
     unexpected_outcome,
 )
+from robo_genesis.build.page_store import StoreError, write_page
+from robo_genesis.core.names import COMMAND, OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, RUN_ID
 from robo_genesis.core.project import ROOT
 from robo_genesis.lessons.book_pages import Page, cell_sources, code_digest
 from robo_genesis.lessons.sources import imports_of
@@ -36,16 +37,26 @@ from robo_genesis.lessons.sources import imports_of
 class PageRun:
     """One run of one page: what its worker process needs to know.
 
-    `folder` is the cache folder of the fingerprint; `scratch` is temporary, and is removed with the
-    build even where the worker is killed; `timeout` is in seconds, for one cell.
+    `place` is the page's folder in the store; `scratch` is temporary, and is removed with the build
+    even where the worker is killed; `timeout` is in seconds, for one cell.
     """
 
     page: Page
     run_id: str
-    folder: Path
+    place: Path
     scratch: Path
     timeout: int
     environment: Mapping[str, str]
+
+    @property
+    def outputs(self) -> Path:
+        """The folder that the contract names to the page."""
+        return self.scratch / self.run_id
+
+    @property
+    def left(self) -> Path:
+        """The folder of the files that the page leaves."""
+        return self.outputs / str(self.page.lesson) / str(self.page.page)
 
 
 def work(run: PageRun, connection: Connection) -> None:
@@ -58,12 +69,12 @@ def work(run: PageRun, connection: Connection) -> None:
     die_with_parent(run.scratch)
     runtime = Path(tempfile.mkdtemp(dir=run.scratch))
     own = {
-        "ROBO_GENESIS_RUN_ID": run.run_id,
-        "ROBO_GENESIS_OUTPUTS_DIR": str(outputs_folder(run.folder)),
-        "ROBO_GENESIS_PAGE_SHA256": code_digest(run.page),
-        "ROBO_GENESIS_PAGE_IMPORTS": " ".join(imports_of(cell_sources(run.page))),
+        RUN_ID: run.run_id,
+        OUTPUTS_DIR: str(run.outputs),
+        PAGE_SHA256: code_digest(run.page),
+        PAGE_IMPORTS: " ".join(imports_of(cell_sources(run.page))),
     }
-    environment = clean_environment(run.folder / "home", runtime, ROOT, {**run.environment, **own})
+    environment = clean_environment(runtime / "home", runtime, ROOT, {**run.environment, **own})
     os.environ.clear()
     os.environ.update(environment)
     # The engine's compiled parts write past Python: to a file, because the build prints its
@@ -111,12 +122,20 @@ def execute_page(run: PageRun) -> Failure | None:
     elapsed = time.monotonic() - begin
     failure = _failure(run, error, list(begins))
     if failure is None:
-        own = notebook.metadata.setdefault("robo_genesis", NotebookNode())
-        own.update(run_id=run.run_id, cell_seconds=seconds)
+        notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = run.run_id
         try:
-            store(run.page, notebook, elapsed, run.folder)
-        except Exception as caught:  # of the database or the disk
-            failure = Failure("CacheError", f"the executed page cannot be stored: {caught}")
+            write_page(
+                run.place,
+                run.page,
+                notebook,
+                run.left,
+                run_id=run.run_id,
+                command=run.environment.get(COMMAND),
+                seconds=elapsed,
+                cell_seconds=seconds,
+            )
+        except (StoreError, OSError) as caught:
+            failure = Failure("NotStored", f"the executed page cannot be stored: {caught}")
     return failure
 
 
@@ -125,7 +144,7 @@ def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failu
     notebook = run.page.notebook
     if error is None:
         return unexpected_outcome(notebook, notebook) or missing_bundle(
-            outputs_folder(run.folder), run.page, run.run_id
+            run.left, run.page, run.run_id
         )
     name, message = type(error).__name__, str(error)
     if isinstance(error, CellExecutionError):

@@ -10,10 +10,11 @@ from typing import Any
 from robo_genesis.build.backend_probe import expected_backend
 from robo_genesis.build.command import TIMEOUT, Progress, say
 from robo_genesis.build.execute import execute_pages, kernel_environment
-from robo_genesis.build.page_artifacts import Verify
 from robo_genesis.build.page_results import PageResult, failure_report
+from robo_genesis.build.page_store import Verify, places
 from robo_genesis.build.stages import build_lock, require_contract
 from robo_genesis.core import project
+from robo_genesis.core.names import BACKEND, RENDER
 from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence.bundle_store import put, recover, require_folder
 from robo_genesis.evidence.verify import verify_bundle
@@ -55,7 +56,7 @@ class Recording:
 
     @property
     def requested(self) -> str:
-        """The lab's ROBO_GENESIS_BACKEND."""
+        """The lab's requested backend."""
         return "cpu" if self.expected == "cpu" else "auto"
 
 
@@ -84,7 +85,7 @@ def record(recording: Recording) -> list[str]:
             progress("probe", f"Torch finds {found}")
             require_expected(recording, found)
         project.remove_stale_kernel_lock(recording.cache)
-        folder = recording.cache / "recording"  # new each time: nothing is ever reused
+        folder = recording.cache / project.RECORDING  # new each time: nothing is ever reused
         shutil.rmtree(folder, ignore_errors=True)
         try:
             result = _execute(recording, page, folder, progress)
@@ -123,26 +124,27 @@ def require_expected(recording: Recording, actual: str) -> None:
     if actual in BACKENDS:
         remedy += f", or record {actual} on purpose with BACKEND={actual}"
     raise RecordingError(
-        f"Expected backend: {expected}; ROBO_GENESIS_BACKEND={recording.requested} finds "
+        f"Expected backend: {expected}; {BACKEND}={recording.requested} finds "
         f"{actual!r}. Nothing is relabelled. {remedy}."
     )
 
 
 def contract(recording: Recording) -> dict[str, str]:
     """Return the variables that request the lab's backend and, always, its camera."""
-    return {"ROBO_GENESIS_BACKEND": recording.requested, "ROBO_GENESIS_RENDER": "1"}
+    return {BACKEND: recording.requested, RENDER: "1"}
 
 
 def _execute(recording: Recording, page: Page, folder: Path, progress: Progress) -> PageResult:
     """Run the lab in a clean kernel and return the result."""
-    progress("execute", page.docname, f"ROBO_GENESIS_BACKEND={recording.requested}")
+    progress("execute", page.docname, f"{BACKEND}={recording.requested}")
+    environment = kernel_environment(
+        recording.root, recording.cache, COMMAND, **contract(recording)
+    )
     [result] = execute_pages(
         [page],
-        folder,
+        places([page], folder, recording.root, environment),
         timeout=recording.timeout,
-        environment=kernel_environment(
-            recording.root, recording.cache, COMMAND, **contract(recording)
-        ),
+        environment=environment,
         on_progress=partial(progress, "execute"),
     )
     if result.failure:

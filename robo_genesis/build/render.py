@@ -5,11 +5,10 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 
+from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.kernels import end_with_parent
-from robo_genesis.build.page_cache import notebooks_folder, outputs_folder
 from robo_genesis.build.page_results import ANSI
 from robo_genesis.core.project import ROOT, ProjectError
 
@@ -19,7 +18,6 @@ collect_rarely()
 from jupyter_book.cli.main import main
 main()
 """
-EXECUTED = "ROBO_GENESIS_EXECUTED_PAGES"
 COMPLAINT = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
 
 
@@ -27,17 +25,14 @@ class RenderError(ProjectError):
     """Sphinx failed or warned; the message holds its complaints and the place of the log."""
 
 
-def render(
-    book: Path, staging: Path, folder: Path, log: Path, executed: Iterable[str] = ()
-) -> Path:
+def render(book: Path, staging: Path, built: BuiltPages, log: Path) -> Path:
     """Render every page of a book.
 
     Args:
         book: folder with `_config.yml`, `_toc.yml` and the pages.
         staging: folder for the result; its older content is removed.
-        folder: cache folder of the executed pages.
+        built: the executed pages.
         log: file for the output of Sphinx.
-        executed: names of the pages that this build executed.
 
     Returns:
         The folder with the site's HTML.
@@ -53,9 +48,7 @@ def render(
     environment = {
         **os.environ,
         "PYTHONPATH": str(ROOT),
-        "ROBO_GENESIS_PAGE_CACHE": str(notebooks_folder(folder)),
-        "ROBO_GENESIS_BUILD_OUTPUTS": str(outputs_folder(folder)),
-        EXECUTED: "\n".join(executed),
+        **built.write(staging / "executed-pages.json"),
     }
     with log.open("w", encoding="utf8") as stream:
         done = subprocess.run(

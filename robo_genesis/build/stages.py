@@ -14,10 +14,11 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.build import npm, up_to_date
+from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.command import TIMEOUT, Progress, say
 from robo_genesis.build.execute import execute_pages, kernel_environment
-from robo_genesis.build.page_artifacts import Verify, export_page, import_pages
 from robo_genesis.build.page_results import PageResult, failure_report
+from robo_genesis.build.page_store import Verify, export_page, forget, import_pages, places
 from robo_genesis.build.publish import publish
 from robo_genesis.build.release import missing_for_release
 from robo_genesis.build.render import render
@@ -28,15 +29,12 @@ from robo_genesis.build.site_sums import write_sums
 from robo_genesis.core import project
 from robo_genesis.core.files import locked, settle
 from robo_genesis.core.git import unclean
+from robo_genesis.core.names import BACKEND, RENDER
 from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence import bundle_store
 from robo_genesis.evidence.status import refused_records
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.book_pages import Page, find_pages
-from robo_genesis.lessons.sources import fingerprint
-
-STAGING = "staging"
-"""How the names of the folders begin in which builds render."""
 
 
 class BuildError(project.ProjectError):
@@ -78,7 +76,7 @@ def run_build(build: Build) -> list[str]:
 
     Raises:
         BuildError: a stage failed; nothing was published.
-        ArtifactError: pages that were executed elsewhere are refused; nothing was published.
+        StoreError: pages that were executed elsewhere are refused; nothing was published.
         ProjectError: the checkout or SITE_URL is not fit for a build.
     """
     with build_lock(build.cache), staging_folder(build.cache) as staging:
@@ -89,27 +87,26 @@ def run_build(build: Build) -> list[str]:
         progress = Progress(build.say)
         site_address()  # refused here, because rendering would fail only after minutes
         npm.require_published()
-        engine, pages, folder = _prepare(build)
+        engine, pages, into = _prepare(build)
         verify = build.verify or partial(verify_bundle, book=build.book)
         if build.release:
             _require_for_release(unclean(build.root))
-            shutil.rmtree(folder, ignore_errors=True)  # a release is executed at this commit
         if build.executed:
-            for record in import_pages(build.executed, pages, folder, verify):
+            for record in import_pages(build.executed, pages, into, verify):
                 progress("import", record.docname, f"run {record.run_id[:8]}")
-        results = _execute(build, pages, folder, progress)
+        results = _execute(build, pages, into, progress)
         manifests = _verify(build.book, verify, results, progress)
         if build.release:
             problems = missing_for_release(build.book, _labs(results), manifests, build.root)
             _require_for_release([*unclean(build.root), *problems])
             progress("release", "clean tree, current evidence")
         progress("render", "all pages")
-        executed = [r.page.docname for r in results if r.status == "executed"]
-        html = render(build.book, staging, folder, build.cache / "render.log", executed)
+        built = BuiltPages.of(results)
+        html = render(build.book, staging, built, build.cache / "render.log")
         progress("pack", pack(html).name)
         progress("sums", write_sums(html).name)  # last of the site's files; the checks look for it
         checked = _check(html, progress)
-        project.forget_old_pages(folder)
+        forget(build.cache / project.STORE, results)
         summary = partial(_summary, engine, results, manifests, checked)
 
         def finish(published: Path) -> None:
@@ -118,7 +115,7 @@ def run_build(build: Build) -> list[str]:
 
         html = publish(target, html, results, finish)  # last: after it, nothing may fail
         progress("publish", str(html))
-        return [f"Site: {html / 'index.html'}", *summary(executed=len(executed))]
+        return [f"Site: {html / 'index.html'}", *summary(executed=len(built.executed))]
 
 
 @contextmanager
@@ -131,16 +128,16 @@ def staging_folder(cache: Path) -> Iterator[Path]:
     Args:
         cache: folder of the caches.
     """
-    for left in cache.glob(f"{STAGING}*"):
+    for left in cache.glob(f"{project.STAGING}*"):
         shutil.rmtree(left, ignore_errors=True)
     with tempfile.TemporaryDirectory(
-        prefix=f"{STAGING}-", dir=cache, ignore_cleanup_errors=True
+        prefix=f"{project.STAGING}-", dir=cache, ignore_cleanup_errors=True
     ) as own:
         yield Path(own)
 
 
 def export_one(name: str, to: Path | None, build: Build) -> list[str]:
-    """Execute one page of the book, unless the cache holds it, and export it as files.
+    """Execute one page of the book, unless the store has it, and export it as files.
 
     Args:
         name: the page as the table of contents names it, or as `l04/lab`.
@@ -155,7 +152,7 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
         ProjectError: folder, checkout or book are not fit for it.
     """
     with build_lock(build.cache):
-        engine, pages, folder = _prepare(build)
+        engine, pages, into = _prepare(build)
         names = {page.docname: page for page in pages}
         names |= {f"{page.lesson}/{page.page}": page for page in pages if page.declares_bundle}
         if name not in names:
@@ -165,18 +162,18 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
             raise BuildError("TO is not set. Name the folder that gets the page: TO=folder.")
         bundle_store.require_folder(to)
         progress = Progress(build.say)
-        [result] = _execute(build, [names[name]], folder, progress)
-        place = export_page(result, folder, to)
+        [result] = _execute(build, [names[name]], into, progress)
+        place = export_page(result, to)
         progress("export", result.page.docname, result.status)
     return [f"Executed page: {place}", f"Engine: {project.ENGINE} {engine}, run {result.run_id}"]
 
 
-def _prepare(build: Build) -> tuple[str, list[Page], Path]:
-    """Return the engine's version, the pages of the book, and their cache folder."""
+def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path]]:
+    """Return the engine's version, the pages of the book, and their places in the store."""
     engine = project.require_pinned_engine(build.root)
     project.remove_stale_kernel_lock(build.cache)
     pages = find_pages(build.book)
-    return engine, pages, project.page_cache_folder(fingerprint(pages, build.root), build.cache)
+    return engine, pages, places(pages, build.cache / project.STORE, build.root)
 
 
 def _require_for_release(problems: Sequence[str]) -> None:
@@ -194,14 +191,18 @@ def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
 
 
 def _execute(
-    build: Build, pages: Sequence[Page], folder: Path, progress: Progress
+    build: Build, pages: Sequence[Page], into: Mapping[str, Path], progress: Progress
 ) -> list[PageResult]:
-    """Run the execution stage; every page is tried before the report."""
+    """Run the execution stage; every page is tried before the report.
+
+    A release is executed at its commit, so it reuses nothing.
+    """
     cores = os.cpu_count() or 1
-    progress("execute", f"{len(pages)} pages", f"fingerprint {folder.name}")
+    progress("execute", f"{len(pages)} pages")
     results = execute_pages(
         pages,
-        folder,
+        into,
+        reuse=not build.release,
         jobs=build.jobs or max(1, min(cores, len(pages))),
         timeout=build.timeout,
         environment=kernel_environment(build.root, build.cache, build.command),
@@ -245,7 +246,7 @@ def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
         contract: the variables that requested it.
     """
     remedy = "Let the page read session.read_contract() and set neither itself."
-    backend, render = contract["ROBO_GENESIS_BACKEND"], contract["ROBO_GENESIS_RENDER"]
+    backend, render = contract[BACKEND], contract[RENDER]
     mode = "camera" if render == "1" else "skip"
     found = predicate.backend.requested
     expect("backend", "manifest.json", "backend.requested", found, backend, remedy)
@@ -298,7 +299,7 @@ def build_lock(cache: Path) -> AbstractContextManager[None]:
         BuildError: another process holds it; the message names that process.
     """
     return locked(
-        cache / "engine" / "build.lock",
+        cache / project.COMPILED / "build.lock",
         lambda process: BuildError(
             f"Another build, or a test of the engine, runs here (process {process}). Wait for it, "
             "or stop it with Ctrl-C there."

@@ -7,8 +7,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from robo_genesis.core.git import git, git_or_none
+from robo_genesis.core.project import COMPILED, STORE
 
-SHARED = ("derived", "engine", "npm", "pages")
+SHARED = ("derived", COMPILED, "npm", STORE)
 """Caches that the worktree shares with the checkout: their folders are named by their inputs."""
 
 OUTER = (

@@ -3,7 +3,6 @@
 import hashlib
 import os
 import re
-import shutil
 import tomllib
 from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, distributions, version
@@ -11,12 +10,18 @@ from pathlib import Path
 
 from packaging.requirements import Requirement
 
+from robo_genesis.core.names import BACKEND, RENDER
+
 ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"
 PUBLISHED = "_build"
 """The folder of a book that holds its published site."""
 
 CACHE = ROOT / ".cache"
+STORE, COMPILED, RECORDING, STAGING = "pages", "engine", "recording", "staging"
+"""Below the cache folder: executed pages, what the engine compiles, the lab that is being recorded,
+and how the names of the folders begin in which builds render."""
+
 ENGINE = "genesis-world"
 COURSE = "robo-genesis"
 BUILD_BACKEND = "cpu"
@@ -139,25 +144,7 @@ def lock_digest(root: Path = ROOT) -> str:
 def engine_cache_folder(root: Path = ROOT, cache: Path | None = None) -> Path:
     """Return the folder for what the engine compiles: one per engine version and lock."""
     name = f"{engine_pin(root)}-{lock_digest(root)[:12]}"
-    return (cache or root / ".cache") / "engine" / name
-
-
-def page_cache_folder(fingerprint: str, cache: Path = CACHE) -> Path:
-    """Return the folder of the pages that were executed under a fingerprint."""
-    return cache / "pages" / fingerprint
-
-
-def forget_old_pages(current: Path, keep: int = 4) -> None:
-    """Remove the oldest page caches.
-
-    Args:
-        current: the page cache folder of this build.
-        keep: how many to keep, including `current`; RENDER=0 and RENDER=1 have one each.
-    """
-    current.touch()
-    folders = sorted(current.parent.iterdir(), key=lambda path: path.stat().st_mtime)
-    for folder in folders[:-keep]:
-        shutil.rmtree(folder)
+    return (cache or root / ".cache") / COMPILED / name
 
 
 def engine_cache_environment(root: Path = ROOT, cache: Path | None = None) -> dict[str, str]:
@@ -186,7 +173,7 @@ def remove_stale_kernel_lock(cache: Path = CACHE) -> list[Path]:
     Returns:
         The removed files.
     """
-    stale = sorted((cache / "engine").glob("*/kernels/**/*.lock"))
+    stale = sorted((cache / COMPILED).glob("*/kernels/**/*.lock"))
     for path in stale:
         path.unlink(missing_ok=True)
     return stale
@@ -203,7 +190,7 @@ def environment_contract(environment: Mapping[str, str] | None = None) -> dict[s
         set; the folders of compiled code are not included.
     """
     given = os.environ if environment is None else environment
-    defaults = {"ROBO_GENESIS_BACKEND": BUILD_BACKEND, "ROBO_GENESIS_RENDER": "1"}
+    defaults = {BACKEND: BUILD_BACKEND, RENDER: "1"}
     requested = {name: given.get(name) or default for name, default in defaults.items()}
     return requested | engine_switches(given)
 

@@ -300,10 +300,3 @@ def _data_files(lesson: str | None, root: Path) -> Iterator[Path]:
     for path in (root / PACKAGE).rglob("*"):
         if path.suffix in DATA_SUFFIXES and others.isdisjoint(path.parents):
             yield path
-
-
-def fingerprint(
-    pages: Iterable["Page"], root: Path = ROOT, environment: Mapping[str, str] | None = None
-) -> str:
-    """Return one digest of the fingerprints of some pages, as 20 hex digits."""
-    return _sha256([page_fingerprint(page, root, environment) for page in pages])[:20]

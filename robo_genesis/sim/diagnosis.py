@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core import project, scene
+from robo_genesis.core.names import RENDER
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.trace import TraceError
 from robo_genesis.sim import camera, franka, joint_control, session
@@ -110,7 +111,7 @@ def build(bench: Bench) -> str:
 def render(bench: Bench) -> str:
     """The camera, if there is one, returns a usable picture."""
     if bench.camera is None:
-        return "SKIP: ROBO_GENESIS_RENDER=0, no camera"
+        return f"SKIP: {RENDER}=0, no camera"
     shape = camera.capture(bench.camera).shape
     renderer = camera.read_renderer(bench.scene)
     how = "in software" if renderer.software else "on a GPU"

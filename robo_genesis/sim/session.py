@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
+from robo_genesis.core.names import BACKEND, OUTPUTS_DIR, RENDER
 from robo_genesis.core.scene import SEED
 from robo_genesis.core.text import LINE_LIMIT, clean_message
 from robo_genesis.sim.backends import BACKENDS, contradictions
 
-CHOICES = {"ROBO_GENESIS_BACKEND": ("cpu", "auto"), "ROBO_GENESIS_RENDER": ("1", "0")}
+CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
 """Valid values of the variables of the contract; the first is the default."""
 
 PRECISION = "32"
@@ -56,14 +57,14 @@ def read_contract(environ: Mapping[str, str] | None = None) -> Contract:
         if value not in CHOICES[name]:
             choices = ", ".join(sorted(CHOICES[name]))
             raise ContractError(f"{name}={value!r} is not valid. Choose one of: {choices}.")
-    outputs = Path(environ.get("ROBO_GENESIS_OUTPUTS_DIR") or "outputs").resolve()
+    outputs = Path(environ.get(OUTPUTS_DIR) or "outputs").resolve()
     try:
         outputs.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=outputs):
             pass
     except OSError as error:
         raise ContractError(
-            f"ROBO_GENESIS_OUTPUTS_DIR={str(outputs)!r} cannot be written: {error.strerror}. "
+            f"{OUTPUTS_DIR}={str(outputs)!r} cannot be written: {error.strerror}. "
             "Name a folder that you may create and write."
         ) from error
     backend, render = values.values()

@@ -3,17 +3,15 @@
 The store of executed pages holds the seconds of each cell. The build names the pages that it ran.
 """
 
-import os
 from pathlib import Path
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.render import EXECUTED
+from robo_genesis.build.built_pages import built_pages, page_record
 from robo_genesis.core import tables
 from robo_genesis.lessons.book_pages import Page, find_pages
-from robo_genesis.site.executed_pages import executed_notebook
 
 
 class CellTimes(SphinxDirective):
@@ -21,7 +19,7 @@ class CellTimes(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Return the table; a page without recorded times is an error of the build."""
-        executed = os.environ.get(EXECUTED, "").splitlines()
+        executed = built_pages().executed
         rows = []
         for page in find_pages(Path(self.env.srcdir)):
             try:
@@ -39,11 +37,11 @@ def cell_seconds(page: Page) -> list[float]:
         LookupError: the store lacks the page, or the time of one of its cells.
     """
     try:
-        executed = executed_notebook(page.notebook)
+        seconds = page_record(page.docname).cell_seconds
     except KeyError:
         raise LookupError(f"{page.docname} is not executed. Build with `make book`.") from None
-    seconds = list(executed.metadata.get("robo_genesis", {}).get("cell_seconds", []))
-    cells = sum(cell.cell_type == "code" and bool(cell.source.strip()) for cell in executed.cells)
+    code = (cell.source for cell in page.notebook.cells if cell.cell_type == "code")
+    cells = sum(bool(source.strip()) for source in code)
     if not cells or len(seconds) != cells:
         raise LookupError(
             f"{page.docname} has {cells} code cells and {len(seconds)} recorded times. A page "

@@ -2,6 +2,7 @@
 
 import os
 import re
+from pathlib import Path
 from typing import Any
 
 import myst_nb.sphinx_
@@ -10,19 +11,22 @@ from nbformat import NotebookNode
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
-from robo_genesis.build.page_cache import PageCache
+from robo_genesis.build.built_pages import executed_notebook
+from robo_genesis.build.page_store import code_and_kernel
+from robo_genesis.core.names import EXECUTED_PAGES
 from robo_genesis.site import mathml
 
-PAGE_CACHE = "ROBO_GENESIS_PAGE_CACHE"
 ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
 
 
 class ExecutedPage(NotebookClientBase):
     """Takes a page's outputs from the execution stage; replaces every client of myst-nb.
 
-    myst-nb's own cache client would start a kernel where outputs are missing, and would replace the
-    cells' metadata (tags, captions, alt texts) by those of the day the page was executed.
+    The cells keep their metadata (tags, captions, alt texts), which the page states today.
+    `sources` is the folder of the pages.
     """
+
+    sources: Path
 
     def start_client(self) -> None:
         """Copy the stored outputs and execution counts into the notebook.
@@ -31,12 +35,14 @@ class ExecutedPage(NotebookClientBase):
             ExtensionError: the execution stage has no outputs for the page's code cells.
         """
         try:
-            executed = executed_notebook(self.notebook)
+            executed = executed_notebook(self.docname())
         except KeyError:
+            executed = None
+        if executed is None or code_and_kernel(executed) != code_and_kernel(self.notebook):
             raise ExtensionError(
                 f"{self.path} is not executed, and Sphinx executes nothing. "
                 "Build with `make book`; if you did, a code cell is nested in another directive."
-            ) from None
+            )
         executed_cells = iter(executed.cells)
         for cell in self.notebook.cells:
             if cell.cell_type == "code":
@@ -47,15 +53,10 @@ class ExecutedPage(NotebookClientBase):
         if "language_info" in executed.metadata:
             self.notebook.metadata["language_info"] = executed.metadata["language_info"]
 
-
-def executed_notebook(notebook: NotebookNode) -> NotebookNode:
-    """Return the code cells of a page with the outputs of the execution stage.
-
-    Raises:
-        KeyError: the page is not executed.
-    """
-    cache = PageCache(os.environ[PAGE_CACHE])
-    return cache.get_cache_bundle(cache.match_cache_notebook(notebook).pk).nb
+    def docname(self) -> str:
+        """Return the name of the page."""
+        page = Path(str(self.path)).with_suffix("")
+        return page.relative_to(self.sources).as_posix() if self.path else ""
 
 
 def shorten_tracebacks(cell: NotebookNode) -> None:
@@ -82,10 +83,11 @@ def setup(app: Sphinx) -> None:
     """Register the extension.
 
     Raises:
-        ExtensionError: the environment does not name the folder of executed pages.
+        ExtensionError: the environment does not name the executed pages.
     """
-    if PAGE_CACHE not in os.environ:
-        raise ExtensionError(f"{PAGE_CACHE} is not set. Build the site with `make book`.")
+    if EXECUTED_PAGES not in os.environ:
+        raise ExtensionError(f"{EXECUTED_PAGES} is not set. Build the site with `make book`.")
+    ExecutedPage.sources = Path(app.srcdir)
     myst_nb.sphinx_.create_client = lambda *arguments: ExecutedPage(*arguments[:4])
     # Jupyter Book always sets this value, also where sphinx_comments is not an extension.
     app.add_config_value("comments_config", None, "html")

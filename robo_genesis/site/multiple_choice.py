@@ -15,10 +15,11 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.core.comparison import compare_values, comparison_sentence
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons.registry import find_lesson
-from robo_genesis.site.evidence.measured import BACKEND, measured, outputs_folder
+from robo_genesis.site.evidence.measured import BACKEND, measured
 
 EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same, within the lesson's resolution", "higher": "more"}
@@ -59,7 +60,7 @@ def measured_order(
         BundleRefused: the bundle cannot be read.
     """
     _, origin = (measured(lesson_page, f"{case}.{metric}")[1] for case in cases)
-    records = bundle.read_metrics(outputs_folder() / lesson_page / BACKEND)
+    records = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)
     first, second = (records[case][metric] for case in cases)
     lesson = find_lesson(lesson_page.split("/")[0])
     noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION

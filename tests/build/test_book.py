@@ -22,7 +22,7 @@ from tiny_book import (
 
 from robo_genesis.build import up_to_date
 from robo_genesis.build.kernels import kill_with_descendants
-from robo_genesis.build.page_artifacts import ArtifactError
+from robo_genesis.build.page_store import StoreError
 from robo_genesis.build.stages import (
     Build,
     BuildError,
@@ -66,9 +66,9 @@ def built(tmp_path_factory) -> SimpleNamespace:
     folder = tmp_path_factory.mktemp("built")
     book = make_book(folder, lab=LAB, lecture=notebook(cell("print('seen')")))
     marker = published_marker(book)
-    old = [folder / "cache/pages" / name for name in "abcde"]
-    for cache in old:
-        cache.mkdir(parents=True)
+    old = [folder / "cache/pages" / page / name for page in ("lab", "gone") for name in "abc"]
+    for place in old:
+        place.mkdir(parents=True)
     said: list[str] = []
 
     def edit_meanwhile(line: str) -> None:
@@ -79,7 +79,7 @@ def built(tmp_path_factory) -> SimpleNamespace:
     last = build(folder, say=edit_meanwhile)
     assert marker.read_text() != "the old site"
     recorded = (book / "_build" / up_to_date.RECORD).exists()
-    kept = sum(cache.exists() for cache in old)
+    kept = [place.parent.name for place in old if place.exists()]
     return SimpleNamespace(
         folder=folder, said=said, last=last, recorded=recorded, kept=kept, again=build(folder)
     )
@@ -100,8 +100,8 @@ def test_a_build_publishes_site_and_evidence_and_says_with_what(built):
     assert "Pages: 0 executed, 2 reused." in built.again
 
 
-def test_a_build_forgets_page_caches_of_long_ago(built):
-    assert built.kept == 3
+def test_a_build_forgets_old_folders_and_pages_that_the_book_no_longer_has(built):
+    assert built.kept == ["lab", "lab"]
 
 
 def test_a_page_that_is_edited_while_its_build_runs_is_built_again(built):
@@ -144,7 +144,7 @@ def test_pages_from_elsewhere_are_built_without_a_run(built, tmp_path):
     [
         (LAB, {"verify": refuse}, BuildError, "lab: the bundle .* is refused: metrics: metrics.js"),
         ("# A\n\n<script src='https://example.org/a.js'></script>\n", {}, BuildError, "third p"),
-        (LAB, {"executed": Path()}, ArtifactError, "lab is not among them. Execute the page again"),
+        (LAB, {"executed": Path()}, StoreError, "lab is not among them. Execute the page again"),
         (LAB, {"release": True}, BuildError, r"RELEASE=1 cannot be met\.\n.* 1 changed file"),
     ],
     ids=["refused bundle", "refused site", "missing page", "changed tree"],
@@ -237,7 +237,7 @@ def test_an_end_by_signal_leaves_the_old_site_and_no_process(tmp_path, sent, sta
     assert status < 0 or "Interrupted: nothing was published." in err
     assert "Traceback" not in err
     assert psutil.wait_procs(below.values(), timeout=15)[1] == []
-    assert not list((tmp_path / "cache/pages").glob("*/notebooks/executed/*"))
+    assert not list((tmp_path / "cache/pages").rglob("*.ipynb"))
     assert not scratch.exists()
     assert marker.read_text() == "the old site"
 

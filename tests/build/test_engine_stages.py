@@ -74,7 +74,7 @@ def clones(tmp_path_factory) -> Path:
 @pytest.fixture(scope="module")
 def exported(clones) -> dict[str, tuple[str, tuple[int, ...], bytes]]:
     """The lab's arrays as they were exported: executed alone, with a cold cache of kernels."""
-    found = arrays(clones / "executed/lab/lab/outputs/l04/lab/cpu")
+    found = arrays(clones / "executed/lab/lab/outputs/cpu")
     assert {name.split(".")[0] for name in found} == {"baseline", "G1", "G2", "G3"}
     return found
 
@@ -88,7 +88,7 @@ def site(clones) -> Path:
 def test_a_bundle_that_was_changed_on_the_way_leaves_no_site(site, clones, tmp_path):
     spoiled = shutil.copytree(clones / "executed", tmp_path / "executed")
     place = spoiled / "lab" / "lab"
-    metrics = place / "outputs/l04/lab/cpu/metrics.json"
+    metrics = place / "outputs/cpu/metrics.json"
     metrics.write_text(metrics.read_text().replace("1", "2", 1))
     record = json.loads((place / "page.json").read_text())
     record["files"][metrics.relative_to(place).as_posix()] = sha256(metrics)

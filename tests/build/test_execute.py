@@ -1,3 +1,4 @@
+import json
 import signal
 import sys
 import threading
@@ -9,12 +10,11 @@ import psutil
 import pytest
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
-from robo_genesis.build.execute import execute_pages
-from robo_genesis.build.page_cache import cached_results, notebooks_folder
+from robo_genesis.build.execute import execute_pages, longest_first
 from robo_genesis.build.page_results import failure_report
+from robo_genesis.build.page_store import last_seconds, places, stored_result
 from robo_genesis.core.project import (
     ROOT,
-    ProjectError,
     engine_cache_environment,
     engine_cache_folder,
 )
@@ -42,13 +42,14 @@ BROKEN = {
     "slow": notebook(cell("import time\ntime.sleep(60)"), front="execution: {timeout: 2}\n"),
     "bundle": notebook(cell("5 + 1"), front=LAB_FRONT),
     "kernel": notebook(cell("6 + 1")).replace("python3", "some-users-kernel"),
-    "twin": notebook(cell("1 + 1")),
+    "twin": notebook(cell("1 + 1")),  # the code of `good`
 }
 
 
 def execute(folder: Path, **settings):
-    """Execute the book of a folder with its own cache; return results by page."""
-    results = execute_pages(find_pages(folder / "book"), folder / "cache", **settings)
+    """Execute the book of a folder with its own store; return results by page."""
+    pages = find_pages(folder / "book")
+    results = execute_pages(pages, places(pages, folder / "store"), **settings)
     return {result.page.docname: result for result in results}
 
 
@@ -62,13 +63,13 @@ def broken(tmp_path_factory):
 def test_all_pages_are_tried_and_the_good_one_is_executed(broken):
     results = broken[1]
     assert list(results) == list(BROKEN)
-    assert results["good"].status == "executed"
-    assert {results[name].status for name in BROKEN if name != "good"} == {"failed"}
+    assert {name for name in results if results[name].status == "executed"} == {"good", "twin"}
+    assert {result.status for result in results.values()} == {"executed", "failed"}
 
 
 def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
     report = failure_report(list(broken[1].values()))
-    assert "6 of 7 pages failed." in report
+    assert "5 of 7 pages failed." in report
     place = report.index("check, code cell 2, line ")
     part = report[place : report.index("\n\n", place)]
     assert part.startswith("check, code cell 2, line 18: # proof\n")
@@ -85,7 +86,6 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
         ("slow", "CellTimeoutError", "2 seconds", 1),
         ("bundle", "BundleMissing", "the run left no l04/lab/<backend>/manifest.json", None),
         ("kernel", "NoSuchKernel", "some-users-kernel", None),
-        ("twin", "SameCode", "its code cells equal those of good", None),
     ],
 )
 def test_each_kind_of_failure_is_named(broken, name, error, said, cell):
@@ -100,9 +100,9 @@ def test_a_dead_kernel_leaves_its_last_words_and_a_lost_bundle_its_run(broken):
     assert broken[1]["bundle"].run_id in broken[1]["bundle"].failure.message
 
 
-def test_failed_pages_are_never_cached(broken):
-    cached = list((notebooks_folder(broken[0] / "cache") / "executed").iterdir())
-    assert len(cached) == 1
+def test_failed_pages_are_never_stored(broken):
+    stored = [path.parts[-3] for path in (broken[0] / "store").rglob("*.ipynb")]
+    assert sorted(stored) == ["good", "twin"]
 
 
 @pytest.fixture(scope="module")
@@ -118,7 +118,35 @@ def test_a_second_run_executes_nothing_and_finds_the_same_run(lab):
     first, second = execute(lab)["lab"], execute(lab)["lab"]
     assert (first.status, second.status) == ("reused", "reused")
     assert first.run_id == second.run_id
-    assert first.bundle == lab / "cache/outputs/l04/lab/cpu"
+    assert first.bundle == first.folder / "outputs/cpu"
+    assert first.folder.parent == lab / "store/lab"
+
+
+def test_a_page_that_is_not_to_be_reused_is_executed_and_replaces_the_stored_one(lab):
+    before, after = execute(lab)["lab"], execute(lab, reuse=False)["lab"]
+    assert after.status == "executed"
+    assert (after.run_id != before.run_id, after.folder) == (True, before.folder)
+    assert execute(lab)["lab"].run_id == after.run_id
+
+
+def test_a_failed_run_keeps_the_page_so_that_undoing_a_typo_executes_nothing(lab):
+    page, before = lab / "book/lab.md", execute(lab)["lab"].run_id
+    text = page.read_text()
+    page.write_text(text.replace("import json", "import jsn", 1))
+    try:
+        assert execute(lab)["lab"].failure.error == "ModuleNotFoundError"
+    finally:
+        page.write_text(text)
+    after = execute(lab)["lab"]
+    assert (after.status, after.run_id) == ("reused", before)
+
+
+def test_a_run_that_fails_with_the_same_code_keeps_the_page(tmp_path):
+    make_book(tmp_path, page=notebook(cell("import os\nassert 'FAIL' not in os.environ")))
+    before = execute(tmp_path)["page"].run_id
+    failed = execute(tmp_path, reuse=False, environment={"FAIL": "1"})["page"]
+    assert failed.failure.error == "AssertionError"
+    assert execute(tmp_path)["page"].run_id == before
 
 
 @pytest.mark.parametrize(
@@ -135,14 +163,15 @@ def test_an_edit_of_prose_or_metadata_is_checked_without_a_run(lab, old, new, sa
     assert old in text
     page.write_text(text.replace(old, new))
     try:
-        (result,) = cached_results(find_pages(lab / "book"), lab / "cache").values()
+        (now,) = find_pages(lab / "book")
+        result = stored_result(now, places([now], lab / "store")["lab"])
     finally:
         page.write_text(text)
     assert result.status == ("failed" if said else "reused")
     assert not said or said in result.failure.message
 
 
-MANIFEST, NOTEBOOK = "outputs/l04/lab/cpu/manifest.json", "notebooks/executed/*/base.ipynb"
+MANIFEST, NOTEBOOK, RECORD = "outputs/cpu/manifest.json", "executed.ipynb", "page.json"
 
 
 @pytest.mark.parametrize(
@@ -152,17 +181,22 @@ MANIFEST, NOTEBOOK = "outputs/l04/lab/cpu/manifest.json", "notebooks/executed/*/
         (MANIFEST, '{"predicate": {"run_id": "of another run"}}'),
         (NOTEBOOK, None),
         (NOTEBOOK, '{"cells": ['),
+        (RECORD, None),
+        (RECORD, "{"),
     ],
 )
-def test_outputs_and_bundle_of_one_run_or_it_is_executed_again(lab, name, content):
-    before = execute(lab)["lab"].run_id
-    (path,) = (lab / "cache").glob(name)
+def test_a_page_that_changed_since_it_was_stored_is_executed_again_with_one_line(
+    lab, name, content
+):
+    before, said = execute(lab)["lab"], []
+    path = before.folder / name
     path.unlink()
     if content:
         path.write_text(content)
-    result = execute(lab)["lab"]
+    result = execute(lab, on_progress=lambda *words: said.append(words))["lab"]
     assert result.status == "executed"
-    assert result.run_id != before
+    assert result.run_id != before.run_id
+    assert said[0][1].startswith("changed since it was stored; executed again (")
     assert execute(lab)["lab"].status == "reused"
 
 
@@ -195,17 +229,45 @@ def test_pages_run_at_the_same_time_and_save_what_they_compiled_even_where_they_
 
 @pytest.mark.parametrize(
     "spoil",
-    [Path.mkdir, lambda database: database.symlink_to("no folder/global.db")],
-    ids=["unreadable", "cannot be created"],
+    [Path.touch, lambda page: page.symlink_to("no folder/page")],
+    ids=["a file", "a link to nothing"],
 )
-def test_a_cache_that_cannot_be_used_is_named(tmp_path, spoil):
+def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path, spoil):
     make_book(tmp_path, page=notebook(cell("1")))
-    (tmp_path / "cache" / "notebooks").mkdir(parents=True)
-    spoil(tmp_path / "cache" / "notebooks" / "global.db")
-    with pytest.raises(ProjectError, match="unable to open database file") as refused:
-        execute(tmp_path)
-    assert f"in {tmp_path / 'cache'} cannot be kept" in str(refused.value)
-    assert "free space or write access" in str(refused.value)
+    (tmp_path / "store").mkdir()
+    spoil(tmp_path / "store" / "page")
+    said = []
+    with pytest.raises(OSError, match=str(tmp_path / "store" / "page")):
+        execute(tmp_path, on_progress=lambda *words: said.append(words))
+    assert said == []
+
+
+def test_what_cannot_be_stored_fails_its_page(tmp_path):
+    leaves = WRITE_BUNDLE + '\n(folder / "log.txt").symlink_to("/etc/hostname")'
+    make_book(tmp_path, lab=notebook(cell(leaves), front=LAB_FRONT), good=notebook(cell("1")))
+    results = execute(tmp_path)
+    assert results["lab"].failure.error == "NotStored"
+    assert "files: outputs/cpu/log.txt is a link or device" in results["lab"].failure.message
+    assert results["good"].status == "executed"
+
+
+def test_the_longest_page_starts_first_and_a_new_one_before_it(tmp_path):
+    make_book(tmp_path, **{name: notebook(cell("1")) for name in "abcd"})
+    seconds = {"a": 2.0, "b": None, "c": 30.0, "d": 2.0}
+    found = longest_first(find_pages(tmp_path / "book"), seconds)
+    assert [page.docname for page in found] == ["b", "c", "a", "d"]
+
+
+def test_pages_start_in_the_order_of_their_stored_durations(tmp_path):
+    make_book(tmp_path, **{name: notebook(cell(repr(name))) for name in "abc"})
+    first = execute(tmp_path)
+    for seconds, name in enumerate("abc"):
+        path = first[name].folder / "page.json"
+        path.write_text(json.dumps(json.loads(path.read_text()) | {"seconds": float(seconds)}))
+    pages, said = find_pages(tmp_path / "book"), []
+    assert [last_seconds(tmp_path / "store", page) for page in pages] == [0, 1, 2]
+    execute(tmp_path, reuse=False, on_progress=lambda *words: said.append(words))
+    assert [name for name, event in said if event == "started"] == ["c", "b", "a"]
 
 
 def test_kernels_are_clean(tmp_path, monkeypatch):
@@ -227,7 +289,7 @@ e = os.environ
 print(e["PYTHONNOUSERSITE"], e["GIVEN"], len(e["ROBO_GENESIS_RUN_ID"]))"""
     make_book(tmp_path, page=notebook(cell(code)))
     assert execute(tmp_path, environment={"GIVEN": "yes"})["page"].status == "executed"
-    [executed] = (tmp_path / "cache/notebooks/executed").glob("*/base.ipynb")
+    [executed] = (tmp_path / "store/page").glob("*/executed.ipynb")
     [output] = nbformat.read(executed, as_version=4).cells[0].outputs
     assert output.text == f"{sys.executable} False [] {ROOT}\n1 yes 32\n"
 

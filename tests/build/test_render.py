@@ -5,7 +5,9 @@ import pytest
 from bs4 import BeautifulSoup
 from tiny_book import WRITE_BUNDLE, cell, make_book, notebook
 
+from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.execute import execute_pages
+from robo_genesis.build.page_store import places
 from robo_genesis.build.render import RenderError, render
 from robo_genesis.lessons.book_pages import find_pages
 
@@ -26,8 +28,9 @@ See {{eq}}`law` and $x^2$.
 {BADGES}"""
 
 
-def build(folder: Path) -> Path:
-    return render(folder / "book", folder / "staging", folder / "cache", folder / "render.log")
+def build(folder: Path, built: BuiltPages | None = None) -> Path:
+    built = built or BuiltPages()
+    return render(folder / "book", folder / "staging", built, folder / "render.log")
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +43,8 @@ def html(tmp_path_factory):
     said = WRITE_BUNDLE.replace('"predicate": {', '"state": "verified", "predicate": {')
     page, lab = cell("print('measured ' + '7')"), notebook(cell(said), front=CLAIMS + LAB)
     book = make_book(folder, text=TEXT, page=notebook(page), lab=lab + BADGES)
-    results = execute_pages(find_pages(book), folder / "cache")
+    pages = find_pages(book)
+    results = execute_pages(pages, places(pages, folder / "store"))
     assert [result.status for result in results] == ["executed", "executed"]
     text = (book / "page.md").read_text()
     (book / "page.md").write_text(text.replace("cell}", "cell}\n:tags: [hide-input]"))
@@ -48,7 +52,7 @@ def html(tmp_path_factory):
     (folder / "staging" / "stale").touch()
     with pytest.MonkeyPatch.context() as patch:
         patch.delenv("SITE_URL", raising=False)
-        html = build(folder)
+        html = build(folder, BuiltPages.of(results))
     assert not (folder / "staging" / "stale").exists()
     return html
 
@@ -68,7 +72,7 @@ def test_numbers_and_math_need_no_script_from_elsewhere(html):
     assert "thebe" not in str(text).lower()
 
 
-def test_metadata_come_from_the_page_and_outputs_from_the_cache(html):
+def test_metadata_come_from_the_page_and_outputs_from_the_store(html):
     shown = (html / "page.html").read_text()
     assert "tag_hide-input" in shown
     assert "measured 7" in shown

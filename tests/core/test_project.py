@@ -1,4 +1,3 @@
-import os
 import pwd
 from importlib.metadata import distributions
 from pathlib import Path
@@ -98,15 +97,6 @@ def test_stale_kernel_locks_go_and_kernels_stay(tmp_path):
     (kernels / "kernel.ll").touch()
     assert project.remove_stale_kernel_lock(tmp_path) == [kernels / "qdcache.lock"]
     assert [path.name for path in kernels.iterdir()] == ["kernel.ll"]
-
-
-def test_page_caches_that_were_not_built_for_long_go(tmp_path):
-    folders = [tmp_path / name for name in "abcde"]
-    for age, folder in enumerate(folders):
-        folder.mkdir()
-        os.utime(folder, (1000 - age, 1000 - age))
-    project.forget_old_pages(folders[4], keep=3)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b", "e"]
 
 
 def test_the_environment_contract_fills_in_defaults():

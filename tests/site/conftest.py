@@ -3,9 +3,23 @@
 import pytest
 from bundles import RENDERER
 
+from robo_genesis.build.built_pages import BuiltPages
+
 
 @pytest.fixture
-def outputs(recorder, experiment, monkeypatch):
+def built(tmp_path, monkeypatch):
+    """Return what lets folders be the outputs of this build, by `lesson/page`."""
+
+    def tell(outputs):
+        (tmp_path / "told").mkdir()
+        for name, value in BuiltPages(outputs=outputs).write(tmp_path / "told/pages").items():
+            monkeypatch.setenv(name, value)
+
+    return tell
+
+
+@pytest.fixture
+def outputs(recorder, experiment, built):
     """Let the synthetic run of L04's lab be the outputs of this build."""
     recorder.write(experiment, RENDERER)
-    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(recorder.contract.outputs))
+    built({"l04/lab": recorder.contract.outputs / "l04" / "lab"})

@@ -58,7 +58,7 @@ def falling(height: float) -> BodyTrace:
 
 
 @pytest.fixture
-def dropped(folder, monkeypatch, tmp_path):
+def dropped(folder, monkeypatch, tmp_path, built):
     """A bundle of two falls, of a lesson that declares them and wrote its shape."""
     shutil.rmtree(folder / "arrays")
     traces = {"high": falling(2.0), "low": falling(1.0)}
@@ -66,7 +66,7 @@ def dropped(folder, monkeypatch, tmp_path):
     (folder / "arrays.json").write_text(arrays.model_dump_json(by_alias=True))
     spec = registry.LESSONS["l04"].spec
     monkeypatch.setitem(registry.LESSONS, LESSON, Lesson(spec, {}, {}, Filmed("the box"), DROPPED))
-    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
+    built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
     box = trimesh.creation.box((0.2, 0.2, 0.2))
     part = visual_shape.Part("box", (200, 80, 0), box.vertices.astype(np.float32), box.faces)
     visual_shape.write_shape(tmp_path / LESSON / "lecture", [part, visual_shape.floor(1.0)])

@@ -4,10 +4,11 @@ from copy import deepcopy
 
 import pytest
 from built_site import parsed
-from jupyter_cache.base import CacheBundleIn
 from tiny_book import cell, make_book, notebook
 
-from robo_genesis.build.page_cache import PageCache, notebooks_folder
+from robo_genesis.build.built_pages import BuiltPages
+from robo_genesis.build.page_results import PageResult
+from robo_genesis.build.page_store import write_page
 from robo_genesis.build.render import RenderError, render
 from robo_genesis.lessons.book_pages import find_pages
 
@@ -19,13 +20,14 @@ def built(folder, *executed, **seconds):
         notebook(cell("4"), title="Other"),
     )
     book = make_book(folder, page=page, other=other, times="# Times\n\n```{cell-times}\n```\n")
-    cache = PageCache(notebooks_folder(folder / "cache"))
+    results, run = [], {"run_id": "0" * 32, "command": None, "seconds": 1.0}
     for found in find_pages(book):
-        ran = deepcopy(found.notebook)
+        ran, place = deepcopy(found.notebook), folder / "store" / found.docname
         ran.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
-        ran.metadata["robo_genesis"] = {"cell_seconds": seconds[found.docname]}
-        cache.cache_notebook_bundle(CacheBundleIn(ran, found.docname), check_validity=False)
-    html = render(book, folder / "staging", folder / "cache", folder / "render.log", executed)
+        write_page(place, found, ran, folder, cell_seconds=seconds[found.docname], **run)
+        status = "executed" if found.docname in executed else "reused"
+        results.append(PageResult(found, status, 0.0, "0" * 32, folder=place))
+    html = render(book, folder / "staging", BuiltPages.of(results), folder / "render.log")
     return parsed(html, "times").select_one("tbody")
 
 

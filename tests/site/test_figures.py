@@ -10,10 +10,10 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from built_site import MEASURING_PAGES, executed_folder
+from built_site import MEASURING_PAGES, executed_pages
 from nbclient import NotebookClient
 
-from robo_genesis.build.page_cache import PageCache, notebooks_folder, outputs_folder
+from robo_genesis.build.page_store import NOTEBOOK
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons.book_pages import Page, cell_sources, find_pages
 
@@ -63,9 +63,8 @@ def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, l
     for variable, value in (("ROBO_GENESIS_RENDER", "1"), ("ROBO_GENESIS_BACKEND", "cpu")):
         monkeypatch.setenv(variable, value)
     (page,) = (p for p in find_pages(BOOK) if (p.lesson, p.page) == (lesson, name))
-    folder = executed_folder()
-    cache = PageCache(notebooks_folder(folder))
-    executed = cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
+    built = executed_pages()
+    executed = nbformat.read(built.folders[page.docname] / NOTEBOOK, as_version=4)
     script = LESSONS / lesson / "redraw.py"
     redraw = runpy.run_path(str(script)) if script.is_file() else {}
     before_cell = redraw.get("before_cell", lambda figure: "")
@@ -76,7 +75,7 @@ def test_figures_are_drawn_from_the_bundle_s_arrays(build_output, monkeypatch, l
         if "figure" in cell.metadata.get("tags", [])
         and name_of(cell) not in redraw.get("NOT_IN_BUNDLE", ())
     ]
-    bundle = outputs_folder(folder) / lesson / name / "cpu"
+    bundle = built.outputs[f"{lesson}/{name}"] / "cpu"
     sources = [imports(page), NAMES.format(folder=str(bundle))]
     sources += [FURTHER.format(script=str(script))] if redraw else []
     sources += [f"{before_cell(name_of(cell))}\n{cell.source}" for cell, _ in tagged]

@@ -262,9 +262,9 @@ def accepted(page, folder, **more) -> Run:
 
 
 @pytest.fixture
-def record(folder, tmp_path, monkeypatch, courses_pages):
+def record(folder, tmp_path, built, courses_pages):
     """Record the bundle on another backend; this build's outputs and shape are in `tmp_path`."""
-    monkeypatch.setenv("ROBO_GENESIS_BUILD_OUTPUTS", str(tmp_path))
+    built({f"l04/{page}": tmp_path / "l04" / page for page in ("lab", "lecture")})
     box = trimesh.creation.box((0.1, 0.1, 0.1))
     links = bundle.read_arrays(folder).coords["link"]
     parts = [Part(link, (9, 9, 9), box.vertices.astype(np.float32), box.faces) for link in links]

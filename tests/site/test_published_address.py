@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from built_site import executed_folder, parsed
+from built_site import executed_pages, parsed
 from PIL import Image
 
 from robo_genesis.build.render import render
@@ -21,7 +21,7 @@ def html(site, tmp_path_factory):
     folder = tmp_path_factory.mktemp("address")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SITE_URL", ADDRESS.rstrip("/"))
-        html = render(project.BOOK, folder / "staging", executed_folder(), folder / "render.log")
+        html = render(project.BOOK, folder / "staging", executed_pages(), folder / "render.log")
     pack(html)
     return html
 

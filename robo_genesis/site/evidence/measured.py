@@ -13,7 +13,6 @@ Roles and a directive, as pages write them:
 """
 
 import importlib.metadata
-import os
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -22,6 +21,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
+from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.core import project
 from robo_genesis.core.quantities import format_value
 from robo_genesis.evidence import bundle
@@ -34,15 +34,9 @@ from robo_genesis.evidence.status import (
 )
 from robo_genesis.site.evidence.ledger_data import Run
 
-BUILD_OUTPUTS = "ROBO_GENESIS_BUILD_OUTPUTS"
 BACKEND = project.BUILD_BACKEND
 REFERENCE = "amdgpu"
 REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"
-
-
-def outputs_folder() -> Path:
-    """Return the folder of this build's bundles, which the build names in the environment."""
-    return Path(os.environ[BUILD_OUTPUTS])
 
 
 def measured(lesson_page: str, name: str) -> tuple[str, str]:
@@ -56,7 +50,7 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
         LookupError: there is no such metric; the message lists the known ones.
         BundleRefused: the bundle cannot be read.
     """
-    folder = outputs_folder() / lesson_page / BACKEND
+    folder = page_outputs(lesson_page) / BACKEND
     predicate = bundle.read_manifest(folder).predicate
     origin = f"Measured by {lesson_page} on {BACKEND}, Genesis {predicate.engine.version}, "
     origin += f"run {predicate.run_id[:8]}, {predicate.started[:10]}"
@@ -94,7 +88,7 @@ class Measured(SphinxRole):
 @lru_cache(maxsize=64)
 def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> Run:
     """Return a page's run of this build; it does not change while Sphinx runs."""
-    folder = outputs_folder() / lesson / page / BACKEND
+    folder = page_outputs(f"{lesson}/{page}") / BACKEND
     absent = f"No bundle was recorded for {lesson}/{page}."
     return Run(f"{lesson}/{page}", folder, bundle_status(folder, lesson, page, absent, book))
 

@@ -15,6 +15,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.core import project
 from robo_genesis.core.channels import Runs
 from robo_genesis.core.content_cache import derived
@@ -23,7 +24,7 @@ from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons.registry import drawn_cases
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.ledger import scroll_box
-from robo_genesis.site.evidence.measured import BACKEND, outputs_folder
+from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import marked
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
@@ -43,7 +44,7 @@ class ReplayDirective(SphinxDirective):
         Errors: the page has no bundle, or the lesson compares no such cases.
         """
         lesson_page, *further = self.arguments
-        folder = outputs_folder() / lesson_page / BACKEND
+        folder = page_outputs(lesson_page) / BACKEND
         if not (folder / "manifest.json").is_file():
             raise self.error(f"replay: {lesson_page} has no bundle on {BACKEND}.")
         return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *further)]
@@ -97,7 +98,7 @@ def shape_file(lesson: str, thing: str) -> Path:
     Raises:
         ValueError: there is no such file.
     """
-    shape = outputs_folder() / lesson / SHAPE_PAGE / visual_shape.FILE
+    shape = page_outputs(f"{lesson}/{SHAPE_PAGE}") / visual_shape.FILE
     if not shape.is_file():
         raise ValueError(
             f"{lesson} wrote no shape of its {thing}. A cell of its {SHAPE_PAGE} must "

@@ -14,10 +14,10 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
+from robo_genesis.build.built_pages import executed_notebook, page_outputs
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons.book_pages import Page, find_pages
-from robo_genesis.site.evidence.measured import BACKEND, measured, outputs_folder
-from robo_genesis.site.executed_pages import executed_notebook
+from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.takeaways.files import Takeaways, system, write_takeaways
 from robo_genesis.site.takeaways.plain_markdown import ProseError
 
@@ -34,10 +34,10 @@ class TakeawaysBox(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Return the box and the list; a page without a run of its own is an error."""
         name, files = self.arguments[0], staging(self.env.app)
-        page, run = self.page(name), outputs_folder() / name / BACKEND
+        page, run = self.page(name), page_outputs(name) / BACKEND
         try:
             found = write_takeaways(
-                page, executed_notebook(page.notebook), run, files,
+                page, executed_notebook(page.docname), run, files,
                 lambda value: measured(*value.split(" ", 1))[0],
             )  # fmt: skip
         except (LookupError, ProseError, bundle.BundleRefused) as error:

@@ -1,0 +1,80 @@
+"""The executed pages of this build, as the build tells them to Sphinx's process."""
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Self
+
+import nbformat
+from nbformat import NotebookNode
+from pydantic import Field
+
+from robo_genesis.build.page_results import PageResult
+from robo_genesis.build.page_store import NOTEBOOK, OUTPUTS, Record, read_record
+from robo_genesis.core.names import EXECUTED_PAGES
+from robo_genesis.evidence.fields import Strict
+
+
+class BuiltPages(Strict):
+    """A file that the environment names.
+
+    `folders` has the folder in the store of each executed page by name, `outputs` the files that
+    the run of each measuring page left, by `lesson/page`, and `executed` the names of the pages
+    that this build ran.
+    """
+
+    folders: dict[str, Path] = Field(default_factory=dict)
+    outputs: dict[str, Path] = Field(default_factory=dict)
+    executed: list[str] = Field(default_factory=list)
+
+    @classmethod
+    def of(cls, results: Iterable[PageResult]) -> Self:
+        """Return the pages of a build from their results, of which none failed."""
+        found = cls()
+        for result in results:
+            page, folder = result.page, result.folder
+            assert folder is not None  # only a failed page has none
+            found.folders[page.docname] = folder
+            if page.declares_bundle:
+                found.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
+            if result.status == "executed":
+                found.executed.append(page.docname)
+        return found
+
+    def write(self, path: Path) -> dict[str, str]:
+        """Write the file and return the variable that names it."""
+        path.write_text(self.model_dump_json(indent=1), "utf8")
+        return {EXECUTED_PAGES: str(path)}
+
+
+def built_pages() -> BuiltPages:
+    """Return the pages that the environment names."""
+    return BuiltPages.model_validate_json(Path(os.environ[EXECUTED_PAGES]).read_bytes())
+
+
+def executed_notebook(docname: str) -> NotebookNode:
+    """Return the code cells of a page with their outputs.
+
+    Raises:
+        KeyError: the page is not executed.
+    """
+    return nbformat.read(built_pages().folders[docname] / NOTEBOOK, as_version=4)
+
+
+def page_record(docname: str) -> Record:
+    """Return the record of an executed page.
+
+    Raises:
+        KeyError: the page is not executed.
+    """
+    return read_record(built_pages().folders[docname])
+
+
+def page_outputs(lesson_page: str) -> Path:
+    """Return the folder of what a page's run left, with the bundle in `<backend>/`.
+
+    Args:
+        lesson_page: `l04/lab`. Without such a page in this build, the folder does not exist.
+    """
+    absent = Path(os.environ[EXECUTED_PAGES]).with_name("not executed") / lesson_page
+    return built_pages().outputs.get(lesson_page, absent)
