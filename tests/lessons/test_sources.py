@@ -180,7 +180,7 @@ CHECK = ('    """The record has', '    """A record has')
         ("lessons/l02/mistakes", CONSTANT, {"l02"}, NONE),
         ("lessons/l02/checks", CHECK, {"l02"}, NONE),  # the page shows what a check requires
     ],
-    ids=str,
+    ids=lambda value: " ".join(sorted(value)) if isinstance(value, set) else ascii(value),
 )
 def test_a_change_runs_the_pages_again_that_use_it_and_makes_stale_what_it_measured(
     copy, file, change, run_again, stale
