@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
+from robo_genesis.core.messages import LINE_LIMIT, clean_message
 from robo_genesis.core.names import BACKEND, OUTPUTS_DIR, RENDER
 from robo_genesis.core.scene import SEED
-from robo_genesis.core.text import LINE_LIMIT, clean_message
 from robo_genesis.sim.backends import BACKENDS, contradictions
 
 CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
