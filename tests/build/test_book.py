@@ -93,10 +93,10 @@ def test_a_build_publishes_site_and_evidence_and_says_with_what(built):
         f"Engine: genesis-world {built.last[1].split()[-1]}",
         "Lesson l04: engine 1.2.3, backend requested cpu, actual cpu, render camera (llvmpipe)",
         "Pages: 2 executed, 0 reused.",
-        "Checks passed: 3 on what was measured, 4 on the site.",
+        "Checks passed: 3 on what was measured, 5 on the site.",
     ]
     stages = list(dict.fromkeys(line.split("] ")[1].split()[0] for line in built.said))
-    assert stages == ["execute", "verify", "render", "pack", "check", "publish"]
+    assert stages == ["execute", "verify", "render", "pack", "sums", "check", "publish"]
     assert "Pages: 0 executed, 2 reused." in built.again
 
 
