@@ -1,4 +1,4 @@
-"""The stages of `make book` in their order: execute, verify, render, pack, check, publish.
+"""The stages of `make book`: execute, verify, render, pack, sums, check, publish.
 
 `make execute` is the first of them, for one page.
 """
