@@ -1,16 +1,14 @@
 """Writer and spoilers of bundles, shared by the tests of all lessons."""
 
 import csv
-from dataclasses import asdict
 
 import numpy as np
 import pytest
 from bundles import written
-from spoilers import edit, predicate, seal
+from spoilers import edit, seal
 
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.experiment import Experiment
@@ -63,20 +61,6 @@ def in_archive(case, change):
             values = {name: np.array(stored[name]) for name in stored}
         change(values)
         np.savez_compressed(path, **values)
-
-    return spoil
-
-
-def recomputed(*spoilers):
-    """Spoil a bundle, then write the metrics and the checks that its arrays now give."""
-
-    def spoil(folder):
-        for one in spoilers:
-            one(folder)
-        manifest = bundle.read_manifest(folder)
-        run = from_bundle(folder, manifest)
-        edit(folder, "metrics.json", lambda records: records.update(run.records()))
-        predicate(checks=[asdict(check) for check in run.outcomes()])(folder)
 
     return spoil
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.declaration import COMMON_MODULES, Filmed, Lesson, Moving
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
-from robo_genesis.lessons.l02 import checks, life_cycle, spec, study
+from robo_genesis.lessons.l02 import checks, life_cycle, plausibility, spec, study
 from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
 
 MODULES = (
@@ -34,6 +34,7 @@ LAB = MeasuringPage(
     checks=checks.CHECKS,
     parameters=spec.parameters,
     modules=MODULES,
+    validate=plausibility.require_possible_runs,
 )
 LECTURE = replace(
     LAB,

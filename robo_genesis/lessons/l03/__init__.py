@@ -6,7 +6,7 @@ from dataclasses import replace
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.declaration import COMMON_MODULES, Filmed, Lesson, Moving
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
-from robo_genesis.lessons.l03 import checks, spec, study
+from robo_genesis.lessons.l03 import checks, plausibility, spec, study
 from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
 from robo_genesis.sim.contacts import SETTINGS
 
@@ -41,6 +41,7 @@ LAB = MeasuringPage(
     checks=checks.CHECKS,
     parameters=spec.parameters,
     modules=MODULES,
+    validate=plausibility.require_possible_runs,
 )
 LECTURE = replace(
     LAB,
