@@ -20,7 +20,7 @@ from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.sim import mujoco_contacts, mujoco_joints
 
-pytestmark = pytest.mark.browser  # not of a browser, but of the built site
+pytestmark = pytest.mark.engine  # the bundles of the built site
 
 REQUIRED = 0.95
 """Share of the tries that must be refused."""
