@@ -14,7 +14,8 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.verify import verify_bundle
 
-READERS = ("evidence/*.py", "core/refusals.py", "lessons/*/plausibility.py")
+READERS = ("evidence/*.py", "core/refusals.py", "core/plausibility.py", "sim/plausible_*.py")
+OF_BODIES = {"contact", "second-engine"}  # the tests of L03 spoil its runs
 
 
 def codes():
@@ -27,14 +28,14 @@ def codes():
         for call in ast.walk(tree)
         if isinstance(call, ast.Call)
         and isinstance(call.func, ast.Name)
-        and call.func.id in ("BundleRefused", "expect")
+        and call.func.id in ("BundleRefused", "expect", "Breach", "apart")
         and isinstance(call.args[0], ast.Constant)
     }
 
 
 def test_every_code_has_a_spoiler():
     reached = {code for *both, _ in SPOILED.values() for code in both if code}
-    assert reached | {"run-id", "copy"} == codes()  # these need a second run
+    assert reached | {"run-id", "copy"} | OF_BODIES == codes()  # the first two need a second run
 
 
 def test_a_sound_bundle_is_accepted_also_when_sealed_again(folder):

@@ -11,7 +11,6 @@ from spoilers import edit, predicate, seal
 from robo_genesis.core import project
 from robo_genesis.evidence import bundle, evidence_key
 from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.status import bundle_status
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.evidence.verify import verify_bundle
@@ -65,20 +64,6 @@ def in_archive(case, change):
             values = {name: np.array(stored[name]) for name in stored}
         change(values)
         np.savez_compressed(path, **values)
-
-    return spoil
-
-
-def recomputed(*spoilers):
-    """Spoil a bundle, then write the metrics and the checks that its arrays now give."""
-
-    def spoil(folder):
-        for one in spoilers:
-            one(folder)
-        manifest = bundle.read_manifest(folder)
-        run = from_bundle(folder, manifest)
-        edit(folder, "metrics.json", lambda records: records.update(run.records()))
-        predicate(checks=[check.record() for check in run.outcomes()])(folder)
 
     return spoil
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
-from robo_genesis.lessons.l03 import checks, spec, study
+from robo_genesis.lessons.l03 import checks, plausibility, spec, study
 from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
 from robo_genesis.sim.contacts import SETTINGS
 
@@ -34,6 +34,7 @@ LAB = MeasuringPage(
     measure=case_metrics,
     checks=checks.CHECKS,
     parameters=spec.parameters,
+    validate=plausibility.require_possible_runs,
 )
 LECTURE = replace(
     LAB,

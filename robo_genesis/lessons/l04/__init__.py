@@ -20,7 +20,7 @@ STUDY_RUNS = {
         name: Run(spec.CASES[second.case], note="run in MuJoCo, not in Genesis")
         for name, second in study_spec.SECOND_RUNS.items()
     },
-    "assigned": Run(
+    study_spec.ASSIGNED: Run(
         spec.BASELINE,
         measured=False,
         note="state overwritten at each sample, no step taken; its time is nominal",

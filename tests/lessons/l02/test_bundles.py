@@ -13,7 +13,6 @@ from lessons.lesson_bundles import (
     judged_again,
     metric,
     pop,
-    recomputed,
     recorded,
     refused,
     table,
@@ -107,8 +106,8 @@ def invented_contacts(folder):
 SPOILED = {
     "contacts that nobody checks": ("labels", invented_contacts),
     "a run of the study is missing": ("cases", without_run("substeps_10")),
-    "a position was moved": ("metrics", moved(slice(5, 6), 1e-3)),
-    "another rule of stepping": ("failed", recomputed(moved(slice(1, None), 1e-5))),
+    "a position was moved": ("motion", moved(slice(5, 6), 1e-3)),
+    "another rule of stepping": ("motion", moved(slice(1, None), 1e-5)),
     "a metric was written": ("metrics", metric("baseline", "drop", 0.1962)),
     "another mass": ("checks", metric("body", "mass", 0.6)),
     "no mass": ("metrics", metric("body", "mass", None)),
