@@ -10,6 +10,7 @@ from spoilers import (
     both,
     drop_case,
     failing,
+    found,
     log,
     measured_elsewhere,
     metric,
