@@ -109,6 +109,20 @@ def cached_results(pages: Sequence[Page], folder: Path) -> dict[str, PageResult]
     return found
 
 
+def executed_page(page: Page, folder: Path) -> NotebookNode:
+    """Return the code cells of a page with their outputs.
+
+    Args:
+        page: the page.
+        folder: the cache folder of its fingerprint.
+
+    Raises:
+        KeyError: the page is not executed.
+    """
+    cache = PageCache(notebooks_folder(folder))
+    return cache.get_cache_bundle(cache.match_cache_notebook(page.notebook).pk).nb
+
+
 def _cached_notebook(page: Page, cache: JupyterCacheAbstract) -> NotebookNode | None:
     """Return the page's cached outputs, None if there are none or a killed build left half."""
     try:

@@ -17,10 +17,12 @@ from robo_genesis.build import npm, up_to_date
 from robo_genesis.build.command import TIMEOUT, Progress, say
 from robo_genesis.build.execute import execute_pages, kernel_environment
 from robo_genesis.build.page_artifacts import Verify, export_page, import_pages
+from robo_genesis.build.page_cache import executed_page
 from robo_genesis.build.page_results import PageResult, failure_report
 from robo_genesis.build.publish import publish
 from robo_genesis.build.release import missing_for_release
 from robo_genesis.build.render import render
+from robo_genesis.build.shown import require_shown
 from robo_genesis.build.site_address import site_address, site_root
 from robo_genesis.build.site_archive import pack
 from robo_genesis.build.site_checks import check_site
@@ -93,7 +95,7 @@ def run_build(build: Build) -> list[str]:
             for record in import_pages(build.executed, pages, folder, verify):
                 progress("import", record.docname, f"run {record.run_id[:8]}")
         results = _execute(build, pages, folder, progress)
-        manifests = _verify(build.book, verify, results, progress)
+        manifests = _verify(build.book, verify, results, folder, progress)
         if build.release:
             problems = missing_for_release(build.book, _labs(results), build.root)
             _require_for_release([*unclean(build.root), *problems])
@@ -207,11 +209,12 @@ def _execute(
 
 
 def _verify(
-    book: Path, verify: Verify, results: Sequence[PageResult], progress: Progress
+    book: Path, verify: Verify, results: Sequence[PageResult], folder: Path, progress: Progress
 ) -> Mapping[str, Any]:
     """Return the accepted manifests of this build's bundles, by page name.
 
-    A recorded bundle that is neither current nor stale stops the build as well.
+    A page that shows something else than its bundle stops the build, and so does a recorded bundle
+    that is neither current nor stale.
     """
     contract = project.environment_contract()
     manifests, refused = {}, []
@@ -221,8 +224,10 @@ def _verify(
         try:
             manifest = verify(result.bundle, result.run_id)
             require_contract(manifest.predicate, contract)
+            notebook = executed_page(result.page, folder)
+            compared = require_shown(result.page, notebook, result.bundle, manifest)
             manifests[result.page.docname] = manifest
-            progress("verify", result.page.docname, "accepted")
+            progress("verify", result.page.docname, f"accepted, {compared} outputs compared")
         except BundleRefused as error:
             refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
     refused += refused_records(book)
