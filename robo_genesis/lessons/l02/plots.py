@@ -16,13 +16,11 @@ WIDTH = 7.0
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured positions."""
-    if not run.rendered:
-        figure = Figure(figsize=(4, 5))
-        case, trace = run.cases["baseline"], run.traces["baseline"]
-        plotting.body_schematic(figure.subplots(), trace, case.size)
-        return figure
-    figure = Figure(figsize=(WIDTH, 2.8))
-    plotting.frames(figure.subplots(1, 2), run.frames)
+    if run.rendered:
+        return plotting.both_ends(run.frames)
+    figure = Figure(figsize=(4, 5))
+    case, trace = run.cases["baseline"], run.traces["baseline"]
+    plotting.body_schematic(figure.subplots(), trace, case.size)
     return figure
 
 
