@@ -243,7 +243,7 @@ def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
         predicate: the predicate of the bundle's manifest.
         contract: the variables that requested it.
     """
-    remedy = "Let the page read session.read_contract() and set neither itself."
+    remedy = "Write gs.init(backend=rg.backend(), ...), and a camera where page.render is true."
     backend, render = contract["ROBO_GENESIS_BACKEND"], contract["ROBO_GENESIS_RENDER"]
     mode = "camera" if render == "1" else "skip"
     found = predicate.backend.requested
