@@ -71,7 +71,7 @@ class LessonPage:
     | `frames` | camera frames by name |
     | `joints` | the `JointMap` of the arrays' DOFs, None for free bodies |
     | `links` | names of the links, in the order of the arrays |
-    | `render` | whether a camera is asked for |
+    | `render` | whether the environment requests a camera |
     | `folder` | of the page's outputs |
     | `log` | the engine's log |
     """

@@ -148,7 +148,7 @@ def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
 
 
 def marked(cell: NotebookNode) -> list[NotebookNode]:
-    """Return the outputs of an executed cell that are said to be measured."""
+    """Return the outputs of an executed cell whose metadata name a function."""
     return [out for out in cell.get("outputs", []) if shown.METADATA in out.get("metadata", {})]
 
 

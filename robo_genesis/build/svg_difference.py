@@ -72,7 +72,7 @@ def _equal(name: str, found: str, valid: str, names: tuple[dict[str, str], dict[
 
 
 def _same_name(found: str, valid: str, names: tuple[dict[str, str], dict[str, str]]) -> bool:
-    """Return whether two names stand for each other everywhere."""
+    """Return whether two names belong to each other everywhere."""
     to_valid, to_found = names
     return to_valid.setdefault(found, valid) == valid and to_found.setdefault(valid, found) == found
 

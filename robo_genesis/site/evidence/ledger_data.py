@@ -21,7 +21,7 @@ UNMEASURED = {
     "settings": "Chosen, not measured.",
     "printed": "Printed by its cell, not compared with the bundle.",
 }
-"""Kinds of items that are no evidence of a run, each with the line below it."""
+"""Kinds of items without evidence of a run, each with the line below it."""
 
 
 @dataclass(frozen=True, slots=True)
