@@ -91,7 +91,7 @@ def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
 
 
 def picture_of_nothing(camera: Any) -> Failure:
-    """Turn the camera away from all bodies of the scene, and render; None means that there is no camera."""
+    """Turn the camera away from all bodies of the scene, and render; None means no camera."""
     if camera is None:
         skipped = "SKIP: rendering is off, so no picture was taken."
         return Failure("picture_of_nothing", shown=True, evidence=skipped)
