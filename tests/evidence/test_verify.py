@@ -124,7 +124,7 @@ STALE = "stale stale: manifest.json: {} is "
         ("pyproject.toml", "-world==", "-world==9.", STALE.format("engine.version")),
         ("requirements.lock", "\nquadrants==", "\nquadrants==9.",
          STALE.format("engine.quadrants_version")),
-        (LAB, "plotting.use_course_style()", "pass", STALE.format("source.page")),
+        (LAB, "page.facts()", "pass", STALE.format("source.page")),
         (METRICS, "Share of the step that counts", "The share that counts",
          STALE.format("source.modules.lessons.l04.metrics")),
         (METRICS, "RISE_FRACTION = 0.9", "RISE_FRACTION = 0.8", "stale "),

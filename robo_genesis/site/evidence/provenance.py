@@ -76,9 +76,9 @@ def compared_cells(book: Path, docname: str) -> set[int] | None:
     Returns:
         None for a page that shows nothing by the name of its function.
     """
-    page = next((page for page in find_pages(book) if page.docname == docname), None)
-    if page is None:
+    if docname not in measured_pages(book):
         return None
+    page = next(page for page in find_pages(book) if page.docname == docname)
     places = [k for k, cell in enumerate(page.notebook.cells) if cell.cell_type == "code"]
     ran = [cell for cell in executed_notebook(page.notebook).cells if cell.cell_type == "code"]
     found = {}
