@@ -42,6 +42,11 @@ FACTS = SimpleNamespace(
     checks=["one", "two", "three"],
 )
 LAB = notebook(cell(WRITE_BUNDLE), front=LAB_FRONT)
+FORGED = """\
+from IPython.display import display
+of = {"function": "robo_genesis.lessons.l04.text.metric_table", "arguments": []}
+display({"text/markdown": "7"}, metadata={"robo_genesis": of}, raw=True)"""
+FORGED_LAB = notebook(cell(WRITE_BUNDLE), cell(FORGED), front=LAB_FRONT)
 
 
 def accept(folder: Path, run_id: str) -> SimpleNamespace:
@@ -143,11 +148,12 @@ def test_pages_from_elsewhere_are_built_without_a_run(built, tmp_path):
     ("page", "settings", "error", "said"),
     [
         (LAB, {"verify": refuse}, BuildError, "lab: the bundle .* is refused: metrics: metrics.js"),
+        (FORGED_LAB, {}, BuildError, "shown: lab, code cell 2: its code shows 0 measured outputs"),
         ("# A\n\n<script src='https://example.org/a.js'></script>\n", {}, BuildError, "third p"),
         (LAB, {"executed": Path()}, StoreError, "lab is not among them. Execute the page again"),
         (LAB, {"release": True}, BuildError, r"RELEASE=1 cannot be met\.\n.* 1 changed file"),
     ],
-    ids=["refused bundle", "refused site", "missing page", "changed tree"],
+    ids=["refused bundle", "refused output", "refused site", "missing page", "changed tree"],
 )
 def test_a_build_that_is_refused_leaves_the_old_site(
     tmp_path, monkeypatch, page, settings, error, said

@@ -3,14 +3,30 @@
 from dataclasses import replace
 
 from robo_genesis.core.channels import View
+from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
 from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.declaration import Compared, Filmed, Lesson
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
-from robo_genesis.lessons.l04 import checks, plausibility, spec, study, study_checks, study_spec
+from robo_genesis.lessons.l04 import (
+    checks,
+    plausibility,
+    plots,
+    spec,
+    study,
+    study_checks,
+    study_spec,
+    text,
+)
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics, step_metrics
-from robo_genesis.sim.franka import JOINT_NAMES
-from robo_genesis.sim.joint_control import ControlCase
+from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.joint_control import ControlCase, differences, reset, run_case, validate
+from robo_genesis.sim.joints import resolve_joints
+
+__all__ = [
+    "CAMERA", "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LECTURE", "LESSON", "SUBSTEPS",
+    "differences", "plots", "reset", "resolve_joints", "run_case", "spec", "text", "validate",
+]  # fmt: skip
 
 STUDY_RUNS = {
     # A run that holds its start has no step, so it has no metrics.

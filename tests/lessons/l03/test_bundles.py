@@ -8,6 +8,7 @@ import pytest
 from lessons.l03.conftest import READINGS
 from lessons.lesson_bundles import (
     altered,
+    differing_outputs,
     in_archive,
     in_json,
     judged_again,
@@ -19,11 +20,13 @@ from lessons.lesson_bundles import (
 )  # fmt: skip
 from spoilers import predicate
 
+from robo_genesis.core.project import BOOK
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import LESSON, checks, spec, study
 
 
@@ -54,6 +57,14 @@ def test_sound_ones_are_accepted(landed):
     assert names == [check.__name__ for check in checks.CHECKS]
     names = [check.name for check in verify_bundle(landed["lecture"]).predicate.checks]
     assert names == [check.__name__ for check in (*checks.STUDY_CHECKS, *study.CHECKS)]
+
+
+@pytest.mark.parametrize("page", LESSON.pages)
+def test_what_a_page_shows_follows_from_its_bundle(bundles, contact_traces, frames, page):
+    declared = LESSON.pages[page]
+    traces = {name: contact_traces[name] for name in declared.runs}
+    run = Experiment(declared, traces, [spec.LINK], READINGS[page], frames, True)
+    assert differing_outputs(bundles[page], run, BOOK) == []
 
 
 def test_contacts_are_read_as_they_were_recorded(landed, contact_traces):
