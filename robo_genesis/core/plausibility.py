@@ -1,6 +1,6 @@
 """Rules that the arrays of every run obey, whatever it shows: times, start, unit quaternions.
 
-A breach means that the arrays are not those of such a run; it is no judgement about the physics.
+A breach means that the arrays are not those of such a run; it does not judge the physics.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
