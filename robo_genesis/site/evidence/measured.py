@@ -98,9 +98,10 @@ def recorded_runs(book: Path, lesson: str) -> tuple[Run, ...]:
     """Return the recorded runs of a lesson's lab, the reference first, recorded or not."""
     folder, name = book / "evidence" / lesson, f"{lesson}/{RECORDED_PAGE}"
     recorded = (path.name for path in recorded_folders(book) if path.parent == folder)
+    here = (page_run(book, lesson).folder,)
     return tuple(
-        Run(name, folder / backend, recorded_status(book, lesson, backend), recorded=True)
-        for backend in dict.fromkeys((REFERENCE, *recorded))
+        Run(name, folder / on, recorded_status(book, lesson, on, cpu_runs=here), recorded=True)
+        for on in dict.fromkeys((REFERENCE, *recorded))
     )
 
 

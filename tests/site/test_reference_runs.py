@@ -1,0 +1,122 @@
+"""Made-up runs of accelerators in the built course: what lab and lecture show of each state."""
+
+import shutil
+
+import pytest
+from built_site import executed_pages, parsed
+from spoilers import TORCH, edit, measured_elsewhere, own_run_id, part, predicate, seal
+
+from robo_genesis.build.render import render
+from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.evidence import bundle
+
+pytestmark = pytest.mark.engine  # waits for the site
+
+DEVICE = "Made-up GPU"
+
+
+def on(backend, folder):
+    """Say in the files of a CPU's bundle that an accelerator computed it, and seal them."""
+    found = bundle.read_manifest(folder).predicate.backend
+    torch = {"torch_device": "cuda", **TORCH[backend]}
+    part("backend", actual=backend, actual_at_end=backend, arch=backend, **torch)(folder)
+    part("backend", requested="auto", driver="6.16", device_name=DEVICE)(folder)
+    part("render", vendor="AMD", renderer="AMD Radeon (radeonsi)", software=False)(folder)
+    log = (folder / "log.txt").read_text("utf8")
+    log = log.replace(
+        f"[{found.device_name}] with backend gs.cpu", f"[{DEVICE}] with backend gs.{backend}"
+    )
+    lines = [line for line in log.splitlines(keepends=True) if "Software rendering" not in line]
+    (folder / "log.txt").write_text("".join(lines), "utf8")
+    seal(folder)
+
+
+def wrong_count(folder):
+    """Count one entity more, in the readings and in the value that the check found."""
+    edit(folder, "metrics.json", lambda m: m["model"]["entities"].update(value=3))
+
+    def change(manifest):
+        (structure,) = [c for c in manifest["predicate"]["checks"] if c["name"] == "structure"]
+        structure["found"] = {
+            label: 3 if label.endswith("entities") else value
+            for label, value in structure["found"].items()
+        }
+
+    edit(folder, "manifest.json", change)
+
+
+def damaged(folder):
+    (folder / "log.txt").write_text("")
+
+
+def older(folder):
+    predicate(seed=7)(folder)
+    log = (folder / "log.txt").read_text("utf8")
+    (folder / "log.txt").write_text(log.replace("seed: 0", "seed: 7"), "utf8")
+
+
+RUNS = {
+    ("l04", "amdgpu"): ("verified", measured_elsewhere),
+    ("l04", "cuda"): ("stale", older),
+    ("l03", "amdgpu"): ("failed", wrong_count),
+    ("l03", "cuda"): ("refused", damaged),
+    ("l02", "amdgpu"): ("refused", own_run_id),  # a run on the CPU with another label
+}
+OTHERS = [run for run, (state, _) in RUNS.items() if state != "verified"]
+
+
+@pytest.fixture(scope="module")
+def html(site, tmp_path_factory):
+    """The course with the runs of `RUNS` in its folder of evidence."""
+    folder, built = tmp_path_factory.mktemp("runs"), executed_pages()
+    (folder / "robo_genesis").symlink_to(ROOT / "robo_genesis")  # pages include parts of files
+    book = shutil.copytree(BOOK, folder / "book", ignore=shutil.ignore_patterns("_build*"))
+    for (lesson, backend), (state, spoil) in RUNS.items():
+        cpu = built.outputs[f"{lesson}/lab"] / "cpu"
+        there = shutil.copytree(cpu, book / "evidence" / lesson / backend)
+        if state == "refused":
+            on(backend, there)
+        spoil(there)
+        if state != "refused" or spoil is own_run_id:
+            on(backend, there)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SITE_URL", "")
+        return render(book, folder / "staging", built, folder / "render.log")
+
+
+def panels(html, lesson, page):
+    """Return the panels of a page by their first sentence."""
+    (path,) = (html / "lessons").glob(f"{lesson}-*/{page}.html")
+    soup = parsed(html, path.relative_to(html).with_suffix("").as_posix())
+    return soup.select(".evidence-panel")
+
+
+def test_the_lab_shows_a_verified_run_with_its_figures_frames_metrics_and_backend(html):
+    panel = panels(html, "l04", "lab")[0]
+    text = panel.get_text(" ", strip=True)
+    assert text.startswith("Reference run.")
+    assert DEVICE in text
+    assert "cpu, this build" in text
+    assert "amdgpu, recorded" in text
+    figures = [figure["id"] for figure in panel.select("figure")]
+    assert figures == [f"l04-amdgpu-{name}" for name in ("response", "initial", "final")]
+    assert panel.select(".replay-block")
+
+
+def test_the_lecture_shows_the_metrics_of_a_verified_run_alone(html):
+    panel = panels(html, "l04", "lecture")[0]
+    assert "amdgpu, recorded" in panel.get_text()
+    assert DEVICE not in panel.get_text()
+    assert not panel.select("figure, img, .replay-block")
+
+
+@pytest.mark.parametrize("page", ["lab", "lecture"])
+@pytest.mark.parametrize(("lesson", "backend"), OTHERS)
+def test_another_run_shows_its_state_and_nothing_else(html, lesson, backend, page):
+    state, _ = RUNS[lesson, backend]
+    found = [p for p in panels(html, lesson, page) if f"{backend}-{state}" in p.get_text()]
+    assert len(found) == 1
+    assert found[0].get_text().strip().startswith(f"No figures from {backend}")
+    assert not found[0].select("figure, img, table, details, .replay-block")
+    (path,) = (html / "lessons").glob(f"{lesson}-*/{page}.html")
+    assert (DEVICE in path.read_text("utf8")) == (lesson == "l04" and page == "lab")
