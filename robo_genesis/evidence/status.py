@@ -23,7 +23,9 @@ STATE_OF_CODE = {"stale": "stale", "older-schema": "stale", "failed": "failed"}
 PASSING = ("verified", "inconclusive", "missing", "stale")
 """States with which a build continues; a lesson shows the figures of a verified run only."""
 
-UNREADABLE = "The bundle was refused. The command make verify shows the found and the expected value."
+UNREADABLE = (
+    "The bundle was refused. The command make verify shows the found and the expected value."
+)
 SUMMARIES = {
     "older-schema": "It was recorded in an older form of the bundle.",
     "failed": "Its own checks did not all pass.",
