@@ -5,7 +5,7 @@ from dataclasses import replace
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
-from robo_genesis.lessons.l02 import checks, life_cycle, spec, study
+from robo_genesis.lessons.l02 import checks, life_cycle, spec, study, text
 from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
 
 
@@ -26,6 +26,7 @@ LAB = MeasuringPage(
     readings=readings,
     measure=drop_metrics,
     checks=checks.CHECKS,
+    claims=text.CLAIMS,
     parameters=spec.parameters,
 )
 LECTURE = replace(

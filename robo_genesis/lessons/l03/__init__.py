@@ -6,7 +6,7 @@ from dataclasses import replace
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
-from robo_genesis.lessons.l03 import checks, spec, study
+from robo_genesis.lessons.l03 import checks, spec, study, text
 from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
 from robo_genesis.sim.contacts import SETTINGS
 
@@ -33,6 +33,7 @@ LAB = MeasuringPage(
     readings=lambda rendered: readings(["cube", "ball"], spec.CASES),
     measure=case_metrics,
     checks=checks.CHECKS,
+    claims=text.CLAIMS,
     parameters=spec.parameters,
 )
 LECTURE = replace(

@@ -7,7 +7,15 @@ from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.declaration import Compared, Filmed, Lesson
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
-from robo_genesis.lessons.l04 import checks, plausibility, spec, study, study_checks, study_spec
+from robo_genesis.lessons.l04 import (
+    checks,
+    claims_text,
+    plausibility,
+    spec,
+    study,
+    study_checks,
+    study_spec,
+)
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics, step_metrics
 from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import ControlCase
@@ -50,6 +58,7 @@ LAB = MeasuringPage(
     readings=readings,
     measure=measure,
     checks=checks.CHECKS,
+    claims=claims_text.CLAIMS,
     parameters=spec.parameters,
     validate=plausibility.require_possible_runs,
 )
