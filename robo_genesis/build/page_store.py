@@ -26,8 +26,8 @@ from robo_genesis.core.files import NEXT, OLD, replaced, settle
 from robo_genesis.core.project import ENGINE, ROOT, ProjectError, installed_version
 from robo_genesis.evidence.bundle import BundleRefused, sha256
 from robo_genesis.evidence.fields import RunId, Sha256, Strict
-from robo_genesis.lessons.book_pages import Page, code_digest
-from robo_genesis.lessons.sources import page_fingerprint
+from robo_genesis.lessons.book_pages import Page, code_digest, plain_python
+from robo_genesis.lessons.sources import cell_digest, page_fingerprint
 
 Verify = Callable[[Path, str], Any]
 """Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused."""
@@ -268,9 +268,18 @@ def _require_this_page(place: Path, record: Record, page: Page, fingerprint: str
 
 
 def code_and_kernel(notebook: NotebookNode) -> tuple[list[str], str | None]:
-    """Return the code cells of a notebook and the name of the kernel that executes them."""
-    cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    """Return the digests of a notebook's code cells and the name of the kernel that executes them.
+
+    Comments and layout of the cells do not count.
+    """
+    cells = [cell_digest(source) for source in plain_python(notebook)]
     return cells, notebook.metadata.get("kernelspec", {}).get("name")
+
+
+def stored_notebook(result: PageResult) -> NotebookNode:
+    """Return the code cells of a page that was executed, with their outputs."""
+    assert result.folder is not None  # only a failed page has none
+    return nbformat.read(result.folder / NOTEBOOK, as_version=4)
 
 
 def folders(store: Path, page: Page) -> list[Path]:

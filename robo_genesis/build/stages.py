@@ -1,4 +1,4 @@
-"""The stages of `make book` in their order: execute, verify, render, pack, check, publish.
+"""The stages of `make book`: execute, verify, render, pack, sums, check, publish.
 
 `make execute` is the first of them, for one page.
 """
@@ -6,7 +6,7 @@
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -18,10 +18,18 @@ from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.command import TIMEOUT, Progress, say
 from robo_genesis.build.execute import execute_pages, kernel_environment
 from robo_genesis.build.page_results import PageResult, failure_report
-from robo_genesis.build.page_store import Verify, export_page, forget, import_pages, places
+from robo_genesis.build.page_store import (
+    Verify,
+    export_page,
+    forget,
+    import_pages,
+    places,
+    stored_notebook,
+)
 from robo_genesis.build.publish import publish
 from robo_genesis.build.release import missing_for_release
 from robo_genesis.build.render import render
+from robo_genesis.build.shown import require_shown
 from robo_genesis.build.site_address import site_address, site_root
 from robo_genesis.build.site_archive import pack
 from robo_genesis.build.site_checks import check_site
@@ -91,11 +99,13 @@ def run_build(build: Build) -> list[str]:
         verify = build.verify or partial(verify_bundle, book=build.book)
         if build.release:
             _require_for_release(unclean(build.root))
+        imported = set()
         if build.executed:
             for record in import_pages(build.executed, pages, into, verify):
+                imported.add(record.docname)
                 progress("import", record.docname, f"run {record.run_id[:8]}")
         results = _execute(build, pages, into, progress)
-        manifests = _verify(build.book, verify, results, progress)
+        manifests = _verify(build.book, verify, results, imported, progress)
         if build.release:
             problems = missing_for_release(build.book, _labs(results), manifests, build.root)
             _require_for_release([*unclean(build.root), *problems])
@@ -214,11 +224,17 @@ def _execute(
 
 
 def _verify(
-    book: Path, verify: Verify, results: Sequence[PageResult], progress: Progress
+    book: Path,
+    verify: Verify,
+    results: Sequence[PageResult],
+    imported: Collection[str],
+    progress: Progress,
 ) -> Mapping[str, Any]:
     """Return the accepted manifests of this build's bundles, by page name.
 
-    A recorded bundle that is neither current nor stale stops the build as well.
+    A page that shows something else than its bundle stops the build, and so does a recorded bundle
+    that is neither current nor stale. A page from the store was compared when it was new, and its
+    files still have their digests.
     """
     contract = project.environment_contract()
     manifests, refused = {}, []
@@ -228,8 +244,14 @@ def _verify(
         try:
             manifest = verify(result.bundle, result.run_id)
             require_contract(manifest.predicate, contract)
+            found = "accepted"
+            if result.status == "executed" or result.page.docname in imported:
+                compared = require_shown(
+                    result.page, stored_notebook(result), result.bundle, manifest
+                )
+                found = f"accepted, {compared} outputs compared"
             manifests[result.page.docname] = manifest
-            progress("verify", result.page.docname, "accepted")
+            progress("verify", result.page.docname, found)
         except BundleRefused as error:
             refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
     refused += refused_records(book, _labs(results))
@@ -245,7 +267,7 @@ def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
         predicate: the predicate of the bundle's manifest.
         contract: the variables that requested it.
     """
-    remedy = "Let the page read session.read_contract() and set neither itself."
+    remedy = "Write gs.init(backend=rg.backend(), ...), and a camera where page.render is true."
     backend, render = contract[BACKEND], contract[RENDER]
     mode = "camera" if render == "1" else "skip"
     found = predicate.backend.requested

@@ -15,13 +15,16 @@ class Failure:
     """The result of one deliberate mistake.
 
     `shown` is whether its symptom appeared; `evidence` describes the measurement in either case;
-    `curves` by label are time [s] and position, both (n,).
+    `curves` by label are two arrays (n,), along `axis` and up, in `unit`: by default time [s] and
+    position [m].
     """
 
     name: str
     shown: bool
     evidence: str
     curves: Curves = field(default_factory=dict)
+    unit: str = "m"
+    axis: str = "time [s]"
 
     @property
     def check(self) -> Check:

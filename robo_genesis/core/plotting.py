@@ -8,6 +8,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from robo_genesis.core.channels import Channel, Level, Runs
 from robo_genesis.core.palette import MARKS, marks_of
@@ -112,6 +113,13 @@ def frames(axes: Sequence[Axes], pictures: Mapping[str, np.ndarray]) -> Sequence
         ax.set_axis_off()
         ax.set_title(f"Camera frame, {name}")
     return axes
+
+
+def both_ends(pictures: Mapping[str, np.ndarray]) -> Figure:
+    """Show the camera frames `initial` and `final` of a run side by side."""
+    figure = Figure(figsize=(7, 2.8))
+    frames(figure.subplots(1, 2), {name: pictures[name] for name in ("initial", "final")})
+    return figure
 
 
 def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:

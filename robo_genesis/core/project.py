@@ -29,6 +29,9 @@ BUILD_BACKEND = "cpu"
 
 # Variables that switch the engine, its compiler and the drivers below it.
 ENGINE_PREFIXES = ("GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "HSA_", "CUDA_")
+SET_BY_ENGINE = ("QD_ENABLE_PYBUF",)
+"""Switches that Genesis itself sets when it is imported; they decide only how messages print."""
+
 HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
 CACHE_FOLDERS = {
     "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
@@ -196,9 +199,12 @@ def environment_contract(environment: Mapping[str, str] | None = None) -> dict[s
 
 
 def engine_switches(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return the variables that switch the engine, its compiler or its drivers."""
+    """Return the variables that switch the engine, its compiler or its drivers.
+
+    They are the same before and after the import of the engine.
+    """
     switches = {name for name in environment if name.startswith(ENGINE_PREFIXES)}
-    switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys()
+    switches -= CACHE_FOLDERS.keys() | CACHE_LIMIT.keys() | set(SET_BY_ENGINE)
     return {name: environment[name] for name in sorted(switches)}
 
 

@@ -2,7 +2,7 @@
 
 import re
 
-from robo_genesis.core.text import printable
+from robo_genesis.core.messages import printable
 
 AGAIN = "Record the bundle again."
 LONGEST_SHOWN = 160

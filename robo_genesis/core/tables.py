@@ -63,3 +63,8 @@ def check_table(outcomes: Sequence[Check]) -> str:
     return markdown(
         [{"check": f"`{c.name}`", "outcome": words[c.passed], "what": c.detail} for c in outcomes]
     )
+
+
+def checks_of_run(run: Any) -> str:
+    """Return the table of the named checks of an experiment."""
+    return check_table(run.outcomes())

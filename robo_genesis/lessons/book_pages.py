@@ -135,8 +135,13 @@ def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None
 
 def cell_sources(page: Page) -> list[str]:
     """Return the code cells of a page as plain Python; magics of IPython are translated."""
+    return plain_python(page.notebook)
+
+
+def plain_python(notebook: NotebookNode) -> list[str]:
+    """Return the code cells of a notebook as plain Python; magics of IPython are translated."""
     transform = TransformerManager().transform_cell
-    return [transform(cell.source) for cell in page.notebook.cells if cell.cell_type == "code"]
+    return [transform(cell.source) for cell in notebook.cells if cell.cell_type == "code"]
 
 
 def code_digest(page: Page) -> str:

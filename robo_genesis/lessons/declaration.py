@@ -119,11 +119,12 @@ class Lesson:
         """
         checks = {check.__name__ for page in self.pages.values() for check in page.checks}
         claims = {name for page in self.pages.values() for name in page.claims}
-        for page in self.pages.values():
+        for name, page in self.pages.items():
             for check in page.checks:
-                if check.__name__ not in page.claims:
+                if not page.claims.get(check.__name__, "").strip():
                     raise ValueError(
-                        f"The check {check.__name__} has no claim. Say in CLAIMS what it requires."
+                        f"The check {check.__name__} of the page {name} has no claim. "
+                        "Say in CLAIMS what it requires."
                     )
         if claims - checks:
             raise ValueError(

@@ -106,6 +106,7 @@ class Experiment:
     | `frames` | camera frames by name, each (height, width, 3); none without a camera |
     | `rendered` | whether the run had a camera |
     | `joints` | the `JointMap` of the arrays' DOFs, None for free bodies |
+    | `accepted` | metrics by run that are taken as they were recorded, None to compute them |
     """
 
     page: MeasuringPage
@@ -115,6 +116,7 @@ class Experiment:
     frames: Mapping[str, np.ndarray]
     rendered: bool
     joints: Any = None
+    accepted: Mapping[str, CaseMetrics] | None = None
 
     @property
     def cases(self) -> dict[str, Any]:
@@ -124,6 +126,8 @@ class Experiment:
     @cached_property
     def metrics(self) -> dict[str, Any]:
         """The metrics of each run that has some; raises as `MeasuringPage.metrics`."""
+        if self.accepted is not None:
+            return dict(self.accepted)
         return self.page.metrics(self.traces)
 
     def records(self) -> dict[str, dict[str, Record]]:

@@ -96,7 +96,9 @@ def _canonical(node: Any) -> Any:
         if isinstance(fields.get(name), list):
             fields[name] = [s for s in fields[name] if not _is_text(s)]
     filled = {
-        name: _canonical(value) for name, value in fields.items() if value is not None and value != []
+        name: _canonical(value)
+        for name, value in fields.items()
+        if value is not None and value != []
     }
     return [type(node).__name__, filled]
 
@@ -267,9 +269,7 @@ def page_fingerprint(
         "python": platform.python_version(),
         "environment": environment_contract(environment),
         "cells": [cell_digest(cell) for cell in cells],
-        "modules": {
-            name: syntax_digest(path.read_text("utf8")) for name, path in modules.items()
-        },
+        "modules": {name: syntax_digest(path.read_text("utf8")) for name, path in modules.items()},
         "data": {
             path.relative_to(root).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
             for path in _data_files(page.lesson, root)

@@ -23,6 +23,9 @@ INTEGRATORS = {
 def load(case: ControlCase, timestep: float, integrator: str) -> Any:
     """Compile the bundled Franka with one bounded PD actuator per joint and no others.
 
+    The shapes are left out: no links touch each other in the course's runs, and every link has its
+    inertia in the file.
+
     An affine actuator's force is gain · ctrl + bias[1] · q + bias[2] · q̇, clipped to its range.
     With (KP, −KP, −KV) and the target as ctrl, it is the PD law of the course.
 
@@ -36,8 +39,8 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
             f"{', '.join(INTEGRATORS)}, and a time step that divides dt={case.dt:g} s."
         )
     spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
-    for actuator in list(spec.actuators):
-        spec.delete(actuator)
+    for part in (*spec.actuators, *spec.keys, *spec.geoms, *spec.meshes):
+        spec.delete(part)
     for k, name in enumerate(JOINT_NAMES):
         spec.add_actuator(
             name=name,

@@ -13,10 +13,12 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from robo_genesis.core import project
+from robo_genesis.core.messages import LINE_LIMIT, clean_message
 from robo_genesis.core.names import BACKEND, OUTPUTS_DIR, RENDER
 from robo_genesis.core.scene import SEED
-from robo_genesis.core.text import LINE_LIMIT, clean_message
 from robo_genesis.sim.backends import BACKENDS, contradictions
 
 CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
@@ -121,7 +123,7 @@ def remove_private_paths(record: logging.LogRecord) -> bool:
 class Engine:
     """The started engine with its versions, its backend and its log.
 
-    `switches` are the variables that were set for engine, compiler or drivers before the start.
+    `switches` are the variables that were set for engine, compiler or drivers.
     """
 
     version: str
@@ -140,27 +142,79 @@ def start(contract: Contract, seed: int = SEED) -> Engine:
         EngineError: Genesis is missing or already initialised, a graphics library is missing, or
             engine, Quadrants and Torch disagree on the backend.
     """
-    switches = project.engine_switches(os.environ)  # before the import, which sets some itself
+    backend = requested_backend(contract)
+    import_engine().init(
+        backend=backend,
+        seed=seed,
+        precision=PRECISION,
+        use_deterministic_algorithms=True,
+        **plain_log(),
+    )
+    return started(contract, seed)
+
+
+def requested_backend(contract: Contract) -> Any:
+    """Return the argument `backend` of the `gs.init` that follows, and start to keep its log.
+
+    Raises:
+        EngineError: Genesis is missing or already initialised, or a graphics library is missing.
+    """
     gs = import_engine()
     if getattr(gs, "_initialized", False):
         raise EngineError(
             f"Genesis is already initialised in this process (backend {gs.backend.name}). A "
             "backend, seed or precision cannot be changed afterwards: restart the kernel."
         )
-    log = EngineLog()
-    logging.getLogger("genesis").addFilter(remove_private_paths)
-    logging.getLogger("genesis").addHandler(log)
-    gs.init(
-        backend=gs.cpu if contract.backend == "cpu" else gs.gpu,
-        seed=seed,
-        precision=PRECISION,
-        theme=plain_theme(),
-        logging_level="info",
-        use_deterministic_algorithms=True,
-    )
-    quadrants_version = ".".join(map(str, importlib.import_module("quadrants").__version__))
+    logger = logging.getLogger("genesis")
+    for earlier in _kept_logs():  # of a gs.init that failed, or of an engine that was destroyed
+        logger.removeHandler(earlier)
+    logger.addFilter(remove_private_paths)
+    logger.addHandler(EngineLog())
+    return gs.cpu if contract.backend == "cpu" else gs.gpu
+
+
+def plain_log() -> dict[str, str]:
+    """Return the arguments of `gs.init` that make its log plain text with all messages."""
+    return {"theme": plain_theme(), "logging_level": "info"}
+
+
+def started(contract: Contract, seed: int = SEED) -> Engine:
+    """Return the engine that `gs.init` started, after checking how it was started.
+
+    Raises:
+        EngineError: Genesis is not initialised, its log was not kept, seed, precision or algorithms
+            are not the expected ones, or engine, Quadrants and Torch disagree on the backend.
+    """
+    gs = import_engine()
+    if not getattr(gs, "_initialized", False):
+        raise EngineError("Genesis is not initialised. Run the cell with gs.init first.")
+    logs = _kept_logs()
+    if not logs or not logs[-1].lines:
+        raise EngineError(
+            "Genesis was initialised, but its log was not kept. Restart the kernel and write "
+            "gs.init(backend=rg.backend(), ..., **rg.PLAIN_LOG)."
+        )
+    found = {
+        "seed": getattr(gs, "SEED", None),
+        "precision": str(8 * np.dtype(gs.np_float).itemsize),
+        "use_deterministic_algorithms": getattr(gs, "use_deterministic_algorithms", True),
+    }
+    valid = {"seed": seed, "precision": PRECISION, "use_deterministic_algorithms": True}
+    if found != valid:
+        raise EngineError(
+            f"gs.init was called with {found}, valid is {valid}. Restart the kernel and write "
+            "gs.init(backend=rg.backend(), seed=rg.SEED, precision=rg.PRECISION, "
+            "use_deterministic_algorithms=True, **rg.PLAIN_LOG)."
+        )
+    compiler = ".".join(map(str, importlib.import_module("quadrants").__version__))
+    switches = project.engine_switches(os.environ)
     backend = probe(contract.backend)
-    return Engine(gs.__version__, quadrants_version, PRECISION, seed, backend, log, switches)
+    return Engine(gs.__version__, compiler, PRECISION, seed, backend, logs[-1], switches)
+
+
+def _kept_logs() -> list[EngineLog]:
+    """Return the handlers of the engine's logger that keep its lines."""
+    return [h for h in logging.getLogger("genesis").handlers if isinstance(h, EngineLog)]
 
 
 def plain_theme() -> str:

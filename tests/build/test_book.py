@@ -42,6 +42,11 @@ FACTS = SimpleNamespace(
     checks=["one", "two", "three"],
 )
 LAB = notebook(cell(WRITE_BUNDLE), front=LAB_FRONT)
+FORGED = """\
+from IPython.display import display
+of = {"function": "robo_genesis.lessons.l04.text.metric_table", "arguments": []}
+display({"text/markdown": "7"}, metadata={"robo_genesis": of}, raw=True)"""
+FORGED_LAB = notebook(cell(WRITE_BUNDLE), cell(FORGED), front=LAB_FRONT)
 
 
 def accept(folder: Path, run_id: str) -> SimpleNamespace:
@@ -93,10 +98,10 @@ def test_a_build_publishes_site_and_evidence_and_says_with_what(built):
         f"Engine: genesis-world {built.last[1].split()[-1]}",
         "Lesson l04: engine 1.2.3, backend requested cpu, actual cpu, render camera (llvmpipe)",
         "Pages: 2 executed, 0 reused.",
-        "Checks passed: 3 on what was measured, 4 on the site.",
+        "Checks passed: 3 on what was measured, 5 on the site.",
     ]
     stages = list(dict.fromkeys(line.split("] ")[1].split()[0] for line in built.said))
-    assert stages == ["execute", "verify", "render", "pack", "check", "publish"]
+    assert stages == ["execute", "verify", "render", "pack", "sums", "check", "publish"]
     assert "Pages: 0 executed, 2 reused." in built.again
 
 
@@ -143,11 +148,12 @@ def test_pages_from_elsewhere_are_built_without_a_run(built, tmp_path):
     ("page", "settings", "error", "said"),
     [
         (LAB, {"verify": refuse}, BuildError, "lab: the bundle .* is refused: metrics: metrics.js"),
+        (FORGED_LAB, {}, BuildError, "shown: lab, code cell 2: its code shows 0 measured outputs"),
         ("# A\n\n<script src='https://example.org/a.js'></script>\n", {}, BuildError, "third p"),
         (LAB, {"executed": Path()}, StoreError, "lab is not among them. Execute the page again"),
         (LAB, {"release": True}, BuildError, r"RELEASE=1 cannot be met\.\n.* 1 changed file"),
     ],
-    ids=["refused bundle", "refused site", "missing page", "changed tree"],
+    ids=["refused bundle", "refused output", "refused site", "missing page", "changed tree"],
 )
 def test_a_build_that_is_refused_leaves_the_old_site(
     tmp_path, monkeypatch, page, settings, error, said

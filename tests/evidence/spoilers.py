@@ -538,7 +538,6 @@ def off_law(array):
 
 
 FAILING = {
-    "off its control law": both(rewrite(control_force=off_law), measured_again),
     "two joints on one DOF": joint(1, dof_idx_local=0),
     "a target outside its limits": joint(3, upper=-1.9),
     "a joint without a limit": joint(0, lower=None),
@@ -794,16 +793,25 @@ SPOILED = {
     "an archive of a byte": ("digest", "bad-array", bytes_of(G1, lambda b: b"P")),
     "arrays that are not finite": ("digest", "bad-trace", rewrite(q=changed_at((-1, 0), np.nan))),
     "a shifted time axis": ("digest", "bad-trace", rewrite(t=lambda t: t + 0.01)),
-    "a target that wanders": ("digest", "bad-trace", rewrite(target=changed_at((5, 3), 0.0))),
+    "a target that wanders": ("digest", "start", rewrite(target=changed_at((5, 3), 0.0))),
     "stamps of another dt": ("digest", "stamps", rewrite(t=lambda t: t * 2)),
     "a short run": ("digest", "stamps", both(
         rewrite(**dict.fromkeys(NAMES, short)), described, measured_again)),
-    "a joint that stands still": ("digest", "constant", rewrite(
+    "a joint that stands still": ("digest", "law", rewrite(
         q=changed_at((slice(None), 3), -2.0))),
-    "a velocity that stands still": ("digest", "constant", rewrite(
+    "a velocity that stands still": ("digest", "law", rewrite(
         qd=changed_at((slice(None), 3), 0.0))),
-    "no control force": ("digest", "constant", rewrite(control_force=np.zeros_like)),
-    "no internal force": ("digest", "constant", rewrite(internal_force=np.zeros_like)),
+    "no control force": ("digest", "law", rewrite(control_force=np.zeros_like)),
+    "no internal force": ("digest", "motion", rewrite(internal_force=np.zeros_like)),
+    "off its control law": ("digest", "law", both(
+        rewrite(control_force=off_law), measured_again)),
+    "quaternions of zero": ("digest", "pose", rewrite(link_quat=np.zeros_like)),
+    "a link that is moved": ("digest", "pose", rewrite(link_pos=changed_at((60, 2, 1), 0.3))),
+    "a link that the model lacks": ("digest", "pose", arrays(
+        lambda a: a["coords"].update(link=["link0", "link4", "head"]))),
+    "an effort limit of another case": ("digest", "law", rewrite(effort_limit=off_law)),
+    "a start with velocity": ("digest", "start", rewrite(start_qd=changed_at(3, 0.1))),
+    "a start elsewhere": ("digest", "start", rewrite(q=changed_at((0, 3), -1.9))),
     # Frames.
     "a camera without frames": ("files", "frames", lambda f: shutil.rmtree(f / "frames")),
     "a frame without a stamp": ("digest", "frames", frame(run_id="")),
@@ -854,7 +862,7 @@ SPOILED = {
     "no counts": ("digest", "metrics", metrics(lambda m: m.pop("model"))),
     "a count of another source": ("digest", "metrics", metrics(
         lambda m: m["model"]["links"].update({"from": ["luck"]}))),
-    "edited arrays": ("digest", "metrics", rewrite(qd=off_law)),
+    "edited arrays": ("digest", "law", rewrite(qd=off_law)),
     "one and the same picture twice": ("digest", "checks", frame("final", copy_of="initial")),
     "another value found by a check": ("checks", "checks", found(
         "control_law", "G2.distance_to_control_law", 0.001)),

@@ -73,7 +73,7 @@ STATES = [
     # A bundle cannot set its own state.
     ("refused", "bad-schema", both(predicate(state="verified"), seal), UNREADABLE),
     ("refused", "bad-schema", both(manifest(lambda m: m.update(badge="verified")), seal), ""),
-    ("refused", "checks", both(rewrite(control_force=off_law), measured_again, seal), ""),
+    ("refused", "law", both(rewrite(control_force=off_law), measured_again, seal), ""),
 ]
 
 

@@ -8,13 +8,15 @@ import pytest
 from bundles import written
 from spoilers import edit, predicate, seal
 
+from robo_genesis.build.shown import accepted_experiment, calls_of
 from robo_genesis.core import project
+from robo_genesis.core.shown import mime_data
 from robo_genesis.evidence import bundle, evidence_key
 from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.status import bundle_status
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.lessons.book_pages import find_pages
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.registry import find_page
 from robo_genesis.site.takeaways.files import csv_text
@@ -65,20 +67,6 @@ def in_archive(case, change):
             values = {name: np.array(stored[name]) for name in stored}
         change(values)
         np.savez_compressed(path, **values)
-
-    return spoil
-
-
-def recomputed(*spoilers):
-    """Spoil a bundle, then write the metrics and the checks that its arrays now give."""
-
-    def spoil(folder):
-        for one in spoilers:
-            one(folder)
-        manifest = bundle.read_manifest(folder)
-        run = from_bundle(folder, manifest)
-        edit(folder, "metrics.json", lambda records: records.update(run.records()))
-        predicate(checks=[check.record() for check in run.outcomes()])(folder)
 
     return spoil
 
@@ -137,3 +125,22 @@ def altered(check):
         found[next(iter(found))] += 1e-3
 
     return in_json("manifest.json", alter)
+
+
+def differing_outputs(folder, run, book) -> list[str]:
+    """Return the functions whose output differs between a run and the run that a bundle gives.
+
+    They are all functions that the page of the bundle shows.
+    """
+    manifest = bundle.read_manifest(folder)
+    names = (manifest.predicate.lesson, manifest.predicate.page)
+    (page,) = (page for page in find_pages(book) if (page.lesson, page.page) == names)
+    again = accepted_experiment(folder, manifest)
+    calls = [call for cell in calls_of(page) for call in cell]
+    assert len(calls) > 5
+    return [
+        call.function
+        for call in calls
+        if mime_data(call.function, run, call.arguments)
+        != mime_data(call.function, again, call.arguments)
+    ]

@@ -2,10 +2,12 @@
 
 import logging
 import os
+import subprocess
 import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from robo_genesis.core import project
@@ -97,24 +99,90 @@ def test_a_started_engine_is_not_started_again(tmp_path, monkeypatch):
         start(Contract("cpu", True, tmp_path))
 
 
-def test_the_switches_are_those_of_before_the_engine(tmp_path, monkeypatch):
-    """The engine sets some itself while it is imported, and again when it starts."""
+class FakeEngine(SimpleNamespace):
+    """An engine that starts as the real one and logs a line."""
+
+    cpu, gpu, __version__, _initialized = "cpu", "gpu", "1.3.3", False
+
+    def init(
+        self, *, backend, seed=None, precision="32", use_deterministic_algorithms=False, **log
+    ):
+        self._initialized, self.SEED = True, seed
+        self.backend = SimpleNamespace(name=backend)
+        self.np_float = {"32": np.float32, "64": np.float64}[precision]
+        self.use_deterministic_algorithms = use_deterministic_algorithms
+        if log.get("logging_level") == "info":
+            logging.getLogger("genesis").warning("initialised")
+
+
+@pytest.fixture
+def fake_engine(monkeypatch):
     for name in [name for name in os.environ if name.startswith(project.ENGINE_PREFIXES)]:
         monkeypatch.delenv(name)
-    monkeypatch.setenv("GS_ENABLE_ZEROCOPY", "0")
-    engine = SimpleNamespace(cpu="cpu", __version__="1", init=lambda **options: None)
-
-    def imported():
-        monkeypatch.setenv("QD_ENABLE_PYBUF", "1")
-        return engine
-
-    monkeypatch.setattr(session, "import_engine", imported)
+    engine = FakeEngine()
+    found = Backend("cpu", "cpu", "x64", "cpu", "2.13.0", None, None, "a CPU")
+    monkeypatch.setattr(session, "import_engine", lambda: engine)
+    monkeypatch.setitem(sys.modules, "genesis", SimpleNamespace(__file__="/packages/genesis/x"))
     monkeypatch.setitem(sys.modules, "quadrants", SimpleNamespace(__version__=(1, 2)))
-    monkeypatch.setattr(session, "probe", lambda requested: None)
+    monkeypatch.setattr(session, "probe", lambda requested: replace(found, requested=requested))
     monkeypatch.setitem(sys.modules, "genesis.styles", SimpleNamespace())
     for kept in ("handlers", "filters"):
         monkeypatch.setattr(logging.getLogger("genesis"), kept, [])
-    assert start(Contract("cpu", True, tmp_path)).switches == {"GS_ENABLE_ZEROCOPY": "0"}
+    return engine
+
+
+def test_a_start_keeps_the_log_and_the_switches_that_the_engine_did_not_set(
+    fake_engine, tmp_path, monkeypatch
+):
+    monkeypatch.setenv("GS_ENABLE_ZEROCOPY", "0")
+    monkeypatch.setenv("QD_ENABLE_PYBUF", "1")  # as the import of the real engine does
+    engine = start(Contract("cpu", True, tmp_path))
+    assert engine.switches == {"GS_ENABLE_ZEROCOPY": "0"}
+    assert engine.log.text() == "WARNING initialised\n"
+
+
+VALID = {"seed": session.SEED, "precision": "32", "use_deterministic_algorithms": True}
+KEPT = {"logging_level": "info"}
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (VALID | KEPT | {"seed": 7}, "'seed': 7.*valid is .*'seed': 0.*Restart the kernel"),
+        (VALID | KEPT | {"seed": None}, "'seed': None.*Restart the kernel"),
+        (VALID | KEPT | {"precision": "64"}, "'precision': '64'.*valid is .*'precision': '32'"),
+        (VALID | KEPT | {"use_deterministic_algorithms": False}, "use_deterministic_algorithms"),
+        (VALID, r"its log was not kept. Restart the kernel .*\*\*rg.PLAIN_LOG"),
+    ],
+)
+def test_an_engine_with_other_arguments_is_refused(fake_engine, tmp_path, given, message):
+    contract = Contract("cpu", True, tmp_path)
+    with pytest.raises(EngineError, match="not initialised"):
+        session.started(contract)
+    fake_engine.init(backend=session.requested_backend(contract), **given)
+    with pytest.raises(EngineError, match=message):
+        session.started(contract)
+
+
+def test_an_engine_whose_log_was_not_kept_from_the_start_is_refused(fake_engine, tmp_path):
+    fake_engine.init(backend="cpu", **VALID, **KEPT)
+    with pytest.raises(EngineError, match="its log was not kept"):
+        session.started(Contract("cpu", True, tmp_path))
+
+
+def test_a_second_attempt_to_start_keeps_one_log(fake_engine, tmp_path):
+    contract = Contract("auto", True, tmp_path)
+    assert [session.requested_backend(contract) for _ in range(2)] == ["gpu", "gpu"]
+    assert len(logging.getLogger("genesis").handlers) == 1
+
+
+@pytest.mark.engine
+def test_the_engine_itself_sets_no_other_switch_when_it_is_imported():
+    code = (
+        "import os; from robo_genesis.core.project import engine_switches as found; "
+        "before = found(os.environ); import genesis; assert found(os.environ) == before"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=project.ROOT)
 
 
 CUDA = Backend("auto", "cuda", "cuda", "cuda", "2.13.0", None, "12.8", "device")

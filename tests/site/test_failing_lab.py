@@ -11,7 +11,8 @@ from robo_genesis.core.project import BOOK, CACHE, ROOT
 
 pytestmark = pytest.mark.engine
 LAB = "lessons/l04-joint-control/lab"
-SOUND, SPOILED = '{"model": model}', '{"model": model | {"links": 12}}'
+SOUND = 'page.readings["model"] = model\n'
+SPOILED = 'page.readings["model"] = model | {"links": 12}\n'
 
 
 def test_a_failing_check_is_named_and_nothing_is_published(tmp_path):

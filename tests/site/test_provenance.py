@@ -72,6 +72,31 @@ def build(folder):
     return render(folder / "book", folder / "staging", folder / "cache", folder / "render.log")
 
 
+SHOW = """\
+from IPython.display import display
+of = {"function": "robo_genesis.lessons.l04.text.metric_table", "arguments": []}
+def show(name):
+    data = {"text/markdown": f"| {name} |\\n| --- |\\n| 7 |"}
+    display(data, metadata={"robo_genesis": of}, raw=True)"""
+
+
+def test_an_output_without_the_name_of_its_function_is_not_called_measured(tmp_path):
+    inputs = ":tags: [inputs]\n"
+    shown = (
+        cell("table('chosen')", inputs), cell("show('measured')"), cell("table('printed')"),
+        cell("show('one')\ntable('of both')"), cell("drawn('printed, too')"),
+    )  # fmt: skip
+    glued = cell("glue('md table', table('md'), display=False)", ":tags: [remove-cell]\n")
+    text = "\n```{glue:md} md table\n:format: gfm\n```\n"
+    html = build(book_of(tmp_path, cell(SHOW), glued, *shown, text=text))
+    lines = [line.get_text() for line in parsed(html, "lab").select("article .provenance")]
+    printed = "Printed by its cell, not compared with the bundle. ledger"
+    assert lines == [CHOSEN, OF_RUN, *[printed] * 5]
+    rows = parsed(html, "evidence/ledger").select("tbody tr")
+    kinds = ["settings", "table", *["printed"] * 5]
+    assert [row.select("td")[1].text for row in rows] == kinds
+
+
 def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(tmp_path):
     inputs = ":tags: [inputs]\n"
     shown = (cell("table('chosen')", inputs), cell("table('read')"), cell("drawn('alone')"))

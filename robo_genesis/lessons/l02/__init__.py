@@ -5,8 +5,24 @@ from dataclasses import replace
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
-from robo_genesis.lessons.l02 import checks, life_cycle, spec, study, text
-from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
+from robo_genesis.lessons.l02 import (
+    checks,
+    life_cycle,
+    mistakes,
+    plausibility,
+    plots,
+    spec,
+    study,
+    text,
+)  # fmt: skip
+from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics, fallen
+from robo_genesis.sim.rigid_bodies import read_model, run_drop
+from robo_genesis.sim.visual_shape import floor, read_shape
+
+__all__ = [
+    "LAB", "LECTURE", "LESSON", "fallen", "floor", "life_cycle", "mistakes", "plots", "read_model",
+    "read_shape", "run_drop", "spec", "text",
+]  # fmt: skip
 
 
 def readings(rendered: bool) -> dict[str, Readings]:
@@ -28,6 +44,7 @@ LAB = MeasuringPage(
     checks=checks.CHECKS,
     claims=text.CLAIMS,
     parameters=spec.parameters,
+    validate=plausibility.require_possible_runs,
 )
 LECTURE = replace(
     LAB,

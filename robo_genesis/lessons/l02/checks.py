@@ -84,16 +84,16 @@ def posture(run: Experiment) -> Iterator[Finding]:
     return end_state.findings(run.rendered, run.frames, run.traces["baseline"].link_pos)
 
 
-def same_fall(ends: Mapping[str, float]) -> Check:
+def same_fall(ends: Mapping[str, float], claim: str) -> Check:
     """Check that boxes of different colour or density fall alike.
 
     Args:
         ends: final height of each box [m]; the first one is the reference.
+        claim: what the check requires.
     """
     first = next(iter(ends.values()))
     apart = [equal(f"{name}.distance_to_first_m", end - first, 0.0) for name, end in ends.items()]
-    requirement = "Boxes of different colour or density fall alike, to the last bit."
-    return conclude("same_fall", requirement, apart)
+    return conclude("same_fall", claim, apart)
 
 
 CHECKS = (

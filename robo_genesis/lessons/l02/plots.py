@@ -1,18 +1,49 @@
-"""Figures of a dropped box. Each function draws on given axes and returns them."""
+"""Figures of a dropped box, each a function of the experiment."""
 
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from robo_genesis.core import plotting
 from robo_genesis.core.free_fall import continuous_drop
 from robo_genesis.core.plotting import look
-from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l02.metrics import fallen
-from robo_genesis.lessons.l02.study import StepStudy
-from robo_genesis.sim.rigid_bodies import Drop
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l02.metrics import fallen, predicted
+from robo_genesis.lessons.l02.study import step_study
+
+WIDTH = 7.0
+"""Of a figure [inch]."""
 
 
-def height(ax: Axes, trace: BodyTrace, case: Drop) -> Axes:
+def posture(run: Experiment) -> Figure:
+    """Show the camera frames of both ends, without a camera the measured positions."""
+    if run.rendered:
+        return plotting.both_ends(run.frames)
+    figure = Figure(figsize=(4, 5))
+    case, trace = run.cases["baseline"], run.traces["baseline"]
+    plotting.body_schematic(figure.subplots(), trace, case.size)
+    return figure
+
+
+def height(run: Experiment) -> Figure:
     """Draw the height of the box's centre at every sample, and its height on the ground."""
+    figure = Figure(figsize=(WIDTH, 3.2))
+    draw_height(figure.subplots(), run)
+    return figure
+
+
+def height_and_speed(run: Experiment) -> Figure:
+    """Draw height and speed of the box at every sample, one above the other."""
+    figure = Figure(figsize=(WIDTH, 5.6))
+    above, below = figure.subplots(2, 1, sharex=True)
+    draw_height(above, run)
+    draw_speed(below, run)
+    above.label_outer()
+    return figure
+
+
+def draw_height(ax: Axes, run: Experiment) -> None:
+    """Draw the height over time on given axes."""
+    trace, case = run.traces["baseline"], run.cases["baseline"]
     ax.plot(trace.t, trace.link_pos[:, 0, 2], marker=".", label="measured, get_links_pos",
             **look("baseline"))  # fmt: skip
     ax.axhline(case.size / 2, label="centre of a box on the ground", **look("limit"))
@@ -20,45 +51,45 @@ def height(ax: Axes, trace: BodyTrace, case: Drop) -> Axes:
     ax.set(xlabel="time [s]", ylabel="height z [m]")
     ax.set_title("Height of the box", loc="left")
     ax.legend(fontsize="small", loc="center left")
-    return ax
 
 
-def speed(ax: Axes, trace: BodyTrace, case: Drop) -> Axes:
-    """Draw the speed downwards at every sample, beside g t."""
+def draw_speed(ax: Axes, run: Experiment) -> None:
+    """Draw the speed downwards on given axes, beside g t."""
+    trace, case = run.traces["baseline"], run.cases["baseline"]
     ax.plot(trace.t, -trace.link_vel[:, 0, 2], marker=".", label="measured, get_links_vel",
             **look("baseline"))  # fmt: skip
     ax.plot(trace.t, case.gravity * trace.t, label="g t", **look("target"))
     ax.set(xlabel="time [s]", ylabel="speed downwards [m/s]")
     ax.set_title("Speed of the box", loc="left")
     ax.legend(fontsize="small", loc="upper left")
-    return ax
 
 
-def three_drops(ax: Axes, trace: BodyTrace, case: Drop, formula: FloatArray) -> Axes:
+def three_drops(run: Experiment) -> Figure:
     """Draw how much farther than g t² / 2 the box is, measured and by the stepped formula.
 
     The differences are a small part of the fall, so three curves of height would coincide.
-
-    Args:
-        ax: where to draw.
-        trace: the run.
-        case: its gravity enters g t² / 2.
-        formula: drop by the stepped formula at each sample, (n+1,) [m].
     """
+    trace, case = run.traces["baseline"], run.cases["baseline"]
     continuous = continuous_drop(trace.t, case.gravity)
+    stepped = predicted(trace, case)
+    figure = Figure(figsize=(WIDTH, 3.2))
+    ax = figure.subplots()
     ax.axhline(0, label="continuous: g t² / 2", **look("target"))
-    ax.plot(trace.t, 1000 * (formula - continuous), label="stepped: g h² n (n + 1) / 2",
+    ax.plot(trace.t, 1000 * (stepped - continuous), label="stepped: g h² n (n + 1) / 2",
             **look("other"))  # fmt: skip
     ax.plot(trace.t, 1000 * (fallen(trace) - continuous), "o", markersize=4.5, label="measured",
             color=look("baseline")["color"])  # fmt: skip
     ax.set(xlabel="time [s]", ylabel="farther down [mm]")
     ax.set_title("Against continuous free fall", loc="left")
     ax.legend(fontsize="small", loc="upper left")
-    return ax
+    return figure
 
 
-def gaps(ax: Axes, study: StepStudy) -> Axes:
+def gaps(run: Experiment) -> Figure:
     """Draw the distance ahead of continuous free fall at the end of the run by solver step."""
+    study = step_study(run.metrics, run.cases)
+    figure = Figure(figsize=(WIDTH, 3.4))
+    ax = figure.subplots()
     h = 1000 * study.h
     ax.loglog(h, 1000 * study.expected, label="g h t / 2", **look("other"))
     ax.loglog(h, 1000 * study.gaps, "o", markersize=6, label="measured",
@@ -69,4 +100,4 @@ def gaps(ax: Axes, study: StepStudy) -> Axes:
     ax.set_yticks([0.5, 1, 2, 5, 10], ["0.5", "1", "2", "5", "10"])
     ax.minorticks_off()
     ax.legend(fontsize="small", loc="upper left")
-    return ax
+    return figure

@@ -2,8 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 
+from robo_genesis.core import tables
 from robo_genesis.core.free_fall import ahead_of_continuous, continuous_drop, summed_drop
 from robo_genesis.core.text import Block, signed
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l02 import study as studies
 from robo_genesis.lessons.l02.metrics import DropMetrics
 from robo_genesis.lessons.l02.spec import (
     AT_REST,
@@ -17,6 +20,39 @@ from robo_genesis.sim.rigid_bodies import Drop
 INSPECT = "Check the times of the samples, the first state, gravity, and contacts first."
 TERM = "g h t / 2".replace(" ", "\N{NO-BREAK SPACE}")
 """How far ahead of continuous free fall a stepped body is."""
+
+
+def model_table(run: Experiment) -> str:
+    """Return the engine's counts of the scene and the box, and the box's mass."""
+    return tables.markdown([{**run.readings["model"], "mass [kg]": run.readings["body"]["mass"]}])
+
+
+def metric_table(run: Experiment) -> str:
+    """Return the metrics of the baseline."""
+    return tables.six_digits({"baseline": run.metrics["baseline"]})
+
+
+def three_drops(run: Experiment) -> str:
+    """Return a table of the measured drop and both formulas."""
+    return tables.markdown(three_rows(run.metrics["baseline"], run.cases["baseline"]))
+
+
+def conclusions(run: Experiment) -> str:
+    """Return the sentences about the baseline."""
+    blocks = interpretation(run.metrics["baseline"], run.cases["baseline"])
+    return "\n".join(block.markdown() for block in blocks)
+
+
+def substep_table(run: Experiment) -> str:
+    """Return the drops of all solver steps."""
+    study = studies.step_study(run.metrics, run.cases)
+    return tables.markdown(studies.rows(study, run.metrics))
+
+
+def substep_conclusions(run: Experiment) -> str:
+    """Return the sentences about all solver steps."""
+    sentences = convergence(studies.step_study(run.metrics, run.cases))
+    return "\n".join(f"- {sentence}" for sentence in sentences)
 
 
 def interpretation(found: DropMetrics, case: Drop) -> tuple[Block, ...]:
@@ -168,3 +204,6 @@ CLAIMS: dict[str, str] = {
     ),
 }
 """What each named check of the pages requires, shown where it passed."""
+
+SAME_FALL = "Boxes of different colour or density fall alike, to the last bit."
+"""What the check of the lecture's boxes requires, which are in no bundle."""

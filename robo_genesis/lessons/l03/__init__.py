@@ -6,9 +6,34 @@ from dataclasses import replace
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
-from robo_genesis.lessons.l03 import checks, spec, study, text
+from robo_genesis.lessons.l03 import (
+    checks,
+    mistakes,
+    plausibility,
+    plots,
+    spec,
+    study,
+    tables,
+    text,
+)  # fmt: skip
 from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
-from robo_genesis.sim.contacts import SETTINGS
+from robo_genesis.sim import mujoco_contacts
+from robo_genesis.sim.contacts import (
+    SETTINGS,
+    SURFACE_SIZE,
+    TOP,
+    build_world,
+    record_world,
+    time_constant,
+)
+from robo_genesis.sim.rigid_bodies import read_model
+from robo_genesis.sim.visual_shape import read_shape, slab
+
+__all__ = [
+    "LAB", "LECTURE", "LESSON", "SURFACE_SIZE", "TOP", "build_world", "mistakes",
+    "mujoco_contacts", "plots", "read_model", "read_shape", "record_world", "slab", "spec",
+    "study", "tables", "text", "time_constant",
+]  # fmt: skip
 
 
 def readings(shapes: Collection[str], cases: Collection[str]) -> dict[str, Readings]:
@@ -35,6 +60,7 @@ LAB = MeasuringPage(
     checks=checks.CHECKS,
     claims=text.CLAIMS,
     parameters=spec.parameters,
+    validate=plausibility.require_possible_runs,
 )
 LECTURE = replace(
     LAB,

@@ -43,6 +43,7 @@ def equal_steps(fine: ContactTrace, coarse: ContactTrace) -> Failure:
             f"dt = {1000 * dt:g} ms, by step number": (numbers, heights[:n])
             for dt, heights in ((fine.dt, z), (coarse.dt, z_coarse))
         },
+        axis="number of the step",
     )
 
 
@@ -78,6 +79,7 @@ def single_sample_stop(trace: ContactTrace, case: ContactCase) -> Failure:
             f"cube moves at up to {later:.2f} m/s. By the rule with a hold it stops {when}."
         ),
         curves={"speed along x": (trace.t, speed)},
+        unit="m/s",
     )
 
 

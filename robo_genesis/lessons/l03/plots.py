@@ -1,19 +1,27 @@
-"""Figures of bodies that land, slide and bounce; each function draws on given axes."""
+"""Figures of bodies that land, slide and bounce: functions of the experiment, and of axes."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
+from robo_genesis.core import plotting
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.plotting import look
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import spec
-from robo_genesis.lessons.l03.energy import clearance, conserved_energy, total_energy
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l03 import checks, friction, spec
+from robo_genesis.lessons.l03.energy import (
+    clearance,
+    conserved_energy,
+    kept_at_bounces,
+    total_energy,
+)
 from robo_genesis.lessons.l03.metrics import CLEAR
 from robo_genesis.lessons.l03.study import landings_at, solver_step
 from robo_genesis.sim import mujoco_contacts
-from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim.contacts import TOP, ContactCase
 
 LANDING_MARKS = {
     "baseline": "baseline",
@@ -28,8 +36,108 @@ SLIDE_MARKS = {
     "high_on_030": "other",
 }
 
+STEP_MARKS = {
+    "h_20000us_10000": "second",
+    "h_10000us_10000": "third",
+    "h_5000us_10000": "baseline",
+    "h_125us_10000": "first",
+}
+CONE_MARKS = {
+    "low_on_050": "first",
+    "high_on_050": "second",
+    "low_on_050_elliptic": "third",
+    "high_on_050_elliptic": "other",
+}
+BOUNCES_SHOWN = ("bounce_sub1", "bounce_sub2", "bounce_sub100")
+WINDOW = (0.18, 0.44)
+"""Around the landing of the lab [s]."""
+
+WIDTH = 7.0
+"""Of a figure [inch]."""
+
 Cases = Mapping[str, ContactCase]
 Traces = Mapping[str, ContactTrace]
+
+
+def posture(run: Experiment) -> Figure:
+    """Show the camera frames of both ends, without a camera the measured positions."""
+    if run.rendered:
+        return plotting.both_ends(run.frames)
+    figure = Figure(figsize=(4, 5))
+    plotting.body_schematic(figure.subplots(), run.traces["baseline"], spec.BASELINE.size, TOP)
+    return figure
+
+
+def landings(run: Experiment) -> Figure:
+    """Draw the clearance below the cubes of the lab around their landing."""
+    figure = Figure(figsize=(WIDTH, 3.6))
+    heights(figure.subplots(), run.traces, spec.LANDINGS, WINDOW)
+    return figure
+
+
+def landings_by_step(run: Experiment) -> Figure:
+    """Draw the clearance below the cube from the lab's height with four solver steps."""
+    figure = Figure(figsize=(WIDTH, 3.6))
+    heights(figure.subplots(), run.traces, spec.LANDED_AGAIN, (0.18, 0.36), STEP_MARKS)
+    return figure
+
+
+def contact_counts(run: Experiment) -> Figure:
+    """Draw the number of contact points of the lab's cubes around their landing."""
+    figure = Figure(figsize=(WIDTH, 2.6))
+    counted(figure.subplots(), run.traces, WINDOW)
+    return figure
+
+
+def depths_by_step(run: Experiment) -> Figure:
+    """Draw how deep all cubes sink in by solver step."""
+    figure = Figure(figsize=(WIDTH, 3.8))
+    depths(figure.subplots(), run.metrics)
+    return figure
+
+
+def pushed(run: Experiment) -> Figure:
+    """Draw speed, clearance and angular speed of the lab's pushed cubes."""
+    figure = Figure(figsize=(WIDTH, 6.4))
+    slides(figure.subplots(3, 1, sharex=True), run.traces, spec.SLIDES, SLIDE_MARKS)
+    return figure
+
+
+def cones(run: Experiment) -> Figure:
+    """Draw speed, clearance and angular speed with both friction models."""
+    figure = Figure(figsize=(WIDTH, 6.4))
+    cases = {name: spec.STUDY_CASES[name] for name in CONE_MARKS}
+    slides(figure.subplots(3, 1, sharex=True), run.traces, cases, CONE_MARKS)
+    return figure
+
+
+def stopping_distances(run: Experiment) -> Figure:
+    """Draw the stopping distances of the lab's cubes beside Coulomb's."""
+    coulomb = {
+        name: friction.coulomb_distance(case.speed, friction.pair_friction(case))
+        for name, case in spec.SLIDES.items()
+    }
+    figure = Figure(figsize=(WIDTH, 2.6))
+    found = {name: of.stop_distance for name, of in checks.slides(run).items()}
+    stopping(figure.subplots(), found, coulomb)
+    return figure
+
+
+def ball_energies(run: Experiment) -> Figure:
+    """Draw both energies of the ball for three of the solver steps."""
+    figure = Figure(figsize=(WIDTH, 6))
+    shown = {name: spec.BOUNCES[name] for name in BOUNCES_SHOWN}
+    energies(figure.subplots(2, 1, sharex=True), run.traces, shown)
+    return figure
+
+
+def kept_by_step(run: Experiment) -> Figure:
+    """Draw the energy that the ball keeps at its first bounce by solver step."""
+    figure = Figure(figsize=(WIDTH, 3.2))
+    shares = {spec.BOUNCES[name].h: of.first_kept for name, of in checks.bounces(run).items()}
+    assert spec.DROPPED_BALL.spring is not None
+    kept(figure.subplots(), shares, 100 * kept_at_bounces(spec.DROPPED_BALL.spring[1]))
+    return figure
 
 
 def heights(

@@ -1,18 +1,76 @@
-"""Tables of landings, slides and engines, as rows for a page to display."""
+"""Tables of landings, slides and engines: functions of the experiment, and rows."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from robo_genesis.core import tables
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import friction, spec
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l03 import checks, friction, spec, study
 from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics
 from robo_genesis.lessons.l03.study import distance_between, landings_at, slide, solver_step
 from robo_genesis.sim.contacts import ContactCase
 
 Rows = Sequence[dict[str, str]]
 Metrics = Mapping[str, CaseMetrics]
+
+
+def landings(run: Experiment) -> str:
+    """Return the metrics of the dropped cubes."""
+    return tables.six_digits(checks.landings(run))
+
+
+def slides(run: Experiment) -> str:
+    """Return the metrics of the pushed cubes."""
+    return tables.six_digits(checks.slides(run))
+
+
+def bounces(run: Experiment) -> str:
+    """Return the metrics of the balls."""
+    return tables.six_digits(checks.bounces(run))
+
+
+def steps(run: Experiment) -> str:
+    """Return the landings of each solver step with the engine's time constant of a contact."""
+    return tables.markdown(step_rows(run.metrics, run.readings[study.GROUP]))
+
+
+def pushed(run: Experiment) -> str:
+    """Return the slides with the engine's default friction model beside Coulomb's distance."""
+    return tables.markdown(slide_rows(run.metrics, study.PUSHED))
+
+
+def cones(run: Experiment) -> str:
+    """Return the slides with all friction models beside Coulomb's distance in steps."""
+    names = [*study.PUSHED, *spec.CLEAN_SLIDES, *spec.CONVEX_SLIDES]
+    return tables.markdown(slide_rows(run.metrics, names, stepped=True))
+
+
+def first_impulses(run: Experiment) -> str:
+    """Return the impulses of the first outer step of the pushed cubes."""
+    rows = []
+    for name in study.PUSHED:
+        case = spec.REPEATED[name]
+        lost, gained = study.first_impulses(run.traces[name], case)
+        mu = friction.pair_friction(case)
+        rows.append(
+            {
+                "cube": name,
+                "lost along x [m/s]": f"{lost:.4f}",
+                "given upwards by the contact [m/s]": f"{gained:.4f}",
+                "their ratio": f"{lost / gained:.4f}",
+                "μ of the pair": f"{mu:g}",
+                "μ g dt, friction under the weight [m/s]": f"{mu * case.gravity * case.dt:.4f}",
+            }
+        )
+    return tables.markdown(rows)
+
+
+def engines(run: Experiment) -> str:
+    """Return how far the pairs of runs in two engines are apart."""
+    return tables.markdown(engine_rows(run.traces, run.metrics))
 
 
 def landing_rows(cases: Mapping[str, ContactCase]) -> Rows:

@@ -7,7 +7,7 @@ import numpy as np
 from robo_genesis.core.text import Block, listed, signed
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l03 import checks, friction, spec
+from robo_genesis.lessons.l03 import checks, friction, spec, study
 from robo_genesis.lessons.l03.energy import kept_at_bounces
 from robo_genesis.lessons.l03.metrics import (
     CLEAR,
@@ -21,6 +21,19 @@ from robo_genesis.sim.contacts import ContactCase
 INSPECT = (
     "Check the settings of the cases, the times of the samples, and contacts with the body first."
 )
+
+
+def conclusions(run: Experiment) -> str:
+    """Return the sentences about the lab's runs."""
+    return "\n".join(block.markdown() for block in interpretation(run))
+
+
+def step_conclusions(run: Experiment) -> str:
+    """Return the sentences about all solver steps."""
+    found = {
+        study.solver_step(name): study.landings_at(run.metrics, name) for name in spec.STEPS_STUDIED
+    }
+    return "\n".join(f"- {sentence}" for sentence in step_study(found))
 
 
 def interpretation(run: Experiment) -> tuple[Block, ...]:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from robo_genesis.core.channels import View
+from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
 from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.declaration import Compared, Filmed, Lesson
@@ -11,14 +12,22 @@ from robo_genesis.lessons.l04 import (
     checks,
     claims_text,
     plausibility,
+    plots,
     spec,
     study,
     study_checks,
     study_spec,
+    text,
 )
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics, step_metrics
-from robo_genesis.sim.franka import JOINT_NAMES
-from robo_genesis.sim.joint_control import ControlCase
+from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.joint_control import ControlCase, differences, reset, run_case, validate
+from robo_genesis.sim.joints import resolve_joints
+
+__all__ = [
+    "CAMERA", "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LECTURE", "LESSON", "SUBSTEPS",
+    "differences", "plots", "reset", "resolve_joints", "run_case", "spec", "text", "validate",
+]  # fmt: skip
 
 STUDY_RUNS = {
     # A run that holds its start has no step, so it has no metrics.
@@ -28,7 +37,7 @@ STUDY_RUNS = {
         name: Run(spec.CASES[second.case], note="run in MuJoCo, not in Genesis")
         for name, second in study_spec.SECOND_RUNS.items()
     },
-    "assigned": Run(
+    study_spec.ASSIGNED: Run(
         spec.BASELINE,
         measured=False,
         note="state overwritten at each sample, no step taken; its time is nominal",

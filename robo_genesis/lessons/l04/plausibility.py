@@ -1,42 +1,34 @@
-"""What arrays of the lesson's cases cannot be, whatever metrics and checks they give."""
+"""What arrays of a driven robot cannot be, whatever metrics and checks they give."""
 
-import numpy as np
+from collections.abc import Iterator
 
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
-from robo_genesis.core.trace import Trace
+from robo_genesis.core.plausibility import Breach, computed_again, copied, refuse, times
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l04 import spec
+from robo_genesis.lessons.l04 import study_spec
+from robo_genesis.sim import mujoco_joints
+from robo_genesis.sim.plausible_joints import assigned_path, driven_run
 
 
 def require_possible_runs(run: Experiment) -> None:
-    """Require of each case its steps, its time step, and a joint that moves and is driven.
+    """Require of each run in Genesis the mechanics of the robot; compute those in MuJoCo again.
 
     Raises:
-        BundleRefused: `stamps` or `constant`.
+        BundleRefused: `stamps`, `start`, `law`, `pose`, `motion` or `second-engine`.
     """
-    for name, case in spec.CASES.items():
-        file, trace = f"arrays/{name}.npz", run.traces[name]
-        expect("stamps", file, "number of steps", trace.steps, case.steps)
-        if not np.allclose(trace.t, np.arange(case.steps + 1) * case.dt, rtol=0, atol=1e-9):
-            expect("stamps", file, "dt of the stamps [s]", trace.dt, case.dt)
-        require_motion(file, trace)
+    for name, case in run.cases.items():
+        if name in study_spec.SECOND_RUNS:
+            breaches = in_mujoco(run, name)
+        else:
+            rules = assigned_path if name == study_spec.ASSIGNED else driven_run
+            breaches = rules(run.traces[name], case, run.links)
+        refuse(f"arrays/{name}.npz", breaches)
 
 
-def require_motion(file: str, trace: Trace) -> None:
-    """Refuse an array of one constant.
-
-    Raises:
-        BundleRefused: `constant`.
-    """
-    for name, values in (
-        (f"position of {spec.STEPPED_JOINT}", trace.q[:, spec.ENTRY]),
-        (f"velocity of {spec.STEPPED_JOINT}", trace.qd[:, spec.ENTRY]),
-        ("control force", trace.control_force),
-        ("internal force", trace.internal_force),
-    ):
-        if (values == values.flat[0]).all():
-            raise BundleRefused(
-                "constant",
-                f"{file}: {name} is {values.flat[0]:g} at every sample, expected one "
-                f"that changes. {AGAIN}",
-            )
+def in_mujoco(run: Experiment, name: str) -> Iterator[Breach]:
+    """Yield what a run in MuJoCo does not have."""
+    trace, case, second = run.traces[name], run.cases[name], study_spec.SECOND_RUNS[name]
+    by_genesis = {n: of for n, of in run.traces.items() if n not in study_spec.SECOND_RUNS}
+    yield from times(trace, case.steps, case.dt)
+    yield from copied(trace, by_genesis)
+    again = mujoco_joints.run_case(case, run.links, second.timestep, second.integrator)
+    yield from computed_again(trace, again)

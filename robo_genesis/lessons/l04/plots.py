@@ -1,4 +1,4 @@
-"""Figures of lesson L04: axes in, axes out; no numerics, no show()."""
+"""Figures of lesson L04: functions of the experiment, and of axes; no numerics, no show()."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -7,13 +7,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from robo_genesis.core import plotting
 from robo_genesis.core.palette import marks_of
 from robo_genesis.core.plotting import LIMIT, TARGET, channel, finish, legend_above, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
-from robo_genesis.lessons.l04.spec import CASE_MARKS
+from robo_genesis.lessons.l04.spec import CASE_MARKS, STEPPED_JOINT
+from robo_genesis.lessons.l04.study_spec import COMPARED
 from robo_genesis.sim import joint_channels
+from robo_genesis.sim.franka import LINK_PARENTS
 from robo_genesis.sim.joints import JointMap
 
 IDEAL = look("target", linestyle=(0, (1, 1.2)), linewidth=1.8)
@@ -29,6 +33,31 @@ JPEG_QUALITY = 70
 
 FILM_VIEW = (slice(140, 420), slice(270, 550))
 """Rows and columns of a frame that show the robot [pixel]."""
+
+
+def posture(run: Experiment) -> Figure:
+    """Show the camera frames of both ends, without a camera the measured link origins."""
+    if run.rendered:
+        return plotting.both_ends(run.frames)
+    figure = Figure(figsize=(6, 5))
+    plotting.schematic(figure.subplots(), run.traces["baseline"], LINK_PARENTS)
+    return figure
+
+
+def baseline(run: Experiment) -> Figure:
+    """Draw position, velocity and control force of the stepped joint in the baseline."""
+    figure = Figure(figsize=(7, 8))
+    axes = figure.subplots(3, 1, sharex=True)
+    response(axes, {"baseline": run.traces["baseline"]}, run.joints, STEPPED_JOINT)
+    return figure
+
+
+def compared(run: Experiment) -> Figure:
+    """Draw position, velocity and control force of the stepped joint in the compared cases."""
+    figure = Figure(figsize=(7, 8.5))
+    traces = {name: run.traces[name] for name in COMPARED}
+    response(figure.subplots(3, 1, sharex=True), traces, run.joints, STEPPED_JOINT)
+    return figure
 
 
 def position(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:

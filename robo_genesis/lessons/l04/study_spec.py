@@ -80,6 +80,9 @@ SECOND_RUNS = {
 }
 """All compared cases at the lesson's solver step, and G2 at every studied one."""
 
+ASSIGNED = "assigned"
+"""Name of the run whose states are assigned, without control and steps."""
+
 SMALL_STEP_TOLERANCE = 0.03
 """Largest difference in overshoot between theory and a small unsaturated step, as a share of the
 step."""

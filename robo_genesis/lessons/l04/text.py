@@ -8,17 +8,21 @@ from itertools import groupby
 
 import numpy as np
 
+from robo_genesis.core import tables
 from robo_genesis.core.comparison import compare, comparison_sentence, prediction_sentence
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block
 from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import (
     SATURATION_THRESHOLD,
     SETTLING_BAND,
     StepMetrics,
     is_saturated,
 )  # fmt: skip
-from robo_genesis.lessons.l04.study_spec import AT_REST
+from robo_genesis.lessons.l04.study_spec import AT_REST, COMPARED
+from robo_genesis.sim.joint_control import differences
 
 INSPECT = (
     "Before blaming the model, inspect saturation, the time stamps, the initial states and "
@@ -27,6 +31,33 @@ INSPECT = (
 
 COMPARED_METRICS = ("rise_time", "peak_speed", "overshoot", "settling_time")
 """Metrics that the text compares between two cases."""
+
+
+def model_table(run: Experiment) -> str:
+    """Return the engine's counts of the robot."""
+    return tables.markdown([run.readings["model"]])
+
+
+def joint_table(run: Experiment) -> str:
+    """Return the joints by name with their DOFs and limits."""
+    return tables.markdown(run.joints.rows())
+
+
+def metric_table(run: Experiment) -> str:
+    """Return the metrics of all cases of the lab."""
+    return tables.metric_table({name: run.metrics[name] for name in spec.CASES})
+
+
+def conclusions(run: Experiment) -> str:
+    """Return the sentences about the compared cases."""
+    changed = {
+        (one, other): differences(spec.CASES[one], spec.CASES[other], run.joints)
+        for one, other in spec.ONE_FACTOR
+    }
+    metrics = {name: run.metrics[name] for name in COMPARED}
+    traces = {name: run.traces[name] for name in COMPARED}
+    blocks = interpret(metrics, changed, spec.PREDICTIONS, spec.RESOLUTION, traces, spec.ENTRY)
+    return "\n".join(block.markdown() for block in blocks)
 
 
 def pair_sentences(

@@ -19,8 +19,9 @@ RASTERS = (".png", ".webp", ".jpg", ".jpeg")
 UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",
+    "printed": "Printed by its cell, not compared with the bundle.",
 }
-"""Kinds of items that no run of the engine made, each with the line below it."""
+"""Kinds of items without evidence of a run, each with the line below it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +58,9 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One figure, table, camera frame, illustration or table of settings.
+    """One figure, table or camera frame, illustration, table of settings, or printed output.
 
-    `runs` are the keys of the runs that made it, none for the last two kinds. `file` is the
+    `runs` are the keys of the runs that made it, none for the last three kinds. `file` is the
     picture's path below the book, or of a table the name of its CSV; `data` is that CSV, None for
     a picture.
     """

@@ -13,6 +13,10 @@ INPUTS = "inputs"
 """The tag of a cell whose tables contain only chosen values, no measured ones."""
 
 
+MADE_BY_CELL = {"cell_code", "mime_bundle", "glued"}
+"""What MyST-NB and `Glued` call the parts of a page that are the output of a cell."""
+
+
 def above(node: nodes.Node, kind: type = nodes.Element) -> Iterator[Any]:
     """Yield the ancestors of a node that have one type, the nearest first."""
     while node.parent is not None:
@@ -42,9 +46,17 @@ def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
     made = {element.get("nb_element"): element for element in parents}
     if "cell_code" in made and INPUTS in made["cell_code"]["cell_metadata"].get("tags", []):
         return ()
-    if made.keys() & {"cell_code", "mime_bundle", "glued"}:
+    if made.keys() & MADE_BY_CELL:
         return (f"{page}/{BACKEND}" if page else "",)
     return None
+
+
+def came_from_a_cell(node: nodes.Node) -> bool:
+    """Return whether a node is the output of a cell, there or glued, and not read from a bundle."""
+    parents = list(above(node))
+    if any("evidence_runs" in element for element in parents):
+        return False
+    return any(element.get("nb_element") in MADE_BY_CELL for element in parents)
 
 
 class Glued:

@@ -1,13 +1,15 @@
 """Finds each figure and measured table of a page, and writes its origin below it.
 
 A picture or table is measured if it is an output of a code cell, shown there or glued elsewhere, or
-was read from a bundle. The tables of a cell that is tagged `inputs` were chosen. A picture that no
-run made is an illustration. A table typed in prose is not listed.
+was read from a bundle. The tables of a cell that is tagged `inputs` were chosen. On a page that
+calls `page.show`, other outputs are printed: the build does not compare them with the bundle. A
+picture that no run made is an illustration. A table typed in prose is not listed.
 """
 
 import re
 import textwrap
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
 from pathlib import Path
@@ -17,11 +19,13 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util import logging
 
+from robo_genesis.build.built_pages import executed_notebook
+from robo_genesis.build.shown import marked
 from robo_genesis.lessons.book_pages import find_pages
 from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
 from robo_genesis.site.evidence.ledger_data import Item, Run
-from robo_genesis.site.evidence.origin import INPUTS, above, origin
+from robo_genesis.site.evidence.origin import INPUTS, above, came_from_a_cell, origin
 
 TITLE = 80
 """Longest title in the ledger, in characters."""
@@ -47,7 +51,7 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
     """List the figures and tables of a page, and write its origin below each of them."""
     env = app.env
     book, items = Path(env.srcdir), []
-    known = all_runs(book)
+    known, compared = all_runs(book), compared_cells(book, env.docname)
     for node in list(doctree.findall(lambda n: isinstance(n, nodes.table | nodes.image))):
         keys = origin(node, measured_pages(book).get(env.docname))
         is_table = isinstance(node, nodes.table)
@@ -58,10 +62,37 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
             continue
         holder = node if is_table else next(above(node, nodes.figure), node)
         item = describe(holder, node, env.docname, keys, book)
+        if compared is not None and came_from_a_cell(node) and cell_index(node) not in compared:
+            item = item if item.kind == "settings" else replace(item, kind="printed", runs=())
         items.append(item)
         runs = [known[key] for key in item.runs]
         add_line(holder, ledger_data.provenance(item.kind, runs), item.row)
     all_items(env)[env.docname] = items
+
+
+def compared_cells(book: Path, docname: str) -> set[int] | None:
+    """Return the places of the cells all of whose outputs the build compared with the bundle.
+
+    Returns:
+        None for a page that shows nothing by the name of its function.
+    """
+    if docname not in measured_pages(book):
+        return None
+    page = next(page for page in find_pages(book) if page.docname == docname)
+    places = [k for k, cell in enumerate(page.notebook.cells) if cell.cell_type == "code"]
+    ran = [cell for cell in executed_notebook(docname).cells if cell.cell_type == "code"]
+    found = {}
+    for place, cell in zip(places, ran, strict=True):
+        shown = [output for output in cell.outputs if "data" in output]
+        found[place] = (len(shown), len(marked(cell)))
+    if not any(count for _, count in found.values()):
+        return None
+    return {place for place, (shown, count) in found.items() if shown == count}
+
+
+def cell_index(node: nodes.Node) -> int | None:
+    """Return the place of the cell that a node is an output of, None elsewhere."""
+    return next((e["cell_index"] for e in above(node) if e.get("nb_element") == "cell_code"), None)
 
 
 def _problem(keys: tuple[str, ...] | None, known: Mapping[str, Run], is_table: bool) -> str | None:

@@ -1,7 +1,9 @@
 """Landings, slides and bounces without Genesis."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from lessons.body_runs import slide_on_corners
 
@@ -42,4 +44,7 @@ def contact_traces() -> dict[str, ContactTrace]:
         name: mujoco_contacts.run_case(case, own_defaults=name == spec.OWN_DEFAULTS)
         for name, case in (spec.CASES | spec.STUDY_CASES).items()
     }
-    return traces | {name: slide_on_corners(case) for name, case in spec.CLEAN_SLIDES.items()}
+    traces |= {name: slide_on_corners(case) for name, case in spec.CLEAN_SLIDES.items()}
+    for name in spec.ENGINE_PAIRS:  # two engines never agree to the last bit
+        traces[name] = replace(traces[name], link_pos=traces[name].link_pos + np.float32(1e-7))
+    return traces

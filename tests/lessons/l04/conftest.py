@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from robot_runs import assigned, driven
 
-from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import LECTURE, study_spec
 from robo_genesis.lessons.l04 import spec as l04
@@ -24,27 +24,15 @@ def raised(trace, overshoot):
     return replace(trace, q=q)
 
 
-def assigned(trace: Trace) -> Trace:
-    """Return the run with its state overwritten along a straight line."""
-    path = np.linspace(l04.BASELINE.q_start, l04.BASELINE.q_target, len(trace.t))
-    return replace(trace, q=path.astype(trace.q.dtype))
-
-
 @pytest.fixture(scope="session")
 def study_runs(joints, frames) -> Experiment:
-    """The lecture of L04 with studies that pass every check, with MuJoCo in place of both engines.
-
-    Runs with a fine step replace those of Genesis. The overshoot of G2 falls with the substeps.
-    """
-    cases = l04.CASES | study_spec.STEP_CASES
-    traces = {name: mujoco_joints.run_case(case, LINKS, 0.0005) for name, case in cases.items()}
+    """The lecture of L04 with studies that pass every check, without Genesis."""
+    cases = l04.CASES | study_spec.STEP_CASES | study_spec.SUBSTEP_CASES
+    traces = {name: driven(case, LINKS) for name, case in cases.items()}
     for name, run in study_spec.SECOND_RUNS.items():
         case = l04.CASES[run.case]
         traces[name] = mujoco_joints.run_case(case, LINKS, run.timestep, run.integrator)
-    falling = (0.06, 0.05, 0.04, 0.03, 0.025, 0.023)
-    for n, overshoot in zip(study_spec.SUBSTEPS_STUDIED, falling, strict=True):
-        traces[studies.run_name("Genesis", "G2", n)] = raised(traces["G2"], overshoot)
-    traces["assigned"] = assigned(traces["baseline"])
+    traces[study_spec.ASSIGNED] = assigned(l04.BASELINE, LINKS)
     inertia, gravity = (float(v[l04.ENTRY]) for v in mujoco_joints.at_rest(l04.G1, Q_START))
     of_joint = {"passive_damping": 1.0}
     of_joint |= {f"inertia_{name}": inertia for name in ("Genesis", "MuJoCo")}

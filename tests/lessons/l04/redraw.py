@@ -1,4 +1,4 @@
-"""The names that figure cells of L04 use, from the bundle of their page."""
+"""The names that the figure cells of L04's lecture use, from its bundle."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ def names(folder: Path) -> dict[str, Any]:
         "experiment": experiment,
         "everything": runs,
         "baseline": runs["baseline"],
-        "assigned": runs.get("assigned"),
+        "assigned": runs["assigned"],
         "compared": {case: runs[case] for case in ("G1", "G2", "G3")},
         "traces": {"baseline": runs["baseline"]},
         "joints": experiment.joints,

@@ -2,8 +2,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lessons.lesson_bundles import differing_outputs
 
 from robo_genesis.core.checks import Check, CheckFailed, require
+from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.experiment import runs_of
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.checks import CHECKS
@@ -191,3 +193,7 @@ def test_every_failed_check_is_named_and_no_check_is_a_failure():
         require("l04", outcomes)
     with pytest.raises(CheckFailed, match="no check ran"):
         require("l04", ())
+
+
+def test_what_the_lab_shows_follows_from_its_bundle(pristine, experiment):
+    assert differing_outputs(pristine, experiment, BOOK) == []

@@ -16,9 +16,15 @@ from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import LAB, spec
 from robo_genesis.sim import session
 from robo_genesis.sim.camera import capture, read_renderer
-from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.franka import JOINT_NAMES, LINK_PARENTS
 from robo_genesis.sim.joint_control import CaseError, reset, run_case
-from robo_genesis.sim.joints import JointError, one_dof_joint, resolve_joints, to_numpy
+from robo_genesis.sim.joints import (
+    JointError,
+    link_parents,
+    one_dof_joint,
+    resolve_joints,
+    to_numpy,
+)
 
 pytestmark = pytest.mark.engine
 
@@ -74,6 +80,7 @@ def same(one, other):
 def test_the_map_is_what_each_joint_owns(lab, joints):
     assert lab.joints.lower == pytest.approx(joints.lower, abs=1e-6)
     assert lab.joints.upper == pytest.approx(joints.upper, abs=1e-6)
+    assert tuple(link_parents(lab.franka)) == LINK_PARENTS
     for k, name in enumerate(JOINT_NAMES):
         joint = lab.franka.get_joint(name)
         assert list(joint.dofs_idx_local) == [lab.joints.dofs_idx_local[k]]

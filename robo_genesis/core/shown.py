@@ -1,0 +1,121 @@
+"""Measured outputs of a page: named functions of the experiment, and their results as MIME data.
+
+A page shows such an output with `page.show`. The build calls the same function on the experiment
+that it reads from the page's bundle, and refuses a page with another result.
+"""
+
+import io
+import json
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from inspect import isfunction
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from robo_genesis.core import plotting
+
+PLACES = ("robo_genesis.lessons.", "robo_genesis.core.")
+"""The modules that may hold such functions."""
+
+METADATA = "robo_genesis"
+"""The key of an output's metadata; its value is {"function": name, "arguments": [...]}."""
+
+TEXT, DRAWING = "text/markdown", "image/svg+xml"
+
+CHECKS = "robo_genesis.core.tables.checks_of_run"
+"""The function whose table `page.finish` shows."""
+
+
+class ShownError(ValueError):
+    """A page shows something that is not a named function of the experiment."""
+
+
+def name_of(function: Any) -> str:
+    """Return the name under which the build finds a function.
+
+    Raises:
+        ShownError: the build cannot find it.
+    """
+    if not isfunction(function):
+        raise ShownError(
+            f"page.show was given {function!r}. Give a function of a lesson and not its result: "
+            "page.show(l02.text.metric_table)."
+        )
+    name = f"{function.__module__}.{function.__qualname__}"
+    if find(name) is not function:
+        raise ShownError(f"{name} is now another function. Restart the kernel.")
+    return name
+
+
+def find(name: str) -> Callable[..., Any]:
+    """Return the function of a name.
+
+    Raises:
+        ShownError: it is not a function at the top level of a module of lessons or core.
+    """
+    place, _, last = name.rpartition(".")
+    found = None
+    if place.startswith(PLACES) and all(part.isidentifier() for part in name.split(".")):
+        try:
+            found = vars(import_module(place)).get(last)
+        except ImportError:
+            found = None
+    if not isfunction(found) or found.__module__ != place:
+        raise ShownError(
+            f"{name!r} cannot be shown. Valid are functions at the top level of a module below "
+            f"{' or '.join(place.removesuffix('.') for place in PLACES)}. Move it there."
+        )
+    return found
+
+
+def metadata(name: str, arguments: Sequence[Any]) -> dict[str, Any]:
+    """Return the metadata of an output.
+
+    Raises:
+        ShownError: an argument is not a JSON value.
+    """
+    try:
+        kept = json.loads(json.dumps(list(arguments), allow_nan=False))
+    except (TypeError, ValueError):
+        kept = None
+    if kept != list(arguments):
+        raise ShownError(
+            f"{name} was given the arguments {tuple(arguments)!r}. Valid are JSON values: text, "
+            "finite numbers, true, false, None, and lists and dictionaries of them."
+        )
+    return {METADATA: {"function": name, "arguments": kept}}
+
+
+def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str, str]:
+    """Call a function on an experiment and return its result as MIME data.
+
+    A text is Markdown. A figure is drawn as SVG in the course's style; equal figures give equal
+    bytes.
+
+    Args:
+        name: of the function.
+        experiment: its first argument.
+        arguments: its further arguments, JSON values.
+
+    Raises:
+        ShownError: the name is not valid, or the result is neither a text nor a figure.
+    """
+    function = find(name)
+    with plotting.course_style():
+        result = function(experiment, *arguments)
+        if isinstance(result, str):
+            return {TEXT: result}
+        if isinstance(result, Figure):
+            return {DRAWING: _svg(result)}
+    raise ShownError(
+        f"{name} returned {type(result).__name__}. Return Markdown (str) or a Matplotlib Figure."
+    )
+
+
+def _svg(figure: Figure) -> str:
+    stream = io.StringIO()
+    figure.savefig(
+        stream, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None}
+    )
+    return stream.getvalue()

@@ -1,0 +1,183 @@
+"""The page of a lesson while it runs: it measures, shows, checks and writes its bundle.
+
+A page calls `gs.init` itself; `open_page` follows it:
+
+    gs.init(backend=rg.backend(), seed=rg.SEED, precision=rg.PRECISION,
+            use_deterministic_algorithms=True, **rg.PLAIN_LOG)
+    page = rg.open_page("l02", "lab")
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from IPython.display import Markdown, display
+from matplotlib.figure import Figure
+
+from robo_genesis.core import checks, plotting, shown, tables
+from robo_genesis.core.checks import Check
+from robo_genesis.core.mistakes import Failure
+from robo_genesis.evidence.recorder import Recorder
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.registry import find_page
+from robo_genesis.sim import camera as cameras
+from robo_genesis.sim import session, visual_shape
+
+_opened: list[str] = []
+
+
+def backend() -> Any:
+    """Return the argument `backend` of the `gs.init` that follows, and start to keep its log.
+
+    It is `gs.cpu`, and `gs.gpu` where ROBO_GENESIS_BACKEND is `auto`.
+
+    Raises:
+        ContractError: a variable of the contract is not valid.
+        EngineError: Genesis is missing or already initialised.
+    """
+    return session.requested_backend(session.read_contract())
+
+
+def open_page(lesson: str, name: str) -> "LessonPage":
+    """Start the record of a page, after `gs.init`.
+
+    Raises:
+        LookupError: there is no such lesson or page; the message lists the choices.
+        ContractError: a variable of the contract is not valid.
+        EngineError: a page is open already, Genesis is not initialised, or it was initialised with
+            another backend, seed or precision.
+    """
+    find_page(lesson, name)
+    if _opened:
+        raise session.EngineError(
+            f"The page {_opened[0]} is open in this process, and a process has one page. Restart "
+            "the kernel and run all cells from the top."
+        )
+    contract = session.read_contract()
+    page = LessonPage(lesson, name, contract, session.started(contract))
+    _opened.append(f"{lesson}/{name}")
+    plotting.use_course_style()
+    return page
+
+
+class LessonPage:
+    """One page of a lesson with everything that it measured so far.
+
+    | attribute | meaning |
+    |---|---|
+    | `traces` | runs by name |
+    | `readings` | values of the engine by group and name |
+    | `frames` | camera frames by name |
+    | `joints` | the `JointMap` of the arrays' DOFs, None for free bodies |
+    | `links` | names of the links, in the order of the arrays |
+    | `render` | whether the environment requests a camera |
+    | `folder` | of the page's outputs |
+    | `log` | the engine's log |
+    """
+
+    def __init__(
+        self, lesson: str, name: str, contract: session.Contract, engine: session.Engine
+    ) -> None:
+        self._declared = find_page(lesson, name)
+        self._recorder = Recorder(lesson, name, contract, engine)
+        self._lesson, self.log = lesson, engine.log
+        self.render = contract.render
+        self.folder: Path = contract.outputs / lesson / name
+        self.traces: dict[str, Any] = {}
+        self.readings: dict[str, Mapping[str, float]] = {}
+        self.frames: dict[str, np.ndarray] = {}
+        self.joints: Any = None
+        self.links: Sequence[str] = list(self._declared.links)
+
+    @property
+    def experiment(self) -> Experiment:
+        """The experiment with what was measured so far."""
+        return Experiment(
+            page=self._declared,
+            traces={name: self.traces[name] for name in self._declared.runs if name in self.traces},
+            links=self.links,
+            readings=dict(self.readings),
+            frames=dict(self.frames),
+            rendered=self.render,
+            joints=self.joints,
+        )
+
+    def facts(self) -> Markdown:
+        """Return a table of engine, backend, rendering and folder of this run."""
+        return table(self._recorder.facts())
+
+    def capture(self, camera: Any, name: str) -> None:
+        """Render a frame and keep it by its name; without a camera nothing happens.
+
+        Raises:
+            FrameError: the frame is not usable.
+        """
+        if self.render:
+            self.frames[name] = cameras.capture(camera)
+
+    def write_shape(self, parts: Sequence[visual_shape.Part]) -> None:
+        """Write the geometry that the page's replay draws."""
+        visual_shape.write_shape(self.folder, parts)
+
+    def show(self, function: Callable[..., Any], *arguments: Any) -> None:
+        """Show a measured table, text or figure: a function of the experiment.
+
+        The build calls the function again, on the experiment that it reads from the bundle. So the
+        result must depend on nothing else, and not on runs that are recorded after this call.
+
+        Args:
+            function: at the top level of a module of the lesson or of `core`. Its first argument
+                is the experiment; it returns Markdown or a Matplotlib figure.
+            arguments: its further arguments, JSON values, written out in the call.
+
+        Raises:
+            ShownError: function, arguments or result are not of this kind.
+        """
+        self._show(shown.name_of(function), arguments)
+
+    def _show(self, name: str, arguments: Sequence[Any] = ()) -> None:
+        metadata = shown.metadata(name, arguments)
+        display(shown.mime_data(name, self.experiment, arguments), metadata=metadata, raw=True)
+
+    def require(self, what: str, found: Sequence[Check]) -> None:
+        """Print that checks beside those of the page passed.
+
+        Raises:
+            CheckFailed: naming every check that failed, with what it found.
+        """
+        print(checks.require(f"{self._lesson} {what}", found))
+
+    def glue(self, failures: Sequence[Failure]) -> None:
+        """Keep evidence and curves of deliberate mistakes for the panels of a page of the site."""
+        from myst_nb import glue  # the site alone needs it
+
+        for failure in failures:
+            glue(f"evidence_{failure.name}", Markdown(failure.evidence), display=False)
+            if failure.curves:
+                figure = Figure(figsize=(7, 2.9))
+                ax = plotting.failure(figure.subplots(), failure.curves, "", failure.unit)
+                ax.set_xlabel(failure.axis)
+                glue(f"curves_{failure.name}", figure, display=False)
+
+    def finish(self, scene: Any) -> None:
+        """Measure, show the table of checks, write the bundle, and print that all checks passed.
+
+        Args:
+            scene: the scene with the camera; only its renderer is read.
+
+        Raises:
+            CheckFailed: naming every check that failed, with what it found.
+        """
+        experiment = self.experiment
+        self._show(shown.CHECKS)
+        renderer = cameras.read_renderer(scene) if self.render else None
+        folder = self._recorder.write(experiment, renderer)
+        files = sum(path.is_file() for path in folder.rglob("*"))
+        print(f"{files} files in {self._recorder.lesson}/{self._recorder.page}/{folder.name}")
+        print(checks.require(self._lesson, experiment.outcomes()))
+
+
+def table(rows: Sequence[Mapping[str, Any]]) -> Markdown:
+    """Return rows as a table for the end of a cell; the build does not compare it."""
+    return Markdown(tables.markdown(rows))

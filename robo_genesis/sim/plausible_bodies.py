@@ -1,0 +1,244 @@
+"""What the arrays of a free body must have in common, by geometry and by the laws of motion.
+
+Contacts are a function of the state before the last solver step, which follows from the state
+after it. Each state follows from the state before it: MuJoCo, which uses the same contact model,
+computes it anew from every sample, so that no difference can grow.
+
+| tolerance | residual of the CPU runs | value |
+|---|---|---|
+| `FALLEN`, place of a falling box | 4e-7 m | 5e-6 m |
+| `FALLING`, its velocity | 5e-6 m/s | 1e-4 m/s |
+| `PLACE`, start | 5e-8 m | 1e-6 m |
+| `SETTLED`, start after settling | 6e-5 m | 1e-3 m |
+| `DEPTH`, penetration | 1e-7 m | 5e-7 m |
+| angular velocity before the first contact | 0 rad/s | 0 rad/s |
+| `NO_TURN`, rotation that is left out | 1.2e-7 rad | 2.5e-7 rad |
+| `TURN`, share of a rotation | 8e-7 | 1e-4 |
+| `NEXT`, position after one outer step | 4e-7 m | 5e-6 m |
+| `NEXT`, orientation | 2e-5 | 2e-4 |
+| `NEXT`, velocity | 3e-5 m/s | 3e-4 m/s |
+| `NEXT`, angular velocity | 2e-3 rad/s | 2e-2 rad/s |
+| `SLIDING`, speed along x of a sliding cube | 4e-3 m/s | 1.2e-2 m/s |
+| `PATH`, its path in one outer step | 2e-4 m | 2e-3 m |
+
+`SLIDING` has a factor of 3 alone, because the residual is that of the single step in which a cube
+stops, and a wider one would let a sample change by a hundredth of the speed.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco import rollout
+
+from robo_genesis.core.free_fall import summed_drop
+from robo_genesis.core.plausibility import Breach, apart, times, unit_quaternions
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import BodyTrace, ContactTrace
+from robo_genesis.sim import mujoco_contacts
+from robo_genesis.sim.contacts import TOP, ContactCase
+from robo_genesis.sim.rigid_bodies import Drop
+
+FALLEN, FALLING = 5e-6, 1e-4
+"""Tolerances of place [m] and velocity [m/s] of a falling box."""
+
+PLACE, SETTLED = 1e-6, 1e-3
+"""Tolerance of the start [m], and of the start of a body that has settled before."""
+
+DEPTH = 5e-7
+"""Tolerance of a penetration [m]: eight times what float32 resolves at the surface's height."""
+
+TILTED = 1e-4
+"""Difference of depth between touching corners [m] from which Genesis may report fewer of them."""
+
+NO_TURN, TURN = 2.5e-7, 1e-4
+"""Angle in one solver step up to which the engine may not turn a body [rad], twice what float32
+resolves, and the tolerance of a rotation as a share."""
+
+RESOLVED = 4e-7
+"""What float32 resolves of a rotation since the start, as a share."""
+
+NEXT = {"link_pos": 5e-6, "link_quat": 2e-4, "link_vel": 3e-4, "link_ang": 2e-2}
+"""Tolerances of the state after one outer step [m, 1, m/s, rad/s]."""
+
+ON_EDGE = 5
+"""Number of steps in a run that may end otherwise, because a cube that lands on an edge has other
+contact points in the two engines. The runs have at most 2."""
+
+SLIDING, PATH = 1.2e-2, 2e-3
+"""Tolerances of speed [m/s] and path [m] of a cube that slides on four corners."""
+
+UPRIGHT = 3e-3
+"""Tolerance of the orientation of such a cube; the runs have 3e-4."""
+
+UNITS = {"link_pos": "m", "link_quat": "1", "link_vel": "m/s", "link_ang": "rad/s"}
+
+CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
+
+
+def falling_box(trace: BodyTrace, case: Drop) -> Iterator[Breach]:
+    """Yield what no run of `rigid_bodies.run_drop` has; the box falls along the z axis."""
+    yield from times(trace, case.steps, case.dt)
+    yield from unit_quaternions(trace.link_quat)
+    place, motion = np.zeros((2, trace.steps + 1, 3))
+    solver_steps = case.substeps * np.arange(trace.steps + 1)
+    place[:, 2] = case.height - summed_drop(case.h, solver_steps, case.gravity)
+    motion[:, 2] = -case.gravity * trace.t
+    upright = np.array([1.0, 0, 0, 0])
+    yield from apart("motion", "link_pos [m]", trace.link_pos[:, 0], place, FALLEN)
+    yield from apart("motion", "link_vel [m/s]", trace.link_vel[:, 0], motion, FALLING)
+    yield from apart("motion", "link_quat", trace.link_quat[:, 0], upright, 0.0)
+    yield from apart("motion", "link_ang [rad/s]", trace.link_ang[:, 0], np.zeros(()), 0.0)
+
+
+def body_on_surface(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+    """Yield what no run of `contacts.run_world` has."""
+    yield from times(trace, case.steps, case.dt)
+    yield from unit_quaternions(trace.link_quat)
+    yield from start(trace, case)
+    yield from bounded(trace, case)
+    yield from reported_contacts(trace, case)
+    yield from turned(trace, case)
+    if case.cone == "elliptic" and case.resolution is None:  # MuJoCo does not have this scheme
+        yield from sliding(trace, case)
+    else:
+        yield from next_states(trace, case)
+
+
+def bounded(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+    """Yield a speed that gravity and push cannot give, or a place that it does not lead to."""
+    fastest = case.speed + case.gravity * (case.duration + 1)
+    zero, about = np.zeros(()), np.array(case.start)
+    yield from apart("motion", "link_vel [m/s]", trace.link_vel[:, 0], zero, fastest)
+    yield from apart("motion", "link_ang [rad/s]", trace.link_ang[:, 0], zero, fastest / case.size)
+    untouched = np.cumsum(trace.contacts[:, 0]) == 0
+    if not case.settle:
+        spin = trace.link_ang[untouched, 0]
+        yield from apart("motion", "link_ang before any contact [rad/s]", spin, zero, 0.0)
+    far = fastest * (case.duration + 1)
+    yield from apart("motion", "link_pos [m]", trace.link_pos[:, 0], about, far)
+
+
+def sliding(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+    """Yield a state of a cube that does not slide along x by Coulomb's law on its four corners."""
+    velocity, position = (a[:, 0].astype(np.float64) for a in (trace.link_vel, trace.link_pos))
+    lost = max(case.friction, case.surface_friction) * case.gravity * case.dt
+    along = np.maximum(velocity[:-1, 0] - lost, 0)
+    yield from apart("motion", "link_vel along x [m/s]", velocity[1:, 0], along, SLIDING)
+    across = velocity[:, 1:]
+    zero = np.zeros(())
+    yield from apart("motion", "link_vel along y and z [m/s]", across, zero, NEXT["link_vel"])
+    path = case.dt * (velocity[1:] + velocity[:-1]) / 2
+    yield from apart("motion", "path in one step [m]", np.diff(position, axis=0), path, PATH)
+    upright = np.array([1.0, 0, 0, 0])
+    yield from apart("motion", "link_quat", trace.link_quat[:, 0], upright, UPRIGHT)
+
+
+def start(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+    """Yield a start that is not the case's."""
+    room = SETTLED if case.settle else PLACE
+    place, speed = np.array(case.start), np.array([case.speed, 0, 0])
+    yield from apart("start", "start of link_pos [m]", trace.link_pos[0, 0], place, room)
+    yield from apart("start", "start of link_vel [m/s]", trace.link_vel[0, 0], speed, room)
+    upright = np.array([1.0, 0, 0, 0])
+    yield from apart("start", "start of link_quat", trace.link_quat[0, 0], upright, room)
+    zero = np.zeros(())
+    yield from apart("start", "start of link_ang [rad/s]", trace.link_ang[0, 0], zero, room)
+
+
+def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+    """Yield contacts that are not those of the body's shape before the last solver step."""
+    position, orientation = before_last_step(trace, case.h)
+    if case.shape == "ball":
+        lowest = position[:, 2, None] - case.size / 2
+    else:
+        corners = rotated(orientation[:, None], case.size * CORNERS)
+        lowest = position[:, 2, None] + corners[..., 2]
+    depths = TOP - lowest  # (n+1, corners)
+    first = 0 if case.settle else 1  # no step was taken before the first sample of the others
+    expected = np.maximum(depths.max(axis=1), 0)
+    expected[:first] = 0
+    reported = trace.penetration[:, 0]
+    yield from apart("contact", "penetration [m]", reported, expected, DEPTH)
+    depths[:first] = -1
+    surely, perhaps = (depths > DEPTH).sum(axis=1), (depths > -DEPTH).sum(axis=1)
+    touching = np.where(depths > DEPTH, depths, np.nan)
+    touching[surely == 0] = 0
+    tilted = np.nanmax(touching, axis=1) - np.nanmin(touching, axis=1) > TILTED
+    fewest = np.where(tilted, np.minimum(surely, 2), surely)
+    count = trace.contacts[:, 0]
+    for k in np.flatnonzero((count < fewest) | (count > perhaps))[:1]:
+        what = f"number of contacts at index {k}"
+        yield Breach("contact", what, int(count[k]), sorted({int(fewest[k]), int(perhaps[k])}))
+
+
+def turned(trace: BodyTrace, case: ContactCase) -> Iterator[Breach]:
+    """Yield an orientation that does not integrate the angular velocity, with one solver step."""
+    if case.substeps > 1:
+        return
+    _, before = before_last_step(trace, case.h)
+    quat = trace.link_quat[:, 0].astype(np.float64)
+    old, new = quat[:-1, 1:], quat[1:, 1:]
+    angle = 2 * np.linalg.norm(new - before[1:, 1:], axis=1)
+    moved = (new != old).any(axis=1)
+    error = 2 * np.linalg.norm(before[1:, 1:] - old, axis=1)
+    room = np.where(moved, TURN * angle + RESOLVED * np.abs(old).max(axis=1) + 1e-12, NO_TURN)
+    for k in np.flatnonzero(error > room)[:1]:
+        what = f"rotation to index {k + 1} against link_ang [rad]"
+        yield Breach("motion", what, float(error[k]), f"0 ± {room[k]:g}")
+
+
+def next_states(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+    """Yield a state that does not follow from the state before it."""
+    expected = continued(trace, case)
+    errors = {name: np.abs(getattr(trace, name)[1:, 0] - of) for name, of in expected.items()}
+    beyond = {name: (of > NEXT[name]).any(axis=1) for name, of in errors.items()}
+    wrong = np.any(list(beyond.values()), axis=0)
+    on_edge = trace.contacts[1:, 0] == 2
+    if (wrong & on_edge).sum() > ON_EDGE:
+        number = int((wrong & on_edge).sum())
+        yield Breach("motion", "number of steps of another motion", number, f"up to {ON_EDGE}")
+    for k in np.flatnonzero(wrong & ~on_edge)[:1]:
+        name = next(name for name, of in beyond.items() if of[k])
+        axis = int(errors[name][k].argmax())
+        found, follows = float(getattr(trace, name)[k + 1, 0, axis]), float(expected[name][k, axis])
+        what = f"{name} at index {[int(k) + 1, 0, axis]} [{UNITS[name]}]"
+        yield Breach("motion", what, found, f"{follows!r} ± {NEXT[name]:g}")
+
+
+def continued(trace: ContactTrace, case: ContactCase) -> dict[str, FloatArray]:
+    """Return what MuJoCo makes of each state but the last in one outer step, by array."""
+    model = mujoco_contacts.load(case)
+    quat = trace.link_quat[:-1, 0].astype(np.float64)
+    inverse = quat * [1, -1, -1, -1]
+    spin = rotated(inverse, trace.link_ang[:-1, 0].astype(np.float64))  # in the body's axes
+    at_zero = np.zeros((len(quat), 1))
+    parts = (at_zero, trace.link_pos[:-1, 0], quat, trace.link_vel[:-1, 0], spin)
+    data = mujoco.MjData(model)
+    states, _ = rollout.rollout(model, [data], np.hstack(parts), nstep=case.substeps)
+    last: Any = states[:, -1]
+    _, position, orientation, velocity, spin = np.split(last, (1, 4, 8, 11), axis=1)
+    turned = rotated(orientation, spin)
+    return dict(zip(NEXT, (position, orientation, velocity, turned), strict=True))
+
+
+def before_last_step(trace: BodyTrace, h: float) -> tuple[FloatArray, FloatArray]:
+    """Return position (n+1, 3) [m] and orientation (n+1, 4) before the last solver step.
+
+    Semi-implicit Euler moves a body by the velocities after the step, for `h` seconds.
+    """
+    position, velocity = (a[:, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel))
+    quat, turn = trace.link_quat[:, 0].astype(np.float64), -h * trace.link_ang[:, 0]
+    half = np.linalg.norm(turn, axis=1, keepdims=True) / 2
+    w, v = np.cos(half), turn / 2 * np.sinc(half / np.pi)
+    scalar = w * quat[:, :1] - (v * quat[:, 1:]).sum(axis=1, keepdims=True)
+    vector = w * quat[:, 1:] + quat[:, :1] * v + np.cross(v, quat[:, 1:])
+    return position - h * velocity, np.hstack([scalar, vector])
+
+
+def rotated(quat: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Return vectors (…, 3) rotated by unit quaternions (…, 4), (w, x, y, z)."""
+    axis = quat[..., 1:]
+    twice = 2 * np.cross(axis, vectors)
+    return np.asarray(vectors + quat[..., :1] * twice + np.cross(axis, twice))

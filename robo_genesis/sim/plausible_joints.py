@@ -1,0 +1,182 @@
+"""What the arrays of a position-controlled Franka must have in common, by the model's mechanics.
+
+The poses of the links are a function of the positions, the control force is the control law, and
+the internal force is the net force at the state before the last solver step. MuJoCo computes poses,
+masses and gravity of the same model file in float64.
+
+| tolerance | residual of the CPU runs | value |
+|---|---|---|
+| `LIMIT_TOLERANCE` of a start | 5e-8 rad | 1e-6 rad |
+| `LAW`, control force | 4e-4 N·m | 5e-3 N·m |
+| `POSE`, link positions and quaternions | 3e-7 m, 2e-7 | 5e-6 |
+| `NET_FORCE`, internal force of the arm | 9e-4 N·m | 1e-2 N·m |
+| `NET_FORCE`, of the fingers | 6e-3 N | 6e-2 N |
+| `STEPPED`, velocity before the last solver step | 2e-4 rad/s | 2e-3 rad/s |
+| `MEAN`, mean velocity beyond those of the two samples | 0.07 rad/s | 0.7 rad/s |
+"""
+
+from collections.abc import Iterator, Sequence
+from functools import cache
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from robo_genesis.core.plausibility import Breach, apart, times, unit_quaternions
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES, per_joint
+from robo_genesis.sim.joint_control import LIMIT_TOLERANCE, ControlCase
+from robo_genesis.sim.session import asset
+
+LAW = 5e-3
+"""Tolerance of a control force [N·m or N]: float32 in KP times a position error."""
+
+POSE = 5e-6
+"""Tolerance of link positions [m] and of quaternions."""
+
+NET_FORCE = per_joint(*(1e-2,) * 7, *(6e-2,) * 2)
+"""Tolerance of the internal force [N·m or N]. The fingers also have a force between them, which the
+rule does not know."""
+
+STEPPED, MEAN = 2e-3, 0.7
+"""Tolerances of velocities [rad/s or m/s]: of the one before the last solver step, and of the mean
+of several solver steps beyond the velocities at both samples."""
+
+
+def driven_run(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+    """Yield what no run of `joint_control.run_case` has.
+
+    Args:
+        trace: the run.
+        case: its settings.
+        links: names of the links of the trace.
+    """
+    yield from times(trace, case.steps, case.dt)
+    yield from start_and_limits(trace, case)
+    yield from apart("start", "target [rad or m]", trace.target, case.q_target, 0.0)
+    start = control_law(case, trace.q[0], trace.start_qd)
+    yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, start, LAW)
+    law = control_law(case, trace.q[1:], trace.qd)
+    yield from apart("law", "control_force [N·m or N]", trace.control_force, law, LAW)
+    yield from poses(trace, links)
+    yield from dynamics(trace, case)
+
+
+def assigned_path(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+    """Yield what no run of `joint_control.assign_path` has; the arguments are as before."""
+    yield from times(trace, case.steps, case.dt)
+    yield from start_and_limits(trace, case)
+    path = np.linspace(case.q_start, case.q_target, case.steps + 1)
+    yield from apart("start", "q [rad or m]", trace.q, path, LIMIT_TOLERANCE)
+    yield from apart("start", "target [rad or m]", trace.target, path[1:], 0.0)
+    zero = np.zeros(())
+    yield from apart("motion", "qd [rad/s or m/s]", trace.qd, zero, 0.0)
+    yield from apart("law", "control_force [N·m or N]", trace.control_force, zero, 0.0)
+    yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, zero, 0.0)
+    first = trace.internal_force[0]  # of the last step that the engine took, whenever that was
+    yield from apart("motion", "internal_force [N·m or N]", trace.internal_force, first, 0.0)
+    yield from poses(trace, links)
+
+
+def start_and_limits(trace: Trace, case: ControlCase) -> Iterator[Breach]:
+    """Yield a start that is not the case's, or not at rest, and an effort limit of another case."""
+    yield from apart("start", "start of q [rad or m]", trace.q[0], case.q_start, LIMIT_TOLERANCE)
+    yield from apart("start", "start_qd [rad/s or m/s]", trace.start_qd, np.zeros(()), 0.0)
+    yield from apart(
+        "law", "effort_limit [N·m or N]", trace.effort_limit, case.effort_limit, LIMIT_TOLERANCE
+    )
+
+
+def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
+    """Return clip(KP (q_target − q) − KV q̇) of states (…, d) [N·m or N]."""
+    effort = case.kp * (case.q_target - q) - case.kv * qd
+    return np.asarray(np.clip(effort, -case.effort_limit, case.effort_limit))
+
+
+def poses(trace: Trace, links: Sequence[str]) -> Iterator[Breach]:
+    """Yield a link that is not where the positions of the joints put it."""
+    yield from unit_quaternions(trace.link_quat)
+    unknown = sorted(set(links) - _links())
+    if unknown:
+        yield Breach("pose", "list of links that the model does not have", unknown, [])
+        return
+    position, orientation = link_poses(trace.q, links)
+    yield from apart("pose", "link_pos [m]", trace.link_pos, position, POSE)
+    yield from apart("pose", "link_quat", trace.link_quat, orientation, POSE)
+
+
+@cache
+def _robot() -> tuple[Any, list[int], list[int]]:
+    """Return the model without shapes and actuators, and indices of the joints in qpos and qvel."""
+    spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
+    for part in (*spec.actuators, *spec.keys, *spec.geoms, *spec.meshes):
+        spec.delete(part)
+    model = spec.compile()
+    joints = [model.joint(name) for name in JOINT_NAMES]
+    return model, [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
+
+
+def _links() -> set[str]:
+    """Return the names of the model's links."""
+    model, *_ = _robot()
+    return {model.body(k).name for k in range(1, model.nbody)}
+
+
+def link_poses(q: FloatArray, links: Sequence[str]) -> tuple[FloatArray, FloatArray]:
+    """Return positions (n, l, 3) [m] and orientations (n, l, 4) of links at `q` (n, d)."""
+    model, q_at, _ = _robot()
+    data = mujoco.MjData(model)
+    bodies = [model.body(name).id for name in links]
+    position, orientation = np.empty((len(q), len(links), 3)), np.empty((len(q), len(links), 4))
+    for k, values in enumerate(q):
+        data.qpos[q_at] = values
+        mujoco.mj_kinematics(model, data)
+        position[k], orientation[k] = data.xpos[bodies], data.xquat[bodies]
+    return position, orientation
+
+
+def dynamics(trace: Trace, case: ControlCase) -> Iterator[Breach]:
+    """Yield an internal force that is not the net force, and motion that the samples do not have.
+
+    Semi-implicit Euler gives the state before the last solver step from the state after it: the
+    position is q − h q̇, and the velocity is q̇ − h a with (M + h D) a = f, the internal force, where
+    D are passive damping and KV. The net force there is control force − bias − passive damping.
+    """
+    h, n = case.dt / case.substeps, case.substeps
+    speeds = np.vstack([trace.start_qd, trace.qd]).astype(np.float64)
+    q = trace.q.astype(np.float64)
+    q_before = q[1:] - h * speeds[1:]
+    qd_before, force = last_step(trace, case, q_before)
+    name = "internal_force [N·m or N]"
+    yield from apart("motion", name, trace.internal_force, force, NET_FORCE)
+    if n <= 2:  # then the step began at a sample, or the only other step did
+        middle = (q_before - q[:-1]) / h if n == 2 else speeds[:-1]
+        name = "velocity before the last solver step [rad/s or m/s]"
+        yield from apart("motion", name, qd_before, middle, STEPPED)
+    mean, middle = np.diff(q, axis=0) / case.dt, (speeds[1:] + speeds[:-1]) / 2
+    beyond = np.maximum(np.abs(mean - middle) - np.abs(np.diff(speeds, axis=0)) / 2, 0)
+    name = "mean velocity beyond those of both samples [rad/s or m/s]"
+    yield from apart("motion", name, beyond, np.zeros(()), MEAN)
+
+
+def last_step(
+    trace: Trace, case: ControlCase, q_before: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return velocity and net force, each (n, d), at the positions (n, d) before the last step."""
+    model, q_at, dof_at = _robot()
+    data, h = mujoco.MjData(model), case.dt / case.substeps
+    damping, at = model.dof_damping[dof_at], np.ix_(dof_at, dof_at)
+    velocity, force = np.empty(q_before.shape), np.empty(q_before.shape)
+    mass = np.empty((model.nv, model.nv))
+    for k, applied in enumerate(trace.internal_force):
+        data.qpos[q_at] = q_before[k]
+        mujoco.mj_fwdPosition(model, data)
+        mujoco.mj_fullM(model, data, mass)
+        implicit = mass[at] + h * np.diag(damping + case.kv)
+        velocity[k] = trace.qd[k] - h * np.linalg.solve(implicit, applied)
+        data.qvel[dof_at] = velocity[k]
+        mujoco.mj_fwdVelocity(model, data)
+        control = control_law(case, q_before[k], velocity[k])
+        force[k] = control - data.qfrc_bias[dof_at] - damping * velocity[k]
+    return velocity, force

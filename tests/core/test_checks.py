@@ -1,0 +1,176 @@
+"""Findings and their judgement, the factories of checks, and the outcome of a check."""
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from robo_genesis.core import checks
+from robo_genesis.core.check_spec import MASS_SHARE, TIME_TOLERANCE
+from robo_genesis.core.checks import (
+    Check,
+    Finding,
+    above,
+    at_most,
+    below,
+    conclude,
+    equal,
+    evaluate,
+    noted,
+    within,
+)
+from robo_genesis.core.trace import BodyTrace
+
+
+@pytest.mark.parametrize(
+    ("finding", "passed", "problem"),
+    [
+        (equal("x", 3, 3), True, None),
+        (equal("x", 3, 4), False, "x is 3, expected 4"),
+        (equal("x", ("a", "b"), ["a", "b"]), True, None),
+        (equal("x", ["a"], []), False, "x is a, expected none"),
+        (equal("x", None, 3), False, "x is not observed, expected 3"),
+        (equal("x", np.nan, None), False, "x is nan, expected not observed"),
+        (equal("x", np.float32(0), 0.0), True, None),
+        (within("x", 1.5, 1.0, 0.5), True, None),
+        (within("x", 1.6, 1.0, 0.5), False, "x is 1.6, expected 1 ± 0.5"),
+        (within("x", None, 1.0, 0.5), False, "x is not observed, expected 1 ± 0.5"),
+        (within("x", 1.0, np.nan, 0.5), False, None),
+        (at_most("x", 2.0, 2.0), True, None),
+        (at_most("x", 2.1, 2.0), False, "x is 2.1, expected at most 2"),
+        (at_most("x", np.nan, 2.0), False, "x is nan, expected at most 2"),
+        (below("x", 1.9, 2.0), True, None),
+        (below("x", 2.0, 2.0), False, "x is 2, expected less than 2"),
+        (below("x", None, 2.0), False, None),
+        (above("x", 2.1, 2.0), True, None),
+        (above("x", 2.0, 2.0), False, "x is 2, expected more than 2"),
+        (above("x", np.nan, 2.0), False, None),
+        (noted("x", -7.0), True, None),
+    ],
+)
+def test_a_finding_is_judged_and_says_found_and_allowed(finding, passed, problem):
+    assert finding.passed is passed
+    assert problem in (None, finding.problem)
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        (True, True),
+        (None, None),
+        (np.int32(4), 4),
+        (np.float32(0.5), 0.5),
+        (np.bool_(False), False),
+        (np.inf, "inf"),
+        (np.arange(3), "0, 1, 2"),
+        (("a", "b"), "a, b"),
+    ],
+)
+def test_a_value_becomes_one_that_json_can_hold(value, expected):
+    found = checks.plain(value)
+    assert (type(found), found) == (type(expected), expected)
+
+
+def test_an_outcome_is_recorded_without_words_and_without_allowed_values():
+    def near(limit):
+        yield at_most("distance_m", np.float32(0.5), limit)
+        yield equal("difference of two cases", ["kp"], ["kp"], recorded=False)
+
+    claims = {"near": "The distance is small."}
+    (strict,), (loose,) = (evaluate([near], limit, claims) for limit in (0.1, 1.0))
+    assert (strict.passed, loose.passed) == (False, True)
+    assert strict.detail == "distance_m is 0.5, expected at most 0.1"
+    assert loose.detail == "The distance is small."
+    record = {"name": "near", "passed": True, "found": {"distance_m": 0.5}}
+    assert json.loads(json.dumps(loose.record())) == record
+    assert strict.record() == record | {"passed": False}
+
+
+def test_a_check_that_breaks_off_fails_and_keeps_what_it_found():
+    def broken(subject):
+        yield noted("first", 1)
+        yield noted("second", subject["second"])
+
+    (outcome,) = evaluate([broken], {}, {"broken": "There is a second one."})
+    assert not outcome.passed
+    assert outcome.found == {"first": 1}
+    assert outcome.detail == "cannot be evaluated: KeyError('second')"
+
+
+def test_a_check_that_finds_nothing_fails():
+    assert conclude("empty", "Something is there.", []) == Check(
+        "empty", False, "nothing was found"
+    )
+
+
+def test_two_findings_need_two_labels():
+    with pytest.raises(ValueError, match=r"Check twice repeats a label in \['a', 'a'\]"):
+        conclude("twice", "", [noted("a", 1), noted("a", 2)])
+
+
+def problems(findings) -> list[str]:
+    return [finding.label for finding in findings if not finding.passed]
+
+
+@pytest.mark.parametrize(
+    ("found", "labels"),
+    [
+        ({"links": 1, "joints": 2}, []),
+        ({"links": 1, "joints": 3}, ["joints"]),
+        ({"links": 1}, ["joints"]),
+        ({"links": 1, "joints": 2, "lids": 1}, ["lids"]),
+    ],
+)
+def test_counts_are_exactly_the_expected_ones(found, labels):
+    assert problems(checks.model_counts(found, {"links": 1, "joints": 2})) == labels
+
+
+@pytest.mark.parametrize(
+    ("found", "labels"),
+    [
+        ({"cube": 2 * (1 + 0.9 * MASS_SHARE)}, []),
+        ({"cube": 2 * (1 + 1.1 * MASS_SHARE)}, ["cube.mass_kg"]),
+        ({"cube": np.nan}, ["cube.mass_kg"]),
+        ({}, ["cube.mass_kg"]),
+    ],
+)
+def test_masses_are_density_times_volume(found, labels):
+    assert problems(checks.masses(found, {"cube": 2.0})) == labels
+
+
+@dataclass(frozen=True)
+class Case:
+    steps: int = 4
+    dt: float = 0.5
+    size: float = 1.0
+
+
+def trace(t) -> BodyTrace:
+    zeros = np.zeros((len(t), 1, 3))
+    return BodyTrace(np.array(t), zeros, np.tile([1.0, 0, 0, 0], (len(t), 1, 1)), zeros, zeros)
+
+
+@pytest.mark.parametrize(
+    ("t", "labels"),
+    [
+        ([0, 0.5, 1, 1.5, 2], []),
+        ([0, 0.5, 1, 1.5], ["one.steps"]),
+        ([0, 0.6, 1.2, 1.8, 2.4], ["one.time_error_s"]),
+        ([k * (0.5 + TIME_TOLERANCE / 2) for k in range(5)], ["one.time_error_s"]),
+        ([0, 0.6, 1.2], ["one.steps", "one.time_error_s"]),
+    ],
+)
+def test_states_are_at_the_ends_of_the_outer_steps(t, labels):
+    assert problems(checks.sample_times({"one": Case()}, {"one": trace(t)})) == labels
+
+
+@pytest.mark.parametrize(
+    ("other", "passed"),
+    [(Case(steps=8), True), (Case(), False), (Case(steps=8, dt=0.25), False)],
+)
+def test_compared_cases_differ_in_the_given_fields_alone(other, passed):
+    pairs = {("one", "other"): ["steps"]}
+    (finding,) = checks.factors({"one": Case(), "other": other}, pairs)
+    assert isinstance(finding, Finding)
+    assert (finding.passed, finding.recorded) == (passed, False)

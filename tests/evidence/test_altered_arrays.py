@@ -1,0 +1,150 @@
+"""One array of one run of a built bundle altered, and everything that follows from it made right.
+
+The forger keeps the types of data and computes metrics, checks and digests again. A try is refused
+if the arrays form no run, a rule of plausibility is broken, or a check fails.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from built_site import MEASURING_PAGES, executed_folder
+
+from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.core.trace import TimeSeries, TraceError
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.sim import mujoco_contacts, mujoco_joints
+
+pytestmark = pytest.mark.engine  # the bundles of the built site
+
+REQUIRED = 0.95
+"""Share of the tries that must be refused."""
+
+NO_TURN = 1.2e-7
+"""Angle in one solver step that float32 does not resolve [rad]: the engine turns no body by it."""
+
+NOISE = "A landed cube turns by less than float32 resolves in a step, so nothing follows from it."
+SCHEME = "MuJoCo does not have the engine's resolution of the elliptic cone."
+ON_EDGE = "A cube that lands on an edge has other contact points in the two engines."
+EARLIER = "The engine's force of a step before the run, whose states are assigned."
+ROUNDING = "The alteration is no larger than what float32 resolves of a position."
+
+ACCEPTED = {
+    **{
+        ("l03", "link_ang", how): f"{NOISE} {SCHEME}"
+        for how in ("× 1.02", "× 0.98", "sample", "zero")
+    },
+    ("l03", "link_pos", "sample"): ON_EDGE,
+    ("l03", "link_vel", "sample"): ON_EDGE,
+    ("l03", "penetration", "sample"): ROUNDING,
+    **{("l04", "internal_force", how): EARLIER for how in ("× 1.02", "× 0.98", "zero")},
+}
+"""By lesson, array and alteration, why a try may be accepted. No other may."""
+
+
+@dataclass(frozen=True)
+class Try:
+    lesson: str
+    page: str
+    run: str
+    array: str
+    how: str
+    value: np.ndarray
+
+
+def alterations(array: np.ndarray, seed: int) -> dict[str, np.ndarray]:
+    """Return the altered arrays of the same type, by alteration, without those that are equal."""
+    index = tuple(np.random.default_rng(seed).integers(array.shape))
+    whole = np.issubdtype(array.dtype, np.integer)
+    sample = np.array(array)
+    sample[index] += 1 if whole else array.dtype.type(1e-2 * np.ptp(array))
+    altered = {
+        "× 1.02": np.round(array * 1.02) if whole else array * array.dtype.type(1.02),
+        "× 0.98": np.round(array * 0.98) if whole else array * array.dtype.type(0.98),
+        "sample": sample,
+        "zero": np.zeros_like(array),
+    }
+    kept = {how: of.astype(array.dtype) for how, of in altered.items()}
+    return {how: of for how, of in kept.items() if not np.array_equal(of, array)}
+
+
+def is_zero_anyway(experiment: Experiment, run: str, array: str) -> bool:
+    """Whether an array is zero for the engine: an angular velocity that turns no body."""
+    if array != "link_ang":
+        return False
+    return float(np.abs(experiment.traces[run].link_ang).max()) * experiment.cases[run].h <= NO_TURN
+
+
+def tries(lesson: str, page: str, experiment: Experiment) -> Iterator[Try]:
+    for run, trace in experiment.traces.items():
+        for field in fields(trace):
+            seed = sum(map(ord, f"{lesson}/{page}/{run}/{field.name}"))
+            for how, value in alterations(getattr(trace, field.name), seed).items():
+                if how != "zero" or not is_zero_anyway(experiment, run, field.name):
+                    yield Try(lesson, page, run, field.name, how, value)
+
+
+def is_refused(experiment: Experiment, of: Try) -> bool:
+    """Whether a bundle with one altered array, made right in all else, is refused."""
+    page, trace = experiment.page, experiment.traces[of.run]
+    try:
+        forged = replace(trace, **{of.array: of.value})
+        traces = experiment.traces | {of.run: forged}
+        # The rules of the other runs do not read the altered one.
+        one = replace(page, runs={of.run: page.runs[of.run]})
+        page.validate(replace(experiment, page=one, traces=traces))
+        run = replace(experiment, traces=traces)
+        run.records()
+        return not all(check.passed for check in run.outcomes())
+    except (TraceError, BundleRefused, LookupError, ValueError, ArithmeticError):
+        return True
+
+
+@pytest.fixture(scope="module")
+def experiments(build_output) -> dict[tuple[str, str], Experiment]:
+    """The experiments of the built bundles; a run in MuJoCo is computed once for all tries."""
+    found = {}
+    for lesson, page in MEASURING_PAGES:
+        folder: Path = executed_folder() / "outputs" / lesson / page / "cpu"
+        found[lesson, page] = from_bundle(folder, bundle.read_manifest(folder))
+    return found
+
+
+@pytest.fixture
+def once(monkeypatch):
+    """Compute each run in MuJoCo once."""
+    contacts = cache(mujoco_contacts.run_case)
+    monkeypatch.setattr(mujoco_contacts, "run_case", contacts)
+    known: dict[tuple[object, ...], TimeSeries] = {}
+    run_case = mujoco_joints.run_case
+
+    def joints(case, links, timestep, integrator):
+        key = (id(case), *links, timestep, integrator)
+        if key not in known:
+            known[key] = run_case(case, links, timestep, integrator)
+        return known[key]
+
+    monkeypatch.setattr(mujoco_joints, "run_case", joints)
+
+
+@pytest.mark.usefixtures("once")
+def test_an_altered_array_is_refused(experiments):
+    all_tries = [of for page, run in experiments.items() for of in tries(*page, run)]
+    accepted = [of for of in all_tries if not is_refused(experiments[of.lesson, of.page], of)]
+    for_no_reason = [
+        (of.page, of.run, of.array, of.how)
+        for of in accepted
+        if (of.lesson, of.array, of.how) not in ACCEPTED
+    ]
+    assert for_no_reason == []
+    assert len(accepted) <= (1 - REQUIRED) * len(all_tries), f"{len(accepted)} are accepted"
+
+
+def test_sound_bundles_are_accepted(experiments):
+    """The fixture has read them by the same rules; what is left are their checks."""
+    assert all(check.passed for run in experiments.values() for check in run.outcomes())

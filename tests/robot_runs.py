@@ -1,0 +1,56 @@
+"""Runs of the Franka without Genesis, by the engine's rule of stepping and MuJoCo's mechanics."""
+
+from collections.abc import Sequence
+from functools import cache
+
+import mujoco
+import numpy as np
+
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim import mujoco_joints
+from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.joint_control import ControlCase, assemble
+from robo_genesis.sim.plausible_joints import control_law, link_poses
+
+
+@cache
+def model(timestep: float) -> mujoco.MjModel:
+    from robo_genesis.lessons.l04.spec import G1
+
+    return mujoco_joints.load(G1, timestep, "Euler")
+
+
+def driven(case: ControlCase, links: Sequence[str]) -> Trace:
+    """Return a run by semi-implicit Euler with (M + h D) a = f, stored in float32 like others."""
+    of = model(case.dt)
+    data, h, dofs = mujoco.MjData(of), case.dt / case.substeps, len(JOINT_NAMES)
+    damping, mass = of.dof_damping, np.zeros((dofs, dofs))
+    q, qd, force = np.array(case.q_start), np.zeros(dofs), np.zeros(dofs)
+    at, steps = [q.astype(np.float32)], []
+    for _ in range(case.steps):
+        for _ in range(case.substeps):
+            data.qpos[:], data.qvel[:] = q, qd
+            mujoco.mj_fwdPosition(of, data)
+            mujoco.mj_fwdVelocity(of, data)
+            mujoco.mj_fullM(of, data, mass)
+            force = control_law(case, q, qd) - data.qfrc_bias - damping * qd
+            qd = qd + h * np.linalg.solve(mass + h * np.diag(damping + case.kv), force)
+            q = q + h * qd
+        at.append(q.astype(np.float32))
+        steps.append(tuple(np.float32(v) for v in (qd, control_law(case, q, qd), force)))
+    states = zip(at, *(np.float32(pose) for pose in link_poses(np.stack(at), links)), strict=True)
+    start_force = np.float32(control_law(case, case.q_start, np.zeros(dofs)))
+    limit, zero = np.float32(case.effort_limit), np.zeros(dofs, np.float32)
+    return assemble(
+        case, list(states), steps, [case.q_target] * case.steps, zero, start_force, limit
+    )
+
+
+def assigned(case: ControlCase, links: Sequence[str]) -> Trace:
+    """Return the states of a straight line, as `joint_control.assign_path` does."""
+    path = np.linspace(case.q_start, case.q_target, case.steps + 1)
+    at, zero = path.astype(np.float32), np.zeros(len(JOINT_NAMES), np.float32)
+    states = zip(at, *(np.float32(pose) for pose in link_poses(at, links)), strict=True)
+    steps = [(zero, zero, zero)] * case.steps
+    limit = np.float32(case.effort_limit)
+    return assemble(case, list(states), steps, list(path[1:]), zero, zero, limit)

@@ -1,0 +1,181 @@
+"""A page while it runs, with an engine that is not real."""
+
+import json
+import logging
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from bundles import RENDERER, RUN_ID
+from lessons.body_runs import make_drop
+
+import robo_genesis as rg
+from robo_genesis import page as pages
+from robo_genesis.core import project, shown
+from robo_genesis.core.checks import CheckFailed
+from robo_genesis.lessons import l02
+from robo_genesis.lessons.l02 import spec
+from robo_genesis.sim import session
+
+FRAME = np.arange(540 * 720 * 3, dtype=np.uint32).astype(np.uint8).reshape(540, 720, 3)
+
+
+@pytest.fixture
+def displayed(monkeypatch):
+    """What a page displays: (data, metadata)."""
+    kept = []
+    monkeypatch.setattr(
+        pages, "display", lambda data, metadata, raw: kept.append((data, metadata["robo_genesis"]))
+    )
+    return kept
+
+
+@pytest.fixture
+def page(quiet, tmp_path, monkeypatch, engine, displayed):
+    """L02's lab, opened in a folder of its own; its engine is not real."""
+    for name in ("BACKEND", "RENDER"):
+        monkeypatch.delenv(f"ROBO_GENESIS_{name}", raising=False)
+    monkeypatch.setenv("ROBO_GENESIS_OUTPUTS_DIR", str(tmp_path / "outputs"))
+    monkeypatch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
+    monkeypatch.setattr(session, "started", lambda contract: engine)
+    monkeypatch.setattr(pages, "_opened", [])
+    monkeypatch.setattr(pages.cameras, "read_renderer", lambda scene: RENDERER)
+    return rg.open_page("l02", "lab")
+
+
+def measure(page, mass=spec.BASELINE.mass):
+    """Fill a page with a synthetic drop that passes every check."""
+    frames = iter((FRAME, FRAME[::-1]))
+    camera = SimpleNamespace(render=lambda: [next(frames)])
+    page.readings |= {"model": spec.EXPECTED_MODEL, "body": {"mass": mass}}
+    page.capture(camera, "initial")
+    page.traces["baseline"] = make_drop(spec.BASELINE)
+    page.capture(camera, "final")
+
+
+def test_the_names_are_loaded_without_the_engine_and_only_when_used():
+    code = (
+        "import sys; import robo_genesis as rg; "
+        "assert not {'numpy', 'matplotlib', 'robo_genesis.page'} & sys.modules.keys(); "
+        "rg.open_page; rg.SEED; rg.PRECISION; rg.table; "
+        "assert not {'genesis', 'torch', 'quadrants'} & sys.modules.keys()"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=project.ROOT)
+    with pytest.raises(AttributeError, match=r"no 'openpage'. Names: .*open_page"):
+        rg.openpage  # noqa: B018
+
+
+def test_a_page_is_opened_once_and_only_by_a_known_name(page):
+    assert (page.render, page.folder.name, list(page.links)) == (True, "lab", [spec.LINK])
+    with pytest.raises(session.EngineError, match=r"l02/lab is open .*Restart the kernel"):
+        rg.open_page("l02", "lecture")
+    with pytest.raises(LookupError, match=r"'l99' does not exist. Choices: .*l02"):
+        rg.open_page("l99", "lab")
+    with pytest.raises(LookupError, match=r"l02/extra .*Choices: l02/lab, l02/lecture"):
+        rg.open_page("l02", "extra")
+
+
+def test_a_page_without_an_engine_is_refused(monkeypatch, tmp_path):
+    monkeypatch.setenv("ROBO_GENESIS_OUTPUTS_DIR", str(tmp_path))
+    monkeypatch.setattr(pages, "_opened", [])
+    monkeypatch.setattr(session, "import_engine", lambda: SimpleNamespace(_initialized=False))
+    with pytest.raises(session.EngineError, match="not initialised"):
+        rg.open_page("l02", "lab")
+    assert pages._opened == []
+
+
+def test_the_backend_follows_the_environment(monkeypatch, tmp_path):
+    monkeypatch.setenv("ROBO_GENESIS_OUTPUTS_DIR", str(tmp_path))
+    engine = SimpleNamespace(cpu="the CPU", gpu="any accelerator")
+    monkeypatch.setattr(session, "import_engine", lambda: engine)
+    for kept in ("handlers", "filters"):
+        monkeypatch.setattr(logging.getLogger("genesis"), kept, [])
+    for asked, given in (("cpu", "the CPU"), ("auto", "any accelerator")):
+        monkeypatch.setenv("ROBO_GENESIS_BACKEND", asked)
+        assert rg.backend() == given
+
+
+def test_a_function_of_the_experiment_is_shown_with_its_name(page, displayed):
+    measure(page)
+    page.show(l02.text.metric_table)
+    page.show(l02.plots.height)
+    (table, named), (drawing, drawn) = displayed
+    assert named == {"function": "robo_genesis.lessons.l02.text.metric_table", "arguments": []}
+    assert list(table) == ["text/markdown"]
+    assert "distance fallen" in table["text/markdown"]
+    assert list(drawing) == ["image/svg+xml"]
+    assert drawn["function"].endswith("l02.plots.height")
+    assert shown.mime_data(drawn["function"], page.experiment, []) == drawing
+
+
+def local(run):
+    return ""
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments", "message"),
+    [
+        (local, (), r"cannot be shown. Valid are functions .*robo_genesis.lessons"),
+        (lambda run: "", (), "cannot be shown"),
+        ("a table", (), r"'a table'. Give a function of a lesson and not its result"),
+        (l02.text.metric_table, (1, {2}), r"arguments \(1, \{2\}\). Valid are JSON values"),
+        (l02.text.metric_table, ((1, 2),), "Valid are JSON values"),
+        (l02.text.metric_table, (float("nan"),), "Valid are JSON values"),
+    ],
+)
+def test_anything_else_is_refused(page, displayed, function, arguments, message):
+    measure(page)
+    with pytest.raises(shown.ShownError, match=message):
+        page.show(function, *arguments)
+    assert displayed == []
+
+
+@pytest.mark.parametrize(
+    "name", ["os.system", "robo_genesis.build.shown.marked", "robo_genesis.lessons.l02.Lesson",
+             "robo_genesis.lessons.l02.text.tables", "robo_genesis.lessons.l02..text", "print",
+             "robo_genesis.lessons.l02.plots.look", "robo_genesis.core.nothing.here"],
+)  # fmt: skip
+def test_only_functions_of_lessons_and_core_are_found(name):
+    with pytest.raises(shown.ShownError, match="cannot be shown"):
+        shown.find(name)
+
+
+def test_a_function_that_returns_something_else_is_refused(page):
+    measure(page)
+    with pytest.raises(shown.ShownError, match="returned generator"):
+        shown.mime_data("robo_genesis.core.checks.wrong_counts", page.experiment, [{}])
+
+
+def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(page, displayed, capsys):
+    measure(page)
+    page.finish(None)
+    assert displayed[-1][1] == {"function": shown.CHECKS, "arguments": []}
+    assert "**FAILED**" not in displayed[-1][0]["text/markdown"]
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-1] == "L02 CHECK: PASSED"
+    assert lines[-2].endswith("files in l02/lab/cpu")
+    manifest = json.loads((page.folder / "cpu" / "manifest.json").read_text())
+    assert manifest["predicate"]["run_id"] == RUN_ID
+
+
+def test_finish_names_the_check_that_failed(page, displayed, capsys):
+    measure(page, mass=2 * spec.BASELINE.mass)
+    with pytest.raises(CheckFailed, match=r"L02 CHECK: FAILED \[mass\]"):
+        page.finish(None)
+    assert "**FAILED**" in displayed[-1][0]["text/markdown"]
+    assert "PASSED" not in capsys.readouterr().out
+
+
+def test_without_a_camera_no_frame_is_taken(page):
+    page.render = False
+    page.capture(None, "initial")
+    assert page.frames == {}
+    assert not page.experiment.rendered
+
+
+def test_the_facts_name_the_backend(page, engine, capsys):
+    assert f"{engine.backend.actual} ({engine.backend.device_name})" in page.facts().data
+    page.require("boxes", [pages.Check("same", True, "")])
+    assert capsys.readouterr().out == "L02 BOXES CHECK: PASSED\n"
