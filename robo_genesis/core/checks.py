@@ -1,7 +1,7 @@
 """Named checks: the values that they find, and the error that names each check that failed.
 
-A check is a function that yields findings. Its name is that of the function, and its docstring
-says what it requires. Each finding pairs a measured value with a judgement.
+A check is a function that yields findings. Its name is that of the function; the claims of its
+lesson say what it requires. Each finding pairs a measured value with a judgement.
 """
 
 import math
@@ -183,9 +183,20 @@ def conclude(
 
 
 def evaluate(
-    named: Sequence[Callable[[Subject], Iterable[Finding]]], run: Subject
+    named: Sequence[Callable[[Subject], Iterable[Finding]]],
+    run: Subject,
+    claims: Mapping[str, str],
 ) -> tuple[Check, ...]:
-    """Run checks on a subject."""
+    """Run checks on a subject.
+
+    Args:
+        named: the checks.
+        run: what they check.
+        claims: what each check requires, by its name.
+
+    Raises:
+        KeyError: a check has no claim.
+    """
     outcomes = []
     for check in named:
         findings: list[Finding] = []
@@ -196,8 +207,8 @@ def evaluate(
         except (ValueError, LookupError, ArithmeticError) as error:
             # Arrays that do not fit together, or values beyond what floats can hold.
             failure = error
-        requirement = (check.__doc__ or "").strip()
-        outcomes.append(conclude(check.__name__, requirement, findings, failure))
+        name = check.__name__
+        outcomes.append(conclude(name, claims[name], findings, failure))
     return tuple(outcomes)
 
 

@@ -111,6 +111,28 @@ class Lesson:
     further: Mapping[str, Moving] = field(default_factory=dict)
     marks: Mapping[str, str] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        """Refuse claims that are not those of the checks.
+
+        Raises:
+            ValueError: a check has no claim, or a claim has no check; the message names them.
+        """
+        checks = {check.__name__ for page in self.pages.values() for check in page.checks}
+        claims = {name for page in self.pages.values() for name in page.claims}
+        for name, page in self.pages.items():
+            for check in page.checks:
+                if not page.claims.get(check.__name__, "").strip():
+                    raise ValueError(
+                        f"The check {check.__name__} of the page {name} has no claim. "
+                        "Say in CLAIMS what it requires."
+                    )
+        if claims - checks:
+            raise ValueError(
+                f"CLAIMS has {', '.join(sorted(claims - checks))}, but no page of the lesson has "
+                f"such a check. The checks are {', '.join(sorted(checks))}. Remove the claim, or "
+                "add the check to a page."
+            )
+
     def about_metrics(self, what: str) -> dict[str, Any]:
         """Return `unit`, `label` or `noun` of each of its metrics by name."""
         return {name: v for of in self.metrics.values() for name, v in of.about(what).items()}

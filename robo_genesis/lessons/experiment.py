@@ -59,6 +59,7 @@ class MeasuringPage:
     | `readings` | the groups of values of the engine in a run with or without a camera |
     | `measure` | returns the metrics of a case from its trace |
     | `checks` | named checks in the order of their table |
+    | `claims` | by check of the lesson, what it requires |
     | `parameters` | returns every configured input as JSON values |
     | `validate` | refuses arrays that no run can have |
 
@@ -71,6 +72,7 @@ class MeasuringPage:
     readings: Callable[[bool], Mapping[str, Readings]]
     measure: Callable[[Any, Any], CaseMetrics]
     checks: Sequence[Callable[["Experiment"], Iterable[Finding]]]
+    claims: Mapping[str, str]
     parameters: Callable[[], dict[str, Any]]
     links: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
@@ -139,4 +141,4 @@ class Experiment:
 
     def outcomes(self) -> tuple[Check, ...]:
         """Return the outcomes of the named checks."""
-        return evaluate(self.page.checks, self)
+        return evaluate(self.page.checks, self, self.page.claims)

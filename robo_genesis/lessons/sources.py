@@ -43,11 +43,10 @@ NOT_COMPUTING = {
 """The last words of the names of modules that are in no evidence key: `study_spec`, `text` …"""
 
 QUIET = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.ENDMARKER)
-DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 @lru_cache(maxsize=1024)
-def syntax_digest(source: str, docstrings: bool = False) -> str:
+def syntax_digest(source: str) -> str:
     """Return the sha256 of what a module does: of its syntax tree, not of its text.
 
     Comments, layout, quotes and strings that are statements of their own do not count. Python
@@ -57,13 +56,12 @@ def syntax_digest(source: str, docstrings: bool = False) -> str:
 
     Args:
         source: Python. One that does not parse counts by its text.
-        docstrings: whether the docstrings of functions count.
     """
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError):
         return _sha256(source)
-    return _sha256(_canonical(tree, docstrings))
+    return _sha256(_canonical(tree))
 
 
 @lru_cache(maxsize=1024)
@@ -77,14 +75,14 @@ def cell_digest(source: str) -> str:
         tree = ast.parse(source)
     except (SyntaxError, ValueError):
         return _sha256(source)
-    statements = [_canonical(statement, False) for statement in tree.body]
+    statements = [_canonical(statement) for statement in tree.body]
     return _sha256([statements, _ends_with_semicolon(source)])
 
 
-def _canonical(node: Any, docstrings: bool) -> Any:
+def _canonical(node: Any) -> Any:
     """Return a syntax tree as nested lists, the same in each version of Python."""
     if isinstance(node, list):
-        return [_canonical(each, docstrings) for each in node]
+        return [_canonical(each) for each in node]
     if isinstance(node, ast.Constant):
         return ["Constant", type(node.value).__name__, ascii(node.value)]
     if not isinstance(node, ast.AST):
@@ -94,15 +92,11 @@ def _canonical(node: Any, docstrings: bool) -> Any:
     fields.pop("type_comment", None)
     if isinstance(node, ast.JoinedStr):
         fields["values"] = list(_joined(node.values))
-    body = fields.get("body")
-    if isinstance(body, list):
-        kept = body[:1] if docstrings and isinstance(node, DEFINITIONS) else []
-        fields["body"] = [s for s in body if s in kept or not _is_text(s)]
-    for name in ("orelse", "finalbody"):
+    for name in ("body", "orelse", "finalbody"):
         if isinstance(fields.get(name), list):
             fields[name] = [s for s in fields[name] if not _is_text(s)]
     filled = {
-        name: _canonical(value, docstrings)
+        name: _canonical(value)
         for name, value in fields.items()
         if value is not None and value != []
     }
@@ -253,8 +247,7 @@ def page_fingerprint(
 
     It covers the lock, all installed versions, the version of Python, the environment contract, the
     syntax of the page's cells, of the modules that they import and of the modules of its lesson,
-    and the data files of the package, except those of other lessons. The docstrings of the lesson's
-    functions count, because that of a check is shown.
+    and the data files of the package, except those of other lessons.
 
     Args:
         page: an executed page.
@@ -276,10 +269,7 @@ def page_fingerprint(
         "python": platform.python_version(),
         "environment": environment_contract(environment),
         "cells": [cell_digest(cell) for cell in cells],
-        "modules": {
-            name: syntax_digest(path.read_text("utf8"), docstrings=name in own)
-            for name, path in modules.items()
-        },
+        "modules": {name: syntax_digest(path.read_text("utf8")) for name, path in modules.items()},
         "data": {
             path.relative_to(root).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
             for path in _data_files(page.lesson, root)

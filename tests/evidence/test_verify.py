@@ -115,8 +115,8 @@ status = bundle_status(Path(sys.argv[1]))
 print(status.state, status.reason)
 """
 LAB = "book/lessons/l04-joint-control/lab.md"
-SPEC, METRICS, CHECKS = (
-    f"robo_genesis/lessons/l04/{name}.py" for name in ("spec", "metrics", "checks")
+SPEC, METRICS, CLAIMS = (
+    f"robo_genesis/lessons/l04/{name}.py" for name in ("spec", "metrics", "claims_text")
 )
 STALE = "stale stale: manifest.json: {} is "
 
@@ -133,7 +133,7 @@ STALE = "stale stale: manifest.json: {} is "
         (METRICS, "float(qd[-1])", "float(abs(qd[-1]))",
          STALE.format("source.modules.lessons.l04.metrics")),
         (METRICS, "RISE_FRACTION = 0.9", "RISE_FRACTION = 0.8", "stale "),
-        (CHECKS, "Start, target, gains", "Start, gains, target", "verified"),
+        (CLAIMS, "Start, target, gains", "Start, gains, target", "verified"),
         (METRICS, "SETTLING_BAND = 0.01", "SETTLING_BAND = 0.02", "stale "),
         (SPEC, "7000.0", "7100.0", STALE.format("parameters.cases.G2.kp")),
         (SPEC, "WINDOW = 1.2", "WINDOW = 1.3", "stale "),

@@ -42,6 +42,7 @@ LAB = MeasuringPage(
     readings=readings,
     measure=drop_metrics,
     checks=checks.CHECKS,
+    claims=text.CLAIMS,
     parameters=spec.parameters,
     validate=plausibility.require_possible_runs,
 )

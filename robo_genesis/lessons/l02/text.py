@@ -175,3 +175,35 @@ def convergence(study: StepStudy) -> tuple[str, ...]:
             "of first order: half the step leaves half the difference.",
         )
     return ends, f"The run farthest from {TERM} differs from it by {error:.0f} %. {INSPECT}"
+
+
+CLAIMS: dict[str, str] = {
+    "structure": (
+        "The scene has two entities; the box is one link, one geom, one joint, 6 DOFs and 7 qpos."
+    ),
+    "mass": "The engine's mass is density times volume.",
+    "start": "Each run begins with the box at rest at the height of its case.",
+    "stamps": (
+        "The record has one state at t = 0 and one after each outer step, at the times k · dt."
+    ),
+    "falls": "The box is lower after every step than before it, and faster.",
+    "clear_of_ground": (
+        "The box's underside stays above the ground: the run measures the fall, not a contact."
+    ),
+    "stepped_formula": "At every sample the box has fallen g h² n (n + 1) / 2, to within float32.",
+    "speed": "At every sample the velocity is g t, downwards: one outer step is dt long.",
+    "straight_down": "The box moves vertically and keeps its orientation.",
+    "posture": (
+        "The evidence of the first and the last state is complete and shows the box in two places."
+    ),
+    "one_factor": "The cases differ in their substeps alone.",
+    "shrinks": "The gap to continuous free fall is smaller with every smaller solver step.",
+    "first_order": "The gap is g h t / 2, so half the solver step leaves half of it.",
+    "sides_of_build": (
+        "The engine accepts each call on its own side of build and refuses it on the other."
+    ),
+}
+"""What each named check of the pages requires, shown where it passed."""
+
+SAME_FALL = "Boxes of different colour or density fall alike, to the last bit."
+"""What the check of the lecture's boxes requires, which are in no bundle."""

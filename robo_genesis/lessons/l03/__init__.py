@@ -58,6 +58,7 @@ LAB = MeasuringPage(
     readings=lambda rendered: readings(["cube", "ball"], spec.CASES),
     measure=case_metrics,
     checks=checks.CHECKS,
+    claims=text.CLAIMS,
     parameters=spec.parameters,
     validate=plausibility.require_possible_runs,
 )

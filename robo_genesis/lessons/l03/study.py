@@ -67,7 +67,6 @@ def distance_between(traces: Mapping[str, ContactTrace], first: str, second: str
 
 
 def time_constants(run: Experiment) -> Iterator[Finding]:
-    """The engine gives a contact a time constant of 10 ms, and never less than two solver steps."""
     for name in spec.STEPS_STUDIED:
         found = run.readings[GROUP][name]
         expected = mujoco_contacts.time_constant(solver_step(name))
@@ -75,7 +74,6 @@ def time_constants(run: Experiment) -> Iterator[Finding]:
 
 
 def records_each_step(run: Experiment) -> Iterator[Finding]:
-    """With every solver step recorded, the baseline falls as with every second one."""
     fine, coarse = run.traces[spec.AS_BASELINE].link_pos, run.traces["baseline"].link_pos
     shared = fine[:: spec.BASELINE.substeps, 0, 2]
     difference = float(np.abs(shared - coarse[: len(shared), 0, 2]).max())
@@ -83,7 +81,6 @@ def records_each_step(run: Experiment) -> Iterator[Finding]:
 
 
 def rebound_goes(run: Experiment) -> Iterator[Finding]:
-    """At the baseline's solver step cubes rebound; at all smaller steps studied, none does."""
     for name in spec.STEPS_STUDIED:
         highest = max(found.rebound for found in landings_at(run.metrics, name))
         label, step = f"{name}.highest_rebound_m", solver_step(name)
@@ -96,7 +93,6 @@ def rebound_goes(run: Experiment) -> Iterator[Finding]:
 
 
 def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
-    """The scatter of the depth over the heights of fall is smaller with every smaller step."""
     limit, finest = np.inf, min(spec.STEPS_STUDIED, key=solver_step)
     for name in sorted(spec.STEPS_STUDIED, key=solver_step, reverse=True):
         scatter = float(np.ptp([of.penetration for of in landings_at(run.metrics, name)]))
@@ -112,12 +108,10 @@ def hops(run: Experiment, names: Iterable[str]) -> Iterator[Finding]:
 
 
 def default_cone_hops(run: Experiment) -> Iterator[Finding]:
-    """With the engine's default friction model, both pushed cubes leave the surface."""
     return hops(run, PUSHED)
 
 
 def stops_nearly_right(run: Experiment) -> Iterator[Finding]:
-    """The cube with the friction of the surface still stops near v² / (2 μ g)."""
     name = PUSHED[0]
     case, found = spec.REPEATED[name], slide(run.metrics, name).stop_distance
     expected = friction.coulomb_distance(case.speed, case.surface_friction, case.gravity)
@@ -125,7 +119,6 @@ def stops_nearly_right(run: Experiment) -> Iterator[Finding]:
 
 
 def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
-    """The first step reduces v_x by μ times the gain of v_z, far more than under the weight."""
     for name in PUSHED:
         case = spec.REPEATED[name]
         lost, gained = first_impulses(run.traces[name], case)
@@ -135,7 +128,6 @@ def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
 
 
 def clean_slides_stay_down(run: Experiment) -> Iterator[Finding]:
-    """With the engine's elliptic cone, cubes slide on four corners at every sample."""
     for name in spec.CLEAN_SLIDES:
         yield at_most(f"{name}.hop_m", slide(run.metrics, name).hop, CLEAR)
         contacts = run.traces[name].contacts[:, 0]
@@ -144,7 +136,6 @@ def clean_slides_stay_down(run: Experiment) -> Iterator[Finding]:
 
 
 def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[Finding]:
-    """With the elliptic cone, a cube stops at v² / (2 μ g) − v h / 2: Coulomb's law in steps."""
     for name, case in spec.CLEAN_SLIDES.items():
         mu = friction.pair_friction(case)
         expected = friction.stepped_distance(case.speed, mu, case.h, case.gravity)
@@ -153,7 +144,6 @@ def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[Finding]:
 
 
 def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
-    """Clean slides show the larger of two coefficients, and fit no other rule."""
     for name, case in spec.CLEAN_SLIDES.items():
         label, distance = f"{name}.friction", slide(run.metrics, name).stop_distance
         if distance is None:
@@ -172,12 +162,10 @@ def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
 
 
 def the_cone_alone_hops(run: Experiment) -> Iterator[Finding]:
-    """With the round cone and the pyramid's resolution cubes hop: the shape does not prevent it."""
     return hops(run, spec.CONVEX_SLIDES)
 
 
 def engines_land_alike(run: Experiment) -> Iterator[Finding]:
-    """With equal settings, cubes land in MuJoCo as in the engine, at every shared sample."""
     for name, other in spec.ENGINE_PAIRS.items():
         if isinstance(run.metrics[other], LandingMetrics):
             pair = [run.traces[n].link_pos[:, 0, 2] for n in (name, other)]
@@ -187,7 +175,6 @@ def engines_land_alike(run: Experiment) -> Iterator[Finding]:
 
 
 def engines_hop_alike(run: Experiment) -> Iterator[Finding]:
-    """With equal settings, pushed cubes make the same hop in MuJoCo, with either cone."""
     for name, other in spec.ENGINE_PAIRS.items():
         if isinstance(run.metrics[other], SlideMetrics):
             first, second = slide(run.metrics, name).hop, slide(run.metrics, other).hop

@@ -10,6 +10,7 @@ from robo_genesis.lessons.declaration import Compared, Filmed, Lesson
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.lessons.l04 import (
     checks,
+    claims_text,
     plausibility,
     plots,
     spec,
@@ -66,6 +67,7 @@ LAB = MeasuringPage(
     readings=readings,
     measure=measure,
     checks=checks.CHECKS,
+    claims=claims_text.CLAIMS,
     parameters=spec.parameters,
     validate=plausibility.require_possible_runs,
 )

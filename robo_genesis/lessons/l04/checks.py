@@ -21,7 +21,6 @@ from robo_genesis.sim.joints import EFFORT_UNIT, POSITION_UNIT
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:
-    """Seven arm joints and two finger joints are found by name, each with its own DOF."""
     model = run.readings["model"]
     yield from model_counts(model, spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
@@ -34,7 +33,6 @@ def mapping(run: Experiment) -> Iterator[Finding]:
 
 
 def configuration(run: Experiment) -> Iterator[Finding]:
-    """Start, target, gains and limits have one finite value per joint; joint types have units."""
     given = {
         f"{case}.{name}": (getattr(values, name), False)
         for case, values in spec.CASES.items()
@@ -49,7 +47,6 @@ def configuration(run: Experiment) -> Iterator[Finding]:
 
 
 def target_limits(run: Experiment) -> Iterator[Finding]:
-    """Every start and target lies within the model's limits."""
     for case, name in product(spec.CASES, ("q_start", "q_target")):
         q = getattr(spec.CASES[case], name)
         beyond = np.maximum(run.joints.lower - q, q - run.joints.upper)
@@ -58,13 +55,11 @@ def target_limits(run: Experiment) -> Iterator[Finding]:
 
 
 def baseline_approaches(run: Experiment) -> Iterator[Finding]:
-    """The baseline ends nearer to its target than it starts."""
     m = run.metrics["baseline"]
     yield below("baseline.final_error_rad", m.final_error, m.initial_error)
 
 
 def stamps(run: Experiment) -> Iterator[Finding]:
-    """Each run has its configured steps, states at times k · dt from zero, and its own target."""
     yield from sample_times(spec.CASES, run.traces)
     for name, case in spec.CASES.items():
         other = int((run.traces[name].target != case.q_target).any(axis=1).sum())
@@ -72,7 +67,6 @@ def stamps(run: Experiment) -> Iterator[Finding]:
 
 
 def same_start(run: Experiment) -> Iterator[Finding]:
-    """The compared cases start in the same state, at rest."""
     first = run.traces["G1"]
     for name in ("G1", "G2", "G3"):
         trace = run.traces[name]
@@ -85,14 +79,12 @@ def same_start(run: Experiment) -> Iterator[Finding]:
 
 
 def one_factor(run: Experiment) -> Iterator[Finding]:
-    """G1 and G2 differ in the stepped joint's KP alone, G2 and G3 in its KV alone."""
     for (one, other), expected in spec.ONE_FACTOR.items():
         found = differences(spec.CASES[one], spec.CASES[other], run.joints)
         yield equal(f"difference of {one} and {other}", found, expected, recorded=False)
 
 
 def not_observed(run: Experiment) -> Iterator[Finding]:
-    """A time is given exactly where the samples reach it, and `not observed` where they do not."""
     for name in spec.CASES:
         trace, m = run.traces[name], run.metrics[name]
         q = trace.q[:, spec.ENTRY].astype(np.float64)
@@ -109,7 +101,6 @@ def not_observed(run: Experiment) -> Iterator[Finding]:
 
 
 def control_law(run: Experiment) -> Iterator[Finding]:
-    """Each control force is clip(KP (q_target − q) − KV q̇) with the gains of its own case."""
     for name, c in spec.CASES.items():
         trace = run.traces[name]
         limit = trace.effort_limit
@@ -119,7 +110,6 @@ def control_law(run: Experiment) -> Iterator[Finding]:
 
 
 def measurements(run: Experiment) -> Iterator[Finding]:
-    """Position, velocity and forces are finite, and no control force exceeds its limit."""
     for name in spec.CASES:
         trace = run.traces[name]
         # A trace refuses values that are not finite when it is made; its arrays may change later.
@@ -131,7 +121,6 @@ def measurements(run: Experiment) -> Iterator[Finding]:
 
 
 def saturation(run: Experiment) -> Iterator[Finding]:
-    """The limit reads back as it was set, and saturated samples are counted against it."""
     for name, case in spec.CASES.items():
         trace, m = run.traces[name], run.metrics[name]
         share = np.abs(trace.effort_limit - case.effort_limit) / np.abs(case.effort_limit)
@@ -143,7 +132,6 @@ def saturation(run: Experiment) -> Iterator[Finding]:
 
 
 def posture(run: Experiment) -> Iterator[Finding]:
-    """Two different camera frames, or a schematic whose links moved, show the end state."""
     return end_state.findings(run.rendered, run.frames, run.traces["baseline"].link_pos)
 
 

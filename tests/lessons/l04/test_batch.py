@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core.quantities import format_value
 from robo_genesis.lessons.l04 import batch, explorer, plots, spec, study_checks, study_spec
+from robo_genesis.lessons.l04.claims_text import GRID_CLAIMS
 from robo_genesis.lessons.l04.study_spec import POINTS, GridPoint
 from robo_genesis.sim.franka import JOINT_NAMES
 
@@ -44,9 +45,8 @@ def grid(traces, joints) -> study_checks.Grid:
 
 
 def failed(grid):
-    return {
-        check.name: check.detail for check in study_checks.run_grid_checks(grid) if not check.passed
-    }
+    outcomes = study_checks.run_grid_checks(grid, GRID_CLAIMS)
+    return {check.name: check.detail for check in outcomes if not check.passed}
 
 
 def test_the_grid_holds_the_lesson_s_cases_exactly():

@@ -8,6 +8,7 @@ import pytest
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l04 import batch as sweep
 from robo_genesis.lessons.l04 import spec, study_checks, study_spec
+from robo_genesis.lessons.l04.claims_text import GRID_CLAIMS
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import CaseError, run_case
 from robo_genesis.sim.joints import resolve_joints
@@ -44,7 +45,8 @@ def test_the_batch_gives_what_each_case_gives_alone(lab, found):
         name: run_case(lab.scene, lab.franka, lab.joints, spec.CASES[name])
         for name in study_spec.CASE_POINTS
     }
-    outcomes = study_checks.run_grid_checks(study_checks.Grid(found, alone, lab.joints))
+    run = study_checks.Grid(found, alone, lab.joints)
+    outcomes = study_checks.run_grid_checks(run, GRID_CLAIMS)
     assert [check.detail for check in outcomes if not check.passed] == []
     small = run_case(lab.scene, lab.franka, lab.joints, SMALL.case)
     k = lab.joints.entry(spec.STEPPED_JOINT)

@@ -28,7 +28,7 @@ K = spec.ENTRY
 
 
 def failed(run):
-    outcomes = evaluate(study_checks.CHECKS, run)
+    outcomes = evaluate(study_checks.CHECKS, run, run.page.claims)
     return {check.name: check.detail for check in outcomes if not check.passed}
 
 
