@@ -115,7 +115,7 @@ OLDER = both(part("engine", version="1.2.0"), log("version: ", "version: 1.2.0, 
         (part("backend", torch_device="cuda"), "Genesis and Torch used different devices"),
         (both(metric(value=0.0), seal), "The recorded metrics are not those of the recorded"),
         (both(found("mapping", "links", 12), seal), "The recorded outcomes of the checks are"),
-        (failing("off its control law", seal), "The files are sound, but a check of the run"),
+        (failing("two joints on one DOF", seal), "The files are sound, but a check of the run"),
         (both(drop_case, seal), "The bundle does not have exactly the page's runs."),
     ],
 )  # fmt: skip

@@ -121,10 +121,10 @@ def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():
     assert read <= {*OTHER, "CASES", "ENTRY"}  # ENTRY follows from joints and stepped joint
 
 
-def test_the_lab_reads_parameters_alone():
+def test_the_lab_reads_parameters_and_the_compared_pairs_alone():
     (lab,) = (project.BOOK / "lessons").glob("l04-*/lab.md")
     read = set(re.findall(r"\bspec\.([A-Za-z]\w*)", lab.read_text("utf8")))
-    assert read - {*OTHER, "CASES"} == {"BASELINE"}
+    assert read - {*OTHER, "CASES"} == {"BASELINE", "ONE_FACTOR"}
     assert spec.CASES["baseline"] is spec.BASELINE
 
 
