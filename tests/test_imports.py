@@ -44,7 +44,7 @@ def test_the_engine_is_imported_by_few_and_inside_functions(path):
     found = list(engine_imports(ast.parse(path.read_text("utf8"))))
     if path.parent.name != "sim":
         assert found == []
-    if not path.name.startswith("mujoco_"):
+    if not path.name.startswith(("mujoco_", "plausible_")):  # these are imported inside functions
         assert [line for line, inside in found if not inside] == []
 
 

@@ -145,7 +145,7 @@ def test_only_functions_of_lessons_and_core_are_found(name):
 def test_a_function_that_returns_something_else_is_refused(page):
     measure(page)
     with pytest.raises(shown.ShownError, match="returned generator"):
-        shown.mime_data("robo_genesis.core.checks.wrong_counts", page.experiment, [{}])
+        shown.mime_data("robo_genesis.core.checks.sample_times", page.experiment, [{}])
 
 
 def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(page, displayed, capsys):

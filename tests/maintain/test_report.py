@@ -59,7 +59,7 @@ def test_a_bundle_that_one_build_lacks_makes_the_builds_not_comparable(builds):
 
 def test_a_metric_beyond_tolerance_a_warning_and_a_flipped_relation_are_named(builds):
     folder = builds[1] / "evidence" / "l04" / "cpu"
-    metrics(lambda m: m["G2"]["overshoot"].update(value=0.001))(folder)
+    metrics(lambda m: m["G3"]["overshoot"].update(value=1.0))(folder)
     predicate(warnings=["Something new."])(folder)
     seal(folder)
     found = compared(builds)
@@ -68,7 +68,7 @@ def test_a_metric_beyond_tolerance_a_warning_and_a_flipped_relation_are_named(bu
     assert "- Engine warning gained: Something new." in text
     assert "- Engine warning lost: Approximating tendon." in text
     assert "flipped" in text
-    assert "| differs | G2.overshoot |" in text
+    assert "| differs | G3.overshoot |" in text
     assert page.count("<h1>") == 1
     assert "<h2>L04 lab: engine version" in page
     assert "flipped" in page

@@ -5,6 +5,7 @@ import yaml
 from built_site import LESSON_PAGES, parsed
 from tiny_book import make_book
 
+from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.render import RenderError, render
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.registry import LESSONS
@@ -60,7 +61,7 @@ def text_page(folder, rows, text):
     (folder / "book" / "lessons" / "l02-two").mkdir(parents=True)
     book = make_book(folder, **{name: f"# {text}\n\nText.\n" for name, text in pages.items()})
     write(book, rows)
-    html = render(book, folder / "staging", folder / "cache", folder / "render.log")
+    html = render(book, folder / "staging", BuiltPages(), folder / "render.log")
     return parsed(html, "text").article
 
 

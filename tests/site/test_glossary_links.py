@@ -4,6 +4,7 @@ import pytest
 from built_site import parsed
 from tiny_book import make_book
 
+from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.render import RenderError, render
 from robo_genesis.site import glossary
 
@@ -46,7 +47,7 @@ def html(tmp_path_factory):
 def build(folder, forms=FORMS):
     book = make_book(folder, glossary=GLOSSARY, page=PAGE)
     (book / glossary.FORMS).write_text(forms)
-    return render(book, folder / "staging", folder / "cache", folder / "render.log")
+    return render(book, folder / "staging", BuiltPages(), folder / "render.log")
 
 
 def links(html, name):
@@ -85,7 +86,7 @@ def test_words_are_whole_and_the_longest_term_wins():
 
 def test_a_book_without_glossary_has_no_links(tmp_path):
     book = make_book(tmp_path, page="# Page\n\nAn overshoot.\n")
-    html = render(book, tmp_path / "staging", tmp_path / "cache", tmp_path / "render.log")
+    html = render(book, tmp_path / "staging", BuiltPages(), tmp_path / "render.log")
     assert links(html, "page")[1] == []
 
 

@@ -6,6 +6,7 @@ from built_site import parsed
 from docutils.core import publish_doctree
 from tiny_book import git, make_book
 
+from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.render import render
 from robo_genesis.site import page_facts as facts
 
@@ -77,7 +78,7 @@ def test_an_unknown_history_has_its_reason(checkout, tmp_path):
 def test_a_page_has_all_three_and_the_home_page_no_time(tmp_path):
     text = "# Page\n\n- no paragraph\n\nA joint's *step* & more. " + "word " * 100
     book = make_book(tmp_path, page=text)
-    html = render(book, tmp_path / "staging", tmp_path / "cache", tmp_path / "render.log")
+    html = render(book, tmp_path / "staging", BuiltPages(), tmp_path / "render.log")
     page, home = parsed(html, "page"), parsed(html, "index")
     assert "About 1 min to read: 108 words" in page.select_one("h1 + p.page-facts").get_text()
     assert not home.select(".page-facts")

@@ -7,7 +7,9 @@ from docutils.core import publish_doctree
 from myst_parser.parsers.docutils_ import Parser
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
+from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.execute import execute_pages
+from robo_genesis.build.page_store import places
 from robo_genesis.build.render import RenderError, render
 from robo_genesis.evidence.status import Status
 from robo_genesis.lessons.book_pages import find_pages
@@ -63,13 +65,15 @@ def book_of(folder, *cells, text="", front=LAB_FRONT, **pages):
     lab = notebook(cell(WRITE_BUNDLE), cell(IMPORTS), *cells, front=front) + text
     ledger = "# Ledger\n\n```{ledger} items\n```\n"
     book = make_book(folder, lab=lab, **pages, **{"evidence/ledger": ledger})
-    results = execute_pages(find_pages(book), folder / "cache")
+    pages = find_pages(book)
+    results = execute_pages(pages, places(pages, folder / "store"))
     assert [result.status for result in results] == ["executed"]
-    return folder
+    return folder, BuiltPages.of(results)
 
 
-def build(folder):
-    return render(folder / "book", folder / "staging", folder / "cache", folder / "render.log")
+def build(executed):
+    folder, built = executed
+    return render(folder / "book", folder / "staging", built, folder / "render.log")
 
 
 SHOW = """\
@@ -129,13 +133,14 @@ def test_what_has_no_line_or_follows_from_no_run_stops_the_build(tmp_path):
         "\n```{figure} ../book/evidence/l04/amdgpu/frames/final.svg\n:alt: x\n\nFree words.\n```\n"
         "\n```{figure} innocent.svg\n:alt: x\n\nFree words.\n```\n"
     )
-    folder = book_of(tmp_path, *wrong, text=text, text_page="# Text\n\n{glue}`lab.md::bare`\n")
+    page = "# Text\n\n{glue}`lab.md::bare`\n"
+    folder, built = book_of(tmp_path, *wrong, text=text, text_page=page)
     frames = folder / "book/evidence/l04/amdgpu/frames"
     frames.mkdir(parents=True)
     (frames / "final.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
     (folder / "book/innocent.svg").symlink_to(frames / "final.svg")
     with pytest.raises(RenderError) as caught:
-        build(folder)
+        build((folder, built))
     said = [line for line in str(caught.value).splitlines() if "WARNING" in line]
     for part in (
         "a cell outputs <table> as raw HTML, which would have no line in the ledger. "
