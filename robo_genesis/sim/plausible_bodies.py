@@ -155,8 +155,9 @@ def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Breach
     if case.shape == "ball":
         lowest = position[:, 2, None] - case.size / 2
     else:
-        corners = rotated(orientation[:, None], case.size * CORNERS)
-        lowest = position[:, 2, None] + corners[..., 2]
+        w, x, y, z = orientation.T  # below: the world's z axis in the body's axes
+        up = np.stack([x * z - w * y, y * z + w * x, 0.5 - x**2 - y**2], axis=1) * 2
+        lowest = position[:, 2, None] + up @ (case.size * CORNERS).T
     depths = TOP - lowest  # (n+1, corners)
     first = 0 if case.settle else 1  # no step was taken before the first sample of the others
     expected = np.maximum(depths.max(axis=1), 0)
@@ -289,12 +290,18 @@ def before_last_step(trace: BodyTrace, h: float) -> tuple[FloatArray, FloatArray
     half = np.linalg.norm(turn, axis=1, keepdims=True) / 2
     w, v = np.cos(half), turn / 2 * np.sinc(half / np.pi)
     scalar = w * quat[:, :1] - (v * quat[:, 1:]).sum(axis=1, keepdims=True)
-    vector = w * quat[:, 1:] + quat[:, :1] * v + np.cross(v, quat[:, 1:])
+    vector = w * quat[:, 1:] + quat[:, :1] * v + cross(v, quat[:, 1:])
     return position - h * velocity, np.hstack([scalar, vector])
 
 
 def rotated(quat: FloatArray, vectors: FloatArray) -> FloatArray:
     """Return vectors (…, 3) rotated by unit quaternions (…, 4), (w, x, y, z)."""
     axis = quat[..., 1:]
-    twice = 2 * np.cross(axis, vectors)
-    return np.asarray(vectors + quat[..., :1] * twice + np.cross(axis, twice))
+    twice = 2 * cross(axis, vectors)
+    return np.asarray(vectors + quat[..., :1] * twice + cross(axis, twice))
+
+
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the cross products of vectors (…, 3), as `np.cross` does for any axes."""
+    (x, y, z), (u, v, w) = ([of[..., k] for k in range(3)] for of in (a, b))
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)
