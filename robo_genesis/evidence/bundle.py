@@ -11,6 +11,7 @@ log.txt         the engine's own log
 import hashlib
 import re
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal
 
@@ -276,9 +277,14 @@ def read_arrays(folder: Path) -> Arrays:
     return _validated(Arrays, read_json(folder, "arrays.json"), "arrays.json")
 
 
+@cache
+def _adapter(form: Any) -> TypeAdapter[Any]:
+    return TypeAdapter(form)
+
+
 def _validated(form: Any, value: Any, file: str) -> Any:
     try:
-        return TypeAdapter(form).validate_python(value)
+        return _adapter(form).validate_python(value)
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, (file, *first["loc"])))[:LONGEST_SHOWN]

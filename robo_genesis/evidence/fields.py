@@ -19,6 +19,8 @@ def _plain(limit: int, other: str = "") -> AfterValidator:
     def check(text: str) -> str:
         if len(text) > limit:
             raise ValueError(f"expected at most {limit} characters, found {len(text)}")
+        if text.isprintable():
+            return text
         odd = next((c for c in text if not c.isprintable() and c not in other), None)
         if odd is not None:
             raise ValueError(f"expected one line without control characters, found {odd!r}")

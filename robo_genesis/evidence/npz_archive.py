@@ -11,7 +11,9 @@ import struct
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.lib import format as npy
@@ -27,6 +29,7 @@ VALID = ("<f4", "<f8", "<i4")
 HEAD, SIZES = struct.Struct("<4s5H3I2H"), struct.Struct("<2H2Q")
 ENTRY, END = struct.Struct("<4s4B4H3I5H2I"), struct.Struct("<4s4H2IH")
 ZIP64, DEFLATED, YEAR_1980, UNIX, PERMISSIONS = 45, 8, 33, 3, 0o600 << 16
+MAGIC = npy.magic(1, 0)
 BEYOND = 2**32 - 1
 """A size in a member's header that the extra field gives instead."""
 
@@ -139,20 +142,28 @@ def _unpacked(member: Member) -> np.ndarray:
 
 def _array(name: str, file: bytes) -> np.ndarray:
     """Return the array of an npy file that is exactly the one that the recorder writes."""
-    stream = io.BytesIO(file)
-    if npy.read_magic(stream) != (1, 0):
+    if file[: len(MAGIC)] != MAGIC:
         raise ValueError(f"{name} has another version of the npy format than 1.0")
-    shape, fortran, dtype = npy.read_array_header_1_0(stream)
+    begin = len(MAGIC) + 2 + int.from_bytes(file[len(MAGIC) : len(MAGIC) + 2], "little")
+    shape, fortran, dtype = _header(file[:begin])
     found = f"{dtype.str}, {'Fortran' if fortran else 'C'} order, shape {shape}"
     if dtype.str not in VALID or fortran or any(n < 0 for n in shape):
         raise ValueError(f"{name} is {found}; valid types are {', '.join(VALID)} in C order")
-    begin = stream.tell()
     if len(file) - begin != math.prod(shape) * dtype.itemsize:
         raise ValueError(f"{name} has {len(file)} bytes, which do not fit {found}")
     array = np.frombuffer(file, dtype, offset=begin).reshape(shape)
     if _npy(array) != file:
         raise ValueError(f"{name} has another header than the recorder writes")
     return array
+
+
+@lru_cache(maxsize=256)
+def _header(content: bytes) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Return shape, whether the order is Fortran's, and type of an npy file, from its header."""
+    stream = io.BytesIO(content)
+    npy.read_magic(stream)
+    shape, fortran, dtype = npy.read_array_header_1_0(stream)
+    return tuple(shape), bool(fortran), dtype
 
 
 def _npy(array: np.ndarray) -> bytes:

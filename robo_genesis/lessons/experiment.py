@@ -118,7 +118,7 @@ class Experiment:
     joints: Any = None
     accepted: Mapping[str, CaseMetrics] | None = None
 
-    @property
+    @cached_property
     def cases(self) -> dict[str, Any]:
         """The settings of each run."""
         return self.page.cases

@@ -57,7 +57,7 @@ def require_frame(rgb: Any) -> None:
     picture = np.asarray(rgb)
     if picture.dtype != np.uint8 and not np.isfinite(picture).all():
         raise FrameError("The camera returned values that are not finite.")
-    if (picture == picture[0, 0]).all():
+    if picture.tobytes() == picture[0, 0].tobytes() * (shape[0] * shape[1]):
         raise FrameError(
             f"The camera returned an empty picture: every pixel is {picture[0, 0].tolist()}. "
             "It shows only the background. Check the camera's `pos` and `lookat`."

@@ -1,8 +1,9 @@
 """What the arrays of a free body must have in common, by geometry and by the laws of motion.
 
 Contacts are a function of the state before the last solver step, which follows from the state
-after it. Each state follows from the state before it: MuJoCo, which uses the same contact model,
-computes it anew from every sample, so that no difference can grow.
+after it. Each state follows from the state before it: the contact model of both engines gives it
+anew from every sample, so that no difference can grow. Where a body only moves up and down, the
+model is one formula; everywhere else MuJoCo computes the state.
 
 | tolerance | residual of the CPU runs | value |
 |---|---|---|
@@ -25,12 +26,10 @@ computes it anew from every sample, so that no difference can grow.
 stops, and a wider one would let a sample change by a hundredth of the speed.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-import mujoco
 import numpy as np
-from mujoco import rollout
 
 from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.plausibility import Breach, apart, times, unit_quaternions
@@ -61,6 +60,9 @@ RESOLVED = 4e-7
 
 NEXT = {"link_pos": 5e-6, "link_quat": 2e-4, "link_vel": 3e-4, "link_ang": 2e-2}
 """Tolerances of the state after one outer step [m, 1, m/s, rad/s]."""
+
+LEVEL = 0.1
+"""Share of `NEXT` up to which a body is upright and neither turns nor moves sideways."""
 
 ON_EDGE = 5
 """Number of steps in a run that may end otherwise, because a cube that lands on an edge has other
@@ -153,8 +155,9 @@ def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Breach
     if case.shape == "ball":
         lowest = position[:, 2, None] - case.size / 2
     else:
-        corners = rotated(orientation[:, None], case.size * CORNERS)
-        lowest = position[:, 2, None] + corners[..., 2]
+        w, x, y, z = orientation.T  # below: the world's z axis in the body's axes
+        up = np.stack([x * z - w * y, y * z + w * x, 0.5 - x**2 - y**2], axis=1) * 2
+        lowest = position[:, 2, None] + up @ (case.size * CORNERS).T
     depths = TOP - lowest  # (n+1, corners)
     first = 0 if case.settle else 1  # no step was taken before the first sample of the others
     expected = np.maximum(depths.max(axis=1), 0)
@@ -208,19 +211,73 @@ def next_states(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
 
 
 def continued(trace: ContactTrace, case: ContactCase) -> dict[str, FloatArray]:
-    """Return what MuJoCo makes of each state but the last in one outer step, by array."""
-    model = mujoco_contacts.load(case)
-    quat = trace.link_quat[:-1, 0].astype(np.float64)
-    inverse = quat * [1, -1, -1, -1]
-    spin = rotated(inverse, trace.link_ang[:-1, 0].astype(np.float64))  # in the body's axes
+    """Return what follows from each state but the last in one outer step, by array."""
+    begin = {name: getattr(trace, name)[:-1, 0].astype(np.float64) for name in NEXT}
+    is_level = level(begin) if case.cone == "pyramidal" else np.zeros(trace.steps, bool)
+    expected = up_and_down({name: of[is_level] for name, of in begin.items()}, case)
+    if is_level.all():
+        return expected
+    further = by_mujoco({name: of[~is_level] for name, of in begin.items()}, case)
+    both = {name: np.empty_like(of) for name, of in begin.items()}
+    for name, of in both.items():
+        of[is_level], of[~is_level] = expected[name], further[name]
+    return both
+
+
+def level(begin: Mapping[str, FloatArray]) -> np.ndarray:
+    """Return (n,) whether a body is upright and neither turns nor moves sideways."""
+    small = [
+        np.abs(begin[name][:, of]).max(axis=1) < LEVEL * NEXT[name]
+        for name, of in (("link_quat", slice(1, 4)), ("link_vel", slice(2)), ("link_ang", slice(3)))
+    ]
+    return np.asarray(np.all(small, axis=0))
+
+
+def up_and_down(begin: Mapping[str, FloatArray], case: ContactCase) -> dict[str, FloatArray]:
+    """Return the states after one outer step of a body that moves only along z.
+
+    The contact points of an upright cube, or the one of a ball, have equal depths. The contact
+    model gives each of their four edges of friction a force f ≥ 0 with a + R f = −B v − K d r at
+    depth −r, where a = n f / m − g, d is the impedance, and R its regularization.
+    """
+    height, speed = begin["link_pos"][:, 2].copy(), begin["link_vel"][:, 2].copy()
+    low, high, width, middle, _ = mujoco_contacts.IMPEDANCE
+    seconds, damping_ratio = case.spring or (mujoco_contacts.time_constant(case.h), 1.0)
+    seconds = max(seconds, 2 * case.h)
+    stiffness, damping = (high * seconds * damping_ratio) ** -2, 2 / (high * seconds)
+    friction = max(case.friction, case.surface_friction) ** 2
+    edges = 4 * (4 if case.shape == "cube" else 1)
+    for _ in range(case.substeps):
+        r = np.minimum(height - case.rest_height, 0)
+        x = np.minimum(-r / width, 1)
+        rise = np.where(x < middle, x**2 / middle, 1 - (1 - x) ** 2 / (1 - middle))
+        d = low + rise * (high - low)
+        regular = 2 * friction * (1 + friction) * (1 - d) / d
+        wanted = case.gravity - damping * speed - stiffness * d * r
+        force = np.where(r < 0, np.maximum(wanted, 0) * edges / (edges + regular), 0)
+        speed += case.h * (force - case.gravity)
+        height += case.h * speed
+    after = {name: of.copy() for name, of in begin.items()}
+    after["link_pos"][:, 2], after["link_vel"][:, 2] = height, speed
+    return after
+
+
+def by_mujoco(begin: Mapping[str, FloatArray], case: ContactCase) -> dict[str, FloatArray]:
+    """Return what MuJoCo makes of states (n, …) in one outer step, by array."""
+    import mujoco
+    from mujoco import rollout
+
+    model, quat = mujoco_contacts.load(case), begin["link_quat"]
+    spin = rotated(quat * [1, -1, -1, -1], begin["link_ang"])  # in the body's axes
     at_zero = np.zeros((len(quat), 1))
-    parts = (at_zero, trace.link_pos[:-1, 0], quat, trace.link_vel[:-1, 0], spin)
+    parts = (at_zero, begin["link_pos"], quat, begin["link_vel"], spin)
     data = mujoco.MjData(model)
     states, _ = rollout.rollout(model, [data], np.hstack(parts), nstep=case.substeps)
     last: Any = states[:, -1]
     _, position, orientation, velocity, spin = np.split(last, (1, 4, 8, 11), axis=1)
-    turned = rotated(orientation, spin)
-    return dict(zip(NEXT, (position, orientation, velocity, turned), strict=True))
+    return dict(
+        zip(NEXT, (position, orientation, velocity, rotated(orientation, spin)), strict=True)
+    )
 
 
 def before_last_step(trace: BodyTrace, h: float) -> tuple[FloatArray, FloatArray]:
@@ -233,12 +290,18 @@ def before_last_step(trace: BodyTrace, h: float) -> tuple[FloatArray, FloatArray
     half = np.linalg.norm(turn, axis=1, keepdims=True) / 2
     w, v = np.cos(half), turn / 2 * np.sinc(half / np.pi)
     scalar = w * quat[:, :1] - (v * quat[:, 1:]).sum(axis=1, keepdims=True)
-    vector = w * quat[:, 1:] + quat[:, :1] * v + np.cross(v, quat[:, 1:])
+    vector = w * quat[:, 1:] + quat[:, :1] * v + cross(v, quat[:, 1:])
     return position - h * velocity, np.hstack([scalar, vector])
 
 
 def rotated(quat: FloatArray, vectors: FloatArray) -> FloatArray:
     """Return vectors (…, 3) rotated by unit quaternions (…, 4), (w, x, y, z)."""
     axis = quat[..., 1:]
-    twice = 2 * np.cross(axis, vectors)
-    return np.asarray(vectors + quat[..., :1] * twice + np.cross(axis, twice))
+    twice = 2 * cross(axis, vectors)
+    return np.asarray(vectors + quat[..., :1] * twice + cross(axis, twice))
+
+
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the cross products of vectors (…, 3), as `np.cross` does for any axes."""
+    (x, y, z), (u, v, w) = ([of[..., k] for k in range(3)] for of in (a, b))
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)

@@ -19,7 +19,6 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any
 
-import mujoco
 import numpy as np
 
 from robo_genesis.core.plausibility import Breach, apart, times, unit_quaternions
@@ -109,6 +108,8 @@ def poses(trace: Trace, links: Sequence[str]) -> Iterator[Breach]:
 @cache
 def _robot() -> tuple[Any, list[int], list[int]]:
     """Return the model without shapes and actuators, and indices of the joints in qpos and qvel."""
+    import mujoco
+
     spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
     for part in (*spec.actuators, *spec.keys, *spec.geoms, *spec.meshes):
         spec.delete(part)
@@ -125,15 +126,20 @@ def _links() -> set[str]:
 
 def link_poses(q: FloatArray, links: Sequence[str]) -> tuple[FloatArray, FloatArray]:
     """Return positions (n, l, 3) [m] and orientations (n, l, 4) of links at `q` (n, d)."""
+    import mujoco
+
     model, q_at, _ = _robot()
     data = mujoco.MjData(model)
     bodies = [model.body(name).id for name in links]
-    position, orientation = np.empty((len(q), len(links), 3)), np.empty((len(q), len(links), 4))
-    for k, values in enumerate(q):
-        data.qpos[q_at] = values
+    position, orientation = np.empty((len(q), model.nbody, 3)), np.empty((len(q), model.nbody, 4))
+    joints = np.empty((len(q), model.nq))
+    joints[:, q_at] = q
+    qpos, xpos, xquat = data.qpos, data.xpos, data.xquat
+    for k, values in enumerate(joints):
+        qpos[:] = values
         mujoco.mj_kinematics(model, data)
-        position[k], orientation[k] = data.xpos[bodies], data.xquat[bodies]
-    return position, orientation
+        position[k], orientation[k] = xpos, xquat
+    return position[:, bodies], orientation[:, bodies]
 
 
 def dynamics(trace: Trace, case: ControlCase) -> Iterator[Breach]:
@@ -164,19 +170,28 @@ def last_step(
     trace: Trace, case: ControlCase, q_before: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return velocity and net force, each (n, d), at the positions (n, d) before the last step."""
+    import mujoco
+
     model, q_at, dof_at = _robot()
     data, h = mujoco.MjData(model), case.dt / case.substeps
-    damping, at = model.dof_damping[dof_at], np.ix_(dof_at, dof_at)
-    velocity, force = np.empty(q_before.shape), np.empty(q_before.shape)
-    mass = np.empty((model.nv, model.nv))
-    for k, applied in enumerate(trace.internal_force):
-        data.qpos[q_at] = q_before[k]
-        mujoco.mj_fwdPosition(model, data)
-        mujoco.mj_fullM(model, data, mass)
-        implicit = mass[at] + h * np.diag(damping + case.kv)
-        velocity[k] = trace.qd[k] - h * np.linalg.solve(implicit, applied)
-        data.qvel[dof_at] = velocity[k]
-        mujoco.mj_fwdVelocity(model, data)
-        control = control_law(case, q_before[k], velocity[k])
-        force[k] = control - data.qfrc_bias[dof_at] - damping * velocity[k]
-    return velocity, force
+    damping, diagonal = model.dof_damping[dof_at], model.M_rowadr + model.M_rownnz - 1
+    states, applied, after, bias = np.zeros((4, len(q_before), model.nv))
+    states[:, q_at], applied[:, dof_at], after[:, dof_at] = q_before, trace.internal_force, trace.qd
+    implicit = np.zeros(model.nv)
+    implicit[dof_at] = h * (damping + case.kv)
+    qpos, qvel, mass, change = data.qpos, data.qvel, data.M, np.zeros((1, model.nv))
+    for k, state in enumerate(states):
+        qpos[:] = state
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_makeM(model, data)
+        mass[diagonal] += implicit
+        mujoco.mj_factorM(model, data)
+        mujoco.mj_solveM(model, data, change, applied[k : k + 1])
+        qvel[:] = after[k] - h * change[0]
+        mujoco.mj_comVel(model, data)
+        mujoco.mj_rne(model, data, 0, bias[k])
+        after[k] = qvel
+    velocity = after[:, dof_at]
+    control = control_law(case, q_before, velocity)
+    return velocity, control - bias[:, dof_at] - damping * velocity

@@ -1,6 +1,8 @@
 """L02: scenes, entities, and the simulation life cycle."""
 
 from dataclasses import replace
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
@@ -10,7 +12,6 @@ from robo_genesis.lessons.l02 import (
     life_cycle,
     mistakes,
     plausibility,
-    plots,
     spec,
     study,
     text,
@@ -19,10 +20,20 @@ from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics, fallen
 from robo_genesis.sim.rigid_bodies import read_model, run_drop
 from robo_genesis.sim.visual_shape import floor, read_shape
 
+if TYPE_CHECKING:
+    from robo_genesis.lessons.l02 import plots
+
 __all__ = [
     "LAB", "LECTURE", "LESSON", "fallen", "floor", "life_cycle", "mistakes", "plots", "read_model",
     "read_shape", "run_drop", "spec", "text",
 ]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Import `plots` when a page asks for it: Matplotlib takes longer than a verification."""
+    if name == "plots":
+        return import_module(f"{__name__}.plots")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def readings(rendered: bool) -> dict[str, Readings]:

@@ -2,6 +2,8 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
@@ -10,7 +12,6 @@ from robo_genesis.lessons.l03 import (
     checks,
     mistakes,
     plausibility,
-    plots,
     spec,
     study,
     tables,
@@ -29,11 +30,21 @@ from robo_genesis.sim.contacts import (
 from robo_genesis.sim.rigid_bodies import read_model
 from robo_genesis.sim.visual_shape import read_shape, slab
 
+if TYPE_CHECKING:
+    from robo_genesis.lessons.l03 import plots
+
 __all__ = [
     "LAB", "LECTURE", "LESSON", "SURFACE_SIZE", "TOP", "build_world", "mistakes",
     "mujoco_contacts", "plots", "read_model", "read_shape", "record_world", "slab", "spec",
     "study", "tables", "text", "time_constant",
 ]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Import `plots` when a page asks for it: Matplotlib takes longer than a verification."""
+    if name == "plots":
+        return import_module(f"{__name__}.plots")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def readings(shapes: Collection[str], cases: Collection[str]) -> dict[str, Readings]:

@@ -1,6 +1,8 @@
 """L04, robot models, degrees of freedom, and joint control."""
 
 from dataclasses import replace
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from robo_genesis.core.channels import View
 from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
@@ -12,7 +14,6 @@ from robo_genesis.lessons.l04 import (
     checks,
     claims_text,
     plausibility,
-    plots,
     spec,
     study,
     study_checks,
@@ -24,10 +25,21 @@ from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import ControlCase, differences, reset, run_case, validate
 from robo_genesis.sim.joints import resolve_joints
 
+if TYPE_CHECKING:
+    from robo_genesis.lessons.l04 import plots
+
 __all__ = [
     "CAMERA", "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LECTURE", "LESSON", "SUBSTEPS",
     "differences", "plots", "reset", "resolve_joints", "run_case", "spec", "text", "validate",
 ]  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Import `plots` when a page asks for it: Matplotlib takes longer than a verification."""
+    if name == "plots":
+        return import_module(f"{__name__}.plots")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
 
 STUDY_RUNS = {
     # A run that holds its start has no step, so it has no metrics.
