@@ -74,6 +74,7 @@ class LessonPage:
     | `render` | whether the environment requests a camera |
     | `folder` | of the page's outputs |
     | `log` | the engine's log |
+    | `backend` | the backend as it was found |
     """
 
     def __init__(
@@ -81,7 +82,7 @@ class LessonPage:
     ) -> None:
         self._declared = find_page(lesson, name)
         self._recorder = Recorder(lesson, name, contract, engine)
-        self._lesson, self.log = lesson, engine.log
+        self._lesson, self.log, self.backend = lesson, engine.log, engine.backend
         self.render = contract.render
         self.folder: Path = contract.outputs / lesson / name
         self.traces: dict[str, Any] = {}

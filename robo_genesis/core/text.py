@@ -1,6 +1,6 @@
 """Parts of generated sentences: lists, signed numbers, values with units, blocks of sentences."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 
@@ -14,6 +14,11 @@ class Block:
     def markdown(self) -> str:
         """Return the block as a Markdown list under a bold title."""
         return "\n".join([f"**{self.title}**", "", *(f"- {s}" for s in self.sentences), ""])
+
+
+def bullets(sentences: Iterable[str]) -> str:
+    """Return sentences as a Markdown list."""
+    return "\n".join(f"- {sentence}" for sentence in sentences)
 
 
 def listed(words: Sequence[str]) -> str:

@@ -222,8 +222,8 @@ def computes(name: str, path: Path) -> bool:
 def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) -> dict[str, str]:
     """Return the modules that decide what a page measures, with the digests of their syntax.
 
-    They are all modules of the lesson that compute, what the page itself imports, and what these
-    import; see `computes`.
+    They are all modules of the lesson that compute, what the lesson's `__init__.py` gives its pages
+    and the page itself imports, and what these import; see `computes`.
 
     Args:
         lesson: the name of its folder.
@@ -233,7 +233,10 @@ def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) ->
     Returns:
         Module without the package's name, such as `core.trace`, to digest.
     """
-    modules = import_closure([*_lesson_modules(lesson, root), *imports], root, enter=computes)
+    own = f"{PACKAGE}.lessons.{lesson}"
+    given = imported_names((_module_file(root, own) or root).read_text("utf8"), own)
+    roots = [*_lesson_modules(lesson, root), *given, *imports]
+    modules = import_closure(roots, root, enter=computes)
     return {
         name.removeprefix(f"{PACKAGE}."): syntax_digest(path.read_text("utf8"))
         for name, path in sorted(modules.items())

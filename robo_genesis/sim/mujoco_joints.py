@@ -122,6 +122,12 @@ def at_rest(case: ControlCase, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     return columns.diagonal()[dof_at].copy(), data.qfrc_bias[dof_at].copy()
 
 
+def passive_damping(case: ControlCase) -> FloatArray:
+    """Return the joint damping (d,) of the model [N·m·s/rad or N·s/m], without gains."""
+    model = load(case, case.dt, "implicitfast")
+    return np.array(model.dof_damping[_addresses(model)[1]])
+
+
 def _addresses(model: Any) -> tuple[list[int], list[int]]:
     """Return the indices of the course's joints in qpos and among the DOFs."""
     joints = [model.joint(name) for name in JOINT_NAMES]

@@ -68,7 +68,7 @@ def test_the_student_s_notebook_has_no_outputs_and_the_executed_one_has(site, ru
     assert f"'genesis-world': '{project.engine_pin()}'" in code[0].source
     executed = [cell for cell in ran.cells if cell.cell_type == "code"]
     assert [cell.source for cell in executed] == [cell.source for cell in code[1:]]
-    assert "L04 CHECK: PASSED" in executed[-1].outputs[0].text
+    assert "L04 CHECK: PASSED" in executed[-1].outputs[-1].text
     assert bundle.read_manifest(run).predicate.run_id[:8] in ran.cells[0].source
 
 

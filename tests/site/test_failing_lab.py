@@ -40,6 +40,6 @@ def test_a_failing_check_is_named_and_nothing_is_published(tmp_path):
 
     assert done.returncode == 1
     assert "CheckFailed" in done.stderr
-    assert "[mapping] the model has {'links': 12" in done.stderr
+    assert "[mapping] links is 12, expected 11" in done.stderr
     assert LAB in done.stderr
     assert (book / "_build" / "html" / "index.html").read_text() == "the site that stood before"

@@ -11,32 +11,55 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.declaration import Compared, Filmed, Lesson
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.lessons.l04 import (
+    backend_mistake,
     checks,
     claims_text,
+    engine_comparison,
+    explorer,
+    lecture_text,
+    mistakes,
     plausibility,
     spec,
     study,
     study_checks,
     study_spec,
     text,
+    theory_text,
 )
+from robo_genesis.lessons.l04.batch import run_batch
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics, step_metrics
+from robo_genesis.sim import mujoco_joints
+from robo_genesis.sim.film import FilmedScene
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joint_control import ControlCase, differences, reset, run_case, validate
+from robo_genesis.sim.joint_control import (
+    ControlCase,
+    assign_path,
+    differences,
+    reset,
+    run_case,
+    validate,
+)
 from robo_genesis.sim.joints import resolve_joints
+from robo_genesis.sim.visual_shape import read_shape
 
 if TYPE_CHECKING:
-    from robo_genesis.lessons.l04 import plots
+    from robo_genesis.lessons.l04 import plots, study_plots
 
 __all__ = [
     "CAMERA", "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LECTURE", "LESSON", "SUBSTEPS",
-    "differences", "plots", "reset", "resolve_joints", "run_case", "spec", "text", "validate",
+    "FilmedScene", "assign_path", "backend_mistake", "differences", "engine_comparison", "explorer",
+    "lecture_text", "mistakes", "mujoco_joints", "plots", "read_shape", "reset", "resolve_joints",
+    "run_batch", "run_case", "spec", "study", "study_plots", "study_spec", "text", "theory_text",
+    "validate",
 ]  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
-    """Import `plots` when a page asks for it: Matplotlib takes longer than a verification."""
-    if name == "plots":
+    """Import modules of plots when a page asks for them.
+
+    Matplotlib takes longer to import than a verification.
+    """
+    if name in ("plots", "study_plots"):
         return import_module(f"{__name__}.plots")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
@@ -44,6 +67,7 @@ def __getattr__(name: str) -> Any:
 STUDY_RUNS = {
     # A run that holds its start has no step, so it has no metrics.
     **{n: Run(case, not n.endswith("_hold")) for n, case in study_spec.STEP_CASES.items()},
+    **runs_of(study_spec.LONGER_CASES),
     **runs_of(study_spec.SUBSTEP_CASES),
     **{
         name: Run(spec.CASES[second.case], note="run in MuJoCo, not in Genesis")
@@ -54,6 +78,10 @@ STUDY_RUNS = {
         measured=False,
         note="state overwritten at each sample, no step taken; its time is nominal",
     ),
+    **{
+        name: Run(case, note="in a scene with a copy of the robot for each run of the grid")
+        for name, case in study_spec.GRID_CASES.items()
+    },
 }
 
 

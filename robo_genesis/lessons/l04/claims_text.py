@@ -26,7 +26,7 @@ CLAIMS: dict[str, str] = {
     ),
     "posture": "Two different camera frames, or a schematic whose links moved, show the end state.",
     "study_factors": (
-        "Each study case differs from its compared case in one factor: target or substeps."
+        "Each study case differs from its compared case in one factor: target, substeps or window."
     ),
     "same_model": (
         "Both engines give the same inertia and gravity effort for the stepped joint at the start."
@@ -47,15 +47,16 @@ CLAIMS: dict[str, str] = {
     "second_engine_order": (
         "Every ordering that the lesson claims holds in Genesis and in MuJoCo, both integrators."
     ),
-}
-"""What each named check of the pages requires, shown where it passed."""
-
-GRID_CLAIMS: dict[str, str] = {
+    "implicit_term": (
+        "A commanded position adds h (d + KV) to the joint's entry in the engine's mass matrix."
+    ),
+    "same_beginning": "The longer run of G2 begins with exactly the samples of G2.",
     "grid_matches_cases": (
         "G1, G2 and G3 give the same results in the batch as alone, within the declared margins."
     ),
     "grid_within_gains": (
-        "Every run stays within the compared cases' gains and step, and varies nothing else."
+        "Every run of the grid stays within the compared cases' gains and step, and varies nothing "
+        "else."
     ),
 }
-"""Those of the checks of the grid, whose runs are in no bundle."""
+"""What each named check of the pages requires, shown where it passed."""

@@ -1,25 +1,76 @@
-"""One experiment with several solver steps, integrators and engines: rows and sentences."""
+"""One experiment with several solver steps, integrators and engines: tables and sentences."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from robo_genesis.core import tables
 from robo_genesis.core.orderings import HELD
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.text import listed
+from robo_genesis.core.text import bullets, listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated
 from robo_genesis.lessons.l04.study import ENGINES, GROUP, relation_outcome
+from robo_genesis.sim.franka import JOINT_NAMES
 
 NOUNS, UNITS = StepMetrics.about("noun"), StepMetrics.about("unit")
 
 ENGINE_LABELS = {"Genesis": "Genesis"} | {
     name: f"MuJoCo {name}" for name in study_spec.SECOND_INTEGRATORS
 }
+
+
+def first_step(run: Experiment) -> str:
+    """Return the speeds after the first step, and what they say."""
+    return f"{tables.markdown(first_step_rows(run))}\n\n{first_step_sentence(run)}"
+
+
+def convergence_table(run: Experiment) -> str:
+    """Return for each solver step G2's overshoot in both engines."""
+    return tables.markdown(convergence_rows(run))
+
+
+def convergence_conclusions(run: Experiment) -> str:
+    """Describe the effect of a finer solver step in each engine."""
+    overshoot = {engine: study.overshoot_by_substeps(run, engine) for engine in ENGINES}
+    return bullets(convergence_sentences(overshoot, spec.G2.substeps))
+
+
+def relation_table(run: Experiment) -> str:
+    """Return for each claimed ordering its state and values in each engine."""
+    return tables.markdown(relation_rows(run))
+
+
+def metrics_by_engine(run: Experiment) -> str:
+    """Return all metrics of G1 to G3, one table for each engine."""
+    return "\n".join(
+        f"**{ENGINE_LABELS[engine]}**\n\n{tables.metric_table(study.compared(run, engine))}"
+        for engine in ENGINES
+    )
+
+
+def explicit_conclusions(run: Experiment) -> str:
+    """Name the joints that chattered in MuJoCo with the gains of G2 and of G3."""
+    return bullets(
+        f"{case}: {explicit_sentence(JOINT_NAMES, study.damping_ratio(case), _second(run, case))}"
+        for case in ("G2", "G3")
+    )
+
+
+def explicit_table(run: Experiment, case: str) -> str:
+    """Return the explicit damping ratio of each joint and its clipped samples in MuJoCo."""
+    ratio = study.damping_ratio(case)
+    return tables.markdown(explicit_rows(JOINT_NAMES, ratio, _second(run, case)))
+
+
+def _second(run: Experiment, case: str) -> dict[str, Trace]:
+    """Return a compared case's runs in MuJoCo by integrator, at the lesson's solver step."""
+    found = study.by_engine(run, case)
+    return {name: found[name] for name in study_spec.SECOND_INTEGRATORS}
 
 
 def convergence_rows(run: Experiment) -> list[dict[str, Any]]:

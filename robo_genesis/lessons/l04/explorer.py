@@ -1,4 +1,4 @@
-"""The step explorer: a sweep as compact JSON, as a table, and as markup for a script."""
+"""The step explorer: the grid as compact JSON, as a table, and as markup for a script."""
 
 import json
 from collections.abc import Sequence
@@ -6,11 +6,16 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core import tables
+from robo_genesis.core.checks import evaluate
 from robo_genesis.core.quantities import format_value
-from robo_genesis.lessons.l04.batch import Sweep
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l04.claims_text import CLAIMS
 from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import STEPPED_JOINT
-from robo_genesis.lessons.l04.study_spec import CASE_POINTS, KP, KV, STEP_SIZES, GridPoint
+from robo_genesis.lessons.l04.spec import ENTRY, STEPPED_JOINT
+from robo_genesis.lessons.l04.study_checks import GRID_CHECKS
+from robo_genesis.lessons.l04.study_spec import CASE_POINTS, KP, KV, POINTS, STEP_SIZES, GridPoint
 
 RESOLUTION = {"q": 1e-4, "force": 1e-2}
 """Value of one unit of the packed integers [rad, N·m]. Metrics come from the full arrays."""
@@ -46,49 +51,66 @@ def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
     )
 
 
-def pack(found: Sweep) -> dict[str, Any]:
-    """Return a sweep as JSON values: traces as integers, metrics as text."""
-    start = float(found.q[0, 0])
-    q = np.rint((found.q.astype(float) - start) / RESOLUTION["q"]).astype(int)
-    force = np.rint(found.control_force.astype(float) / RESOLUTION["force"]).astype(int)
+def pack(run: Experiment) -> dict[str, Any]:
+    """Return the grid as JSON values: traces as integers, metrics as text."""
+    first = run.traces[POINTS[0].name]
+    start = float(first.q[0, ENTRY])
     return {
-        "dt": float(found.t[1]),
+        "dt": first.dt,
         "start": start,
-        "limit": float(found.effort_limit[0]),
+        "limit": float(first.effort_limit[ENTRY]),
         "resolution": RESOLUTION,
         "axes": [{"name": n, "values": list(v), "unit": u} for n, _, v, u in AXES],
         "labels": [LABELS[name] for name in SHOWN],
-        "points": [
-            {
-                "case": NAMES.get(point, ""),
-                "q": q[k].tolist(),
-                "force": force[k].tolist(),
-                "sentence": sentence(point, measured, found.control_force.shape[1]),
-                "metrics": [v for n, v in _written(measured).items() if n in SHOWN],
-            }
-            for k, (point, measured) in enumerate(zip(found.points, found.metrics, strict=True))
-        ],
+        "points": [_packed(run, point, start) for point in POINTS],
     }
+
+
+def _packed(run: Experiment, point: GridPoint, start: float) -> dict[str, Any]:
+    """Return one run of the grid as JSON values; `start` [rad] is subtracted from positions."""
+    trace, measured = run.traces[point.name], run.metrics[point.name]
+    return {
+        "case": NAMES.get(point, ""),
+        "q": _integers(trace.q[:, ENTRY].astype(float) - start, RESOLUTION["q"]),
+        "force": _integers(trace.control_force[:, ENTRY].astype(float), RESOLUTION["force"]),
+        "sentence": sentence(point, measured, trace.steps),
+        "metrics": [v for n, v in _written(measured).items() if n in SHOWN],
+    }
+
+
+def _integers(values: FloatArray, unit: float) -> list[int]:
+    return [int(value) for value in np.rint(values / unit)]
 
 
 def _written(measured: StepMetrics) -> dict[str, str]:
     return {name: format_value(value, unit) for name, value, unit in measured.items()}
 
 
-def cell_labels(found: Sweep, numbers: Sequence[str]) -> list[str]:
+def cell_labels(numbers: Sequence[str]) -> list[str]:
     """Return the text of each point's cell in a map: the case's name, if any, above its number."""
     return [
         f"{NAMES[point]}\n{number}" if point in NAMES else number
-        for point, number in zip(found.points, numbers, strict=True)
+        for point, number in zip(POINTS, numbers, strict=True)
     ]
 
 
-def rows(found: Sweep) -> list[dict[str, str]]:
+def checks(run: Experiment) -> str:
+    """Return the table of the checks of the grid."""
+    return tables.check_table(evaluate(GRID_CHECKS, run, CLAIMS))
+
+
+def table(run: Experiment) -> str:
+    """Return all runs of the grid with the metrics of the maps and the explorer."""
+    return tables.markdown(rows(run))
+
+
+def rows(run: Experiment) -> list[dict[str, str]]:
     """Return one row a point for a table, with the metrics of the maps and the explorer."""
-    table = []
-    for point, measured in zip(found.points, found.metrics, strict=True):
+    found = []
+    for point in POINTS:
+        measured = run.metrics[point.name]
         written = _written(measured)
-        table.append(
+        found.append(
             {
                 "step [rad]": f"{point.step:g}",
                 "KP": f"{point.kp:g}",
@@ -98,16 +120,16 @@ def rows(found: Sweep) -> list[dict[str, str]]:
             }
             | {LABELS[name]: written[name] for name in SHOWN if name != "saturation_duration"}
         )
-    return table
+    return found
 
 
-def markup(found: Sweep) -> str:
+def markup(run: Experiment) -> str:
     """Return the explorer as HTML. A notice replaces it until `_static/explorer.js` runs.
 
     It opens at the first of the lesson's cases that overshoots, if there is one.
     """
-    text = json.dumps(pack(found), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    first = next((p for p in NAMES if found.metrics[found.at(p)].overshoot > 0), found.points[-1])
+    text = json.dumps(pack(run), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    first = next((p for p in NAMES if run.metrics[p.name].overshoot > 0), POINTS[-1])
     inputs = "".join(
         f'<p><label for="explorer-{name}">{label} <span class="value"></span></label>'
         f'<input type="range" id="explorer-{name}" min="0" max="{len(values) - 1}" step="1" '

@@ -1,6 +1,5 @@
 """Figures of lesson L04: functions of the experiment, and of axes; no numerics, no show()."""
 
-import io
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -10,37 +9,33 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import marks_of
 from robo_genesis.core.plotting import LIMIT, TARGET, channel, finish, legend_above, look
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 from robo_genesis.lessons.l04.spec import CASE_MARKS, STEPPED_JOINT
-from robo_genesis.lessons.l04.study_spec import COMPARED
+from robo_genesis.lessons.l04.study_spec import ASSIGNED, COMPARED
 from robo_genesis.sim import joint_channels
 from robo_genesis.sim.franka import LINK_PARENTS
 from robo_genesis.sim.joints import JointMap
 
-IDEAL = look("target", linestyle=(0, (1, 1.2)), linewidth=1.8)
-ENGINE_STYLES = {
-    "Genesis": look(CASE_MARKS["G2"], linestyle="-", marker="o"),
-    "MuJoCo implicitfast": look("other", marker="s"),
-    "MuJoCo Euler": look("further", marker="^"),
-}
-"""All curves are G2's. Marker shapes distinguish the engines as well as colours."""
-
-JPEG_QUALITY = 70
-"""JPEG quality: high enough that no blocks are visible at the printed size."""
-
-FILM_VIEW = (slice(140, 420), slice(270, 550))
-"""Rows and columns of a frame that show the robot [pixel]."""
-
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured link origins."""
-    if run.rendered:
-        return plotting.both_ends(run.frames)
+    return plotting.both_ends(run.frames) if run.rendered else links(run, "baseline")
+
+
+def links(run: Experiment, name: str) -> Figure:
+    """Draw the measured link origins at both ends of a run."""
     figure = Figure(figsize=(6, 5))
-    plotting.schematic(figure.subplots(), run.traces["baseline"], LINK_PARENTS)
+    plotting.schematic(figure.subplots(), run.traces[name], LINK_PARENTS)
+    return figure
+
+
+def assigned(run: Experiment) -> Figure:
+    """Draw the stepped joint with assigned states and with a commanded target."""
+    figure = Figure(figsize=(7, 3.8))
+    both = run.traces[ASSIGNED], run.traces["baseline"]
+    assigned_and_commanded(figure.subplots(), *both, run.joints, STEPPED_JOINT)
     return figure
 
 
@@ -54,9 +49,25 @@ def baseline(run: Experiment) -> Figure:
 
 def compared(run: Experiment) -> Figure:
     """Draw position, velocity and control force of the stepped joint in the compared cases."""
+    return _compared(run)
+
+
+def compared_start(run: Experiment) -> Figure:
+    """Draw the beginning of the same, enlarged, with a mark at every sample."""
+    return _compared(run, until=0.35)
+
+
+def _compared(run: Experiment, until: float | None = None) -> Figure:
     figure = Figure(figsize=(7, 8.5))
     traces = {name: run.traces[name] for name in COMPARED}
-    response(figure.subplots(3, 1, sharex=True), traces, run.joints, STEPPED_JOINT)
+    response(figure.subplots(3, 1, sharex=True), traces, run.joints, STEPPED_JOINT, until)
+    return figure
+
+
+def baseline_forces(run: Experiment) -> Figure:
+    """Draw both force getters of the baseline."""
+    figure = Figure(figsize=(7, 3.8))
+    two_forces(figure.subplots(), run.traces["baseline"], run.joints, STEPPED_JOINT)
     return figure
 
 
@@ -135,117 +146,3 @@ def assigned_and_commanded(
     ax.plot(commanded.t, commanded.q[:, k], **measured)
     unit = joints.position_units[k]
     return finish(ax, f"Assigned or commanded, {joint}", f"q [{unit}]", "lower right")
-
-
-def beside_ideal(
-    axes: Sequence[Axes],
-    t: FloatArray,
-    measured: Mapping[str, FloatArray],
-    ideal: Mapping[str, FloatArray],
-    target: float,
-    until: float,
-) -> Sequence[Axes]:
-    """Draw each case's measured position [rad] over the ideal joint's, one case on each axes.
-
-    All arrays (n+1,) over `t` [s], shown up to `until` [s].
-    """
-    for ax, (name, q) in zip(axes, measured.items(), strict=True):
-        ax.axhline(target, label="target", **TARGET)
-        ax.plot(t, ideal[name], label="ideal joint", **IDEAL)
-        ax.plot(t, q, label="measured", **look(CASE_MARKS[name]))
-        _finish_case(ax, name, "q of joint4 [rad]", until)
-    return axes
-
-
-def step_sizes(
-    axes: Sequence[Axes],
-    t: FloatArray,
-    shares: Mapping[str, Mapping[str, FloatArray]],
-    until: float,
-) -> Sequence[Axes]:
-    """Draw responses as shares of their step, one case on each axes, one curve a label.
-
-    A curve called `ideal joint` is drawn as such. All arrays (n+1,) over `t` [s].
-    """
-    for ax, (name, curves) in zip(axes, shares.items(), strict=True):
-        ax.axhline(1.0, **TARGET)
-        measured = iter((look("other"), look(CASE_MARKS[name])))
-        for label, curve in curves.items():
-            ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else next(measured)))
-        _finish_case(ax, name, "share of the step", until)
-    return axes
-
-
-def _finish_case(ax: Axes, title: str, ylabel: str, until: float) -> None:
-    ax.set_title(title, loc="left")
-    ax.set(xlim=(0, until), xlabel="time [s]", ylabel=ylabel)
-    ax.legend(fontsize="small", loc="lower right")
-    ax.label_outer()
-
-
-def convergence(ax: Axes, overshoot: Mapping[str, Mapping[float, float]], declared: float) -> Axes:
-    """Draw overshoot [rad] over the solver's step [s], one curve an engine, the finest at the left.
-
-    `declared` [s] marks the step of the lesson's own runs.
-    """
-    for name, values in overshoot.items():
-        drawn = ENGINE_STYLES[name] | {"label": name, "markersize": 6}
-        ax.plot(list(values), list(values.values()), **drawn)
-    ax.axvline(declared, label="the lesson's step", **TARGET)
-    ax.set(xscale="log", xlabel="solver step [s]", ylabel="overshoot of G2 [rad]")
-    ax.set_ylim(bottom=0)
-    ax.legend(fontsize="small", loc="upper left")
-    return ax
-
-
-def grid_maps(
-    axes: Sequence[Axes],
-    values: FloatArray,
-    labels: Sequence[str],
-    steps: Sequence[float],
-    kp: Sequence[float],
-    kv: Sequence[float],
-) -> Sequence[Axes]:
-    """Draw one value a point of a grid, one step size on each axes, KP upwards, KV to the right.
-
-    Args:
-        axes: as many as steps.
-        values: (points,) in the grid's order; one colour scale for all, from zero.
-        labels: (points,), the text in each cell: readers read the number, the colour only helps.
-        steps: step sizes [rad].
-        kp: gains of the rows [N·m/rad].
-        kv: gains of the columns [N·m·s/rad].
-    """
-    shape, highest = (len(steps), len(kp), len(kv)), float(np.max(values))
-    maps, texts = np.reshape(values, shape), np.reshape(np.array(labels), shape)
-    for number, (ax, step) in enumerate(zip(axes, steps, strict=True)):
-        ax.pcolormesh(
-            maps[number], cmap="Blues", vmin=0, vmax=highest, edgecolors="#d9d9d9", linewidth=1
-        )
-        for (row, column), text in np.ndenumerate(texts[number]):
-            color = "white" if maps[number, row, column] > 0.55 * highest else "black"
-            x, y = column + 0.5, row + 0.5
-            ax.text(x, y, text, ha="center", va="center", fontsize="small", color=color)
-        ax.grid(visible=False)
-        ax.set_xticks(np.arange(len(kv)) + 0.5, [f"{value:g}" for value in kv])
-        ax.set_yticks(np.arange(len(kp)) + 0.5, [f"{value:g}" for value in kp])
-        ax.set_title(f"step {step:g} rad", loc="left")
-        ax.set(xlabel="KV [N·m·s/rad]", ylabel="KP [N·m/rad]")
-        ax.label_outer()
-    return axes
-
-
-def film_strip(axes: Sequence[Axes], frames: Mapping[int, np.ndarray], dt: float) -> Sequence[Axes]:
-    """Show frames by sample number, each below its time [s]."""
-    for ax, (sample, frame) in zip(axes, sorted(frames.items()), strict=True):
-        ax.imshow(frame[FILM_VIEW])
-        ax.set_axis_off()
-        ax.set_title(f"t = {sample * dt:.2f} s", fontsize="small")
-    return axes
-
-
-def jpeg(figure: Figure) -> bytes:
-    """Return a figure of photographs as JPEG: an SVG file would be ten times as large."""
-    stream = io.BytesIO()
-    figure.savefig(stream, format="jpeg", dpi=90, pil_kwargs={"quality": JPEG_QUALITY})
-    return stream.getvalue()

@@ -1,5 +1,11 @@
 """What the studies around lesson L04 measured, for the stepped joint."""
 
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
 from robo_genesis.core.orderings import Relation, Value, outcome
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
@@ -7,9 +13,15 @@ from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.theory import IdealJoint, step_share
+from robo_genesis.sim import dynamics, mujoco_joints
+from robo_genesis.sim.joint_control import run_case
+from robo_genesis.sim.joints import JointMap
 
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
 """Genesis, and MuJoCo by its integrator."""
+
+COMPARED_KV = sorted({float(case.kv[spec.ENTRY]) for case in study_spec.COMPARED.values()})
+"""Velocity gains of the compared cases [N·m·s/rad]."""
 
 GROUP = "readings"
 """Group of a bundle's metrics: what the engines report of the stepped joint without a run."""
@@ -18,10 +30,77 @@ UNITS = {
     "passive_damping": "N·m·s/rad",
     **dict.fromkeys(("inertia_Genesis", "inertia_MuJoCo"), "kg·m²"),
     **dict.fromkeys(("gravity_at_start_Genesis", "gravity_at_start_MuJoCo"), "N·m"),
+    **{f"mass_KV_{kv:g}": "kg·m²" for kv in COMPARED_KV},
     **{f"gravity_{case}": "N·m" for case in spec.CASES},
 }
-"""Unit of each. Inertia and `gravity_at_start` are those of the start pose; `gravity` is the effort
-that holds the end state of a case."""
+"""Unit of each. Inertia and `gravity_at_start` are those of the start pose. `mass` is the entry of
+the mass matrix there while a position is commanded with this KV. `gravity` is the effort that holds
+the end state of a case."""
+
+
+def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
+    """Read passive damping, inertia, gravity effort and the masses at the start, in Genesis."""
+    k, dofs = joints.entry(spec.STEPPED_JOINT), joints.dofs_idx_local.tolist()
+    q, found = spec.BASELINE.q_start, {}
+    found["passive_damping"] = float(dynamics.passive_damping(robot, dofs)[k])
+    found["inertia_Genesis"] = float(dynamics.effective_inertia(scene, robot, joints, q)[k])
+    found["gravity_at_start_Genesis"] = float(dynamics.gravity_effort(scene, robot, joints, q)[k])
+    for kv in COMPARED_KV:
+        case = next(of for of in study_spec.COMPARED.values() if of.kv[spec.ENTRY] == kv)
+        run_case(scene, robot, joints, replace(case, q_target=case.q_start, steps=1))
+        found[f"mass_KV_{kv:g}"] = float(dynamics.mass_diagonal(robot, dofs)[k])
+    return found
+
+
+def read_gravity(
+    scene: Any, robot: Any, joints: JointMap, traces: Mapping[str, Trace]
+) -> dict[str, float]:
+    """Read the gravity effort at the end state of each case, in Genesis."""
+    k = joints.entry(spec.STEPPED_JOINT)
+    return {
+        f"gravity_{name}": float(
+            dynamics.gravity_effort(scene, robot, joints, traces[name].q[-1])[k]
+        )
+        for name in spec.CASES
+    }
+
+
+def read_second_engine() -> dict[str, float]:
+    """Read inertia and gravity effort at the start in MuJoCo."""
+    inertia, gravity = mujoco_joints.at_rest(spec.BASELINE, spec.BASELINE.q_start)
+    return {
+        "inertia_MuJoCo": float(inertia[spec.ENTRY]),
+        "gravity_at_start_MuJoCo": float(gravity[spec.ENTRY]),
+    }
+
+
+def implicit_term(run: Experiment, kv: float) -> float:
+    """Return what the engine's integrator adds to the inertia of the stepped joint [kg·m²]."""
+    return spec.G1.dt / spec.G1.substeps * (run.readings[GROUP]["passive_damping"] + kv)
+
+
+def without_term(run: Experiment, kv: float) -> float:
+    """Return the mass read while a position was commanded, less the integrator's term [kg·m²]."""
+    return run.readings[GROUP][f"mass_KV_{kv:g}"] - implicit_term(run, kv)
+
+
+def damping_ratio(case: str) -> FloatArray:
+    """Return h (KV + d) / I of each joint (d,) at the start, by the model in MuJoCo."""
+    settings = study_spec.COMPARED[case]
+    inertia, _ = mujoco_joints.at_rest(settings, settings.q_start)
+    damping = mujoco_joints.passive_damping(settings)
+    return np.asarray(settings.dt / settings.substeps * (settings.kv + damping) / inertia)
+
+
+def same_beginning(short: Trace, long: Trace) -> bool:
+    """Return whether the longer run begins with exactly the samples of the shorter one."""
+    n = short.steps
+    return (
+        long.steps > n
+        and np.array_equal(short.q, long.q[: n + 1])
+        and np.array_equal(short.qd, long.qd[:n])
+        and np.array_equal(short.control_force, long.control_force[:n])
+    )
 
 
 def ideal(run: Experiment, case: str) -> IdealJoint:

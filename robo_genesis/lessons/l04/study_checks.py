@@ -1,44 +1,41 @@
 """Named checks of L04's studies: theory, gravity, solver step, second engine, grid of steps."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
 from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.checks import (
-    Check,
     Finding,
     above,
     at_most,
     below,
     equal,
-    evaluate,
     noted,
     within,
 )
 from robo_genesis.core.orderings import HELD
-from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study, study_spec
-from robo_genesis.lessons.l04.batch import Sweep
-from robo_genesis.lessons.l04.metrics import is_saturated, step_metrics
+from robo_genesis.lessons.l04.metrics import is_saturated
 from robo_genesis.lessons.l04.theory import overshoot_share
 from robo_genesis.sim.joint_control import differences
-from robo_genesis.sim.joints import JointMap
 
 
 def study_factors(run: Experiment) -> Iterator[Finding]:
-    cases = study_spec.STEP_CASES | study_spec.SUBSTEP_CASES
-    for name, case in cases.items():
-        compared = name.split("_")[0]
-        step = name in study_spec.STEP_CASES
-        expected = [f"q_target[{spec.STEPPED_JOINT}]" if step else "substeps"]
-        found = differences(study_spec.COMPARED[compared], case, run.joints)
-        yield equal(f"difference of {compared} and {name}", found, expected, recorded=False)
-        other = int((run.traces[name].target != case.q_target).any(axis=1).sum())
-        yield equal(f"{name}.steps_with_another_target", other, 0)
+    factors = {
+        f"q_target[{spec.STEPPED_JOINT}]": study_spec.STEP_CASES,
+        "substeps": study_spec.SUBSTEP_CASES,
+        "steps": study_spec.LONGER_CASES,
+    }
+    for factor, cases in factors.items():
+        for name, case in cases.items():
+            compared = name.split("_")[0]
+            found = differences(study_spec.COMPARED[compared], case, run.joints)
+            yield equal(f"difference of {compared} and {name}", found, [factor], recorded=False)
+            other = int((run.traces[name].target != case.q_target).any(axis=1).sum())
+            yield equal(f"{name}.steps_with_another_target", other, 0)
 
 
 def same_model(run: Experiment) -> Iterator[Finding]:
@@ -110,53 +107,60 @@ def second_engine_order(run: Experiment) -> Iterator[Finding]:
         yield Finding(label, state, state == HELD, f"{HELD}: {values}", recorded=False)
 
 
-CHECKS = (
-    study_factors, same_model, small_step_unsaturated, theory_small_step, gravity_support,
-    convergence, one_limit, second_engine_order,
-)  # fmt: skip
+def implicit_term(run: Experiment) -> Iterator[Finding]:
+    inertia = run.readings[study.GROUP]["inertia_Genesis"]
+    for kv in study.COMPARED_KV:
+        label = f"mass_KV_{kv:g}_less_term"
+        mass = study.without_term(run, kv)
+        yield within(label, mass, inertia, study_spec.IMPLICIT_TERM * inertia)
 
 
-@dataclass(frozen=True, slots=True)
-class Grid:
-    """What the grid's checks read: the sweep, and G1 to G3 run alone, by name."""
-
-    found: Sweep
-    alone: Mapping[str, Trace]
-    joints: JointMap
+def same_beginning(run: Experiment) -> Iterator[Finding]:
+    short, long = run.traces["G2"], run.traces[study_spec.LONGER]
+    yield equal("same_samples", study.same_beginning(short, long), True, recorded=False)
 
 
-def grid_matches_cases(grid: Grid) -> Iterator[Finding]:
-    k, found = grid.joints.entry(spec.STEPPED_JOINT), grid.found
+def grid_matches_cases(run: Experiment) -> Iterator[Finding]:
     for name, point in study_spec.CASE_POINTS.items():
-        alone, number = grid.alone[name], found.at(point)
+        alone, among = run.traces[name], run.traces[point.name]
         pairs: list[tuple[str, Any, Any, str]] = [
-            ("position", found.q[number], alone.q[:, k], "rad"),
-            ("control force", found.control_force[number], alone.control_force[:, k], "N·m"),
+            ("position", among.q[:, spec.ENTRY], alone.q[:, spec.ENTRY], "rad"),
+            (
+                "control force",
+                among.control_force[:, spec.ENTRY],
+                alone.control_force[:, spec.ENTRY],
+                "N·m",
+            ),
         ]
-        measured = step_metrics(alone, k)
+        measured = run.metrics[name]
         pairs += [
             (metric, value, getattr(measured, metric), unit)
-            for metric, value, unit in found.metrics[number].items()
+            for metric, value, unit in run.metrics[point.name].items()
         ]
         for what, *values, unit in pairs:
             a, b = (np.array(value, dtype=float) for value in values)  # None becomes NaN
             apart = np.where(np.isnan(a) & np.isnan(b), 0.0, np.abs(a - b)).max()
-            label = f"{name}, difference of {what} [{unit}]"
+            label = f"{name}, difference of {what} ({unit})"
             yield at_most(label, apart, study_spec.AGREEMENT[unit])
 
 
-def grid_within_gains(grid: Grid) -> Iterator[Finding]:
+def grid_within_gains(run: Experiment) -> Iterator[Finding]:
     varied = {f"{field}[{spec.STEPPED_JOINT}]" for field in ("kp", "kv", "q_target")}
-    for number, case in enumerate(grid.found.cases):
+    for name in study_spec.GRID_CASES:
+        case = run.cases[name]
         point = study_spec.point_of(case)
-        for name, (low, high) in study_spec.BOUNDS.items():
-            value = getattr(point, name)
-            expected = f"between {low:g} and {high:g}"
-            yield Finding(f"run {number}, {name}", value, low <= value <= high, expected)
-        others = set(differences(spec.G1, case, grid.joints)) - varied
-        yield equal(f"run {number}, other changes", sorted(others), [])
+        for axis, (low, high) in study_spec.BOUNDS.items():
+            value, expected = getattr(point, axis), f"between {low:g} and {high:g}"
+            yield Finding(f"{name}, {axis}", value, low <= value <= high, expected, recorded=False)
+        others = sorted(set(differences(spec.G1, case, run.joints)) - varied)
+        yield equal(f"{name}, other changes", others, [], recorded=False)
+        other = int((run.traces[name].target != case.q_target).any(axis=1).sum())
+        yield equal(f"{name}.steps_with_another_target", other, 0)
 
 
-def run_grid_checks(grid: Grid, claims: Mapping[str, str]) -> tuple[Check, ...]:
-    """Run both checks on the grid; `claims` say by name what they require."""
-    return evaluate((grid_matches_cases, grid_within_gains), grid, claims)
+GRID_CHECKS = (grid_matches_cases, grid_within_gains)
+
+CHECKS = (
+    study_factors, same_model, implicit_term, small_step_unsaturated, theory_small_step,
+    gravity_support, convergence, one_limit, second_engine_order, same_beginning, *GRID_CHECKS,
+)  # fmt: skip

@@ -49,6 +49,10 @@ SUBSTEP_CASES = {
 }
 """The solver's step is the one factor. Each case needs its own scene."""
 
+LONGER = "G2_longer"
+LONGER_CASES = {LONGER: replace(G2, steps=2 * G2.steps)}
+"""The length of the window is the one factor."""
+
 
 @dataclass(frozen=True, slots=True)
 class SecondRun:
@@ -97,6 +101,9 @@ GRAVITY_AGREEMENT = 0.01
 SAME_MODEL = 1e-3
 """Share within which both engines must agree on inertia, and on gravity effort, at the start."""
 
+IMPLICIT_TERM = 1e-3
+"""Share of the inertia within which `get_mass_mat` less h (d + KV) must equal it."""
+
 SPREAD_SHARE = 0.2
 """Largest spread between the engines at the finest solver step, as a share of their spread at the
 lesson's step."""
@@ -121,6 +128,11 @@ class GridPoint:
     kv: float
 
     @property
+    def name(self) -> str:
+        """Name of the run's arrays."""
+        return f"grid_step_{1000 * self.step:.0f}mrad_KP_{self.kp:.0f}_KV_{self.kv:.0f}"
+
+    @property
     def case(self) -> ControlCase:
         """The control case: G1 except for step, KP and KV of the stepped joint."""
         gains = replace(G1, kp=with_entry(G1.kp, self.kp), kv=with_entry(G1.kv, self.kv))
@@ -129,6 +141,9 @@ class GridPoint:
 
 POINTS = tuple(GridPoint(*values) for values in product(STEP_SIZES, KP, KV))
 """All points; KV changes fastest, the step slowest."""
+
+GRID_CASES = {point.name: point.case for point in POINTS}
+"""The runs of the grid: one batch, one environment for each."""
 
 
 def point_of(case: ControlCase) -> GridPoint:
@@ -158,7 +173,7 @@ def parameters() -> dict[str, Any]:
     return {
         "studies": {
             "second_runs": {name: asdict(run) for name, run in SECOND_RUNS.items()},
-            "cases": case_parameters(STEP_CASES | SUBSTEP_CASES),
+            "cases": case_parameters(STEP_CASES | SUBSTEP_CASES | LONGER_CASES),
             "grid": {"step_rad": list(STEP_SIZES), "kp": list(KP), "kv": list(KV)},
         }
     }

@@ -4,7 +4,6 @@ The numbers of the run choose and fill each sentence; nothing is copied from an 
 """
 
 from collections.abc import Mapping, Sequence
-from itertools import groupby
 
 import numpy as np
 
@@ -247,81 +246,3 @@ def interpret(
         blocks.append(Block(effect.format(*pair), tuple(sentences)))
     limit = float(next(iter(traces.values())).effort_limit[entry])
     return (*blocks, final_error_block(metrics), actuator_block(metrics, limit))
-
-
-def same_beginning(short: Trace, long: Trace) -> bool:
-    """Return whether the longer run begins with exactly the samples of the shorter one."""
-    n = short.steps
-    return (
-        long.steps > n
-        and np.array_equal(short.q, long.q[: n + 1])
-        and np.array_equal(short.qd, long.qd[:n])
-        and np.array_equal(short.control_force, long.control_force[:n])
-    )
-
-
-def longer_window(short: tuple[Trace, StepMetrics], long: tuple[Trace, StepMetrics]) -> str:
-    """List the metrics that changed because a record is longer, as Markdown.
-
-    `short` are trace and metrics of a case, `long` those of the same case with more steps.
-    """
-    (a, of_a), (b, of_b) = short, long
-    seconds = [format_value(float(trace.t[-1]), "s") for trace in (a, b)]
-    if not same_beginning(a, b):
-        return (
-            f"The record of {seconds[1]} does not begin with the samples of the record of "
-            f"{seconds[0]}. It is another experiment, so no change can be attributed to the "
-            "window. Find the state that was not reset."
-        )
-    labels, kept = of_a.about("label"), []
-    lines = [
-        f"- The first {seconds[0]} of both records are bit-identical: the physics did not change."
-    ]
-    for (name, x, unit), (_, y, _) in zip(of_a.items(), of_b.items(), strict=True):
-        before, after = format_value(x, unit), format_value(y, unit)
-        if before != after:
-            lines.append(f"- The {labels[name]} went from {before} to {after}. {_why(name, x, y)}")
-        elif name != "initial_error":
-            kept.append(labels[name])
-    observed = of_a.rise_time is not None
-    lines += [
-        f"- Unchanged in the digits written here: {'; '.join(kept)}."
-        if kept
-        else "- No metric stayed the same.",
-        "- Could not change: the initial error, which depends only on the first sample"
-        + (", and the rise time, which had already been observed." if observed else "."),
-    ]
-    return "\n".join(lines) + "\n"
-
-
-def _why(name: str, short: float | None, long: float | None) -> str:
-    """Explain how a longer record alone can change this metric."""
-    if name in ("final_error", "final_velocity"):
-        return "The last sample is another one."
-    if short is None:
-        return "It happened after the shorter record had ended."
-    if name == "settling_time":
-        return "The response left the band again after the shorter record had ended."
-    if long is not None:
-        return "A larger value, or further samples, came later."
-    return "A longer record cannot undo an observation: inspect the definition."
-
-
-def saturated_stretches(trace: Trace, entry: int) -> list[str]:
-    """Describe each stretch of saturated samples of the joint in column `entry` of a run.
-
-    A force with the sign of the velocity drives the motion; with the opposite sign it brakes.
-    """
-    force, speed = trace.control_force[:, entry], trace.qd[:, entry]
-    effects = [
-        f"{'positive' if f > 0 else 'negative'} and {'drives' if f * v > 0 else 'brakes'}"
-        for f, v in zip(force, speed, strict=True)
-    ]
-    hits = is_saturated(force, trace.effort_limit[entry])
-    stretches = []
-    for (hit, effect), group in groupby(range(trace.steps), lambda n: (hits[n], effects[n])):
-        if hit:
-            samples = list(group)
-            times = [format_value(float(trace.t_step[n]), "s") for n in (samples[0], samples[-1])]
-            stretches.append(f"{times[0]} to {times[1]}: the force is {effect} the motion.")
-    return stretches or ["No sample was at the limit."]

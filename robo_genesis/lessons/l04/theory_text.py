@@ -1,14 +1,16 @@
-"""Theory and gravity compared with the measurement of L04: rows and sentences."""
+"""Theory and gravity compared with the measurement of L04: tables and sentences."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from robo_genesis.core import tables
 from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import listed
+from robo_genesis.core.text import bullets, listed
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.theory import IdealJoint, Parting, overshoot_share, parting
+from robo_genesis.sim.joint_control import differences
 
 
 def share_text(share: float) -> str:
@@ -21,6 +23,76 @@ def damping_word(zeta: float) -> str:
     if abs(zeta - 1) < 5e-3:
         return "critically damped"
     return "underdamped" if zeta < 1 else "overdamped"
+
+
+def mass_table(run: Experiment) -> str:
+    """Return the inertia of the stepped joint, and the masses with a commanded position."""
+    head, unit = f"`get_mass_mat`, {spec.STEPPED_JOINT}", "kg·m²"
+    readings = run.readings[study.GROUP]
+    rows = [{head: "without effort, h · d taken off", unit: readings["inertia_Genesis"]}]
+    for kv in study.COMPARED_KV:
+        term = f"that, less h (d + KV) = {study.implicit_term(run, kv):g}"
+        mass = readings[f"mass_KV_{kv:g}"]
+        rows.append({head: f"position commanded, KV = {kv:g}", unit: mass})
+        rows.append({head: term, unit: study.without_term(run, kv)})
+    return tables.markdown(rows)
+
+
+def gravity_table(run: Experiment) -> str:
+    """Return KP × final error beside gravity for each case."""
+    return tables.markdown(gravity_rows(*_balance(run)))
+
+
+def gravity_conclusions(run: Experiment) -> str:
+    """Return what the table of gravity supports."""
+    return bullets(gravity_sentences(*_balance(run)))
+
+
+def _balance(
+    run: Experiment,
+) -> tuple[dict[str, float], dict[str, StepMetrics], dict[str, float]]:
+    """Return KP, metrics and gravity effort by case."""
+    kp = {name: float(case.kp[spec.ENTRY]) for name, case in spec.CASES.items()}
+    metrics = {name: run.metrics[name] for name in spec.CASES}
+    gravity = {name: run.readings[study.GROUP][f"gravity_{name}"] for name in spec.CASES}
+    return kp, metrics, gravity
+
+
+def ideal_table(run: Experiment) -> str:
+    """Return the linear joint's parameters and overshoot for each compared case."""
+    return tables.markdown(ideal_rows(run))
+
+
+def parting_conclusions(run: Experiment) -> str:
+    """Say for each compared case where measurement and ideal joint part."""
+    return bullets(parting_sentences(run))
+
+
+def step_cases(run: Experiment) -> str:
+    """Return what each case of another step changes, and its largest control force."""
+    rows = []
+    for name, case in study_spec.STEP_CASES.items():
+        compared = name.split("_")[0]
+        entries = differences(study_spec.COMPARED[compared], case, run.joints)
+        efforts = run.traces[name].control_force[:, spec.ENTRY]
+        rows.append(
+            {
+                "case": f"{compared} → {name}",
+                "changes": ", ".join(entries),
+                "peak control": f"{float(abs(efforts).max()):.1f} N·m",
+            }
+        )
+    return tables.markdown(rows)
+
+
+def step_size_table(run: Experiment) -> str:
+    """Return overshoot and distance from theory at both heights of the step."""
+    return tables.markdown(step_size_rows(run))
+
+
+def step_size_conclusions(run: Experiment) -> str:
+    """Compare the overshoots of theory, small step and large step."""
+    return bullets(step_size_sentences(run))
 
 
 def ideal_rows(run: Experiment) -> list[dict[str, Any]]:

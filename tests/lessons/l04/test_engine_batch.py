@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from robo_genesis.core.scene import DT, SUBSTEPS
-from robo_genesis.lessons.l04 import batch as sweep
-from robo_genesis.lessons.l04 import spec, study_checks, study_spec
-from robo_genesis.lessons.l04.claims_text import GRID_CLAIMS
+from robo_genesis.lessons.l04 import spec, study_spec
+from robo_genesis.lessons.l04.batch import run_batch
+from robo_genesis.lessons.l04.metrics import step_metrics
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import CaseError, run_case
 from robo_genesis.sim.joints import resolve_joints
@@ -16,7 +16,7 @@ from robo_genesis.sim.joints import resolve_joints
 pytestmark = pytest.mark.engine
 
 SMALL = study_spec.GridPoint(0.02, 3500.0, 300.0)
-POINTS = (SMALL, *study_spec.CASE_POINTS.values())
+CASES = {"small": SMALL.case, **study_spec.COMPARED}
 
 
 @pytest.fixture(scope="module")
@@ -31,46 +31,41 @@ def batch(lab):
     )
     scene.add_entity(lab.gs.morphs.Plane())
     robot = scene.add_entity(lab.gs.morphs.MJCF(file=FRANKA_MJCF))
-    scene.build(n_envs=len(POINTS))
+    scene.build(n_envs=len(CASES))
     return scene, robot, resolve_joints(robot, JOINT_NAMES)
 
 
 @pytest.fixture(scope="module")
 def found(batch):
-    return sweep.sweep(*batch, POINTS)
+    return run_batch(*batch, CASES)
 
 
 def test_the_batch_gives_what_each_case_gives_alone(lab, found):
-    alone = {
-        name: run_case(lab.scene, lab.franka, lab.joints, spec.CASES[name])
-        for name in study_spec.CASE_POINTS
-    }
-    run = study_checks.Grid(found, alone, lab.joints)
-    outcomes = study_checks.run_grid_checks(run, GRID_CLAIMS)
-    assert [check.detail for check in outcomes if not check.passed] == []
-    small = run_case(lab.scene, lab.franka, lab.joints, SMALL.case)
-    k = lab.joints.entry(spec.STEPPED_JOINT)
-    assert np.abs(found.q[0] - small.q[:, k]).max() <= study_spec.AGREEMENT["rad"]
+    for name, case in CASES.items():
+        alone = run_case(lab.scene, lab.franka, lab.joints, case)
+        for array, unit in (("q", "rad"), ("qd", "rad/s"), ("control_force", "N·m")):
+            apart = np.abs(getattr(found[name], array) - getattr(alone, array))[:, spec.ENTRY]
+            assert apart.max() <= study_spec.AGREEMENT[unit], (name, array)
 
 
 def test_environments_differ_as_their_cases_do(found):
-    assert len({measured.overshoot for measured in found.metrics}) > 1
-    assert np.ptp(found.q[:, -1]) > 0.2
+    assert len({step_metrics(run, spec.ENTRY).overshoot for run in found.values()}) > 1
+    assert np.ptp([run.q[-1, spec.ENTRY] for run in found.values()]) > 0.2
 
 
-def test_a_second_sweep_does_not_inherit_from_the_first(batch, found):
-    again = sweep.sweep(*batch, POINTS)
-    assert (again.q == found.q).all()
-    assert (again.control_force == found.control_force).all()
+def test_a_second_batch_does_not_inherit_from_the_first(batch, found):
+    again = run_batch(*batch, CASES)
+    for name, run in found.items():
+        assert (again[name].q == run.q).all()
+        assert (again[name].control_force == run.control_force).all()
 
 
 def test_a_scene_of_another_size_is_refused(batch):
     with pytest.raises(CaseError, match="Build it with n_envs=3"):
-        sweep.sweep(*batch, POINTS[:3])
+        run_batch(*batch, study_spec.COMPARED)
 
 
 def test_cases_of_unequal_length_are_refused(batch):
-    cases = [point.case for point in POINTS]
-    cases[0] = replace(cases[0], steps=10)
+    cases = CASES | {"small": replace(SMALL.case, steps=10)}
     with pytest.raises(CaseError, match="cases of equal length"):
-        sweep.run_batch(*batch, cases)
+        run_batch(*batch, cases)

@@ -8,7 +8,7 @@ from axes import curves, legend
 from matplotlib.figure import Figure
 from PIL import Image
 
-from robo_genesis.lessons.l04 import plots
+from robo_genesis.lessons.l04 import plots, study_plots
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 
 JOINT, K = "joint4", 3
@@ -111,8 +111,8 @@ def test_assigned_and_commanded_name_their_calls(ax, traces, joints):
 def test_a_strip_names_the_times_in_their_order_and_is_light(frames):
     figure = Figure(figsize=(7, 3))
     axes = figure.subplots(1, 2)
-    plots.film_strip(axes, {20: frames["final"], 0: frames["initial"]}, dt=0.01)
+    study_plots.film_strip(axes, {20: frames["final"], 0: frames["initial"]}, dt=0.01)
     assert [ax.get_title() for ax in axes] == ["t = 0.00 s", "t = 0.20 s"]
-    with Image.open(io.BytesIO(plots.jpeg(figure))) as picture:
+    with Image.open(io.BytesIO(study_plots.jpeg(figure))) as picture:
         assert picture.format == "JPEG"
         assert picture.size == (630, 270)

@@ -12,10 +12,10 @@ from robo_genesis.core.checks import evaluate
 from robo_genesis.core.scene import DT
 from robo_genesis.lessons.l04 import (
     engine_comparison,
-    plots,
     spec,
     study,
     study_checks,
+    study_plots,
     study_spec,
     theory_text,
 )  # fmt: skip
@@ -87,6 +87,14 @@ SPOILERS = [
     ("same_model", "gravity_at_start_Genesis is 22.57",
      lambda run: with_readings(
          run, gravity_at_start_Genesis=22.57, gravity_at_start_MuJoCo=21.0)),
+    ("implicit_term", "mass_KV_300_less_term is",
+     lambda run: with_readings(run, mass_KV_300=2.5)),
+    ("same_beginning", "same_samples is",
+     lambda run: spoiled(run, G2_longer=run.traces["G1"])),
+    ("grid_matches_cases", "G2, difference of position",
+     lambda run: spoiled(run, grid_step_250mrad_KP_7000_KV_100=run.traces["G1"])),
+    ("grid_within_gains", ".steps_with_another_target is 120",
+     lambda run: spoiled(run, grid_step_20mrad_KP_3500_KV_100=run.traces["G1"])),
     ("small_step_unsaturated", "G2_small", lambda run: clipped(run, "start_control_force")),
     ("small_step_unsaturated", "G2_small", lambda run: clipped(run, "control_force")),
     ("theory_small_step", "G1_small.overshoot_share is", off_theory),
@@ -276,7 +284,7 @@ def test_figures_draw_what_they_are_given():
     t, curve = np.arange(3) * 0.1, np.array([0.0, 0.5, 1.0])
     axes = Figure().subplots(1, 2)
     names = ("G1", "G2")
-    plots.beside_ideal(
+    study_plots.beside_ideal(
         axes, t, dict.fromkeys(names, curve), dict.fromkeys(names, curve / 2), 1.0, 0.2
     )
     assert [ax.get_title("left") for ax in axes] == list(names)
@@ -284,9 +292,9 @@ def test_figures_draw_what_they_are_given():
     assert (drawn(axes[1])["ideal joint"] == curve / 2).all()
     axes = Figure().subplots(1, 2)
     shares = {name: {"ideal joint": curve, "+0.005 rad": curve / 3} for name in names}
-    plots.step_sizes(axes, t, shares, 0.2)
+    study_plots.step_sizes(axes, t, shares, 0.2)
     assert (drawn(axes[0])["+0.005 rad"] == curve / 3).all()
     ax = Figure().subplots()
-    plots.convergence(ax, {"Genesis": {0.01: 0.05, 0.005: 0.04}}, 0.005)
+    study_plots.convergence(ax, {"Genesis": {0.01: 0.05, 0.005: 0.04}}, 0.005)
     assert drawn(ax)["Genesis"].tolist() == [0.05, 0.04]
     assert ax.get_xscale() == "log"

@@ -42,8 +42,25 @@ def without_note(run):
     return lambda folder: edit(folder, "arrays.json", lambda a: a["cases"][run].update(note=""))
 
 
+def as_run(run, other):
+    def spoil(folder):
+        shutil.copyfile(folder / "arrays" / f"{other}.npz", folder / "arrays" / f"{run}.npz")
+
+    return spoil
+
+
 SPOILED = {
     "a study run is missing": (without_run("G2_substeps_10"), "cases", "G2_substeps_10"),
+    "a run of the grid is missing": (
+        without_run("grid_step_50mrad_KP_4375_KV_150"), "cases", "grid_step_50mrad_KP_4375_KV_150",
+    ),
+    "a run of the grid has the arrays of another": (
+        as_run("grid_step_50mrad_KP_4375_KV_150", "grid_step_50mrad_KP_4375_KV_200"),
+        "law", "grid_step_50mrad_KP_4375_KV_150",
+    ),
+    "a metric of the grid was changed": (
+        with_value("grid_step_250mrad_KP_7000_KV_300", "peak_speed", 1.1), "metrics", "grid_step",
+    ),
     "the assigned path is missing": (without_run("assigned"), "cases", "missing cases.*assigned"),
     "a run of MuJoCo is called one of Genesis": (
         without_note("MuJoCo_Euler_G2_substeps_2"), "cases", "note of the case MuJoCo_Euler",
@@ -108,6 +125,9 @@ def test_a_comparison_covers_the_studies(studied, tmp_path, group, name, factor,
         (study_spec, "AT_REST", 0.0, "gravity_support"),
         (study_spec, "GRAVITY_AGREEMENT", -1.0, "gravity_support"),
         (study_spec, "SAME_MODEL", -1.0, "same_model"),
+        (study_spec, "IMPLICIT_TERM", -1.0, "implicit_term"),
+        (study_spec, "AGREEMENT", dict.fromkeys(study_spec.AGREEMENT, -1.0), "grid_matches_cases"),
+        (study_spec, "BOUNDS", study_spec.BOUNDS | {"kp": (3500.0, 6000.0)}, "grid_within_gains"),
         (study_spec, "SPREAD_SHARE", -1.0, "one_limit"),
     ],
 )

@@ -3,7 +3,6 @@
 import re
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,7 +11,7 @@ from robo_genesis.core.comparison import compare, comparison_sentence, predictio
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block
 from robo_genesis.lessons.l04 import text as l04
-from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
+from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ONE_FACTOR, PREDICTIONS, RESOLUTION
 from robo_genesis.lessons.l04.study_spec import AT_REST
 
@@ -279,60 +278,3 @@ def test_the_pairs_and_the_limit_are_those_that_were_given(interpreted):
         assert all(start in s for start, s in zip(starts, block.sentences, strict=False))
     assert "cost in response time" in kv.sentences[-2]
     assert all("of 50.00 N·m" in s for s in actuator.sentences)
-
-
-@pytest.fixture
-def run(make_trace):
-    """Trace and metrics of a step of 0.25 rad that ends below its target until sample `late`."""
-
-    def make(samples: int, late: int = 150, wobble: int | None = None):
-        k = np.arange(samples)
-        q = 0.25 * np.clip(k / 20, 0, 1) - np.where(k < late, 0.02, 0.0) * (k >= 20)
-        if wobble is not None:
-            q = q + np.where(k == wobble, 0.05, 0.0)
-        trace = make_trace(q, 0.25)
-        return trace, step_metrics(trace, 0)
-
-    return make
-
-
-@pytest.mark.parametrize(
-    ("late", "wobble", "says"),
-    [
-        (150, None, ["records are bit-identical", "the rise time, which had already been observed.",
-         "The settling time went from not observed to 1.50 s. It happened after",
-         "The final error went from 0.0200 rad to 0.0000 rad. The last sample is another one.",
-         "Unchanged in the digits written here: rise time; "]),
-        (0, 200, ["The overshoot went from 0.0000 rad to 0.0500 rad. A larger value",
-         "left the band again"]),
-        (0, 240, ["The settling time went from 0.20 s to not observed. The response left"]),
-    ],
-)  # fmt: skip
-def test_a_longer_record_changes_only_what_comes_later(run, late, wobble, says):
-    text = l04.longer_window(run(121, late), run(241, late, wobble))
-    assert [phrase for phrase in says if phrase not in text] == []
-
-
-def test_another_experiment_is_not_explained_by_its_window(run):
-    short, long = run(121), run(241, wobble=60)
-    assert not l04.same_beginning(short[0], long[0])
-    assert not l04.same_beginning(short[0], short[0])  # no longer record
-    text = l04.longer_window(short, long)
-    assert "another experiment" in text
-    assert "went from" not in text
-
-
-def test_each_saturated_stretch_drives_or_brakes(run):
-    trace, _ = run(9)
-    force = np.array([[1], [1], [-1], [-1], [0.5], [-1], [1], [1]]) * trace.effort_limit[0]
-    speed = np.array([[1], [2], [2], [-1], [-1], [-1], [-0.5], [0.5]])
-    assert l04.saturated_stretches(replace(trace, control_force=force, qd=speed), 0) == [
-        "0.01 s to 0.02 s: the force is positive and drives the motion.",
-        "0.03 s to 0.03 s: the force is negative and brakes the motion.",
-        "0.04 s to 0.04 s: the force is negative and drives the motion.",
-        "0.06 s to 0.06 s: the force is negative and drives the motion.",
-        "0.07 s to 0.07 s: the force is positive and brakes the motion.",
-        "0.08 s to 0.08 s: the force is positive and drives the motion.",
-    ]
-    free = replace(trace, control_force=trace.control_force * 0)
-    assert l04.saturated_stretches(free, 0) == ["No sample was at the limit."]

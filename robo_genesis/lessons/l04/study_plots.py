@@ -1,0 +1,223 @@
+"""Figures of L04's studies: functions of the experiment, and of axes; no numerics, no show()."""
+
+import io
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from IPython.display import Image
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from robo_genesis.core.plotting import TARGET, look
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l04 import spec, study
+from robo_genesis.lessons.l04.engine_comparison import ENGINE_LABELS
+from robo_genesis.lessons.l04.explorer import cell_labels, overshoot_share
+from robo_genesis.lessons.l04.spec import CASE_MARKS
+from robo_genesis.lessons.l04.study_spec import (
+    COMPARED,
+    KP,
+    KV,
+    POINTS,
+    SMALL_STEP,
+    SMALL_STEPPED,
+    STEP_SIZES,
+)
+
+IDEAL = look("target", linestyle=(0, (1, 1.2)), linewidth=1.8)
+ENGINE_STYLES = {
+    "Genesis": look(CASE_MARKS["G2"], linestyle="-", marker="o"),
+    "MuJoCo implicitfast": look("other", marker="s"),
+    "MuJoCo Euler": look("further", marker="^"),
+}
+"""All curves are G2's. Marker shapes distinguish the engines as well as colours."""
+
+JPEG_QUALITY = 70
+"""JPEG quality: high enough that no blocks are visible at the printed size."""
+
+FILM_VIEW = (slice(140, 420), slice(270, 550))
+"""Rows and columns of a frame that show the robot [pixel]."""
+
+
+def theory(run: Experiment) -> Figure:
+    """Draw the compared cases over the ideal joint's response."""
+    figure = Figure(figsize=(7, 3.2))
+    start, t = float(spec.BASELINE.q_start[spec.ENTRY]), run.traces["G1"].t
+    beside_ideal(
+        figure.subplots(1, 3, sharey=True),
+        t,
+        {name: run.traces[name].q[:, spec.ENTRY] for name in COMPARED},
+        {name: start + spec.STEP * study.ideal(run, name).response(t) for name in COMPARED},
+        target=start + spec.STEP,
+        until=0.4,
+    )
+    return figure
+
+
+def step_size(run: Experiment) -> Figure:
+    """Draw the response to both heights of the step beside the ideal joint's."""
+    figure, t = Figure(figsize=(7, 3.6)), run.traces["G1"].t
+    shares = {
+        name: {
+            "ideal joint": study.ideal(run, name).response(t),
+            f"+{SMALL_STEP:g} rad": study.share(run, name, "small"),
+            f"+{spec.STEP:g} rad": study.share(run, name),
+        }
+        for name in SMALL_STEPPED
+    }
+    step_sizes(figure.subplots(1, 2, sharey=True), t, shares, until=0.4)
+    return figure
+
+
+def overshoot_by_step(run: Experiment) -> Figure:
+    """Draw the overshoot of G2 over the solver's step for each engine."""
+    figure = Figure(figsize=(7, 3.8))
+    curves = {
+        ENGINE_LABELS[engine]: {
+            spec.G2.dt / n: value for n, value in study.overshoot_by_substeps(run, engine).items()
+        }
+        for engine in study.ENGINES
+    }
+    convergence(figure.subplots(), curves, declared=spec.G2.dt / spec.G2.substeps)
+    return figure
+
+
+def grid_overshoot(run: Experiment) -> Figure:
+    """Draw the overshoot of each run of the grid in percent of its step."""
+    percent = [100 * overshoot_share(point, run.metrics[point.name]) for point in POINTS]
+    return _grid(np.array(percent), [f"{value:.1f}" for value in percent])
+
+
+def grid_saturation(run: Experiment) -> Figure:
+    """Draw the number of saturated samples of each run of the grid."""
+    counts = [run.metrics[point.name].saturation_samples for point in POINTS]
+    return _grid(np.array(counts), [str(count) for count in counts])
+
+
+def _grid(values: FloatArray, numbers: Sequence[str]) -> Figure:
+    figure = Figure(figsize=(7, 6.8))
+    axes = list(figure.subplots(2, 2).flat)
+    grid_maps(axes, values, cell_labels(numbers), STEP_SIZES, KP, KV)
+    return figure
+
+
+def beside_ideal(
+    axes: Sequence[Axes],
+    t: FloatArray,
+    measured: Mapping[str, FloatArray],
+    ideal: Mapping[str, FloatArray],
+    target: float,
+    until: float,
+) -> Sequence[Axes]:
+    """Draw each case's measured position [rad] over the ideal joint's, one case on each axes.
+
+    All arrays (n+1,) over `t` [s], shown up to `until` [s].
+    """
+    for ax, (name, q) in zip(axes, measured.items(), strict=True):
+        ax.axhline(target, label="target", **TARGET)
+        ax.plot(t, ideal[name], label="ideal joint", **IDEAL)
+        ax.plot(t, q, label="measured", **look(CASE_MARKS[name]))
+        _finish_case(ax, name, "q of joint4 [rad]", until)
+    return axes
+
+
+def step_sizes(
+    axes: Sequence[Axes],
+    t: FloatArray,
+    shares: Mapping[str, Mapping[str, FloatArray]],
+    until: float,
+) -> Sequence[Axes]:
+    """Draw responses as shares of their step, one case on each axes, one curve a label.
+
+    A curve called `ideal joint` is drawn as such. All arrays (n+1,) over `t` [s].
+    """
+    for ax, (name, curves) in zip(axes, shares.items(), strict=True):
+        ax.axhline(1.0, **TARGET)
+        measured = iter((look("other"), look(CASE_MARKS[name])))
+        for label, curve in curves.items():
+            ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else next(measured)))
+        _finish_case(ax, name, "share of the step", until)
+    return axes
+
+
+def _finish_case(ax: Axes, title: str, ylabel: str, until: float) -> None:
+    ax.set_title(title, loc="left")
+    ax.set(xlim=(0, until), xlabel="time [s]", ylabel=ylabel)
+    ax.legend(fontsize="small", loc="lower right")
+    ax.label_outer()
+
+
+def convergence(ax: Axes, overshoot: Mapping[str, Mapping[float, float]], declared: float) -> Axes:
+    """Draw overshoot [rad] over the solver's step [s], one curve an engine, the finest at the left.
+
+    `declared` [s] marks the step of the lesson's own runs.
+    """
+    for name, values in overshoot.items():
+        drawn = ENGINE_STYLES[name] | {"label": name, "markersize": 6}
+        ax.plot(list(values), list(values.values()), **drawn)
+    ax.axvline(declared, label="the lesson's step", **TARGET)
+    ax.set(xscale="log", xlabel="solver step [s]", ylabel="overshoot of G2 [rad]")
+    ax.set_ylim(bottom=0)
+    ax.legend(fontsize="small", loc="upper left")
+    return ax
+
+
+def grid_maps(
+    axes: Sequence[Axes],
+    values: FloatArray,
+    labels: Sequence[str],
+    steps: Sequence[float],
+    kp: Sequence[float],
+    kv: Sequence[float],
+) -> Sequence[Axes]:
+    """Draw one value a point of a grid, one step size on each axes, KP upwards, KV to the right.
+
+    Args:
+        axes: as many as steps.
+        values: (points,) in the grid's order; one colour scale for all, from zero.
+        labels: (points,), the text in each cell: readers read the number, the colour only helps.
+        steps: step sizes [rad].
+        kp: gains of the rows [N·m/rad].
+        kv: gains of the columns [N·m·s/rad].
+    """
+    shape, highest = (len(steps), len(kp), len(kv)), float(np.max(values))
+    maps, texts = np.reshape(values, shape), np.reshape(np.array(labels), shape)
+    for number, (ax, step) in enumerate(zip(axes, steps, strict=True)):
+        ax.pcolormesh(
+            maps[number], cmap="Blues", vmin=0, vmax=highest, edgecolors="#d9d9d9", linewidth=1
+        )
+        for (row, column), text in np.ndenumerate(texts[number]):
+            color = "white" if maps[number, row, column] > 0.55 * highest else "black"
+            x, y = column + 0.5, row + 0.5
+            ax.text(x, y, text, ha="center", va="center", fontsize="small", color=color)
+        ax.grid(visible=False)
+        ax.set_xticks(np.arange(len(kv)) + 0.5, [f"{value:g}" for value in kv])
+        ax.set_yticks(np.arange(len(kp)) + 0.5, [f"{value:g}" for value in kp])
+        ax.set_title(f"step {step:g} rad", loc="left")
+        ax.set(xlabel="KV [N·m·s/rad]", ylabel="KP [N·m/rad]")
+        ax.label_outer()
+    return axes
+
+
+def film(frames: Mapping[int, np.ndarray], dt: float) -> Image:
+    """Show six frames by sample number as one photograph."""
+    figure = Figure(figsize=(7, 5.2))
+    film_strip(list(figure.subplots(2, 3).flat), frames, dt)
+    return Image(jpeg(figure), format="jpeg")
+
+
+def film_strip(axes: Sequence[Axes], frames: Mapping[int, np.ndarray], dt: float) -> Sequence[Axes]:
+    """Show frames by sample number, each below its time [s]."""
+    for ax, (sample, frame) in zip(axes, sorted(frames.items()), strict=True):
+        ax.imshow(frame[FILM_VIEW])
+        ax.set_axis_off()
+        ax.set_title(f"t = {sample * dt:.2f} s", fontsize="small")
+    return axes
+
+
+def jpeg(figure: Figure) -> bytes:
+    """Return a figure of photographs as JPEG: an SVG file would be ten times as large."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="jpeg", dpi=90, pil_kwargs={"quality": JPEG_QUALITY})
+    return stream.getvalue()

@@ -1,0 +1,109 @@
+"""Tables and sentences of the lecture alone: each number is the run's."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robo_genesis.lessons.l04 import lecture_text, spec, study, study_spec, theory_text
+from robo_genesis.lessons.l04.metrics import step_metrics
+
+
+@pytest.fixture
+def run(make_trace):
+    """Trace and metrics of a step of 0.25 rad that ends below its target until sample `late`."""
+
+    def make(samples: int, late: int = 150, wobble: int | None = None):
+        k = np.arange(samples)
+        q = 0.25 * np.clip(k / 20, 0, 1) - np.where(k < late, 0.02, 0.0) * (k >= 20)
+        if wobble is not None:
+            q = q + np.where(k == wobble, 0.05, 0.0)
+        trace = make_trace(q, 0.25)
+        return trace, step_metrics(trace, 0)
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("late", "wobble", "says"),
+    [
+        (150, None, ["records are bit-identical", "the rise time, which had already been observed.",
+         "The settling time went from not observed to 1.50 s. It happened after",
+         "The final error went from 0.0200 rad to 0.0000 rad. The last sample is another one.",
+         "Unchanged in the digits written here: rise time; "]),
+        (0, 200, ["The overshoot went from 0.0000 rad to 0.0500 rad. A larger value",
+         "left the band again"]),
+        (0, 240, ["The settling time went from 0.20 s to not observed. The response left"]),
+    ],
+)  # fmt: skip
+def test_a_longer_record_changes_only_what_comes_later(run, late, wobble, says):
+    text = lecture_text.window_changes(run(121, late), run(241, late, wobble))
+    assert [phrase for phrase in says if phrase not in text] == []
+
+
+def test_another_experiment_is_not_explained_by_its_window(run):
+    short, long = run(121), run(241, wobble=60)
+    assert not study.same_beginning(short[0], long[0])
+    assert not study.same_beginning(short[0], short[0])  # no longer record
+    text = lecture_text.window_changes(short, long)
+    assert "another experiment" in text
+    assert "went from" not in text
+
+
+def test_each_saturated_stretch_drives_or_brakes(run):
+    trace, _ = run(9)
+    force = np.array([[1], [1], [-1], [-1], [0.5], [-1], [1], [1]]) * trace.effort_limit[0]
+    speed = np.array([[1], [2], [2], [-1], [-1], [-1], [-0.5], [0.5]])
+    assert lecture_text.saturated_stretches(replace(trace, control_force=force, qd=speed), 0) == [
+        "0.01 s to 0.02 s: the force is positive and drives the motion.",
+        "0.03 s to 0.03 s: the force is negative and brakes the motion.",
+        "0.04 s to 0.04 s: the force is negative and drives the motion.",
+        "0.06 s to 0.06 s: the force is negative and drives the motion.",
+        "0.07 s to 0.07 s: the force is positive and brakes the motion.",
+        "0.08 s to 0.08 s: the force is positive and drives the motion.",
+    ]
+    free = replace(trace, control_force=trace.control_force * 0)
+    assert lecture_text.saturated_stretches(free, 0) == ["No sample was at the limit."]
+
+
+def test_force_ranges_are_those_that_were_read_back(study_runs):
+    baseline = study_runs.traces["baseline"]
+    weaker = replace(baseline, effort_limit=baseline.effort_limit - 1)
+    run = replace(study_runs, traces=study_runs.traces | {"baseline": weaker})
+    lines = lecture_text.force_ranges(run).splitlines()
+    assert lines[5].split(" | ")[0] == "| joint4"
+    assert lines[5].endswith(" -86 … 86 N·m |")
+    assert lines[-1].endswith(" -99 … 99 N |")
+
+
+def test_the_first_demand_is_above_the_limit(study_runs):
+    lines = lecture_text.first_demand(study_runs).splitlines()
+    demand = spec.STEP * spec.BASELINE.kp[spec.ENTRY]
+    ends = [f"| {demand:.1f} |", "| 87.0 |", "| 87.0 |"]
+    assert [line[-len(end) :] for line, end in zip(lines[2:], ends, strict=True)] == ends
+
+
+def test_every_prediction_is_listed(study_runs):
+    lines = lecture_text.predictions(study_runs).splitlines()
+    assert len(lines) == len(spec.RELATIONS)
+    assert lines[0] == "- G1 → G2: rise time no later"
+
+
+def test_the_longer_window_is_that_of_the_recorded_run(study_runs):
+    text = lecture_text.longer_window(study_runs)
+    assert "The first 1.20 s of both records are bit-identical" in text
+    assert study_runs.traces[study_spec.LONGER].t[-1] == pytest.approx(2.4)
+
+
+def test_masses_are_shown_with_and_without_the_integrator_s_term(study_runs):
+    rows = theory_text.mass_table(study_runs).splitlines()[2:]
+    masses = [float(row.split("|")[2]) for row in rows]
+    inertia = study_runs.readings[study.GROUP]["inertia_Genesis"]
+    terms = [0, 0.505, 0, 1.505, 0]  # h (d + KV) with h = 5 ms and d = 1 N·m·s/rad
+    assert masses == pytest.approx([inertia + term for term in terms], abs=1e-4)
+
+
+def test_step_cases_name_their_one_change(study_runs):
+    rows = theory_text.step_cases(study_runs).splitlines()[2:]
+    assert len(rows) == len(study_spec.STEP_CASES)
+    assert rows[0].startswith("| G1 → G1_small | q_target[joint4] | ")
