@@ -234,7 +234,8 @@ def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) ->
         Module without the package's name, such as `core.trace`, to digest.
     """
     own = f"{PACKAGE}.lessons.{lesson}"
-    given = imported_names((_module_file(root, own) or root).read_text("utf8"), own)
+    init = _module_file(root, own)
+    given = imported_names(init.read_text("utf8"), own) if init else ()
     roots = [*_lesson_modules(lesson, root), *given, *imports]
     modules = import_closure(roots, root, enter=computes)
     return {
