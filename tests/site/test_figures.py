@@ -14,7 +14,7 @@ import pytest
 from built_site import MEASURING_PAGES, executed_pages
 from nbclient import NotebookClient
 
-from robo_genesis.build.page_store import NOTEBOOK
+from robo_genesis.build.page_folder import NOTEBOOK
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons.book_pages import Page, cell_sources, find_pages
 

@@ -6,7 +6,7 @@ from built_site import parsed
 from docutils.core import publish_doctree
 from tiny_book import git, make_book
 
-from robo_genesis.build.render import render
+from robo_genesis.build.site.render import render
 from robo_genesis.site import page_facts as facts
 
 
