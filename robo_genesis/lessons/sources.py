@@ -198,7 +198,7 @@ def import_closure(
 
 def _module_file(root: Path, name: str) -> Path | None:
     """Return the file of a module, None if the name is not a module."""
-    base = os.path.join(root, *name.split("."))  # this is asked of thousands of names
+    base = os.path.join(root, *name.split("."))  # called for thousands of names
     candidates = (f"{base}.py", os.path.join(base, "__init__.py"))
     return next((Path(path) for path in candidates if os.path.isfile(path)), None)
 
