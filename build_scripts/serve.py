@@ -6,7 +6,7 @@ from contextlib import suppress
 from functools import partial
 from http.server import ThreadingHTTPServer
 
-from robo_genesis.build.serve import SiteHandler
+from robo_genesis.build.site.serve import SiteHandler
 from robo_genesis.core.project import BOOK, PUBLISHED
 
 

@@ -14,6 +14,7 @@ from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.sim import camera, session
+from robo_genesis.sim.engine_log import EngineLog
 
 QUADRANTS = evidence_key.locked_version("quadrants", project.ROOT)
 RUN_ID = "0123456789abcdef" * 2
@@ -34,7 +35,7 @@ def backend():
 
 @pytest.fixture(scope="session")
 def engine(backend):
-    log = session.EngineLog()
+    log = EngineLog()
     log.lines += LOG
     return session.Engine(project.engine_pin(), QUADRANTS, "32", 0, backend, log)
 

@@ -16,6 +16,7 @@ from robo_genesis.core import scene as course
 from robo_genesis.doctor import main, table
 from robo_genesis.sim import diagnosis, franka, joint_control, session
 from robo_genesis.sim.diagnosis import BASELINE, STEPS, Finding, shareable
+from robo_genesis.sim.engine_log import EngineLog
 
 NAMES = [step.__name__ for step in STEPS]
 
@@ -77,7 +78,7 @@ def test_a_broken_installation_or_variable_is_found(
 ):
     if step == "model_file":  # comes after the start of the engine
         backend = SimpleNamespace(requested="cpu", actual="cpu", device_name="a processor")
-        engine = SimpleNamespace(backend=backend, log=session.EngineLog())
+        engine = SimpleNamespace(backend=backend, log=EngineLog())
         monkeypatch.setattr(session, "start", lambda contract: engine)
     getattr(monkeypatch, change)(*spoiled)
     assert_broken(steps_run, capsys, step, *words)

@@ -9,8 +9,8 @@ import nbformat
 from nbformat import NotebookNode
 from pydantic import Field
 
+from robo_genesis.build.page_folder import NOTEBOOK, OUTPUTS, Record, read_record
 from robo_genesis.build.page_results import PageResult
-from robo_genesis.build.page_store import NOTEBOOK, OUTPUTS, Record, read_record
 from robo_genesis.core.names import EXECUTED_PAGES
 from robo_genesis.evidence.fields import Strict
 

@@ -11,8 +11,9 @@ from typing import Any
 
 from robo_genesis.build.command import TIMEOUT
 from robo_genesis.build.kernels import interrupts_blocked, kill_with_descendants
+from robo_genesis.build.page_folder import OUTPUTS, PageRefused
 from robo_genesis.build.page_results import Failure, PageResult, find_bundle
-from robo_genesis.build.page_store import OUTPUTS, PageRefused, last_seconds, stored_result
+from robo_genesis.build.page_store import last_seconds, stored_result
 from robo_genesis.build.page_worker import PageRun, work
 from robo_genesis.core import project
 from robo_genesis.core.names import COMMAND

@@ -18,6 +18,7 @@ from robo_genesis.build.kernels import (
     clean_environment,
     die_with_parent,
 )
+from robo_genesis.build.page_folder import StoreError, write_page
 from robo_genesis.build.page_results import (
     Failure,
     at_cell,
@@ -26,7 +27,6 @@ from robo_genesis.build.page_results import (
     missing_bundle,
     unexpected_outcome,
 )
-from robo_genesis.build.page_store import StoreError, write_page
 from robo_genesis.core.names import COMMAND, OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, RUN_ID
 from robo_genesis.core.project import ROOT
 from robo_genesis.lessons.book_pages import Page, cell_sources, code_digest

@@ -12,7 +12,8 @@ from robo_genesis.build.command import TIMEOUT, Progress, say
 from robo_genesis.build.execute import execute_pages, kernel_environment
 from robo_genesis.build.page_results import PageResult, failure_report
 from robo_genesis.build.page_store import Verify, places
-from robo_genesis.build.stages import build_lock, require_contract
+from robo_genesis.build.stages import build_lock
+from robo_genesis.build.verification import require_contract
 from robo_genesis.core import project
 from robo_genesis.core.names import BACKEND, RENDER
 from robo_genesis.core.refusals import BundleRefused, expect

@@ -6,7 +6,7 @@
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -24,21 +24,18 @@ from robo_genesis.build.page_store import (
     forget,
     import_pages,
     places,
-    stored_notebook,
 )
-from robo_genesis.build.publish import publish
 from robo_genesis.build.release import missing_for_release
-from robo_genesis.build.render import render
-from robo_genesis.build.shown import require_shown
-from robo_genesis.build.site_address import site_address, site_root
-from robo_genesis.build.site_archive import pack
-from robo_genesis.build.site_checks import check_site
-from robo_genesis.build.site_sums import write_sums
+from robo_genesis.build.site.address import site_address, site_root
+from robo_genesis.build.site.archive import pack
+from robo_genesis.build.site.checks import check_site
+from robo_genesis.build.site.publish import publish
+from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sums import write_sums
+from robo_genesis.build.verification import verify_results
 from robo_genesis.core import project
 from robo_genesis.core.files import locked, settle
 from robo_genesis.core.git import unclean
-from robo_genesis.core.names import BACKEND, RENDER
-from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence import bundle_store
 from robo_genesis.evidence.status import refused_records
 from robo_genesis.evidence.verify import verify_bundle
@@ -105,7 +102,9 @@ def run_build(build: Build) -> list[str]:
                 imported.add(record.docname)
                 progress("import", record.docname, f"run {record.run_id[:8]}")
         results = _execute(build, pages, into, progress)
-        manifests = _verify(build.book, verify, results, imported, progress)
+        manifests, refused = verify_results(verify, results, imported, progress)
+        if refused := refused + refused_records(build.book, _labs(results)):
+            raise BuildError("\n".join(refused))
         if build.release:
             problems = missing_for_release(build.book, _labs(results), manifests, build.root)
             _require_for_release([*unclean(build.root), *problems])
@@ -221,58 +220,6 @@ def _execute(
     if any(result.failure for result in results):
         raise BuildError(failure_report(results))
     return results
-
-
-def _verify(
-    book: Path,
-    verify: Verify,
-    results: Sequence[PageResult],
-    imported: Collection[str],
-    progress: Progress,
-) -> Mapping[str, Any]:
-    """Return the accepted manifests of this build's bundles, by page name.
-
-    A page that shows something else than its bundle stops the build, and so does a recorded bundle
-    that is neither current nor stale. A page from the store was compared when it was new, and its
-    files still have their digests.
-    """
-    contract = project.environment_contract()
-    manifests, refused = {}, []
-    for result in results:
-        if result.bundle is None:
-            continue
-        try:
-            manifest = verify(result.bundle, result.run_id)
-            require_contract(manifest.predicate, contract)
-            found = "accepted"
-            if result.status == "executed" or result.page.docname in imported:
-                compared = require_shown(
-                    result.page, stored_notebook(result), result.bundle, manifest
-                )
-                found = f"accepted, {compared} outputs compared"
-            manifests[result.page.docname] = manifest
-            progress("verify", result.page.docname, found)
-        except BundleRefused as error:
-            refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
-    refused += refused_records(book, _labs(results))
-    if refused:
-        raise BuildError("\n".join(refused))
-    return manifests
-
-
-def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
-    """Raise BundleRefused if a bundle's backend or camera is not the requested one.
-
-    Args:
-        predicate: the predicate of the bundle's manifest.
-        contract: the variables that requested it.
-    """
-    remedy = "Write gs.init(backend=rg.backend(), ...), and a camera where page.render is true."
-    backend, render = contract[BACKEND], contract[RENDER]
-    mode = "camera" if render == "1" else "skip"
-    found = predicate.backend.requested
-    expect("backend", "manifest.json", "backend.requested", found, backend, remedy)
-    expect("frames", "manifest.json", "render.mode", predicate.render.mode, mode, remedy)
 
 
 def _check(html: Path, progress: Progress) -> int:

@@ -140,8 +140,12 @@ def cell_sources(page: Page) -> list[str]:
 
 def plain_python(notebook: NotebookNode) -> list[str]:
     """Return the code cells of a notebook as plain Python; magics of IPython are translated."""
-    transform = TransformerManager().transform_cell
-    return [transform(cell.source) for cell in notebook.cells if cell.cell_type == "code"]
+    return [_plain_python(cell.source) for cell in notebook.cells if cell.cell_type == "code"]
+
+
+@lru_cache(maxsize=1024)
+def _plain_python(cell: str) -> str:
+    return TransformerManager().transform_cell(cell)
 
 
 def code_digest(page: Page) -> str:

@@ -9,6 +9,7 @@ import ast
 import hashlib
 import io
 import json
+import os
 import platform
 import tokenize
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -197,9 +198,9 @@ def import_closure(
 
 def _module_file(root: Path, name: str) -> Path | None:
     """Return the file of a module, None if the name is not a module."""
-    base = root.joinpath(*name.split("."))
-    candidates = (base.with_name(base.name + ".py"), base / "__init__.py")
-    return next((path for path in candidates if path.is_file()), None)
+    base = os.path.join(root, *name.split("."))  # called for thousands of names
+    candidates = (f"{base}.py", os.path.join(base, "__init__.py"))
+    return next((Path(path) for path in candidates if os.path.isfile(path)), None)
 
 
 def _lesson_modules(lesson: str, root: Path) -> list[str]:

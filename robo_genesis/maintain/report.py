@@ -10,7 +10,7 @@ from pathlib import Path
 
 from bs4 import BeautifulSoup
 
-from robo_genesis.build.publish import PAGES
+from robo_genesis.build.site.publish import PAGES
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.findings import SEVERITY, worst

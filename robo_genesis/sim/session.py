@@ -1,10 +1,9 @@
-"""The environment contract, the one `gs.init` of a process, its backend and its log."""
+"""The environment contract, and the one `gs.init` of a process with its backend."""
 
 import ctypes
 import importlib
 import logging
 import os
-import re
 import sys
 import tempfile
 from collections.abc import Mapping
@@ -16,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core import project
-from robo_genesis.core.messages import LINE_LIMIT, clean_message
 from robo_genesis.core.names import BACKEND, OUTPUTS_DIR, RENDER
 from robo_genesis.core.scene import SEED
 from robo_genesis.sim.backends import BACKENDS, contradictions
+from robo_genesis.sim.engine_log import EngineLog, remove_private_paths
 
 CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
 """Valid values of the variables of the contract; the first is the default."""
@@ -85,38 +84,6 @@ class Backend:
     hip_version: str | None
     cuda_version: str | None
     device_name: str
-
-
-class EngineLog(logging.Handler):
-    """Keeps every line that the engine logs, without its colour marks and control characters.
-
-    A message that is too long for a bundle is shortened.
-    """
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.lines: list[tuple[str, str]] = []
-
-    def emit(self, record: logging.LogRecord) -> None:
-        """Keep (level, message)."""
-        level, plain = record.levelname, re.sub("~{1,4}<|>~{1,4}", "", record.getMessage())
-        self.lines.append((level, clean_message(plain, LINE_LIMIT - len(f"{level} "))))
-
-    @property
-    def warnings(self) -> list[str]:
-        """Messages at level WARNING or above, in order."""
-        return [text for level, text in self.lines if level not in ("DEBUG", "INFO")]
-
-    def text(self) -> str:
-        """Return the log, one `LEVEL message` line each."""
-        return "".join(f"{level} {text}\n" for level, text in self.lines)
-
-
-def remove_private_paths(record: logging.LogRecord) -> bool:
-    """Remove the folders of packages and of the user from a line of the log; keep every record."""
-    installed = Path(importlib.import_module("genesis").__file__ or "").parents[1]
-    record.msg = project.without_home(str(record.msg).replace(str(installed), "site-packages"))
-    return True
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,15 +22,15 @@ from tiny_book import (
 
 from robo_genesis.build import up_to_date
 from robo_genesis.build.kernels import kill_with_descendants
-from robo_genesis.build.page_store import StoreError
+from robo_genesis.build.page_folder import StoreError
 from robo_genesis.build.stages import (
     Build,
     BuildError,
     build_lock,
     export_one,
-    require_contract,
     run_build,
 )
+from robo_genesis.build.verification import require_contract
 from robo_genesis.core.project import ProjectError
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.lessons.book_pages import PageError

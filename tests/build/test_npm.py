@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from robo_genesis.build import npm
-from robo_genesis.build.site_scripts import VIEWER_SHA256
+from robo_genesis.build.site.scripts import VIEWER_SHA256
 from robo_genesis.core.project import CACHE, ROOT, ProjectError
 from robo_genesis.site.replay.viewer import PARTS, viewer
 

@@ -10,12 +10,11 @@ import pytest
 from nbformat.v4 import new_notebook, new_output
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
-from robo_genesis.build import page_store
+from robo_genesis.build import page_folder
 from robo_genesis.build.execute import execute_pages
+from robo_genesis.build.page_folder import PageRefused, StoreError, write_page
 from robo_genesis.build.page_results import PageResult
 from robo_genesis.build.page_store import (
-    PageRefused,
-    StoreError,
     export_page,
     folders,
     forget,
@@ -23,7 +22,6 @@ from robo_genesis.build.page_store import (
     last_seconds,
     places,
     stored_result,
-    write_page,
 )
 from robo_genesis.evidence.bundle import BundleRefused, sha256
 from robo_genesis.lessons.book_pages import Page, find_pages
@@ -350,7 +348,7 @@ def test_a_page_that_cannot_be_stored_leaves_the_older_one(page, tmp_path, monke
         raise OSError("No space left on device")
 
     if broken == "write":
-        monkeypatch.setattr("robo_genesis.build.page_store.Record.model_dump_json", full)
+        monkeypatch.setattr("robo_genesis.build.page_folder.Record.model_dump_json", full)
     else:
         monkeypatch.setattr("os.rename", full)
     with pytest.raises(OSError, match="No space"):
@@ -390,6 +388,6 @@ def test_prose_may_change_after_the_export_and_code_may_not(here):
 
 @pytest.mark.parametrize(("name", "limit"), [("SIZE_LIMIT", 3), ("FILES_LIMIT", 1)])
 def test_too_much_is_refused_before_it_is_read(here, monkeypatch, name, limit):
-    monkeypatch.setattr(page_store, name, limit)
+    monkeypatch.setattr(page_folder, name, limit)
     with pytest.raises(StoreError, match="exceeds a limit: at most"):
         take(here)

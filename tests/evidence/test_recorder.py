@@ -27,6 +27,7 @@ from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.l04 import LAB, spec
 from robo_genesis.lessons.sources import measuring_modules
 from robo_genesis.sim import session
+from robo_genesis.sim.engine_log import EngineLog
 
 
 @pytest.fixture
@@ -162,7 +163,7 @@ def test_other_runs_and_values_that_are_not_finite_are_named(recorder, experimen
 
 
 def test_a_message_of_the_engine_never_ends_a_recording(recorder, experiment):
-    log = session.EngineLog()
+    log = EngineLog()
     log.lines += recorder.engine.log.lines
     for message in ("\x1b[31mred\x00\u202e", "x" * 100_000, "a\nb\r\nc\ud800"):
         log.emit(logging.makeLogRecord({"levelname": "WARNING", "msg": message}))

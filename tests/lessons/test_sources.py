@@ -21,6 +21,7 @@ from robo_genesis.lessons.sources import (
 
 PACKAGE = ROOT / "robo_genesis"
 PAGES = find_pages(BOOK)
+LECTURES = [page for page in PAGES if page.page == "lecture"]
 ALL, NONE = tuple(LESSONS), ()
 
 
@@ -132,12 +133,12 @@ def test_a_changed_cell_counts_and_a_comment_does_not(root, page, code, counts):
     assert (page_fingerprint(changed, root, {}) != page_fingerprint(page, root, {})) == counts
 
 
-def keys(root):
-    """Return fingerprint and modules of the evidence key of each page of the course."""
-    fingerprints = {(p.lesson, p.page): page_fingerprint(p, root, {}) for p in PAGES}
+def keys(root, pages):
+    """Return fingerprint and modules of the evidence key of some pages of the course."""
+    fingerprints = {(p.lesson, p.page): page_fingerprint(p, root, {}) for p in pages}
     modules = {
         (p.lesson, p.page): measuring_modules(p.lesson, imports_of(cell_sources(p)), root)
-        for p in PAGES
+        for p in pages
     }
     return fingerprints, modules
 
@@ -146,9 +147,9 @@ def keys(root):
 def copy(tmp_path_factory):
     """A copy of the package and the lock, to change and to restore, and its keys."""
     root = tmp_path_factory.mktemp("checkout")
-    shutil.copytree(PACKAGE, root / "robo_genesis")
+    shutil.copytree(PACKAGE, root / "robo_genesis", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(ROOT / "requirements.lock", root)
-    return root, keys(root)
+    return root, keys(root, PAGES)
 
 
 DOCSTRING, CONSTANT = ('"""', '"""Also: '), ("\n\n\n", "\n\nCHANGED = 1\n\n\n")
@@ -194,11 +195,14 @@ def test_a_change_runs_the_pages_again_that_use_it_and_makes_stale_what_it_measu
     assert change[0] in text
     path.write_text(text.replace(*change, 1), "utf8")
     try:
-        after = keys(root)
+        after = keys(root, LECTURES)
     finally:
         path.write_text(text, "utf8")
-    changed = [{p for p in was if was[p] != now[p]} for was, now in zip(before, after, strict=True)]
-    expected = [{p for p in before[0] if p[0] in lessons} for lessons in (run_again, stale)]
+    changed = [
+        {lesson for lesson, page in now if was[lesson, page] != now[lesson, page]}
+        for was, now in zip(before, after, strict=True)
+    ]
+    expected = [{*run_again}, {*stale}]
     assert changed == expected
 
 
@@ -207,7 +211,7 @@ def test_a_further_module_of_a_lesson_needs_no_list(copy):
     path = root / "robo_genesis" / "lessons" / "l02" / "impact.py"
     path.write_text("from robo_genesis.core.quantities import format_value\n")
     try:
-        after = keys(root)
+        after = keys(root, PAGES)
     finally:
         path.unlink()
     added = {"lessons.l02.impact", "core.quantities"}
@@ -215,6 +219,13 @@ def test_a_further_module_of_a_lesson_needs_no_list(copy):
         expected = added if lesson == "l02" else set()
         assert of.keys() - modules[lesson, page].keys() == expected
         assert (after[0][lesson, page] != fingerprints[lesson, page]) == bool(expected)
+
+
+@pytest.mark.parametrize("lesson", LESSONS)
+def test_a_lecture_uses_all_modules_that_its_lab_measures_with(copy, lesson):
+    """So that what a change does to a lesson is seen in its lecture."""
+    _, (_, modules) = copy
+    assert modules[lesson, "lab"].items() <= modules[lesson, "lecture"].items()
 
 
 def test_a_page_measures_with_modules_of_core_sim_and_its_lesson_alone(copy):

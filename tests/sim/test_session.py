@@ -17,7 +17,6 @@ from robo_genesis.sim.session import (
     Contract,
     ContractError,
     EngineError,
-    EngineLog,
     import_engine,
     read_contract,
     require_agreement,
@@ -200,37 +199,6 @@ def test_a_disagreement_names_the_remedy_or_the_known_backends(change, message):
     require_agreement(CUDA)
     with pytest.raises(EngineError, match=message):
         require_agreement(replace(CUDA, **change))
-
-
-@pytest.fixture
-def log():
-    logger, log = logging.getLogger("engine under test"), EngineLog()
-    logger.setLevel(logging.DEBUG)
-    logger.addHandler(log)
-    yield SimpleNamespace(logger=logger, kept=log)
-    logger.removeHandler(log)
-
-
-def test_the_log_drops_marks_and_keeps_everything_else(log):
-    log.logger.info("Adding ~<RigidEntity>~ for ~~~<panda.xml>~~~, ~~~~<%s>~~~~ ~ 2 > 1", "twice")
-    assert log.kept.text() == "INFO Adding RigidEntity for panda.xml, twice ~ 2 > 1\n"
-
-
-def test_warnings_are_kept_in_order(log):
-    for level, text in (("info", "a"), ("warning", "b"), ("debug", "c"), ("error", "d")):
-        getattr(log.logger, level)(text)
-    assert log.kept.warnings == ["b", "d"]
-    assert log.kept.text() == "INFO a\nWARNING b\nDEBUG c\nERROR d\n"
-
-
-def test_the_log_names_neither_the_environment_nor_the_user(monkeypatch, tmp_path):
-    engine = SimpleNamespace(__file__=str(tmp_path / "packages" / "genesis" / "__init__.py"))
-    monkeypatch.setitem(sys.modules, "genesis", engine)
-    monkeypatch.setenv("HOME", str(tmp_path / "someone"))
-    text = f"Read {tmp_path}/packages/genesis/a.xml, wrote ~<{tmp_path}/someone/.cache/b.gsd>~."
-    record = logging.LogRecord("genesis", logging.INFO, "", 0, text, None, None)
-    assert session.remove_private_paths(record)
-    assert record.getMessage() == "Read site-packages/genesis/a.xml, wrote ~<~/.cache/b.gsd>~."
 
 
 @pytest.mark.parametrize(("newer", "name"), [(True, "raw"), (False, "dumb")])

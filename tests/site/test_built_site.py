@@ -7,7 +7,7 @@ from importlib import import_module
 import pytest
 from built_site import LESSON_PAGES, MEASURING_PAGES, parsed
 
-from robo_genesis.build.site_sums import SUMS
+from robo_genesis.build.site.sums import SUMS
 from robo_genesis.core import project
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.registry import LESSONS

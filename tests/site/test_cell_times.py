@@ -7,9 +7,9 @@ from built_site import parsed
 from tiny_book import cell, make_book, notebook
 
 from robo_genesis.build.built_pages import BuiltPages
+from robo_genesis.build.page_folder import write_page
 from robo_genesis.build.page_results import PageResult
-from robo_genesis.build.page_store import write_page
-from robo_genesis.build.render import RenderError, render
+from robo_genesis.build.site.render import RenderError, render
 from robo_genesis.lessons.book_pages import find_pages
 
 

@@ -6,7 +6,7 @@ from built_site import LESSON_PAGES, parsed
 from tiny_book import make_book
 
 from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.render import RenderError, render
+from robo_genesis.build.site.render import RenderError, render
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.site.course_map import FILE, CourseMapError, Lesson, read_map

@@ -5,7 +5,7 @@ from built_site import parsed
 from tiny_book import make_book
 
 from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.render import RenderError, render
+from robo_genesis.build.site.render import RenderError, render
 from robo_genesis.site import glossary
 
 GLOSSARY = """\

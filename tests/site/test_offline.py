@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 from watching import SERVED_ONLY, only_from, page_names, watch
 
-from robo_genesis.build.site_archive import ARCHIVE, FOLDER
-from robo_genesis.build.site_checks import Site, check_site
-from robo_genesis.build.site_sums import SUMS
+from robo_genesis.build.site.archive import ARCHIVE, FOLDER
+from robo_genesis.build.site.checks import Site, check_site
+from robo_genesis.build.site.sums import SUMS
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 

@@ -7,7 +7,7 @@ from docutils.core import publish_doctree
 from tiny_book import git, make_book
 
 from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.render import render
+from robo_genesis.build.site.render import render
 from robo_genesis.site import page_facts as facts
 
 

@@ -6,9 +6,9 @@ import pytest
 from built_site import executed_pages, parsed
 from PIL import Image
 
-from robo_genesis.build.render import render
-from robo_genesis.build.site_archive import pack
-from robo_genesis.build.site_checks import check_site
+from robo_genesis.build.site.archive import pack
+from robo_genesis.build.site.checks import check_site
+from robo_genesis.build.site.render import render
 from robo_genesis.core import project
 
 pytestmark = pytest.mark.engine

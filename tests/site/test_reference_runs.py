@@ -6,7 +6,7 @@ import pytest
 from built_site import executed_pages, parsed
 from spoilers import TORCH, edit, measured_elsewhere, own_run_id, part, predicate, seal
 
-from robo_genesis.build.render import render
+from robo_genesis.build.site.render import render
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence import bundle
 

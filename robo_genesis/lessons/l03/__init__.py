@@ -10,6 +10,7 @@ from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.lessons.l03 import (
     checks,
+    claims_text,
     mistakes,
     plausibility,
     spec,
@@ -69,7 +70,7 @@ LAB = MeasuringPage(
     readings=lambda rendered: readings(["cube", "ball"], spec.CASES),
     measure=case_metrics,
     checks=checks.CHECKS,
-    claims=text.CLAIMS,
+    claims=claims_text.CLAIMS,
     parameters=spec.parameters,
     validate=plausibility.require_possible_runs,
 )

@@ -9,7 +9,7 @@ from pathlib import Path
 from sphinx.application import Sphinx
 
 from robo_genesis.build import npm
-from robo_genesis.build.site_scripts import VIEWER
+from robo_genesis.build.site.scripts import VIEWER
 
 FOLDER = "replay"
 """Folder of the site; Jupyter Book would load every script of `_static` on every page."""

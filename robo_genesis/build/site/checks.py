@@ -8,7 +8,7 @@ from urllib.parse import unquote, urldefrag, urlsplit
 
 from bs4 import BeautifulSoup, Tag
 
-from robo_genesis.build import site_scripts
+from robo_genesis.build.site import scripts
 
 ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
 # A link of these kinds names a page for readers or crawlers; the browser does not load it.
@@ -118,19 +118,17 @@ def check_third_parties(site: Site) -> SiteCheck:
 
 
 def check_scripts(site: Site) -> SiteCheck:
-    """The site runs the scripts of the theme and of the course only; see `site_scripts`."""
+    """The site runs the scripts of the theme and of the course only; see `scripts`."""
     pages = [
-        site_scripts.Page(site.root, site.base, path, page, site.texts[path])
+        scripts.Page(site.root, site.base, path, page, site.texts[path])
         for path, page in site.pages.items()
     ]
     problems = {
-        f"{site.name(page.path)}: {line}"
-        for page in pages
-        for line in site_scripts.page_problems(page)
+        f"{site.name(page.path)}: {line}" for page in pages for line in scripts.page_problems(page)
     }
-    scripts = sum(len(page.parsed.find_all("script")) for page in pages)
-    found = (*sorted(problems), *site_scripts.file_problems(site.root))
-    return SiteCheck("scripts", scripts, found)
+    number = sum(len(page.parsed.find_all("script")) for page in pages)
+    found = (*sorted(problems), *scripts.file_problems(site.root))
+    return SiteCheck("scripts", number, found)
 
 
 def check_leftovers(site: Site) -> SiteCheck:

@@ -8,7 +8,7 @@ from tiny_book import WRITE_BUNDLE, cell, make_book, notebook
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.execute import execute_pages
 from robo_genesis.build.page_store import places
-from robo_genesis.build.render import RenderError, render
+from robo_genesis.build.site.render import RenderError, render
 from robo_genesis.lessons.book_pages import find_pages
 
 CLAIMS = "status: amdgpu-verified\nbadge: cpu-verified\n"

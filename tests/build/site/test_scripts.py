@@ -5,8 +5,8 @@ import hashlib
 
 import pytest
 
-from robo_genesis.build import site_scripts
-from robo_genesis.build.site_checks import check_site
+from robo_genesis.build.site import scripts
+from robo_genesis.build.site.checks import check_site
 
 KNOWN = "let known = 1;"
 PAGE = "<!DOCTYPE html><html><head>{head}</head><body><article>{body}</article></body></html>"
@@ -15,7 +15,7 @@ PAGE = "<!DOCTYPE html><html><head>{head}</head><body><article>{body}</article><
 @pytest.fixture
 def site(tmp_path, monkeypatch):
     digest = hashlib.sha256(KNOWN.encode()).hexdigest()[:16]
-    monkeypatch.setattr(site_scripts, "KNOWN", {digest: "of this test"})
+    monkeypatch.setattr(scripts, "KNOWN", {digest: "of this test"})
     for folder in ("_static", "_downloads", "replay", "sub"):
         (tmp_path / folder).mkdir()
     for name in ("_static/a.js", "searchindex.js"):

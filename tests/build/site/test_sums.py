@@ -5,8 +5,8 @@ import subprocess
 
 import pytest
 
-from robo_genesis.build.site_archive import ARCHIVE, pack
-from robo_genesis.build.site_sums import SUMS, write_sums
+from robo_genesis.build.site.archive import ARCHIVE, pack
+from robo_genesis.build.site.sums import SUMS, write_sums
 from robo_genesis.core.project import ProjectError
 
 

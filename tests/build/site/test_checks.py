@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.build.site_checks import check_site
+from robo_genesis.build.site.checks import check_site
 
 PAGE = "<!DOCTYPE html><html><head>{head}</head><body><article id='top-of-page'>{body}</article>"
 GOOD = """\

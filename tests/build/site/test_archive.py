@@ -2,7 +2,7 @@ import zipfile
 
 import pytest
 
-from robo_genesis.build.site_archive import ARCHIVE, FOLDER, pack
+from robo_genesis.build.site.archive import ARCHIVE, FOLDER, pack
 
 
 @pytest.fixture

@@ -129,7 +129,7 @@ def _script(page: Page, script: Tag) -> Iterator[str]:
     elif digest not in KNOWN and text != own_name:
         yield (
             f"the inline script {digest} is not known: {text.strip()[:120]!r}. If it is new in the "
-            "theme, read it and add its digest to KNOWN in build/site_scripts.py; else remove it."
+            "theme, read it and add its digest to KNOWN in build/site/scripts.py; else remove it."
         )
 
 

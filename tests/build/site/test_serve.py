@@ -8,7 +8,7 @@ from http.server import ThreadingHTTPServer
 
 import pytest
 
-from robo_genesis.build.serve import SiteHandler
+from robo_genesis.build.site.serve import SiteHandler
 
 
 class Quiet(SiteHandler):

@@ -4,7 +4,7 @@ import pytest
 from tiny_book import LAB_FRONT, cell, make_book, notebook, published_marker, write_bundle
 
 from robo_genesis.build.page_results import PageResult
-from robo_genesis.build.publish import publish
+from robo_genesis.build.site.publish import publish
 from robo_genesis.core import files as core_files
 from robo_genesis.lessons.book_pages import find_pages
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from robo_genesis.build.site_address import AddressError, site_address, site_root
+from robo_genesis.build.site.address import AddressError, site_address, site_root
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,1 @@
+"""The site of a build: rendered, packed, checked, published and served."""

@@ -1,0 +1,41 @@
+"""The engine's log: what it keeps, and what is left out of it."""
+
+import importlib
+import logging
+import re
+from pathlib import Path
+
+from robo_genesis.core.messages import LINE_LIMIT, clean_message
+from robo_genesis.core.project import without_home
+
+
+class EngineLog(logging.Handler):
+    """Keeps every line that the engine logs, without its colour marks and control characters.
+
+    A message that is too long for a bundle is shortened.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.lines: list[tuple[str, str]] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Keep (level, message)."""
+        level, plain = record.levelname, re.sub("~{1,4}<|>~{1,4}", "", record.getMessage())
+        self.lines.append((level, clean_message(plain, LINE_LIMIT - len(f"{level} "))))
+
+    @property
+    def warnings(self) -> list[str]:
+        """Messages at level WARNING or above, in order."""
+        return [text for level, text in self.lines if level not in ("DEBUG", "INFO")]
+
+    def text(self) -> str:
+        """Return the log, one `LEVEL message` line each."""
+        return "".join(f"{level} {text}\n" for level, text in self.lines)
+
+
+def remove_private_paths(record: logging.LogRecord) -> bool:
+    """Remove the folders of packages and of the user from a line of the log; keep every record."""
+    installed = Path(importlib.import_module("genesis").__file__ or "").parents[1]
+    record.msg = without_home(str(record.msg).replace(str(installed), "site-packages"))
+    return True
