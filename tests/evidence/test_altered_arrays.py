@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from built_site import MEASURING_PAGES, executed_folder
+from built_site import MEASURING_PAGES, executed_pages
 
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.core.trace import TimeSeries, TraceError
@@ -108,9 +108,9 @@ def is_refused(experiment: Experiment, of: Try) -> bool:
 @pytest.fixture(scope="module")
 def experiments(build_output) -> dict[tuple[str, str], Experiment]:
     """The experiments of the built bundles; a run in MuJoCo is computed once for all tries."""
-    found = {}
+    found, outputs = {}, executed_pages().outputs
     for lesson, page in MEASURING_PAGES:
-        folder: Path = executed_folder() / "outputs" / lesson / page / "cpu"
+        folder: Path = outputs[f"{lesson}/{page}"] / "cpu"
         found[lesson, page] = from_bundle(folder, bundle.read_manifest(folder))
     return found
 
