@@ -7,7 +7,7 @@ document.addEventListener("DOMContentLoaded", () => {
   const HEIGHT = 210;
 
   function start(root) {
-    const data = JSON.parse(root.querySelector("script").textContent);
+    const data = JSON.parse(root.dataset.grid);
     const inputs = data.axes.map((axis) => root.querySelector(`#explorer-${axis.name}`));
     const plots = root.querySelector(".plots");
     const svgs = Object.fromEntries(

@@ -234,8 +234,8 @@ def test_a_page_measures_with_modules_of_core_sim_and_its_lesson_alone(copy):
         parts = {name.rpartition(".")[0] for name in of}
         assert parts == {"core", "sim", "lessons", f"lessons.{lesson}"}
         assert {"core.trace", "lessons.experiment", f"lessons.{lesson}.metrics"} <= of.keys()
-    assert "sim.mujoco_joints" in modules["l04", "lecture"]  # its cells alone import it
-    assert "sim.mujoco_joints" not in modules["l04", "lab"]
+    assert "sim.mujoco_joints" in modules["l04", "lecture"]  # its `study` imports it
+    assert "sim.mujoco_joints" not in modules["l02", "lecture"]
 
 
 @pytest.mark.parametrize("lesson", LESSONS)

@@ -55,6 +55,7 @@ Here it stands in a sentence, {glue}`inline`.
 | --- |
 | 7 |
 """
+PRINTED = "Printed by its cell, not compared with the bundle. ledger"
 OF_RUN = "No accepted evidence: cpu-refused. ledger"
 CHOSEN = "Chosen, not measured. ledger"
 
@@ -81,6 +82,9 @@ from IPython.display import display
 of = {"function": "robo_genesis.lessons.l04.text.metric_table", "arguments": []}
 def show(name):
     data = {"text/markdown": f"| {name} |\\n| --- |\\n| 7 |"}
+    display(data, metadata={"robo_genesis": of}, raw=True)
+def show_drawn(name):
+    data = {"image/svg+xml": drawn(name).data}
     display(data, metadata={"robo_genesis": of}, raw=True)"""
 
 
@@ -89,15 +93,15 @@ def test_an_output_without_the_name_of_its_function_is_not_called_measured(tmp_p
     shown = (
         cell("table('chosen')", inputs), cell("show('measured')"), cell("table('printed')"),
         cell("show('one')\ntable('of both')"), cell("drawn('printed, too')"),
+        cell("show_drawn('measured, too')"),
     )  # fmt: skip
     glued = cell("glue('md table', table('md'), display=False)", ":tags: [remove-cell]\n")
     text = "\n```{glue:md} md table\n:format: gfm\n```\n"
     html = build(book_of(tmp_path, cell(SHOW), glued, *shown, text=text))
     lines = [line.get_text() for line in parsed(html, "lab").select("article .provenance")]
-    printed = "Printed by its cell, not compared with the bundle. ledger"
-    assert lines == [CHOSEN, OF_RUN, *[printed] * 5]
+    assert lines == [CHOSEN, OF_RUN, *[PRINTED] * 4, OF_RUN, PRINTED]
     rows = parsed(html, "evidence/ledger").select("tbody tr")
-    kinds = ["settings", "table", *["printed"] * 5]
+    kinds = ["settings", "table", *["printed"] * 4, "figure", "printed"]
     assert [row.select("td")[1].text for row in rows] == kinds
 
 
@@ -107,14 +111,14 @@ def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(tmp_path):
     html = build(book_of(tmp_path, cell(GLUE, ":tags: [remove-cell]\n"), *shown, text=GLUED))
     page = parsed(html, "lab")
     lines = [line.get_text() for line in page.select("article .provenance")]
-    assert lines == [CHOSEN] + [OF_RUN] * 7
+    assert lines == [CHOSEN] + [PRINTED] * 7
     assert "Its caption." in page.select_one("figcaption:has(.provenance)").get_text()
 
     ledger = parsed(html, "evidence/ledger")
     rows = ledger.select("#ledger tbody tr")
-    kinds = ["settings", "table", *["figure"] * 4, "table", "table"]
+    kinds = ["settings", *["printed"] * 7]
     assert [row.select("td")[1].get_text() for row in rows] == kinds
-    assert [row.select("td")[3].get_text() for row in rows] == ["no run"] + ["–"] * 7
+    assert [row.select("td")[3].get_text() for row in rows] == ["no run"] * 8
     anchors = [row.a["href"].split("#")[1] for row in rows]
     assert [page.find(id=anchor).name for anchor in anchors] == [
         "table", "table", "img", "figure", "img", "img", "table", "table",

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -126,6 +127,7 @@ def rows(run: Experiment) -> list[dict[str, str]]:
 def markup(run: Experiment) -> str:
     """Return the explorer as HTML. A notice replaces it until `_static/explorer.js` runs.
 
+    The data are an attribute, because a script in Markdown is shown as text.
     It opens at the first of the lesson's cases that overshoots, if there is one.
     """
     text = json.dumps(pack(run), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
@@ -137,11 +139,11 @@ def markup(run: Experiment) -> str:
         for name, label, values, _ in AXES
     )
     return (
-        f'<div class="explorer" hidden><fieldset><legend>Pick a run of {STEPPED_JOINT}</legend>'
-        f'{inputs}</fieldset><output for="{" ".join(f"explorer-{a[0]}" for a in AXES)}" '
+        f'<div class="explorer" data-grid="{escape(text)}" hidden><fieldset>'
+        f"<legend>Pick a run of {STEPPED_JOINT}</legend>{inputs}</fieldset>"
+        f'<output for="{" ".join(f"explorer-{a[0]}" for a in AXES)}" '
         'aria-live="polite"></output>'
-        f'<div class="plots" data-curves="{" ".join(RESOLUTION)}"></div><dl></dl>'
-        f'<script type="application/json">{text.replace("<", chr(92) + "u003c")}</script></div>'
+        f'<div class="plots" data-curves="{" ".join(RESOLUTION)}"></div><dl></dl></div>'
         "<p>The explorer needs JavaScript. The maps above and the table below show the same runs."
         "</p>"
     )

@@ -29,7 +29,7 @@ def mass_table(run: Experiment) -> str:
     """Return the inertia of the stepped joint, and the masses with a commanded position."""
     head, unit = f"`get_mass_mat`, {spec.STEPPED_JOINT}", "kg·m²"
     readings = run.readings[study.GROUP]
-    rows = [{head: "without effort, h · d taken off", unit: readings["inertia_Genesis"]}]
+    rows = [{head: "without effort, less h · d", unit: readings["inertia_Genesis"]}]
     for kv in study.COMPARED_KV:
         term = f"that, less h (d + KV) = {study.implicit_term(run, kv):g}"
         mass = readings[f"mass_KV_{kv:g}"]

@@ -1,8 +1,8 @@
 """Finds each figure and measured table of a page, and writes its origin below it.
 
 A picture or table is measured if it is an output of a code cell, shown there or glued elsewhere, or
-was read from a bundle. The tables of a cell that is tagged `inputs` were chosen. On a page that
-calls `page.show`, other outputs are printed: the build does not compare them with the bundle. A
+was read from a bundle. The tables of a cell that is tagged `inputs` were chosen. Outputs of a page
+that `page.show` did not display are printed: the build does not compare them with the bundle. A
 picture that no run made is an illustration. A table typed in prose is not listed.
 """
 
@@ -74,7 +74,7 @@ def compared_cells(book: Path, docname: str) -> set[int] | None:
     """Return the places of the cells all of whose outputs the build compared with the bundle.
 
     Returns:
-        None for a page that shows nothing by the name of its function.
+        None for a page that declares no bundle.
     """
     if docname not in measured_pages(book):
         return None
@@ -85,8 +85,6 @@ def compared_cells(book: Path, docname: str) -> set[int] | None:
     for place, cell in zip(places, ran, strict=True):
         shown = [output for output in cell.outputs if "data" in output]
         found[place] = (len(shown), len(marked(cell)))
-    if not any(count for _, count in found.values()):
-        return None
     return {place for place, (shown, count) in found.items() if shown == count}
 
 

@@ -23,7 +23,7 @@ def lecture(site) -> BeautifulSoup:
 
 @pytest.fixture(scope="module")
 def data(lecture) -> dict:
-    return json.loads(lecture.select_one(".explorer script").get_text())
+    return json.loads(lecture.select_one(".explorer")["data-grid"])
 
 
 @pytest.fixture(params=["served", "from disk"])
