@@ -92,3 +92,20 @@ def test_every_module_imports_without_the_engine():
         cwd=PACKAGE.parent,
     )
     assert json.loads(done.stdout.splitlines()[-1]) == {}
+
+
+def test_a_verification_imports_no_plotting():
+    found = "import sys, robo_genesis.evidence.verify as _; print('matplotlib' in sys.modules)"
+    plots = (
+        "from robo_genesis.lessons import l02, l03, l04; print([x.plots for x in (l02, l03, l04)])"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", f"{found}; {plots}"],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=PACKAGE.parent,
+    )
+    drawn, modules = done.stdout.splitlines()
+    assert drawn == "False"
+    assert modules.count("plots.py") == 3

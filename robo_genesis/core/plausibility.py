@@ -85,14 +85,23 @@ def unit_quaternions(quat: FloatArray) -> Iterator[Breach]:
     yield from apart("pose", "norm of link_quat", norm, np.ones(()), UNIT)
 
 
-def computed_again(trace: TimeSeries, again: TimeSeries) -> Iterator[Breach]:
-    """Yield an array that differs from that of the same run, computed by the verification."""
+def computed_again(
+    trace: TimeSeries, again: TimeSeries, shares: Mapping[str, float] | None = None
+) -> Iterator[Breach]:
+    """Yield an array that differs from that of the same run, computed by the verification.
+
+    Args:
+        trace: the run.
+        again: the same run.
+        shares: by array, the tolerance instead of `REPEATED`.
+    """
     for field in fields(trace):
         found, expected = getattr(trace, field.name), getattr(again, field.name)
         if found.shape != expected.shape:
             yield Breach("second-engine", f"shape of {field.name}", found.shape, expected.shape)
             continue
-        room = REPEATED * max(1.0, float(np.abs(expected).max(initial=0.0)))
+        share = (shares or {}).get(field.name, REPEATED)
+        room = share * max(1.0, float(np.abs(expected).max(initial=0.0)))
         room = 0.0 if np.issubdtype(expected.dtype, np.integer) else room
         yield from apart("second-engine", field.name, found, expected, room)
 

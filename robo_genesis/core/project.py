@@ -5,6 +5,7 @@ import os
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, distributions, version
 from pathlib import Path
 
@@ -61,8 +62,7 @@ def engine_pin(root: Path = ROOT) -> str:
             exact version.
     """
     try:
-        project = tomllib.loads((root / "pyproject.toml").read_text("utf8"))["project"]
-        requirements = [Requirement(line) for line in project["dependencies"]]
+        requirements = _requirements((root / "pyproject.toml").read_text("utf8"))
     except (KeyError, ValueError) as error:  # InvalidRequirement is a ValueError
         raise ProjectError(
             f"{root / 'pyproject.toml'} cannot be read: {error}\n"
@@ -76,6 +76,12 @@ def engine_pin(root: Path = ROOT) -> str:
             f'one line "{ENGINE}==X" in project.dependencies.'
         )
     return pins[0].version
+
+
+@lru_cache(maxsize=8)
+def _requirements(text: str) -> list[Requirement]:
+    """Return the dependencies that the text of a pyproject.toml declares."""
+    return [Requirement(line) for line in tomllib.loads(text)["project"]["dependencies"]]
 
 
 def installed_version(package: str) -> str | None:

@@ -101,6 +101,32 @@ def run_case(
     return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)
 
 
+def each_step(
+    trace: Trace, case: ControlCase, timestep: float, integrator: str
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return what follows from a run's states, the arguments as of `run_case`.
+
+    Returns:
+        Position and velocity after one outer step from each state but the last, and the net force
+        at each state but the first; each (n, d).
+    """
+    model = load(case, timestep, integrator)
+    data = mujoco.MjData(model)
+    q_at, dof_at = _addresses(model)
+    data.ctrl[:] = case.q_target
+    q, qd, force = np.empty((3, *trace.qd.shape))
+    speeds = np.vstack([trace.start_qd, trace.qd])
+    for k, (position, velocity) in enumerate(zip(trace.q, speeds, strict=True)):
+        data.qpos[q_at], data.qvel[dof_at] = position, velocity
+        mujoco.mj_forward(model, data)
+        if k > 0:
+            force[k - 1] = (data.qfrc_smooth + data.qfrc_constraint)[dof_at]
+        if k < trace.steps:
+            mujoco.mj_step(model, data, nstep=round(case.dt / timestep))
+            q[k], qd[k] = data.qpos[q_at], data.qvel[dof_at]
+    return q, qd, force
+
+
 def _kept(values: FloatArray) -> FloatArray:
     """Return a copy in the precision of the course's traces."""
     return np.array(values, dtype=np.float32)

@@ -68,6 +68,9 @@ ON_EDGE = 5
 """Number of steps in a run that may end otherwise, because a cube that lands on an edge has other
 contact points in the two engines. The runs have at most 2."""
 
+TOUCHED = 5
+"""Number of states with contacts in which the rounding of a cube's angular velocity must show."""
+
 SLIDING, PATH = 1.2e-2, 2e-3
 """Tolerances of speed [m/s] and path [m] of a cube that slides on four corners."""
 
@@ -101,6 +104,7 @@ def body_on_surface(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
     yield from start(trace, case)
     yield from bounded(trace, case)
     yield from reported_contacts(trace, case)
+    yield from never_still(trace, case)
     yield from turned(trace, case)
     if case.cone == "elliptic" and case.resolution is None:  # MuJoCo does not have this scheme
         yield from sliding(trace, case)
@@ -174,6 +178,18 @@ def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Breach
     for k in np.flatnonzero((count < fewest) | (count > perhaps))[:1]:
         what = f"number of contacts at index {k}"
         yield Breach("contact", what, int(count[k]), sorted({int(fewest[k]), int(perhaps[k])}))
+
+
+def never_still(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+    """Yield a cube whose angular velocity stays zero to the last bit while it touches the surface.
+
+    The forces at its corners cancel only up to rounding. In the runs, no component is zero in any
+    state with contacts.
+    """
+    touched = trace.link_ang[trace.contacts[:, 0] > 0, 0]
+    if case.shape == "cube" and len(touched) >= TOUCHED and not touched.any():
+        what = "largest link_ang of a cube in contact [rad/s]"
+        yield Breach("motion", what, 0.0, "the rounding of the forces at its corners")
 
 
 def turned(trace: BodyTrace, case: ContactCase) -> Iterator[Breach]:

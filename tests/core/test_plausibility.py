@@ -29,6 +29,8 @@ def codes(breaches):
         (plausibility.unit_quaternions(0 * RUN.link_quat), ["pose"]),
         (plausibility.computed_again(NEARLY, RUN), []),
         (plausibility.computed_again(MOVED, RUN), ["second-engine"]),
+        (plausibility.computed_again(MOVED, RUN, {"link_pos": 4 * REPEATED}), []),
+        (plausibility.computed_again(NEARLY, RUN, {"link_pos": 1e-5}), ["second-engine"]),
         (plausibility.computed_again(falling(1.0, steps=20), RUN), ["second-engine"] * 5),
         (plausibility.copied(RUN, {"short": falling(1.0, steps=20), "moved": NEARLY}), []),
         (plausibility.copied(RUN, {"same": falling(1.0)}), ["second-engine"]),

@@ -1,0 +1,66 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robo_genesis.lessons.l03 import spec
+from robo_genesis.sim import mujoco_contacts
+from robo_genesis.sim.plausible_bodies import (
+    NEXT,
+    by_mujoco,
+    cross,
+    level,
+    never_still,
+    up_and_down,
+)
+
+AT_REST = mujoco_contacts.run_case(replace(spec.BASELINE, start=(0, 0, 0.765), duration=0.1))
+
+
+def states(trace, **changed):
+    begin = {name: getattr(trace, name)[:-1, 0].astype(np.float64) for name in NEXT}
+    for name, value in changed.items():
+        begin[name] += value
+    return begin
+
+
+@pytest.mark.parametrize("name", [*spec.LANDINGS, "bounce_sub1", "bounce_sub10"])
+def test_the_formula_of_a_body_that_moves_up_and_down_is_the_model_of_mujoco(name):
+    case = spec.CASES[name]
+    begin = states(mujoco_contacts.run_case(case))
+    assert level(begin).all()
+    formula, model = up_and_down(begin, case), by_mujoco(begin, case)
+    lowest = case.rest_height - begin["link_pos"][:, 2].min()
+    assert lowest > 1e-4  # it touched the surface
+    for array, tolerance in NEXT.items():
+        assert np.abs(formula[array] - model[array]).max() < tolerance / 4
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"link_quat": [0, 1e-3, 0, 0]},
+        {"link_vel": [1e-3, 0, 0]},
+        {"link_ang": [0, 0, 0.1]},
+    ],
+    ids=lambda changed: next(iter(changed)),
+)
+def test_a_body_that_turns_or_moves_sideways_is_not_level(changed):
+    assert level(states(AT_REST)).all()
+    assert not level(states(AT_REST, **changed)).any()
+
+
+@pytest.mark.parametrize(
+    ("shape", "turning", "codes"),
+    [("cube", 0, ["motion"]), ("cube", 1e-9, []), ("ball", 0, [])],
+)
+def test_a_cube_in_contact_has_an_angular_velocity_of_rounding(shape, turning, codes):
+    trace = replace(AT_REST, link_ang=np.full_like(AT_REST.link_ang, turning))
+    found = never_still(trace, replace(spec.BASELINE, shape=shape))
+    assert [breach.code for breach in found] == codes
+
+
+def test_cross_products_are_those_of_numpy():
+    a, b = np.random.default_rng(0).normal(size=(2, 7, 3))
+    assert np.allclose(cross(a, b), np.cross(a, b), rtol=0, atol=1e-15)
+    assert np.allclose(cross(a[:, None], b), np.cross(a[:, None], b), rtol=0, atol=1e-15)
