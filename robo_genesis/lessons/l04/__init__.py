@@ -60,7 +60,7 @@ def __getattr__(name: str) -> Any:
     Matplotlib takes longer to import than a verification.
     """
     if name in ("plots", "study_plots"):
-        return import_module(f"{__name__}.plots")
+        return import_module(f"{__name__}.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
