@@ -96,13 +96,11 @@ def run_build(build: Build) -> list[str]:
         verify = build.verify or partial(verify_bundle, book=build.book)
         if build.release:
             _require_for_release(unclean(build.root))
-        imported = set()
         if build.executed:
             for record in import_pages(build.executed, pages, into, verify):
-                imported.add(record.docname)
                 progress("import", record.docname, f"run {record.run_id[:8]}")
         results = _execute(build, pages, into, progress)
-        manifests, refused = verify_results(verify, results, imported, progress)
+        manifests, refused = verify_results(verify, results, progress)
         if refused := refused + refused_records(build.book, _labs(results)):
             raise BuildError("\n".join(refused))
         if build.release:

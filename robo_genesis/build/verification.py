@@ -1,32 +1,32 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
+from robo_genesis.build import shown
 from robo_genesis.build.command import Progress
-from robo_genesis.build.page_folder import stored_notebook
+from robo_genesis.build.page_folder import RECORD, stored_notebook
 from robo_genesis.build.page_results import PageResult
 from robo_genesis.build.page_store import Verify
-from robo_genesis.build.shown import require_shown
+from robo_genesis.core.content_cache import derived
 from robo_genesis.core.names import BACKEND, RENDER
 from robo_genesis.core.project import environment_contract
 from robo_genesis.core.refusals import BundleRefused, expect
+from robo_genesis.evidence.bundle import Manifest
+
+COMPARING = ("shown", "svg_difference")
+"""The modules that compare outputs: another result is kept for another code of theirs."""
 
 
 def verify_results(
-    verify: Verify,
-    results: Sequence[PageResult],
-    imported: Collection[str],
-    progress: Progress,
+    verify: Verify, results: Sequence[PageResult], progress: Progress
 ) -> tuple[dict[str, Any], list[str]]:
     """Verify the bundles of a build, and compare what the pages show with them.
-
-    A page from the store was compared when it was new, and its files still have their digests.
 
     Args:
         verify: verifies one bundle.
         results: of all executed pages, of which none failed.
-        imported: the names of the pages that were executed elsewhere.
         progress: prints a line for each accepted bundle.
 
     Returns:
@@ -41,17 +41,33 @@ def verify_results(
         try:
             manifest = verify(result.bundle, result.run_id)
             require_contract(manifest.predicate, contract)
-            found = "accepted"
-            if result.status == "executed" or result.page.docname in imported:
-                compared = require_shown(
-                    result.page, stored_notebook(result), result.bundle, manifest
-                )
-                found = f"accepted, {compared} outputs compared"
+            compared = outputs_compared(result, manifest)
             manifests[result.page.docname] = manifest
-            progress("verify", result.page.docname, found)
+            progress("verify", result.page.docname, f"accepted, {compared} outputs compared")
         except BundleRefused as error:
             refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
     return manifests, refused
+
+
+def outputs_compared(result: PageResult, manifest: Manifest) -> str:
+    """Compare the outputs of a page with its bundle, and return their number.
+
+    A page is compared once: the result is kept for the record of its files with their digests.
+
+    Raises:
+        BundleRefused: `shown`.
+    """
+    folder, bundle = result.folder, result.bundle
+    assert folder is not None  # the page did not fail
+    assert bundle is not None
+    record = (folder / RECORD).read_bytes()
+    code = [Path(__file__).with_name(f"{name}.py").read_bytes() for name in COMPARING]
+
+    def compare() -> bytes:
+        notebook = stored_notebook(result)
+        return str(shown.require_shown(result.page, notebook, bundle, manifest)).encode()
+
+    return derived("shown", [record, *code], compare, folder.parents[2]).decode()
 
 
 def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
