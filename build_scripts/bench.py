@@ -22,14 +22,14 @@ from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.command import run
 from robo_genesis.build.page_store import folders
 from robo_genesis.build.worktree import environment, worktree
-from robo_genesis.core import names, project, tables
+from robo_genesis.core import project, tables
 from robo_genesis.lessons.book_pages import Page, find_pages
 
 Sides = tuple[Callable[[], float], Callable[[], float]]
 """Run the course's command, or its bare counterpart, and return the elapsed time [s]."""
 
 TREE = project.CACHE / "bench"
-SETTINGS = ("RENDER", "JOBS", "SITE_URL", names.RENDER, names.BACKEND)
+SETTINGS = ("RENDER", "JOBS", "SITE_URL", project.RENDER, project.BACKEND)
 """Further variables that would change a measured command."""
 
 BARE_CONFIG = """\

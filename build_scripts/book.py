@@ -24,8 +24,7 @@ from robo_genesis.build.command import (
     set_contract,
 )
 from robo_genesis.build.up_to_date import nothing_changed
-from robo_genesis.core.names import RENDER
-from robo_genesis.core.project import BOOK, PUBLISHED, ROOT
+from robo_genesis.core.project import BOOK, PUBLISHED, RENDER, ROOT
 
 
 def main() -> int:

@@ -9,9 +9,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from robo_genesis.core.messages import printable
 from robo_genesis.core.project import CACHE
-from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE

@@ -10,7 +10,7 @@ import sys
 
 from robo_genesis.build.command import choice, parser, path, run
 from robo_genesis.build.recording import Recording, record
-from robo_genesis.core.names import RENDER
+from robo_genesis.core.project import RENDER
 
 if __name__ == "__main__":
     args = parser(__doc__).parse_args()

@@ -11,9 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from robo_genesis.build.command import path
-from robo_genesis.core.messages import printable
 from robo_genesis.core.project import BOOK, PUBLISHED, ProjectError
-from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.evidence import bundle_files, report
 from robo_genesis.evidence.advice import advice
 from robo_genesis.evidence.bundle import read_manifest

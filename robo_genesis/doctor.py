@@ -19,7 +19,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from robo_genesis.core import project
-from robo_genesis.core.names import OUTPUTS_DIR
+from robo_genesis.core.project import OUTPUTS_DIR
 from robo_genesis.sim.diagnosis import STEPS, Bench, Finding, examine, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from robo_genesis.build.page_folder import NOTEBOOK, OUTPUTS, Record, read_record
 from robo_genesis.build.page_results import PageResult
-from robo_genesis.core.names import EXECUTED_PAGES
+from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.evidence.fields import Strict
 
 

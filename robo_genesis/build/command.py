@@ -10,8 +10,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from robo_genesis.core.names import BACKEND, RENDER
-from robo_genesis.core.project import BOOK, BUILD_BACKEND, CACHE, ProjectError
+from robo_genesis.core.project import BACKEND, BOOK, BUILD_BACKEND, CACHE, RENDER, ProjectError
 from robo_genesis.core.refusals import BundleRefused
 
 TIMEOUT = 1500

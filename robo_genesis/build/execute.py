@@ -16,7 +16,7 @@ from robo_genesis.build.page_results import Failure, PageResult, find_bundle
 from robo_genesis.build.page_store import last_seconds, stored_result
 from robo_genesis.build.page_worker import PageRun, work
 from robo_genesis.core import project
-from robo_genesis.core.names import COMMAND
+from robo_genesis.core.project import COMMAND
 from robo_genesis.lessons.book_pages import Page
 
 HEARTBEAT = 30.0

@@ -9,7 +9,7 @@ from typing import Literal
 
 from nbformat import NotebookNode
 
-from robo_genesis.core.names import OUTPUTS_DIR, RUN_ID
+from robo_genesis.core.project import OUTPUTS_DIR, RUN_ID
 from robo_genesis.lessons.book_pages import Page
 
 LOG_LINES = 15

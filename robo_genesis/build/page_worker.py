@@ -27,8 +27,7 @@ from robo_genesis.build.page_results import (
     missing_bundle,
     unexpected_outcome,
 )
-from robo_genesis.core.names import COMMAND, OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, RUN_ID
-from robo_genesis.core.project import ROOT
+from robo_genesis.core.project import COMMAND, OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, ROOT, RUN_ID
 from robo_genesis.lessons.book_pages import Page, cell_sources, code_digest
 from robo_genesis.lessons.sources import imports_of
 

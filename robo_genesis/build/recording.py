@@ -15,7 +15,7 @@ from robo_genesis.build.page_store import Verify, places
 from robo_genesis.build.stages import build_lock
 from robo_genesis.build.verification import require_contract
 from robo_genesis.core import project
-from robo_genesis.core.names import BACKEND, RENDER
+from robo_genesis.core.project import BACKEND, RENDER
 from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence.bundle_store import put, recover, require_folder
 from robo_genesis.evidence.verify import verify_bundle

@@ -9,9 +9,8 @@ from robo_genesis.build.command import Progress
 from robo_genesis.build.page_folder import RECORD, stored_notebook
 from robo_genesis.build.page_results import PageResult
 from robo_genesis.build.page_store import Verify
-from robo_genesis.core.content_cache import derived
-from robo_genesis.core.names import BACKEND, RENDER
-from robo_genesis.core.project import environment_contract
+from robo_genesis.core.files import derived
+from robo_genesis.core.project import BACKEND, RENDER, environment_contract
 from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence.bundle import Manifest
 

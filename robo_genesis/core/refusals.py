@@ -1,11 +1,18 @@
-"""Refusals of a bundle: a stable code, and a message with found, expected and what to do."""
+"""Refusals of a bundle, and text that others wrote, made safe for messages and pages.
+
+A refusal has a stable code, and a message with found, expected and what to do.
+"""
 
 import re
 
-from robo_genesis.core.messages import printable
-
 AGAIN = "Record the bundle again."
 LONGEST_SHOWN = 160
+
+LINE_LIMIT = 2**14
+"""Characters of one line of the engine's log, and of one warning. Most have less than 400."""
+
+BLANK = "\n\t\N{NO-BREAK SPACE}\N{ZERO WIDTH JOINER}"
+"""Characters of a message that are not printable by themselves."""
 
 
 class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepted or refused
@@ -44,3 +51,21 @@ def expect(
         raise BundleRefused(
             code, f"{file}: {what} is {shown(found)}, expected {shown(expected)}. {remedy}"
         )
+
+
+def printable(text: str) -> str:
+    r"""Return text as one line that a terminal shows and does not obey.
+
+    Line breaks, control characters, reversed directions and other invisible characters become
+    escapes such as `\x1b`.
+    """
+    odd = (c for c in {*text} if not c.isprintable())
+    return text.translate({ord(c): c.encode("unicode_escape").decode() for c in odd})
+
+
+def clean_message(text: str, limit: int) -> str:
+    """Return a message of several lines without control characters, shortened to a length."""
+    plain = "".join(
+        c if c.isprintable() or c in BLANK else "\N{REPLACEMENT CHARACTER}" for c in text
+    )
+    return plain if len(plain) <= limit else f"{plain[: limit - 1]}…"

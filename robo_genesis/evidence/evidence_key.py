@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
-from robo_genesis.core.content_cache import derived
+from robo_genesis.core.files import derived
 from robo_genesis.core.project import PUBLISHED
 from robo_genesis.core.refusals import BundleRefused, expect, shown
 from robo_genesis.core.scene import SEED

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from robo_genesis.core.messages import BLANK, LINE_LIMIT
+from robo_genesis.core.refusals import BLANK, LINE_LIMIT
 from robo_genesis.evidence.strict_json import LARGEST
 
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core import names, project
+from robo_genesis.core import project
 from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.picture_file import write_picture
@@ -48,10 +48,10 @@ class Recorder:
     ) -> None:
         self.lesson, self.page, self.contract, self.engine = lesson, page, contract, engine
         self.started = _now()
-        self.run_id = os.environ.get(names.RUN_ID) or uuid.uuid4().hex
-        imports = os.environ.get(names.PAGE_IMPORTS, "").split()
+        self.run_id = os.environ.get(project.RUN_ID) or uuid.uuid4().hex
+        imports = os.environ.get(project.PAGE_IMPORTS, "").split()
         self._source = {  # as it is now: a later edit has no effect on what runs here
-            "page": os.environ.get(names.PAGE_SHA256),
+            "page": os.environ.get(project.PAGE_SHA256),
             "modules": sources.measuring_modules(lesson, imports, PACKAGE.parent),
         }
         reader = ThreadPoolExecutor(1)  # the engine has many files; the page continues meanwhile
@@ -70,7 +70,7 @@ class Recorder:
             "Genesis": engine.version,
             "requested backend": backend.requested,
             "actual backend": f"{backend.actual} ({backend.device_name})",
-            "rendering": "camera" if self.contract.render else f"SKIP ({names.RENDER}=0)",
+            "rendering": "camera" if self.contract.render else f"SKIP ({project.RENDER}=0)",
             "precision": f"float{engine.precision}",
             "seed": str(engine.seed),
             "run": self.run_id[:8],
@@ -91,7 +91,7 @@ class Recorder:
         """
         if self.contract.render != (renderer is not None):
             raise session.ContractError(
-                f"{names.RENDER} asks for {'a camera' if self.contract.render else 'none'}, "
+                f"{project.RENDER} asks for {'a camera' if self.contract.render else 'none'}, "
                 f"but the page used {'a' if renderer else 'no'} renderer. Render exactly "
                 "if the contract asks for it."
             )
@@ -142,7 +142,7 @@ class Recorder:
             "run_id": self.run_id,
             "started": self.started,
             "ended": _now(),
-            "command": os.environ.get(names.COMMAND, "notebook run by hand"),
+            "command": os.environ.get(project.COMMAND, "notebook run by hand"),
             "engine": {name: getattr(self.engine, name) for name in bundle.KEYED_OF_ENGINE}
             | {"files_match_wheel": self._match.result()},
             "backend": asdict(backend)

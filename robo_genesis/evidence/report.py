@@ -6,7 +6,7 @@ from pathlib import Path
 
 from robo_genesis.core import tables
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.messages import printable
+from robo_genesis.core.refusals import printable
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison
 from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, SEVERITY, Finding, Section

@@ -213,18 +213,19 @@ def computes(name: str, path: Path) -> bool:
     """Whether a module belongs to evidence keys, if a measuring page uses it.
 
     It is in `core`, `sim` or `lessons`, it is not the `__init__.py` of a package, and the last word
-    of its name is not one of `NOT_COMPUTING`.
+    of no part of its name is one of `NOT_COMPUTING`.
     """
-    sub_package, _, module = name.removeprefix(f"{PACKAGE}.").partition(".")
-    word = module.rpartition(".")[2].rpartition("_")[2]
-    return sub_package in COMPUTING and path.name != "__init__.py" and word not in NOT_COMPUTING
+    sub_package, *parts = name.removeprefix(f"{PACKAGE}.").split(".")
+    words = {part.rpartition("_")[2] for part in parts}
+    inside = sub_package in COMPUTING and path.name != "__init__.py"
+    return inside and words.isdisjoint(NOT_COMPUTING)
 
 
 def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) -> dict[str, str]:
     """Return the modules that decide what a page measures, with the digests of their syntax.
 
-    They are all modules of the lesson that compute, what the lesson's `__init__.py` gives its pages
-    and the page itself imports, and what these import; see `computes`.
+    They are all modules of the lesson that compute, what its `__init__.py` imports from `sim` for the
+    pages, what the page itself imports, and what these import; see `computes`.
 
     Args:
         lesson: the name of its folder.
@@ -237,7 +238,8 @@ def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) ->
     own = f"{PACKAGE}.lessons.{lesson}"
     init = _module_file(root, own)
     given = imported_names(init.read_text("utf8"), own) if init else ()
-    roots = [*_lesson_modules(lesson, root), *given, *imports]
+    of_sim = [name for name in given if name.startswith(f"{PACKAGE}.sim.")]
+    roots = [*_lesson_modules(lesson, root), *of_sim, *imports]
     modules = import_closure(roots, root, enter=computes)
     return {
         name.removeprefix(f"{PACKAGE}."): syntax_digest(path.read_text("utf8"))

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core import project, scene
-from robo_genesis.core.names import RENDER
+from robo_genesis.core.project import RENDER
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.trace import TraceError
 from robo_genesis.sim import camera, franka, joint_control, session

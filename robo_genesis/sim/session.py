@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core import project
-from robo_genesis.core.names import BACKEND, OUTPUTS_DIR, RENDER
+from robo_genesis.core.project import BACKEND, OUTPUTS_DIR, RENDER
 from robo_genesis.core.scene import SEED
 from robo_genesis.sim.backends import BACKENDS, contradictions
 from robo_genesis.sim.engine_log import EngineLog, remove_private_paths

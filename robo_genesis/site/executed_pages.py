@@ -13,7 +13,7 @@ from sphinx.errors import ExtensionError
 
 from robo_genesis.build.built_pages import executed_notebook
 from robo_genesis.build.page_folder import code_and_kernel
-from robo_genesis.core.names import EXECUTED_PAGES
+from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.site import mathml
 
 ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)

@@ -13,7 +13,7 @@ from bundles import RENDERER
 from PIL import Image
 from tiny_book import commit, git
 
-from robo_genesis.core.messages import LINE_LIMIT
+from robo_genesis.core.refusals import LINE_LIMIT
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence import recorder as record
 from robo_genesis.evidence.bundle import read_manifest, read_metrics
@@ -178,10 +178,12 @@ def test_a_message_of_the_engine_never_ends_a_recording(recorder, experiment):
 def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(
     quiet, tmp_path, engine, experiment
 ):
-    quiet.setenv("ROBO_GENESIS_PAGE_IMPORTS", "robo_genesis.sim.film robo_genesis.core.plotting")
+    quiet.setenv(
+        "ROBO_GENESIS_PAGE_IMPORTS", "robo_genesis.sim.contacts robo_genesis.core.plotting"
+    )
     recorder = Recorder("l04", "lab", session.Contract("cpu", True, tmp_path), engine)
     found = read_manifest(recorder.write(experiment, RENDERER)).predicate.source.modules
-    expected = measuring_modules("l04", ["robo_genesis.sim.film"])
+    expected = measuring_modules("l04", ["robo_genesis.sim.contacts"])
     assert found == expected != measuring_modules("l04", [])
 
 

@@ -14,7 +14,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.verify import verify_bundle
 
-READERS = ("evidence/*.py", "core/refusals.py", "core/plausibility.py", "sim/plausible_*.py")
+READERS = ("evidence/*.py", "core/refusals.py", "sim/plausibility/*.py")
 OF_BODIES = {"contact", "second-engine"}  # the tests of L03 spoil its runs
 
 

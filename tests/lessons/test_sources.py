@@ -168,7 +168,7 @@ CLAIM = ('"The record ', '"A record ')
         ("evidence/recorder", CONSTANT, ALL, NONE),
         ("build/stages", CONSTANT, NONE, NONE),
         ("site/glossary", CONSTANT, NONE, NONE),
-        ("sim/contacts", CONSTANT, ("l02", "l03"), ("l03",)),
+        ("sim/contacts", CONSTANT, ("l03",), ("l03",)),
         ("lessons/l03/metrics", CONSTANT, ("l03",), ("l03",)),
         ("lessons/l03/energy", CONSTANT, ("l03",), ("l03",)),
         ("lessons/l04/theory", CONSTANT, ("l04",), ("l04",)),

@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator, Mapping
 
-from robo_genesis.core.plausibility import Breach, computed_again, copied, refuse, times
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import spec
 from robo_genesis.sim import mujoco_contacts
 from robo_genesis.sim.contacts import ContactCase
-from robo_genesis.sim.plausible_bodies import body_on_surface, never_still, reported_contacts
+from robo_genesis.sim.plausibility.bodies import body_on_surface, never_still, reported_contacts
+from robo_genesis.sim.plausibility.rules import Breach, computed_again, copied, refuse, times
 
 BY_MUJOCO = {*spec.OTHER_ENGINE, spec.OWN_DEFAULTS}
 

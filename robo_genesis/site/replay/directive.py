@@ -18,7 +18,7 @@ from sphinx.util.docutils import SphinxDirective
 from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.core import project
 from robo_genesis.core.channels import Runs
-from robo_genesis.core.content_cache import derived
+from robo_genesis.core.files import derived
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons.registry import drawn_cases

@@ -5,14 +5,8 @@ import pytest
 
 from robo_genesis.lessons.l03 import spec
 from robo_genesis.sim import mujoco_contacts
-from robo_genesis.sim.plausible_bodies import (
-    NEXT,
-    by_mujoco,
-    cross,
-    level,
-    never_still,
-    up_and_down,
-)
+from robo_genesis.sim.plausibility.bodies import never_still
+from robo_genesis.sim.plausibility.continuation import NEXT, by_mujoco, cross, level, up_and_down
 
 AT_REST = mujoco_contacts.run_case(replace(spec.BASELINE, start=(0, 0, 0.765), duration=0.1))
 

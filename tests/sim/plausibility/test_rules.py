@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from falling import falling
 
-from robo_genesis.core import plausibility
-from robo_genesis.core.plausibility import REPEATED, apart, refuse
 from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.sim.plausibility import rules
+from robo_genesis.sim.plausibility.rules import REPEATED, apart, refuse
 
 RUN = falling(1.0)
 TILTED = replace(RUN, link_quat=RUN.link_quat * np.float32(1.001))
@@ -21,19 +21,19 @@ def codes(breaches):
 @pytest.mark.parametrize(
     ("breaches", "found"),
     [
-        (plausibility.times(RUN, 30, 0.01), []),
-        (plausibility.times(RUN, 29, 0.01), ["stamps"]),
-        (plausibility.times(RUN, 30, 0.0102), ["stamps"]),
-        (plausibility.unit_quaternions(RUN.link_quat), []),
-        (plausibility.unit_quaternions(TILTED.link_quat), ["pose"]),
-        (plausibility.unit_quaternions(0 * RUN.link_quat), ["pose"]),
-        (plausibility.computed_again(NEARLY, RUN), []),
-        (plausibility.computed_again(MOVED, RUN), ["second-engine"]),
-        (plausibility.computed_again(MOVED, RUN, {"link_pos": 4 * REPEATED}), []),
-        (plausibility.computed_again(NEARLY, RUN, {"link_pos": 1e-5}), ["second-engine"]),
-        (plausibility.computed_again(falling(1.0, steps=20), RUN), ["second-engine"] * 5),
-        (plausibility.copied(RUN, {"short": falling(1.0, steps=20), "moved": NEARLY}), []),
-        (plausibility.copied(RUN, {"same": falling(1.0)}), ["second-engine"]),
+        (rules.times(RUN, 30, 0.01), []),
+        (rules.times(RUN, 29, 0.01), ["stamps"]),
+        (rules.times(RUN, 30, 0.0102), ["stamps"]),
+        (rules.unit_quaternions(RUN.link_quat), []),
+        (rules.unit_quaternions(TILTED.link_quat), ["pose"]),
+        (rules.unit_quaternions(0 * RUN.link_quat), ["pose"]),
+        (rules.computed_again(NEARLY, RUN), []),
+        (rules.computed_again(MOVED, RUN), ["second-engine"]),
+        (rules.computed_again(MOVED, RUN, {"link_pos": 4 * REPEATED}), []),
+        (rules.computed_again(NEARLY, RUN, {"link_pos": 1e-5}), ["second-engine"]),
+        (rules.computed_again(falling(1.0, steps=20), RUN), ["second-engine"] * 5),
+        (rules.copied(RUN, {"short": falling(1.0, steps=20), "moved": NEARLY}), []),
+        (rules.copied(RUN, {"same": falling(1.0)}), ["second-engine"]),
         (apart("a", "x", np.array([1.0, np.nan]), np.zeros(()), 2.0), ["a"]),
         (apart("a", "x", np.array([1.0, 2.0]), np.zeros(()), np.array([1.0, 2.0])), []),
         (apart("a", "x", np.array([1.0, 2.1]), np.zeros(()), np.array([1.0, 2.0])), ["a"]),

@@ -22,12 +22,12 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.plausibility import Breach, apart, times, unit_quaternions
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim import mujoco_joints
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES, per_joint
 from robo_genesis.sim.joint_control import LIMIT_TOLERANCE, ControlCase
+from robo_genesis.sim.plausibility.rules import Breach, apart, times, unit_quaternions
 from robo_genesis.sim.session import asset
 
 LAW = 5e-3

@@ -5,7 +5,7 @@ import pytest
 
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.sim import mujoco_joints
-from robo_genesis.sim.plausible_joints import driven_in_mujoco
+from robo_genesis.sim.plausibility.joints import driven_in_mujoco
 
 LINKS, HOW = ("link7", "hand"), (0.01, "Euler")
 CASE = spec.G2

@@ -5,8 +5,8 @@ import time
 
 import pytest
 
-from robo_genesis.core import content_cache as module
-from robo_genesis.core.content_cache import KEPT, derived
+from robo_genesis.core import files as module
+from robo_genesis.core.files import KEPT, derived
 
 
 @pytest.fixture
