@@ -224,8 +224,8 @@ def computes(name: str, path: Path) -> bool:
 def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) -> dict[str, str]:
     """Return the modules that decide what a page measures, with the digests of their syntax.
 
-    They are all modules of the lesson that compute, what its `__init__.py` imports from `sim` for the
-    pages, what the page itself imports, and what these import; see `computes`.
+    They are all modules of the lesson that compute, what its `__init__.py` imports from `sim`, what
+    the page itself imports, and what these import; see `computes`.
 
     Args:
         lesson: the name of its folder.
