@@ -90,7 +90,7 @@ def check_out(root: Path, folder: Path) -> Path:
     own = {"GIT_CONFIG_GLOBAL": str(config), "GIT_CONFIG_NOSYSTEM": "1", "GIT_ATTR_NOSYSTEM": "1"}
     for command in (
         ["init", "--quiet", "--template="],
-        ["fetch", "--quiet", "--no-tags", root.resolve().as_uri(), "HEAD"],
+        ["fetch", "--quiet", "--no-tags", "--update-shallow", root.resolve().as_uri(), "HEAD"],
         ["checkout", "--quiet", "--detach", commit],
     ):
         done = subprocess.run(

@@ -30,7 +30,9 @@ def missing_for_release(
     for page, manifest in manifests.items():
         lines += _of_commit(f"{page}, this build", manifest, commit)
     for path in recorded_folders(book):
-        recorded = recorded_status(book, *path.parts[-2:])
+        lesson, backend = path.parts[-2:]
+        here = [folder] if (folder := built.get(lesson)) else []
+        recorded = recorded_status(book, lesson, backend, cpu_runs=here)
         lines += _of_commit(f"{path.relative_to(book)}", recorded.manifest)
     return lines
 
@@ -41,7 +43,9 @@ def _required(book: Path, lesson: str, folder: Path | None) -> Iterator[str]:
         return
     here = bundle_status(folder, lesson, "lab", book=book)
     hardware = find_lesson(lesson).spec.MINIMUM_HARDWARE
-    needed = here if hardware == here.backend else recorded_status(book, lesson, hardware)
+    needed = here
+    if hardware != here.backend:
+        needed = recorded_status(book, lesson, hardware, cpu_runs=[folder])
     if needed.state != "verified":
         yield (
             f"{lesson} requires evidence of its minimum hardware, {hardware}, which is "

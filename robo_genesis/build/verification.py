@@ -1,7 +1,6 @@
 """The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from robo_genesis.build import shown
@@ -13,9 +12,7 @@ from robo_genesis.core.files import derived
 from robo_genesis.core.project import BACKEND, RENDER, environment_contract
 from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence.bundle import Manifest
-
-COMPARING = ("shown", "svg_difference")
-"""The modules that compare outputs: another result is kept for another code of theirs."""
+from robo_genesis.lessons.sources import import_closure
 
 
 def verify_results(
@@ -51,7 +48,8 @@ def verify_results(
 def outputs_compared(result: PageResult, manifest: Manifest) -> str:
     """Compare the outputs of a page with its bundle, and return their number.
 
-    A page is compared once: the result is kept for the record of its files with their digests.
+    A page is compared once: the result is kept for the record of its files with their digests, and
+    for the code that compares.
 
     Raises:
         BundleRefused: `shown`.
@@ -60,7 +58,7 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> str:
     assert folder is not None  # the page did not fail
     assert bundle is not None
     record = (folder / RECORD).read_bytes()
-    code = [Path(__file__).with_name(f"{name}.py").read_bytes() for name in COMPARING]
+    code = [path.read_bytes() for path in import_closure([shown.__name__]).values()]
 
     def compare() -> bytes:
         notebook = stored_notebook(result)

@@ -164,16 +164,13 @@ def conclude(
     Args:
         name: of the check.
         requirement: what the check requires.
-        findings: with different labels.
+        findings: with different labels; the check fails otherwise.
         error: the exception that ended the check.
-
-    Raises:
-        ValueError: two findings have one label.
     """
-    labels = [finding.label for finding in findings]
-    if len(set(labels)) != len(labels):
-        raise ValueError(f"Check {name} repeats a label in {labels}. Give each its own.")
     problems = [finding.problem for finding in findings if not finding.passed]
+    labels = [finding.label for finding in findings]
+    if repeated := sorted({label for label in labels if labels.count(label) > 1}):
+        problems.append(f"labels are repeated: {', '.join(repeated)}. Give each finding its own")
     if error is not None:
         problems.append(f"cannot be evaluated: {error!r}")
     elif not findings:

@@ -27,7 +27,7 @@ found = {
     "here": str(here),
 }
 Path(sys.argv[1], "found.json").write_text(json.dumps(found))
-sys.exit(int(os.environ.get("JOBS", "0")))
+sys.exit(int(os.environ.get("JOBS") or "0"))
 """
 FILES = [".gitignore", "build_scripts/book.py", "course.py", "page.md"]
 

@@ -105,8 +105,9 @@ def test_a_check_that_finds_nothing_fails():
 
 
 def test_two_findings_need_two_labels():
-    with pytest.raises(ValueError, match=r"Check twice repeats a label in \['a', 'a'\]"):
-        conclude("twice", "", [noted("a", 1), noted("a", 2)])
+    outcome = conclude("twice", "", [noted("a", 1), noted("a", 2)])
+    assert not outcome.passed
+    assert outcome.detail == "labels are repeated: a. Give each finding its own"
 
 
 def problems(findings) -> list[str]:

@@ -48,7 +48,7 @@ def test_cases_and_metrics_of_a_lesson_exist(name):
 
 @pytest.mark.parametrize("name", LESSONS)
 def test_a_specification_is_data(name):
-    """Apart from its parameters, a lesson's spec has at most helpers that build its constants."""
+    """Apart from its parameters, a lesson's spec has at most functions that build its constants."""
     tree = ast.parse((ROOT / "robo_genesis" / "lessons" / name / "spec.py").read_text("utf8"))
     calls = (n.func for n in ast.walk(tree) if isinstance(n, ast.Call))
     called = {func.id for func in calls if isinstance(func, ast.Name)}

@@ -32,7 +32,8 @@ from robo_genesis.site.evidence.ledger_data import Run
 FILMED = Filmed("the box", "the first run")
 
 
-def test_a_missing_run_is_named_with_its_command(tmp_path):
+def test_a_missing_run_is_named_with_its_command(tmp_path, built):
+    built({})
     (missing,) = measured.recorded_runs(tmp_path, "l04")
     text = " ".join(node.astext() for node in sphinx_panel.withheld(missing))
     assert f"No figures from amdgpu for Genesis {project.engine_pin()} (amdgpu-missing)." in text

@@ -27,12 +27,11 @@ from robo_genesis.lessons.l04 import (
     theory_text,
 )
 from robo_genesis.lessons.l04.batch import run_batch
-from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics, step_metrics
+from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
 from robo_genesis.sim import mujoco_joints
 from robo_genesis.sim.film import FilmedScene
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import (
-    ControlCase,
     assign_path,
     differences,
     reset,
@@ -95,17 +94,12 @@ def study_readings(rendered: bool) -> dict[str, Readings]:
     return readings(rendered) | {study.GROUP: Readings(study.UNITS)}
 
 
-def measure(trace: Trace, case: ControlCase) -> StepMetrics:
-    """Return the metrics of the stepped joint."""
-    return step_metrics(trace, spec.ENTRY)
-
-
 LAB = MeasuringPage(
     runs=runs_of(spec.CASES),
     kind=Trace,
     joints=JOINT_NAMES,
     readings=readings,
-    measure=measure,
+    measure=study.measure,
     checks=checks.CHECKS,
     claims=claims_text.CLAIMS,
     parameters=spec.parameters,

@@ -11,10 +11,10 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study_spec
-from robo_genesis.lessons.l04.metrics import StepMetrics
+from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
 from robo_genesis.lessons.l04.theory import IdealJoint, step_share
 from robo_genesis.sim import dynamics, mujoco_joints
-from robo_genesis.sim.joint_control import run_case
+from robo_genesis.sim.joint_control import ControlCase, run_case
 from robo_genesis.sim.joints import JointMap
 
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
@@ -36,6 +36,11 @@ UNITS = {
 """Unit of each. Inertia and `gravity_at_start` are those of the start pose. `mass` is the entry of
 the mass matrix there while a position is commanded with this KV. `gravity` is the effort that holds
 the end state of a case."""
+
+
+def measure(trace: Trace, case: ControlCase) -> StepMetrics:
+    """Return the metrics of the stepped joint."""
+    return step_metrics(trace, spec.ENTRY)
 
 
 def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
