@@ -43,7 +43,7 @@ def open_page(lesson: str, name: str) -> "LessonPage":
     """Start the record of a page, after `gs.init`.
 
     Raises:
-        LookupError: there is no such lesson or page; the message lists the choices.
+        LookupError: the lesson or the page does not exist; the message lists the choices.
         ContractError: a variable of the contract is not valid.
         EngineError: a page is open already, Genesis is not initialised, or it was initialised with
             another backend, seed or precision.

@@ -55,7 +55,7 @@ def specification(lesson: str, page: str) -> PageSpecification:
     """Return what this checkout declares about the cases of a page.
 
     Raises:
-        BundleRefused: `lesson`, there is no such lesson or page.
+        BundleRefused: `lesson`, the lesson or the page does not exist.
     """
     try:
         found, run = find_lesson(lesson), find_page(lesson, page)

@@ -1,7 +1,8 @@
 """The form of a lesson's declaration in its `__init__.py`."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any, Protocol
 
 from robo_genesis.core.channels import View
@@ -136,3 +137,21 @@ class Lesson:
     def about_metrics(self, what: str) -> dict[str, Any]:
         """Return `unit`, `label` or `noun` of each of its metrics by name."""
         return {name: v for of in self.metrics.values() for name, v in of.about(what).items()}
+
+
+def on_demand(package: str, *modules: str) -> Callable[[str], Any]:
+    """Return the `__getattr__` of a lesson that imports some of its modules when a page uses them.
+
+    It is meant for plots: Matplotlib takes longer to import than a verification.
+
+    Args:
+        package: the `__name__` of the lesson.
+        modules: names of modules in its folder.
+    """
+
+    def imported(name: str) -> Any:
+        if name in modules:
+            return import_module(f"{package}.{name}")
+        raise AttributeError(f"module {package!r} has no attribute {name!r}")
+
+    return imported

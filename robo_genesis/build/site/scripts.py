@@ -81,7 +81,7 @@ class Page:
 
 
 def page_problems(page: Page) -> Iterator[str]:
-    """Yield what a page could run apart from the known scripts, without the page's name."""
+    """Yield each problem of a page: what it could run besides the known scripts."""
     scripts = [tag for tag in page.parsed.find_all(True) if _name(tag) == "script"]
     for script in scripts:
         yield from _script(page, script)
@@ -150,7 +150,7 @@ def _markup(page: BeautifulSoup, text: str) -> Iterator[str]:
 
 
 def _element(tag: str, attributes: Mapping[str, str]) -> Iterator[str]:
-    """Yield what an element runs apart from script elements; names are without XML's prefixes."""
+    """Yield what an element that is not a script could run; names have no XML prefixes."""
     if tag in REFUSED:
         yield f"the element <{tag}> is not allowed. Remove it."
     if tag == "meta" and attributes.get("http-equiv", "").strip().lower() == "refresh":

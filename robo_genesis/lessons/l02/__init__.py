@@ -1,11 +1,10 @@
 """L02: scenes, entities, and the simulation life cycle."""
 
 from dataclasses import replace
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
+from robo_genesis.lessons.declaration import Filmed, Lesson, Moving, on_demand
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.lessons.l02 import (
     checks,
@@ -28,12 +27,7 @@ __all__ = [
     "read_shape", "run_drop", "spec", "text",
 ]  # fmt: skip
 
-
-def __getattr__(name: str) -> Any:
-    """Import `plots` when a page asks for it: Matplotlib takes longer than a verification."""
-    if name == "plots":
-        return import_module(f"{__name__}.plots")
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = on_demand(__name__, "plots")
 
 
 def readings(rendered: bool) -> dict[str, Readings]:

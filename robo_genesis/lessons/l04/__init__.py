@@ -1,14 +1,13 @@
 """L04, robot models, degrees of freedom, and joint control."""
 
 from dataclasses import replace
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from robo_genesis.core.channels import View
 from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
 from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.declaration import Compared, Filmed, Lesson
+from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, on_demand
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.lessons.l04 import (
     backend_mistake,
@@ -52,15 +51,7 @@ __all__ = [
     "validate",
 ]  # fmt: skip
 
-
-def __getattr__(name: str) -> Any:
-    """Import modules of plots when a page asks for them.
-
-    Matplotlib takes longer to import than a verification.
-    """
-    if name in ("plots", "study_plots"):
-        return import_module(f"{__name__}.{name}")
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = on_demand(__name__, "plots", "study_plots")
 
 
 STUDY_RUNS = {

@@ -57,6 +57,12 @@ def driven_run(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterato
         case: its settings.
         links: names of the links of the trace.
     """
+    yield from commanded(trace, case, links)
+    yield from dynamics(trace, case)
+
+
+def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+    """Yield what no run with a commanded target has, whatever engine steps; arguments as before."""
     yield from times(trace, case.steps, case.dt)
     yield from start_and_limits(trace, case)
     yield from apart("start", "target [rad or m]", trace.target, case.q_target, 0.0)
@@ -65,7 +71,6 @@ def driven_run(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterato
     law = control_law(case, trace.q[1:], trace.qd)
     yield from apart("law", "control_force [N·m or N]", trace.control_force, law, LAW)
     yield from poses(trace, links)
-    yield from dynamics(trace, case)
 
 
 def assigned_path(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
@@ -211,14 +216,7 @@ def driven_in_mujoco(
     Each state follows from the state before it. A whole run is not comparable on another CPU where
     the integrator is nearly unstable: there the rounding of float64 grows to 0.6 rad/s.
     """
-    yield from times(trace, case.steps, case.dt)
-    yield from start_and_limits(trace, case)
-    yield from apart("start", "target [rad or m]", trace.target, case.q_target, 0.0)
-    start = control_law(case, trace.q[0], trace.start_qd)
-    yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, start, LAW)
-    law = control_law(case, trace.q[1:], trace.qd)
-    yield from apart("law", "control_force [N·m or N]", trace.control_force, law, LAW)
-    yield from poses(trace, links)
+    yield from commanded(trace, case, links)
     q, qd, force = mujoco_joints.each_step(trace, case, timestep, integrator)
     yield from apart("motion", "q [rad or m]", trace.q[1:], q, NEXT[0])
     yield from apart("motion", "qd [rad/s or m/s]", trace.qd, qd, NEXT[1])
