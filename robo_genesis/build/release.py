@@ -5,7 +5,7 @@ from pathlib import Path
 
 from robo_genesis.core.git import git
 from robo_genesis.evidence.bundle import GitRecord, Manifest
-from robo_genesis.evidence.status import bundle_status, recorded_folders, recorded_status
+from robo_genesis.evidence.status import bundle_status, cpu_runs, recorded_folders, recorded_status
 from robo_genesis.lessons.registry import find_lesson
 
 
@@ -30,9 +30,7 @@ def missing_for_release(
     for page, manifest in manifests.items():
         lines += _of_commit(f"{page}, this build", manifest, commit)
     for path in recorded_folders(book):
-        lesson, backend = path.parts[-2:]
-        here = [folder] if (folder := built.get(lesson)) else []
-        recorded = recorded_status(book, lesson, backend, cpu_runs=here)
+        recorded = recorded_status(book, *path.parts[-2:], cpu_runs=cpu_runs(path, built))
         lines += _of_commit(f"{path.relative_to(book)}", recorded.manifest)
     return lines
 
@@ -45,7 +43,8 @@ def _required(book: Path, lesson: str, folder: Path | None) -> Iterator[str]:
     hardware = find_lesson(lesson).spec.MINIMUM_HARDWARE
     needed = here
     if hardware != here.backend:
-        needed = recorded_status(book, lesson, hardware, cpu_runs=[folder])
+        runs = cpu_runs(book / "evidence" / lesson / hardware, {lesson: folder})
+        needed = recorded_status(book, lesson, hardware, cpu_runs=runs)
     if needed.state != "verified":
         yield (
             f"{lesson} requires evidence of its minimum hardware, {hardware}, which is "

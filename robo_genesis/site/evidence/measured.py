@@ -29,6 +29,7 @@ from robo_genesis.evidence.status import (
     RECORDED_PAGE,
     Status,
     bundle_status,
+    cpu_runs,
     recorded_folders,
     recorded_status,
 )
@@ -98,11 +99,14 @@ def recorded_runs(book: Path, lesson: str) -> tuple[Run, ...]:
     """Return the recorded runs of a lesson's lab, the reference first, recorded or not."""
     folder, name = book / "evidence" / lesson, f"{lesson}/{RECORDED_PAGE}"
     recorded = (path.name for path in recorded_folders(book) if path.parent == folder)
-    here = (page_run(book, lesson).folder,)
-    return tuple(
-        Run(name, folder / on, recorded_status(book, lesson, on, cpu_runs=here), recorded=True)
-        for on in dict.fromkeys((REFERENCE, *recorded))
-    )
+    labs = {lesson: page_run(book, lesson).folder}
+
+    def run(backend: str) -> Run:
+        runs = cpu_runs(folder / backend, labs)
+        status = recorded_status(book, lesson, backend, cpu_runs=runs)
+        return Run(name, folder / backend, status, recorded=True)
+
+    return tuple(run(backend) for backend in dict.fromkeys((REFERENCE, *recorded)))
 
 
 def lesson_statuses(book: Path, lesson: str) -> list[Status]:
