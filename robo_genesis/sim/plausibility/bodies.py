@@ -41,7 +41,12 @@ DEPTH = 5e-7
 """Tolerance of a penetration [m]: eight times what float32 resolves at the surface's height."""
 
 TILTED = 1e-4
-"""Difference of depth between touching corners [m] from which Genesis may report fewer of them."""
+"""Difference of depth between the lowest corners [m] from which Genesis may report fewer of those
+that touch."""
+
+TWIST = 1e-2
+"""Angle by which Genesis turns a body to find further contact points [rad]: up to twice its
+`mc_perturbation`, which is 3e-3 in Genesis 1.3.3 and 5e-3 in 1.4.5."""
 
 NO_TURN, TURN = 2.5e-7, 1e-4
 """Angle in one solver step up to which the engine may not turn a body [rad], twice what float32
@@ -50,9 +55,9 @@ resolves, and the tolerance of a rotation as a share."""
 RESOLVED = 4e-7
 """What float32 resolves of a rotation since the start, as a share."""
 
-ON_EDGE = 5
+ON_EDGE = 12
 """Number of steps in a run that may end otherwise, because a cube that lands on an edge has other
-contact points in the two engines. The runs have at most 2."""
+contact points in the two engines. The runs have at most 2 with Genesis 1.3.3, 9 with 1.4.5."""
 
 TOUCHED = 5
 """Number of states with contacts in which the rounding of a cube's angular velocity must show."""
@@ -126,29 +131,47 @@ def start(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
 
 def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
     """Yield contacts that are not those of the body's shape before the last solver step."""
-    position, orientation = before_last_step(trace, case.h)
-    if case.shape == "ball":
-        lowest = position[:, 2, None] - case.size / 2
-    else:
-        w, x, y, z = orientation.T  # below: the world's z axis in the body's axes
-        up = np.stack([x * z - w * y, y * z + w * x, 0.5 - x**2 - y**2], axis=1) * 2
-        lowest = position[:, 2, None] + up @ (case.size * CORNERS).T
-    depths = TOP - lowest  # (n+1, corners)
+    depths = depths_before_last_step(trace, case)
     first = 0 if case.settle else 1  # no step was taken before the first sample of the others
-    expected = np.maximum(depths.max(axis=1), 0)
+    expected = np.maximum(depths[:, 0], 0)
     expected[:first] = 0
     reported = trace.penetration[:, 0]
     yield from apart("contact", "penetration [m]", reported, expected, DEPTH)
     depths[:first] = -1
-    surely, perhaps = (depths > DEPTH).sum(axis=1), (depths > -DEPTH).sum(axis=1)
-    touching = np.where(depths > DEPTH, depths, np.nan)
-    touching[surely == 0] = 0
-    tilted = np.nanmax(touching, axis=1) - np.nanmin(touching, axis=1) > TILTED
+    surely = (depths > DEPTH).sum(axis=1)
+    tilted = depths[:, 0] - depths[:, -1] > TILTED
     fewest = np.where(tilted, np.minimum(surely, 2), surely)
+    reach = np.where(surely > 0, TWIST * case.size, DEPTH)
+    perhaps = (depths > -reach[:, None]).sum(axis=1)
     count = trace.contacts[:, 0]
     for k in np.flatnonzero((count < fewest) | (count > perhaps))[:1]:
         what = f"number of contacts at index {k}"
         yield Breach("contact", what, int(count[k]), sorted({int(fewest[k]), int(perhaps[k])}))
+
+
+def depths_before_last_step(trace: BodyTrace, case: ContactCase) -> FloatArray:
+    """Return how deep the lowest points are below the surface (n+1, 1 or 4) [m], deepest first."""
+    position, orientation = before_last_step(trace, case.h)
+    if case.shape == "ball":
+        return TOP - (position[:, 2, None] - case.size / 2)
+    w, x, y, z = orientation.T  # below: the world's z axis in the body's axes
+    up = np.stack([x * z - w * y, y * z + w * x, 0.5 - x**2 - y**2], axis=1) * 2
+    heights = position[:, 2, None] + up @ (case.size * CORNERS).T
+    return TOP - np.sort(heights, axis=1)[:, :4]
+
+
+def on_edge(depths: FloatArray, size: float) -> np.ndarray:
+    """Return in which states a cube near the surface may have other contacts in another engine.
+
+    It is not level. If all four corners touch, it is tilted enough for fewer contacts.
+
+    Args:
+        depths: its lowest corners, as of `depths_before_last_step`.
+        size: its edge [m].
+    """
+    deepest, highest = depths[:, 0], depths[:, -1]
+    tilt = np.where(highest > DEPTH, TILTED, DEPTH)
+    return (deepest > -TWIST * size) & (deepest - highest > tilt)
 
 
 def never_still(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
@@ -185,11 +208,12 @@ def next_states(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
     errors = {name: np.abs(getattr(trace, name)[1:, 0] - of) for name, of in expected.items()}
     beyond = {name: (of > NEXT[name]).any(axis=1) for name, of in errors.items()}
     wrong = np.any(list(beyond.values()), axis=0)
-    on_edge = trace.contacts[1:, 0] == 2
-    if (wrong & on_edge).sum() > ON_EDGE:
-        number = int((wrong & on_edge).sum())
+    edge = on_edge(depths_before_last_step(trace, case), case.size)
+    excused = wrong & (edge[1:] | edge[:-1])  # of both substeps
+    if excused.sum() > ON_EDGE:
+        number = int(excused.sum())
         yield Breach("motion", "number of steps of another motion", number, f"up to {ON_EDGE}")
-    for k in np.flatnonzero(wrong & ~on_edge)[:1]:
+    for k in np.flatnonzero(wrong & ~excused)[:1]:
         name = next(name for name, of in beyond.items() if of[k])
         axis = int(errors[name][k].argmax())
         found, follows = float(getattr(trace, name)[k + 1, 0, axis]), float(expected[name][k, axis])

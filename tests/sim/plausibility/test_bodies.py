@@ -5,7 +5,8 @@ import pytest
 
 from robo_genesis.lessons.l03 import spec
 from robo_genesis.sim import mujoco_contacts
-from robo_genesis.sim.plausibility.bodies import never_still
+from robo_genesis.sim.contacts import TOP
+from robo_genesis.sim.plausibility.bodies import never_still, reported_contacts
 from robo_genesis.sim.plausibility.continuation import NEXT, by_mujoco, cross, level, up_and_down
 
 AT_REST = mujoco_contacts.run_case(replace(spec.BASELINE, start=(0, 0, 0.765), duration=0.1))
@@ -58,3 +59,31 @@ def test_cross_products_are_those_of_numpy():
     a, b = np.random.default_rng(0).normal(size=(2, 7, 3))
     assert np.allclose(cross(a, b), np.cross(a, b), rtol=0, atol=1e-15)
     assert np.allclose(cross(a[:, None], b), np.cross(a[:, None], b), rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("tilt", "reported", "codes"),
+    [
+        (0.0, 4, []),
+        (0.0, 3, ["contact"]),
+        (0.005, 2, []),
+        (0.005, 4, []),  # Genesis 1.4.5 turns the cube by up to 0.01 rad to find further contacts
+        (0.05, 2, []),
+        (0.05, 4, ["contact"]),
+        (0.05, 1, ["contact"]),
+    ],
+)
+def test_a_tilted_cube_may_report_corners_just_above_the_surface(tilt, reported, codes):
+    case, states = spec.BASELINE, len(AT_REST.t)
+    depth, half = 1e-4, spec.BASELINE.size / 2
+    height = TOP - depth + half * (np.cos(tilt) + np.sin(tilt))
+    posed = replace(
+        AT_REST,
+        link_pos=np.tile([0, 0, height], (states, 1, 1)),
+        link_quat=np.tile([np.cos(tilt / 2), 0, np.sin(tilt / 2), 0], (states, 1, 1)),
+        link_vel=np.zeros((states, 1, 3)),
+        link_ang=np.zeros((states, 1, 3)),
+        penetration=np.where(AT_REST.t[:, None] > 0, depth, 0),
+        contacts=np.where(AT_REST.t[:, None] > 0, reported, 0),
+    )
+    assert [breach.code for breach in reported_contacts(posed, case)] == codes
