@@ -212,7 +212,7 @@ def spare_searches() -> None:
 
     The compiler asks `inspect` for the line of source that calls each declaration. At the top level
     of a module the caller is Python's own import, which belongs to no file. `inspect` keeps what it
-    finds, but not that it found nothing, so it would go through all 3000 modules every time. The
+    finds, but not that it found nothing, so it would search all 3000 modules every time. The
     entry names no module either: the answer stays the same.
     """
     inspect.modulesbyfile["<frozen importlib._bootstrap>"] = ""
