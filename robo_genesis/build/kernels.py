@@ -27,7 +27,11 @@ ALLOWED = ("LC_", "NVIDIA_", "SSL_", *ENGINE_PREFIXES)
 # ipykernel 7 hangs for ever, or 10 s, in about one of ten of its own exit handlers. They run last:
 # one that is registered right after them runs right before them, after the engine's, and ends it.
 END_BEFORE_IPYKERNEL = "__import__('atexit').register(__import__('os')._exit, 0)"
-ARGUMENTS = [f"--IPKernelApp.exec_lines={END_BEFORE_IPYKERNEL}"]
+# Pages import the engine before the course, which would only spare the searches that are left then.
+SPARE_SEARCHES = (
+    "__import__('robo_genesis.sim.session', fromlist=['spare_searches']).spare_searches()"
+)
+ARGUMENTS = [f"--IPKernelApp.exec_lines={line}" for line in (END_BEFORE_IPYKERNEL, SPARE_SEARCHES)]
 
 PR_SET_PDEATHSIG = 1
 """The request of <linux/prctl.h> for a signal at the end of the parent."""

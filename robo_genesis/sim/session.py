@@ -2,8 +2,10 @@
 
 import ctypes
 import importlib
+import inspect
 import logging
 import os
+import re
 import sys
 import tempfile
 from collections.abc import Mapping
@@ -196,12 +198,24 @@ def import_engine() -> Any:
     Raises:
         EngineError: saying what is missing and the command that installs it.
     """
+    spare_searches()
     if sys.platform == "linux":
         require_libraries("libEGL.so.1", "libGL.so.1")
     try:
         return importlib.import_module("genesis")
     except ImportError as error:
         raise EngineError(f"Genesis cannot be imported: {error}. {INSTALL}") from error
+
+
+def spare_searches() -> None:
+    """Spare the engine's compiler a search of all loaded modules for each kernel that it declares.
+
+    The compiler asks `inspect` for the line of source that calls each declaration. At the top level
+    of a module the caller is Python's own import, which belongs to no file. `inspect` keeps what it
+    finds, but not that it found nothing, so it would search all 3000 modules every time. The
+    entry names no module either: the answer stays the same.
+    """
+    inspect.modulesbyfile["<frozen importlib._bootstrap>"] = ""
 
 
 def asset(name: str) -> Path:
@@ -253,10 +267,17 @@ def probe(requested: str) -> Backend:
         torch_version=torch.__version__,
         hip_version=torch.version.hip,
         cuda_version=torch.version.cuda,
-        device_name=str(gs.utils.get_device(gs.backend)[1]),
+        device_name=_device_name(gs),
     )
     require_agreement(found)
     return found
+
+
+def _device_name(gs: Any) -> str:
+    """Return the name of the device: from the log, because the engine takes a second to find it."""
+    lines = [text for log in _kept_logs()[-1:] for _, text in log.lines]
+    named = [found[1] for text in lines if (found := re.search(r"Running on \[(.+)\] with ", text))]
+    return named[0] if named else str(gs.utils.get_device(gs.backend)[1])
 
 
 def require_agreement(found: Backend) -> None:

@@ -294,6 +294,12 @@ print(e["PYTHONNOUSERSITE"], e["GIVEN"], len(e["ROBO_GENESIS_RUN_ID"]))"""
     assert output.text == f"{sys.executable} False [] {ROOT}\n1 yes 32\n"
 
 
+def test_a_kernel_spares_the_engine_s_searches_before_the_first_cell(tmp_path):
+    code = 'import inspect; assert "<frozen importlib._bootstrap>" in inspect.modulesbyfile'
+    make_book(tmp_path, page=notebook(cell(code)))
+    assert execute(tmp_path)["page"].status == "executed"
+
+
 def test_a_kernel_learns_what_its_page_imports(tmp_path):
     code = """\
 import os

@@ -1,11 +1,13 @@
 """The environment contract, the start of the engine, its backend and its log."""
 
+import importlib
+import inspect
 import logging
 import os
 import subprocess
 import sys
 from dataclasses import replace
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
@@ -91,6 +93,39 @@ def test_a_missing_engine_names_the_lock(monkeypatch):
         import_engine()
 
 
+class Searched(ModuleType):
+    """A module that counts how often a search of all modules reaches it."""
+
+    times = 0
+
+    def __getattr__(self, name):
+        type(self).times += name == "__file__"
+        raise AttributeError(name)
+
+
+def test_the_caller_of_a_declaration_is_found_without_a_search_of_all_modules(
+    tmp_path, monkeypatch
+):
+    """Each module asks as the engine's compiler does where a kernel is declared."""
+    monkeypatch.setattr(inspect, "modulesbyfile", dict(inspect.modulesbyfile))
+    inspect.modulesbyfile.pop("<frozen importlib._bootstrap>", None)
+    monkeypatch.setitem(sys.modules, "searched", Searched("searched"))
+    monkeypatch.syspath_prepend(tmp_path)
+    code = "import inspect, sys\n\nCALLER = inspect.getframeinfo(sys._getframe(1))\n"
+    found, searches = [], []
+    for name in ("declared_before", "declared_after"):
+        (tmp_path / f"{name}.py").write_text(code, "utf8")
+        Searched.times = 0
+        found.append(importlib.import_module(name).CALLER[:4])
+        searches.append(Searched.times)
+        monkeypatch.delitem(sys.modules, name)
+        session.spare_searches()
+    assert searches[0] > 0
+    assert searches[1] == 0
+    assert found[0] == found[1]
+    assert found[0][0] == "<frozen importlib._bootstrap>"
+
+
 def test_a_started_engine_is_not_started_again(tmp_path, monkeypatch):
     started = SimpleNamespace(_initialized=True, backend=SimpleNamespace(name="cuda"))
     monkeypatch.setattr(session, "import_engine", lambda: started)
@@ -173,6 +208,23 @@ def test_a_second_attempt_to_start_keeps_one_log(fake_engine, tmp_path):
     contract = Contract("auto", True, tmp_path)
     assert [session.requested_backend(contract) for _ in range(2)] == ["gpu", "gpu"]
     assert len(logging.getLogger("genesis").handlers) == 1
+
+
+@pytest.mark.parametrize(
+    ("message", "name"),
+    [
+        (
+            "Running on ~~<[A [fast] CPU]>~~ with backend ~~<gs.cpu>~~. Memory: 8 GB.",
+            "A [fast] CPU",
+        ),
+        ("Running somewhere.", "as the engine finds it"),
+    ],
+)
+def test_the_device_has_the_name_in_the_log_or_is_asked_for(fake_engine, tmp_path, message, name):
+    asked = SimpleNamespace(get_device=lambda backend: (None, "as the engine finds it"))
+    session.requested_backend(Contract("cpu", True, tmp_path))
+    logging.getLogger("genesis").warning(message)
+    assert session._device_name(SimpleNamespace(backend="cpu", utils=asked)) == name
 
 
 @pytest.mark.engine
