@@ -39,10 +39,11 @@ def parse_strict(text: str, where: str) -> Any:
             object_pairs_hook=_no_duplicates,
             parse_int=_integer,
             parse_float=_float,
+            parse_constant=_float,
         )
         _require_depth(value)
-        # Infinity and NaN cannot be written as JSON, nor a lone surrogate as UTF-8.
-        json.dumps(value, ensure_ascii=False, allow_nan=False).encode()
+        if "\\u" in text:  # a lone surrogate cannot be written as UTF-8
+            json.dumps(value, ensure_ascii=False).encode()
     except (ValueError, RecursionError) as error:
         raise BundleRefused(
             "bad-json", f"{where}: {error}, expected strict JSON in UTF-8. {AGAIN}"
@@ -58,19 +59,19 @@ def _integer(text: str) -> int:
 
 def _float(text: str) -> float:
     value = float(text)
-    if abs(value) > LARGEST:
+    if not abs(value) <= LARGEST:  # NaN too
         raise ValueError(f"{shown(text)} is a number beyond ±2⁵³")
     return value
 
 
 def _require_depth(value: Any) -> None:
     """Raise ValueError if lists and objects are nested too deeply; nothing here is recursive."""
-    level, depth = [value], 0
+    level, depth = [[value]], 0
     while level := [
         inner
         for outer in level
-        if isinstance(outer, dict | list)
         for inner in (outer.values() if isinstance(outer, dict) else outer)
+        if isinstance(inner, (dict, list))
     ]:
         depth += 1
         if depth > DEEPEST:
