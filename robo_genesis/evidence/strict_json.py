@@ -59,8 +59,8 @@ def _integer(text: str) -> int:
 
 def _float(text: str) -> float:
     value = float(text)
-    if not abs(value) <= LARGEST:  # NaN too
-        raise ValueError(f"{shown(text)} is a number beyond ±2⁵³")
+    if not abs(value) <= LARGEST:
+        raise ValueError(f"{shown(text)} is not a number within ±2⁵³")
     return value
 
 
@@ -79,17 +79,19 @@ def _require_depth(value: Any) -> None:
 
 
 def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    keys = [key for key, _ in pairs]
-    if len(set(keys)) != len(keys):
-        raise ValueError(f"duplicate key among {shown(keys)}")
-    return dict(pairs)
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        raise ValueError(f"duplicate key among {shown([key for key, _ in pairs])}")
+    return found
 
 
 def differences(found: Any, expected: Any, path: str = "") -> Iterator[tuple[str, Any, Any]]:
     """Yield (path, found, expected) where two JSON values differ; `absent` is a missing entry."""
+    if found == expected:
+        return
     if isinstance(found, dict) and isinstance(expected, dict):
         for name in sorted(found.keys() | expected.keys()):
             inner = f"{path}.{name}" if path else name
             yield from differences(found.get(name, "absent"), expected.get(name, "absent"), inner)
-    elif found != expected:
+    else:
         yield path, found, expected

@@ -65,9 +65,7 @@ def verify_bundle(
     return as_judged_today(manifest)
 
 
-def check_metrics(
-    recorded: Mapping[str, Mapping[str, Metric]], experiment: Experiment
-) -> None:
+def check_metrics(recorded: Mapping[str, Mapping[str, Metric]], experiment: Experiment) -> None:
     """Require that metrics.json has the values, units, classes and sources of the runs.
 
     Raises:

@@ -192,7 +192,8 @@ def last_step(
     states, impulses, speeds, bias = np.zeros((4, len(q_before), model.nv))
     states[:, q_at], speeds[:, dof_at] = q_before, trace.qd
     impulses[:, dof_at] = -h * trace.internal_force.astype(np.float64)
-    qpos, qvel, mass, change = data.qpos, data.qvel, data.M, np.zeros((1, model.nv))
+    qpos, qvel, mass, solved = data.qpos, data.qvel, data.M, np.zeros((1, model.nv))
+    change = solved[0]
     implicit = np.zeros(mass.shape)
     implicit[diagonal[dof_at]] = h * (damping + case.kv)
     for state, impulse, speed, effort in zip(states, impulses[:, None], speeds, bias, strict=True):
@@ -202,8 +203,8 @@ def last_step(
         mujoco.mj_makeM(model, data)
         mass += implicit
         mujoco.mj_factorM(model, data)
-        mujoco.mj_solveM(model, data, change, impulse)
-        speed += change[0]
+        mujoco.mj_solveM(model, data, solved, impulse)
+        speed += change
         qvel[:] = speed
         mujoco.mj_comVel(model, data)
         mujoco.mj_rne(model, data, 0, effort)
