@@ -66,7 +66,8 @@ def _float(text: str) -> float:
 
 def _require_depth(value: Any) -> None:
     """Raise ValueError if lists and objects are nested too deeply; nothing here is recursive."""
-    level, depth = [[value]], 0
+    level: list[Any] = [[value]]
+    depth = 0
     while level := [
         inner
         for outer in level
