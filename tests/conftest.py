@@ -3,6 +3,8 @@
 import os
 import signal
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -40,14 +42,49 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave slow tests out unless `--slow` asks for them."""
+    """Leave slow tests out unless `--slow` asks for them, and put long ones first.
+
+    What runs the engine comes first, because it is the longest scope of one process. The tests that
+    use the engine of this process precede those that start one elsewhere or build. Small tests come
+    last, so that two processes end at about the same time.
+    """
     for item in items:
-        starts = "real_engine" in getattr(item, "fixturenames", ())
-        if starts and not item.get_closest_marker("engine"):
+        if uses_engine(item) and not item.get_closest_marker("engine"):
             raise pytest.UsageError(f"{item.nodeid} starts the engine. Give it the mark `engine`.")
     left_out = [] if config.option.slow else [i for i in items if i.get_closest_marker("slow")]
     config.hook.pytest_deselected(items=left_out)
-    items[:] = [item for item in items if item not in left_out]
+
+    def turn(item: pytest.Item) -> tuple[int, bool]:
+        order = [ENGINE, BUILDS, BROWSER, SMALL]
+        return order.index(kind(item.path)), not uses_engine(item)
+
+    items[:] = sorted((item for item in items if item not in left_out), key=turn)
+
+
+ENGINE, BUILDS, BROWSER, SMALL = "engine", "builds", "browser", "small"
+
+
+@cache
+def kind(path: Path) -> str:
+    """Return what most tests of a file need."""
+    text = path.read_text()
+    if "mark.browser" in text:
+        return BROWSER
+    if "mark.engine" in text:
+        return ENGINE
+    return BUILDS if path.parent.name in ("build", "maintain") else SMALL
+
+
+def uses_engine(item: pytest.Item) -> bool:
+    """Return whether a test uses the engine of this process."""
+    return "real_engine" in getattr(item, "fixturenames", ())
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """End the engine after the last test that uses it: tests that build need the lock."""
+    if uses_engine(item) and not (nextitem and uses_engine(nextitem)):
+        item.config.stash[STARTED].close()
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -61,8 +98,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> LoadScopeSch
     class ByModule(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
             file = nodeid.partition("::")[0]
-            text = (config.rootpath / file).read_text()
-            return "engine" if "mark.engine" in text and "mark.browser" not in text else file
+            return ENGINE if kind(config.rootpath / file) == ENGINE else file
 
     return ByModule(config, log)
 
@@ -176,25 +212,33 @@ def experiment(joints, traces, frames) -> Experiment:
     return Experiment(LAB, traces, LINKS, readings, frames, rendered=True, joints=joints)
 
 
-@pytest.fixture(scope="module")
-def real_engine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[SimpleNamespace]:
-    """Real engine, started in this process.
+STARTED = pytest.StashKey[ExitStack]()
+
+
+@pytest.fixture(scope="session")
+def real_engine(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[SimpleNamespace]:
+    """Real engine, started once in this process; `pytest_runtest_teardown` ends it.
 
     It holds the lock of builds, because a build would remove the lock files of the engine as stale.
-    Module scope releases the lock before the tests of the site build it.
     """
     contract = session.Contract("cpu", True, tmp_path_factory.mktemp("outputs"))
-    with stages.build_lock(project.CACHE), pytest.MonkeyPatch.context() as patch:
+    with ExitStack() as started:
+        request.config.stash[STARTED] = started
+        started.enter_context(stages.build_lock(project.CACHE))
+        patch = started.enter_context(pytest.MonkeyPatch.context())
         for name, value in project.engine_cache_environment().items():
             patch.setitem(os.environ, name, value)
         engine = session.start(contract)
         import genesis as gs
 
+        # It saves the compiled kernels, while the log can still be written.
+        started.callback(gs.destroy)
         yield SimpleNamespace(gs=gs, contract=contract, engine=engine)
-        gs.destroy()  # saves the compiled kernels while the log can still be written
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def lab(real_engine: SimpleNamespace) -> SimpleNamespace:
     """The scene of the lab of L04, built once."""
     gs = real_engine.gs

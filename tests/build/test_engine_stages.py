@@ -18,7 +18,7 @@ from robo_genesis.build import npm
 from robo_genesis.core.project import BOOK
 from robo_genesis.evidence.bundle import sha256
 
-pytestmark = pytest.mark.engine
+pytestmark = [pytest.mark.engine, pytest.mark.slow]
 
 CELLS = re.compile(r"^```\{code-cell\}.*?^```$", re.M | re.S)
 BALL = """\

@@ -73,13 +73,13 @@ def test_the_real_lab_recorded_on_the_cpu_is_accepted_evidence(tmp_path):
     (CACHE / "engine").mkdir(parents=True, exist_ok=True)
     cache.mkdir()
     (cache / "engine").symlink_to(CACHE / "engine")  # compiled kernels, no executed page
-    given = {"LESSON": "l04", "BACKEND": "cpu", "TO": str(kept)}
+    given = {"LESSON": "l02", "BACKEND": "cpu", "TO": str(kept)}
     process = start("evidence.py", tmp_path, "--book", str(BOOK), **given)
     out, err = process.communicate()
     assert process.returncode == 0, err
-    place = kept / "l04" / "cpu"
+    place = kept / "l02" / "cpu"
     facts = verify_bundle(place).predicate
-    assert [path.name for path in kept.iterdir()] == ["l04"]
+    assert [path.name for path in kept.iterdir()] == ["l02"]
     assert facts.command == "make evidence"
     assert facts.render.mode == "camera"
     assert facts.evidence_key == evidence_key(facts.model_dump())

@@ -121,36 +121,41 @@ SPEC, METRICS, CLAIMS = (
 STALE = "stale stale: manifest.json: {} is "
 
 
+HARMLESS = [
+    (LAB, "page.facts()", "page.facts()  # once"),
+    (LAB, "\n# ", "\n# Another title, and "),
+    (METRICS, "Share of the step that counts", "The share that counts"),
+    (CLAIMS, "Start, target, gains", "Start, gains, target"),
+    (SPEC, '"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'),
+    (SPEC, '"overshoot": 1e-3', '"overshoot": 1e-2'),
+    ("robo_genesis/core/plotting.py", '"""\n', '"""\n\nMORE = 1\n'),
+]
+
+
 @pytest.mark.parametrize(
-    ("name", "old", "new", "said"),
+    ("edits", "said"),
     [
-        ("pyproject.toml", "-world==", "-world==9.", STALE.format("engine.version")),
-        ("requirements.lock", "\nquadrants==", "\nquadrants==9.",
+        (HARMLESS, "verified"),
+        ([("pyproject.toml", "-world==", "-world==9.")], STALE.format("engine.version")),
+        ([("requirements.lock", "\nquadrants==", "\nquadrants==9.")],
          STALE.format("engine.quadrants_version")),
-        (LAB, "page.facts()", "pass", STALE.format("source.page")),
-        (LAB, "page.facts()", "page.facts()  # once", "verified"),
-        (METRICS, "Share of the step that counts", "The share that counts", "verified"),
-        (METRICS, "float(qd[-1])", "float(abs(qd[-1]))",
+        ([(LAB, "page.facts()", "pass")], STALE.format("source.page")),
+        ([(METRICS, "float(qd[-1])", "float(abs(qd[-1]))")],
          STALE.format("source.modules.lessons.l04.metrics")),
-        (METRICS, "RISE_FRACTION = 0.9", "RISE_FRACTION = 0.8", "stale "),
-        (CLAIMS, "Start, target, gains", "Start, gains, target", "verified"),
-        (METRICS, "SETTLING_BAND = 0.01", "SETTLING_BAND = 0.02", "stale "),
-        (SPEC, "7000.0", "7100.0", STALE.format("parameters.cases.G2.kp")),
-        (SPEC, "WINDOW = 1.2", "WINDOW = 1.3", "stale "),
-        (SPEC, '("rise_time", "no later")', '("rise_time", "later")', "inconclusive "),
-        (SPEC, '"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)', "verified"),
-        (SPEC, '"overshoot": 1e-3', '"overshoot": 1e-2', "verified"),
-        (LAB, "\n# ", "\n# Another title, and ", "verified"),
-        ("robo_genesis/core/plotting.py", '"""\n', '"""\n\nMORE = 1\n', "verified"),
+        ([(METRICS, "RISE_FRACTION = 0.9", "RISE_FRACTION = 0.8")], "stale "),
+        ([(METRICS, "SETTLING_BAND = 0.01", "SETTLING_BAND = 0.02")], "stale "),
+        ([(SPEC, "7000.0", "7100.0")], STALE.format("parameters.cases.G2.kp")),
+        ([(SPEC, "WINDOW = 1.2", "WINDOW = 1.3")], "stale "),
+        ([(SPEC, '("rise_time", "no later")', '("rise_time", "later")')], "inconclusive "),
     ],
 )  # fmt: skip
-def test_an_edit_makes_stale_what_it_decides_and_nothing_else(
-    folder, checkout, name, old, new, said
-):
+def test_an_edit_makes_stale_what_it_decides_and_nothing_else(folder, checkout, edits, said):
     """The edited checkout itself verifies the bundle, in a process of its own."""
-    source = (checkout / name).read_text("utf8")
-    assert old in source
-    (checkout / name).write_text(source.replace(old, new, 1), "utf8")
+    sources = {name: (checkout / name).read_text("utf8") for name, *_ in edits}
+    for name, old, new in edits:
+        source = (checkout / name).read_text("utf8")
+        assert old in source
+        (checkout / name).write_text(source.replace(old, new, 1), "utf8")
     try:
         done = subprocess.run(
             [sys.executable, "-B", "-c", VERIFY, str(folder)],
@@ -161,5 +166,6 @@ def test_an_edit_makes_stale_what_it_decides_and_nothing_else(
             check=True,
         )
     finally:
-        (checkout / name).write_text(source, "utf8")
+        for name, source in sources.items():
+            (checkout / name).write_text(source, "utf8")
     assert done.stdout.startswith(said)

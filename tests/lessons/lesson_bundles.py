@@ -2,6 +2,7 @@
 
 import csv
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from robo_genesis.core import project
 from robo_genesis.core.shown import mime_data
 from robo_genesis.evidence import bundle, evidence_key
 from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.status import bundle_status
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.evidence.verify import verify_bundle
@@ -86,32 +88,37 @@ def table(folder, case) -> list[dict[str, str]]:
     return list(csv.DictReader(text.splitlines()))
 
 
-def judged_again(folder, monkeypatch, module, name, value, check):
-    """Require that another judging value changes the verdict of one check, and nothing else.
+def judged_again(folder, monkeypatch, judgements):
+    """Require that each other judging value changes the verdict of one check, and nothing else.
 
     Args:
         folder: a sound bundle.
         monkeypatch: the fixture of pytest.
-        module: the specification with the value.
-        name: of the value.
-        value: with which the check fails.
-        check: its name.
+        judgements: module, name and value with which a check fails, and the name of the check.
     """
     manifest = bundle.read_manifest(folder)
-    lesson, page = manifest.predicate.lesson, manifest.predicate.page
+    experiment = from_bundle(folder, manifest)
+    for module, name, value, check in judgements:
+        with monkeypatch.context() as context:
+            context.setattr(module, name, value)
+            outcomes = replace(experiment).outcomes()
+        assert [found.name for found in outcomes if not found.passed] == [check], name
     with monkeypatch.context() as context:
-        context.setattr(module, name, value)
+        for module, name, value, _ in judgements:
+            context.setattr(module, name, value)
+        found = manifest.predicate.model_dump()
         key = bundle.evidence_key(
-            manifest.predicate.model_dump()
-            | evidence_key.question(lesson, page, project.ROOT, project.BOOK)
+            found
+            | evidence_key.question(found["lesson"], found["page"], project.ROOT, project.BOOK)
         )
         status = bundle_status(folder)
     assert key == manifest.predicate.evidence_key
     assert (status.state, status.code) == ("failed", "failed")
-    assert re.findall(r"\[(\w+)\] ", status.reason) == [check]
+    failed = {check for *_, check in judgements}
+    assert set(re.findall(r" \[(\w+)\] ", status.reason)) == failed
     claimed = [record.model_dump() for record in manifest.predicate.checks]
     for record in claimed:
-        record["passed"] = record["name"] != check
+        record["passed"] = record["name"] not in failed
     predicate(checks=claimed)(folder)
     assert all(record.passed for record in verify_bundle(folder).predicate.checks)
 

@@ -10,9 +10,9 @@ import pytest
 from robo_genesis.core.project import BOOK, CACHE, ROOT
 
 pytestmark = pytest.mark.engine
-LAB = "lessons/l04-joint-control/lab"
-SOUND = 'page.readings["model"] = model\n'
-SPOILED = 'page.readings["model"] = model | {"links": 12}\n'
+LAB = "lessons/l02-life-cycle/lab"
+SOUND = 'page.readings["model"] = l02.read_model(scene, box)\n'
+SPOILED = 'page.readings["model"] = l02.read_model(scene, box) | {"links": 2}\n'
 
 
 def test_a_failing_check_is_named_and_nothing_is_published(tmp_path):
@@ -40,6 +40,6 @@ def test_a_failing_check_is_named_and_nothing_is_published(tmp_path):
 
     assert done.returncode == 1
     assert "CheckFailed" in done.stderr
-    assert "[mapping] links is 12, expected 11" in done.stderr
+    assert "[structure] links is 2, expected 1" in done.stderr
     assert LAB in done.stderr
     assert (book / "_build" / "html" / "index.html").read_text() == "the site that stood before"

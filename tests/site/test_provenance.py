@@ -10,7 +10,7 @@ from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.execute import execute_pages
 from robo_genesis.build.page_store import places
-from robo_genesis.build.site.render import RenderError, render
+from robo_genesis.build.site.render import render
 from robo_genesis.evidence.status import Status
 from robo_genesis.lessons.book_pages import find_pages
 from robo_genesis.site.evidence.measured import badge_node
@@ -55,26 +55,10 @@ Here it stands in a sentence, {glue}`inline`.
 | --- |
 | 7 |
 """
+REMOVED, INPUTS = ":tags: [remove-cell]\n", ":tags: [inputs]\n"
 PRINTED = "Printed by its cell, not compared with the bundle. ledger"
 OF_RUN = "No accepted evidence: cpu-refused. ledger"
 CHOSEN = "Chosen, not measured. ledger"
-
-
-def book_of(folder, *cells, text="", front=LAB_FRONT, **pages):
-    """Execute a book of one lab and a ledger."""
-    (folder / "book" / "evidence").mkdir(parents=True)
-    lab = notebook(cell(WRITE_BUNDLE), cell(IMPORTS), *cells, front=front) + text
-    ledger = "# Ledger\n\n```{ledger} items\n```\n"
-    book = make_book(folder, lab=lab, **pages, **{"evidence/ledger": ledger})
-    pages = find_pages(book)
-    results = execute_pages(pages, places(pages, folder / "store"))
-    assert [result.status for result in results] == ["executed"]
-    return folder, BuiltPages.of(results)
-
-
-def build(executed):
-    folder, built = executed
-    return render(folder / "book", folder / "staging", built, folder / "render.log")
 
 
 SHOW = """\
@@ -86,85 +70,65 @@ def show(name):
 def show_drawn(name):
     data = {"image/svg+xml": drawn(name).data}
     display(data, metadata={"robo_genesis": of}, raw=True)"""
+AS_MEASURED = (
+    cell(SHOW), cell("glue('md table', table('md'), display=False)", REMOVED),
+    cell("table('chosen')", INPUTS), cell("show('measured')"), cell("table('printed')"),
+    cell("show('one')\ntable('of both')"), cell("drawn('printed, too')"),
+    cell("show_drawn('measured, too')"), "\n```{glue:md} md table\n:format: gfm\n```\n",
+)  # fmt: skip
+AS_PRINTED = (
+    cell(GLUE, REMOVED), cell("table('chosen')", INPUTS), cell("table('read')"),
+    cell("drawn('alone')"), GLUED,
+)  # fmt: skip
 
 
-def test_an_output_without_the_name_of_its_function_is_not_called_measured(tmp_path):
-    inputs = ":tags: [inputs]\n"
-    shown = (
-        cell("table('chosen')", inputs), cell("show('measured')"), cell("table('printed')"),
-        cell("show('one')\ntable('of both')"), cell("drawn('printed, too')"),
-        cell("show_drawn('measured, too')"),
-    )  # fmt: skip
-    glued = cell("glue('md table', table('md'), display=False)", ":tags: [remove-cell]\n")
-    text = "\n```{glue:md} md table\n:format: gfm\n```\n"
-    html = build(book_of(tmp_path, cell(SHOW), glued, *shown, text=text))
-    lines = [line.get_text() for line in parsed(html, "lab").select("article .provenance")]
-    assert lines == [CHOSEN, OF_RUN, *[PRINTED] * 4, OF_RUN, PRINTED]
-    rows = parsed(html, "evidence/ledger").select("tbody tr")
-    kinds = ["settings", "table", *["printed"] * 4, "figure", "printed"]
-    assert [row.select("td")[1].text for row in rows] == kinds
+@pytest.fixture(scope="module")
+def html(tmp_path_factory):
+    """A book of two executed pages and a ledger."""
+    folder = tmp_path_factory.mktemp("provenance")
+    (folder / "book" / "evidence").mkdir(parents=True)
+    pages = {
+        name: notebook(
+            cell(WRITE_BUNDLE.replace("lab", name)), cell(IMPORTS), *cells,
+            front=LAB_FRONT.replace("lab", name), title=title,
+        )
+        for name, title, cells in (("lab", "A", AS_MEASURED), ("lecture", "B", AS_PRINTED))
+    }  # fmt: skip
+    book = make_book(folder, **pages, **{"evidence/ledger": "# Ledger\n\n```{ledger} items\n```\n"})
+    pages = find_pages(book)
+    results = execute_pages(pages, places(pages, folder / "store"))
+    assert [result.status for result in results] == ["executed"] * 2
+    return render(book, folder / "staging", BuiltPages.of(results), folder / "render.log")
 
 
-def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(tmp_path):
-    inputs = ":tags: [inputs]\n"
-    shown = (cell("table('chosen')", inputs), cell("table('read')"), cell("drawn('alone')"))
-    html = build(book_of(tmp_path, cell(GLUE, ":tags: [remove-cell]\n"), *shown, text=GLUED))
-    page = parsed(html, "lab")
+def lines_and_rows(html, name):
+    """Return a page, its lines of provenance, and the rows of the ledger that lead to it."""
+    page = parsed(html, name)
     lines = [line.get_text() for line in page.select("article .provenance")]
+    rows = parsed(html, "evidence/ledger").select("#ledger tbody tr")
+    return page, lines, [row for row in rows if f"/{name}.html#" in row.a["href"]]
+
+
+def kinds(rows):
+    return [row.select("td")[1].get_text() for row in rows]
+
+
+def test_an_output_without_the_name_of_its_function_is_not_called_measured(html):
+    _, lines, rows = lines_and_rows(html, "lab")
+    assert lines == [CHOSEN, OF_RUN, *[PRINTED] * 4, OF_RUN, PRINTED]
+    assert kinds(rows) == ["settings", "table", *["printed"] * 4, "figure", "printed"]
+
+
+def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(html):
+    page, lines, rows = lines_and_rows(html, "lecture")
     assert lines == [CHOSEN] + [PRINTED] * 7
     assert "Its caption." in page.select_one("figcaption:has(.provenance)").get_text()
-
-    ledger = parsed(html, "evidence/ledger")
-    rows = ledger.select("#ledger tbody tr")
-    kinds = ["settings", *["printed"] * 7]
-    assert [row.select("td")[1].get_text() for row in rows] == kinds
+    assert kinds(rows) == ["settings", *["printed"] * 7]
     assert [row.select("td")[3].get_text() for row in rows] == ["no run"] * 8
     anchors = [row.a["href"].split("#")[1] for row in rows]
     assert [page.find(id=anchor).name for anchor in anchors] == [
         "table", "table", "img", "figure", "img", "img", "table", "table",
     ]  # fmt: skip
-
-
-def test_what_has_no_line_or_follows_from_no_run_stops_the_build(tmp_path):
-    html = """display(HTML("<table><tr><td>7</td></tr></table>"))"""
-    wrong = (
-        cell(html),
-        cell("Markdown('<img src=\"x.png\">')"),
-        cell("drawn('chosen')", ":tags: [inputs]\n"),
-    )
-    text = (
-        "\n[amdgpu-verified]{.evidence-badge .state-verified}\n"
-        "\n```{figure} ../book/evidence/l04/amdgpu/frames/final.svg\n:alt: x\n\nFree words.\n```\n"
-        "\n```{figure} innocent.svg\n:alt: x\n\nFree words.\n```\n"
-    )
-    page = "# Text\n\n{glue}`lab.md::bare`\n"
-    folder, built = book_of(tmp_path, *wrong, text=text, text_page=page)
-    frames = folder / "book/evidence/l04/amdgpu/frames"
-    frames.mkdir(parents=True)
-    (frames / "final.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
-    (folder / "book/innocent.svg").symlink_to(frames / "final.svg")
-    with pytest.raises(RenderError) as caught:
-        build((folder, built))
-    said = [line for line in str(caught.value).splitlines() if "WARNING" in line]
-    for part in (
-        "a cell outputs <table> as raw HTML, which would have no line in the ledger. "
-        "Display Markdown (robo_genesis.core.tables) or a figure.",
-        "a cell outputs <img> as raw HTML",
-        "a cell tagged inputs shows a picture",
-        "a page may not set the class evidence-badge",
-        "evidence/l04/amdgpu/frames/final.svg lies below evidence/",
-        "the picture innocent.svg lies below evidence/",
-        "bare is glued from the page lab, and its origin would not be shown.",
-    ):
-        assert [line for line in said if part in line], f"{part!r} is not in {said}"
-
-
-def test_a_cell_s_table_needs_a_bundle_unless_it_was_chosen(tmp_path):
-    shown = (cell("table('chosen')", ":tags: [inputs]\n"), cell("table('read')"))
-    with pytest.raises(RenderError) as caught:
-        build(book_of(tmp_path, *shown, front=""))
-    problem = "a cell shows a table, but the page declares no bundle"
-    assert str(caught.value).count(problem) == 1
 
 
 def read(text):

@@ -1,4 +1,3 @@
-import re
 from pathlib import Path
 
 import pytest
@@ -24,7 +23,7 @@ TEXT = f"""\
 \\tau = k_p q
 ```
 
-See {{eq}}`law` and $x^2$.
+See {{eq}}`law` and $x^2$ for the overshoot.
 {BADGES}"""
 
 
@@ -84,6 +83,11 @@ def test_no_front_matter_or_bundle_s_word_can_set_a_badge(html, name):
     assert badges == ["cpu-refused", "amdgpu-missing"] * 2
 
 
+def test_without_a_glossary_no_word_is_a_link_to_it(html):
+    assert "overshoot" in parsed(html / "text.html").article.get_text()
+    assert parsed(html / "text.html").select("a.term-link") == []
+
+
 def test_without_an_address_nothing_claims_one(html):
     assert not (html / "sitemap.xml").exists()
     claims = 'link[rel="canonical"], meta[property^="og:"]'
@@ -97,29 +101,10 @@ def test_without_an_address_nothing_claims_one(html):
     assert others <= {"/searchindex.js"}
 
 
-@pytest.mark.parametrize("front", ["", "mystnb: {execution_mode: force}\n"])
-def test_sphinx_executes_nothing_and_names_the_page(tmp_path, front):
+def test_sphinx_executes_nothing_and_names_the_page(tmp_path):
     """A page that the execution stage has not seen would leave a file behind if it were run."""
-    trace = tmp_path / "was executed"
+    trace, front = tmp_path / "was executed", "mystnb: {execution_mode: force}\n"
     make_book(tmp_path, page=notebook(cell(f"open({str(trace)!r}, 'w')"), front=front))
     with pytest.raises(RenderError, match=r"page\.md is not executed, and Sphinx executes nothing"):
         build(tmp_path)
     assert not trace.exists()
-
-
-WARNINGS = {
-    r"$\foo{x}$": r"uses \\foo, which latex2mathml does not know",
-    "{doc}`nowhere`": "nowhere",
-    "[missing](#away)": "away",
-    "{py:func}`module`": "reference target not found: module",
-    "{nosuchrole}`x`": "nosuchrole",
-}
-
-
-def test_each_warning_fails_the_build_and_is_shown_with_page_and_line(tmp_path):
-    make_book(tmp_path, text="# Text\n\n" + "\n\n".join(WARNINGS) + "\n")
-    with pytest.raises(RenderError) as caught:
-        build(tmp_path)
-    for number, said in enumerate(WARNINGS.values()):
-        assert re.search(rf"text\.md:{3 + 2 * number}\b.*{said}", str(caught.value)), said
-    assert str(tmp_path / "render.log") in str(caught.value)

@@ -153,11 +153,8 @@ JUDGEMENTS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "value", "check"), JUDGEMENTS)
-def test_another_judgement_changes_a_verdict_and_nothing_else(
-    dropped, monkeypatch, name, value, check
-):
-    judged_again(dropped, monkeypatch, spec, name, value, check)
+def test_another_judgement_changes_a_verdict_and_nothing_else(dropped, monkeypatch):
+    judged_again(dropped, monkeypatch, [(spec, *judgement) for judgement in JUDGEMENTS])
 
 
 @pytest.mark.parametrize("check", ["speed", "shrinks"])

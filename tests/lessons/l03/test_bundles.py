@@ -185,14 +185,9 @@ JUDGEMENTS = {
 }
 
 
-@pytest.mark.parametrize(
-    ("page", "name", "value", "check"),
-    [(page, *judgement) for page, judgements in JUDGEMENTS.items() for judgement in judgements],
-)
-def test_another_judgement_changes_a_verdict_and_nothing_else(
-    landed, monkeypatch, page, name, value, check
-):
-    judged_again(landed[page], monkeypatch, spec, name, value, check)
+@pytest.mark.parametrize("page", JUDGEMENTS)
+def test_another_judgement_changes_a_verdict_and_nothing_else(landed, monkeypatch, page):
+    judged_again(landed[page], monkeypatch, [(spec, *judgement) for judgement in JUDGEMENTS[page]])
 
 
 @pytest.mark.parametrize(

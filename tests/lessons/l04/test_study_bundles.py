@@ -112,29 +112,26 @@ def test_a_comparison_covers_the_studies(studied, tmp_path, group, name, factor,
     assert row.state == state
 
 
-@pytest.mark.parametrize(
-    ("module", "name", "value", "check"),
-    [
-        (spec, "EXPECTED_MODEL", spec.EXPECTED_MODEL | {"links": 12}, "mapping"),
-        (spec, "EXPECTED_TYPES", ("REVOLUTE",) * 9, "mapping"),
-        (spec, "ONE_FACTOR", {("G1", "G3"): ["kp[joint4]"]}, "one_factor"),
-        (spec, "CONTROL_LAW_TOLERANCE", -1.0, "control_law"),
-        (spec, "LIMIT_EXCESS", -1e3, "measurements"),
-        (spec, "RELATIONS", ((("G1", "G2"), "rise_time", "later", 0.0),), "second_engine_order"),
-        (study_spec, "SMALL_STEP_TOLERANCE", -1.0, "theory_small_step"),
-        (study_spec, "AT_REST", 0.0, "gravity_support"),
-        (study_spec, "GRAVITY_AGREEMENT", -1.0, "gravity_support"),
-        (study_spec, "SAME_MODEL", -1.0, "same_model"),
-        (study_spec, "IMPLICIT_TERM", -1.0, "implicit_term"),
-        (study_spec, "AGREEMENT", dict.fromkeys(study_spec.AGREEMENT, -1.0), "grid_matches_cases"),
-        (study_spec, "BOUNDS", study_spec.BOUNDS | {"kp": (3500.0, 6000.0)}, "grid_within_gains"),
-        (study_spec, "SPREAD_SHARE", -1.0, "one_limit"),
-    ],
-)
-def test_another_judgement_changes_a_verdict_and_nothing_else(
-    studied, monkeypatch, module, name, value, check
-):
-    judged_again(studied, monkeypatch, module, name, value, check)
+JUDGEMENTS = [
+    (spec, "EXPECTED_MODEL", spec.EXPECTED_MODEL | {"links": 12}, "mapping"),
+    (spec, "EXPECTED_TYPES", ("REVOLUTE",) * 9, "mapping"),
+    (spec, "ONE_FACTOR", {("G1", "G3"): ["kp[joint4]"]}, "one_factor"),
+    (spec, "CONTROL_LAW_TOLERANCE", -1.0, "control_law"),
+    (spec, "LIMIT_EXCESS", -1e3, "measurements"),
+    (spec, "RELATIONS", ((("G1", "G2"), "rise_time", "later", 0.0),), "second_engine_order"),
+    (study_spec, "SMALL_STEP_TOLERANCE", -1.0, "theory_small_step"),
+    (study_spec, "AT_REST", 0.0, "gravity_support"),
+    (study_spec, "GRAVITY_AGREEMENT", -1.0, "gravity_support"),
+    (study_spec, "SAME_MODEL", -1.0, "same_model"),
+    (study_spec, "IMPLICIT_TERM", -1.0, "implicit_term"),
+    (study_spec, "AGREEMENT", dict.fromkeys(study_spec.AGREEMENT, -1.0), "grid_matches_cases"),
+    (study_spec, "BOUNDS", study_spec.BOUNDS | {"kp": (3500.0, 6000.0)}, "grid_within_gains"),
+    (study_spec, "SPREAD_SHARE", -1.0, "one_limit"),
+]
+
+
+def test_another_judgement_changes_a_verdict_and_nothing_else(studied, monkeypatch):
+    judged_again(studied, monkeypatch, JUDGEMENTS)
 
 
 @pytest.mark.parametrize("check", ["control_law", "one_limit"])

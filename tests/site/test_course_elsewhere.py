@@ -1,11 +1,19 @@
-"""Made-up runs of accelerators in the built course: what lab and lecture show of each state."""
+"""The course rendered once more: with made-up runs of accelerators, and for another address.
 
+The runs show what lab and lecture say of each state. The address is below a server's root: it
+decides links, sitemap, cards and the page for lost readers.
+"""
+
+import re
 import shutil
 
 import pytest
 from built_site import executed_pages, parsed
+from PIL import Image
 from spoilers import TORCH, edit, measured_elsewhere, own_run_id, part, predicate, seal
 
+from robo_genesis.build.site.archive import pack
+from robo_genesis.build.site.checks import check_site
 from robo_genesis.build.site.render import render
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence import bundle
@@ -13,6 +21,7 @@ from robo_genesis.evidence import bundle
 pytestmark = pytest.mark.engine  # waits for the site
 
 DEVICE = "Made-up GPU"
+ADDRESS = "https://example.org/robot/course/"
 
 
 def on(backend, folder):
@@ -67,7 +76,7 @@ OTHERS = [run for run, (state, _) in RUNS.items() if state != "verified"]
 
 @pytest.fixture(scope="module")
 def html(site, tmp_path_factory):
-    """The course with the runs of `RUNS` in its folder of evidence."""
+    """The course for this address, with the runs of `RUNS` in its folder of evidence."""
     folder, built = tmp_path_factory.mktemp("runs"), executed_pages()
     (folder / "robo_genesis").symlink_to(ROOT / "robo_genesis")  # pages include parts of files
     book = shutil.copytree(BOOK, folder / "book", ignore=shutil.ignore_patterns("_build*"))
@@ -80,8 +89,10 @@ def html(site, tmp_path_factory):
         if state != "refused" or spoil is own_run_id:
             on(backend, there)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("SITE_URL", "")
-        return render(book, folder / "staging", built, folder / "render.log")
+        patch.setenv("SITE_URL", ADDRESS.rstrip("/"))
+        html = render(book, folder / "staging", built, folder / "render.log")
+    pack(html)
+    return html
 
 
 def panels(html, lesson, page):
@@ -120,3 +131,43 @@ def test_another_run_shows_its_state_and_nothing_else(html, lesson, backend, pag
     assert not found[0].select("figure, img, table, details, .replay-block")
     (path,) = (html / "lessons").glob(f"{lesson}-*/{page}.html")
     assert (DEVICE in path.read_text("utf8")) == (lesson == "l04" and page == "lab")
+
+
+def test_every_page_names_its_own_address(html):
+    names = [path.relative_to(html).as_posix() for path in html.rglob("*.html")]
+    found = {
+        name: link["href"]
+        for name in names
+        for link in parsed(html, name.removesuffix(".html")).select('link[rel="canonical"]')
+    }
+    assert "lessons/l04-joint-control/lecture.html" in found
+    assert found == {name: ADDRESS + name for name in found}
+
+
+def test_the_sitemap_lists_the_pages_and_no_tool(html):
+    listed = re.findall(r"<loc>(.*?)</loc>", (html / "sitemap.xml").read_text())
+    names = [path.relative_to(html).as_posix() for path in html.rglob("*.html")]
+    tools = {"404.html", "search.html", "genindex.html"}
+    expected = {name for name in names if name not in tools and not name.startswith("_static/")}
+    assert sorted(listed) == sorted(ADDRESS + name for name in expected)
+
+
+def test_a_link_to_a_lesson_shows_a_card(html):
+    page = parsed(html, "lessons/l04-joint-control/lecture")
+    tags = {tag["property"]: tag["content"] for tag in page.select('meta[property^="og:"]')}
+    assert tags["og:title"].startswith("L04: Robot models")
+    assert tags["og:url"] == f"{ADDRESS}lessons/l04-joint-control/lecture.html"
+    assert "joint4" in tags["og:description"]
+    card = Image.open(html / tags["og:image"].removeprefix(ADDRESS))
+    assert (card.format, card.size) == ("PNG", (1146, 600))
+
+
+def test_the_site_passes_its_checks_there(html):
+    assert [line for check in check_site(html, "/robot/course/") for line in check.problems] == []
+
+
+def test_links_of_the_404_page_begin_at_the_site_s_root(html):
+    page = parsed(html, "404")
+    inside = [tag["href"] for tag in page.select("a[href], link[href]") if tag["href"][0] != "#"]
+    assert len(inside) > 10
+    assert [href for href in inside if not href.startswith(("/robot/course/", ADDRESS))] == []
