@@ -17,6 +17,7 @@ from robo_genesis.build import npm, up_to_date
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.command import TIMEOUT, Progress, say
 from robo_genesis.build.execute import execute_pages, kernel_environment
+from robo_genesis.build.page_progress import reporting
 from robo_genesis.build.page_results import PageResult, failure_report
 from robo_genesis.build.page_store import (
     Verify,
@@ -206,15 +207,17 @@ def _execute(
     """
     cores = os.cpu_count() or 1
     progress("execute", f"{len(pages)} pages")
-    results = execute_pages(
-        pages,
-        into,
-        reuse=not build.release,
-        jobs=build.jobs or max(1, min(cores, len(pages))),
-        timeout=build.timeout,
-        environment=kernel_environment(build.root, build.cache, build.command),
-        on_progress=partial(progress, "execute"),
-    )
+    with reporting(progress) as report:
+        results = execute_pages(
+            pages,
+            into,
+            reuse=not build.release,
+            jobs=build.jobs or max(1, min(cores, len(pages))),
+            timeout=build.timeout,
+            environment=kernel_environment(build.root, build.cache, build.command),
+            logs=build.cache / project.LOGS,
+            report=report,
+        )
     if any(result.failure for result in results):
         raise BuildError(failure_report(results))
     return results
