@@ -64,7 +64,7 @@ def execute_pages(
         environment: variables for the kernels.
         logs: the folder that keeps, for each page, a file with all that its last run wrote. By
             default it is not kept.
-        report: is told of each event, and shows how far the running pages are; by default nothing
+        report: gets each event, and shows how far the running pages are; by default nothing
             is shown.
 
     Returns:

@@ -173,7 +173,7 @@ def _failing_line(ran: NotebookNode) -> int:
 def _first_line(page: Page, index: int) -> int:
     """Return the number of a cell's first line of code in the page's source, counted from 1.
 
-    The source map has the line after the fence, where options of the cell may stand.
+    The source map has the line after the fence, where options of the cell may be.
     """
     code, begin = page.notebook.cells[index].source.splitlines(), page.notebook.metadata.source_map
     text: list[str] = []
