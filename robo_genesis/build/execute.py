@@ -49,7 +49,7 @@ def execute_pages(
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them, the longest first.
 
-    Pages that would compile the same kernels do not run at the same time; see `CompiledKernels`.
+    With an empty cache, one page compiles the kernels that all share; see `CompiledKernels`.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
     behind on Ctrl-C.
