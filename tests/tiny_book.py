@@ -86,8 +86,13 @@ def old_bundle(folder: Path, backend: str) -> Path:
     return place / "log.txt"
 
 
-def start(script: str, folder: Path, *more: str, **settings: str) -> subprocess.Popen[str]:
-    """Start a command on a folder's tiny book, with more arguments and these settings alone."""
+def start(
+    script: str, folder: Path, *more: str, own_group: bool = False, **settings: str
+) -> subprocess.Popen[str]:
+    """Start a command on a folder's tiny book, with more arguments and these settings alone.
+
+    In a process group of its own, it can be sent what a terminal sends on Ctrl-C.
+    """
     arguments = ["--book", str(folder / "book"), "--cache", str(folder / "cache"), *more]
     kept = {name: value for name, value in os.environ.items() if name not in SETTINGS}
     return subprocess.Popen(
@@ -96,6 +101,7 @@ def start(script: str, folder: Path, *more: str, **settings: str) -> subprocess.
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        process_group=0 if own_group else None,
     )
 
 

@@ -4,24 +4,36 @@ import multiprocessing
 import os
 import tempfile
 import uuid
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
 from robo_genesis.build.command import TIMEOUT
+from robo_genesis.build.compiled_kernels import CompiledKernels
 from robo_genesis.build.kernels import interrupts_blocked, kill_with_descendants
-from robo_genesis.build.page_folder import OUTPUTS, PageRefused
+from robo_genesis.build.page_folder import OUTPUTS, PageRefused, Record
+from robo_genesis.build.page_progress import Lines, Underway
 from robo_genesis.build.page_results import Failure, PageResult, find_bundle
-from robo_genesis.build.page_store import last_seconds, stored_result
+from robo_genesis.build.page_store import last_record, stored_result
 from robo_genesis.build.page_worker import PageRun, work
 from robo_genesis.core import project
 from robo_genesis.core.project import COMMAND
-from robo_genesis.lessons.book_pages import Page
+from robo_genesis.lessons.book_pages import Page, cell_sources
 
-HEARTBEAT = 30.0
-Running = dict[Any, tuple[Any, PageRun]]
-"""The worker process and the run of each page that runs, by the connection of its result."""
+
+@dataclass(frozen=True, slots=True)
+class Worker:
+    """The process that executes one page, the run, and how far it is."""
+
+    process: Any
+    run: PageRun
+    underway: Underway
+
+
+Running = dict[Any, Worker]
+"""The workers that run, by the connection of their progress and result."""
 
 
 def execute_pages(
@@ -32,10 +44,12 @@ def execute_pages(
     jobs: int = 1,
     timeout: int = TIMEOUT,
     environment: Mapping[str, str] | None = None,
-    on_progress: Callable[[str, str], None] = lambda what, event: None,
-    heartbeat: float = HEARTBEAT,
+    logs: Path | None = None,
+    report: Lines | None = None,
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them, the longest first.
+
+    With an empty cache, one page compiles the kernels that all share; see `CompiledKernels`.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
     behind on Ctrl-C.
@@ -48,8 +62,10 @@ def execute_pages(
         jobs: how many pages run at once.
         timeout: seconds for one cell; a page's front matter may set another.
         environment: variables for the kernels.
-        on_progress: called with a page's name and an event, or with the running pages and "".
-        heartbeat: seconds without an event after which the running pages are reported.
+        logs: the folder that keeps, for each page, a file with all that its last run wrote. By
+            default it is not kept.
+        report: gets each event, and shows how far the running pages are; by default nothing
+            is shown.
 
     Returns:
         One result for each page, in the order of `pages`.
@@ -57,32 +73,38 @@ def execute_pages(
     Raises:
         OSError: the store cannot be used.
     """
-    results = _reused(pages, places, on_progress) if reuse else {}
-    last = {page.docname: last_seconds(places[page.docname].parents[1], page) for page in pages}
+    report, environment = report or Lines(), environment or {}
+    results = _reused(pages, places, report) if reuse else {}
+    last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
     waiting = longest_first((page for page in pages if page.docname not in results), last)
-    for page in waiting:
-        places[page.docname].parent.mkdir(parents=True, exist_ok=True)  # fails before any run
+    for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
+        folder.mkdir(parents=True, exist_ok=True)  # fails before any run
+    compiled = CompiledKernels(pages, environment)
     running: Running = {}
     with tempfile.TemporaryDirectory(prefix="robo-") as scratch:
+        own = Path(scratch)
         try:
             while waiting or running:
-                while waiting and len(running) < jobs:
-                    page = waiting.pop(0)
-                    on_progress(page.docname, "started")
-                    place, own = places[page.docname], Path(scratch)
-                    run = PageRun(page, uuid.uuid4().hex, place, own, timeout, environment or {})
-                    _start(run, running)
-                ended = wait(list(running), timeout=heartbeat)
-                if not ended:
-                    names = ", ".join(run.page.docname for _, run in running.values())
-                    on_progress(f"{len(running)} running: {names}", "")
-                for connection in ended:
-                    result = _receive(connection, *running[connection])
+                while page := _take(waiting, running, jobs, compiled):
+                    place, cells = places[page.docname], len(cell_sources(page))
+                    log = (logs or own) / f"{place.parent.name}.log"
+                    run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
+                    kept = log if logs else None
+                    underway = Underway(page.docname, cells, last[page.docname], kept)
+                    report.say(page.docname, underway.started())
+                    _start(run, underway, running)
+                for connection in wait(list(running), timeout=report.pause()):
+                    result = _receive(connection, running[connection])
+                    if result is None:
+                        continue
                     del running[connection]
                     results[result.page.docname] = result
-                    on_progress(result.page.docname, f"{result.status} in {result.seconds:.0f} s")
+                    if result.status == "executed":
+                        compiled.add(result.page)
+                    report.say(result.page.docname, f"{result.status} in {result.seconds:.0f} s")
+                report.show([worker.underway for worker in running.values()])
         finally:
-            kill_with_descendants(process.pid for process, _ in running.values())
+            kill_with_descendants(worker.process.pid for worker in running.values())
     return [results[page.docname] for page in pages]
 
 
@@ -102,23 +124,24 @@ def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -
     }
 
 
-def longest_first(pages: Iterable[Page], seconds: Mapping[str, float | None]) -> list[Page]:
+def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> list[Page]:
     """Return pages in the order in which they start.
 
     Args:
         pages: the pages to execute.
-        seconds: how long the last execution of each page took, by name. Pages with None come first.
+        last: the record of the last execution of each page, by name. Pages without one come first,
+            and among them those with the most cells.
     """
 
-    def sooner(page: Page) -> float:
-        known = seconds[page.docname]
-        return float("-inf") if known is None else -known
+    def sooner(page: Page) -> tuple[float, int]:
+        record = last[page.docname]
+        return (-record.seconds if record else float("-inf")), -len(cell_sources(page))
 
     return sorted(pages, key=sooner)
 
 
 def _reused(
-    pages: Sequence[Page], places: Mapping[str, Path], on_progress: Callable[[str, str], None]
+    pages: Sequence[Page], places: Mapping[str, Path], report: Lines
 ) -> dict[str, PageResult]:
     """Return the results of the pages that need no run, by name, and report them."""
     results = {}
@@ -127,15 +150,27 @@ def _reused(
             result = stored_result(page, places[page.docname])
         except PageRefused as refused:
             reason = str(refused).splitlines()[0]
-            on_progress(page.docname, f"changed since it was stored; executed again ({reason})")
+            report.say(page.docname, f"changed since it was stored; executed again ({reason})")
             continue
         if result is not None:
             results[page.docname] = result
-            on_progress(page.docname, result.status)
+            report.say(page.docname, result.status)
     return results
 
 
-def _start(run: PageRun, running: Running) -> None:
+def _take(
+    waiting: list[Page], running: Running, jobs: int, compiled: CompiledKernels
+) -> Page | None:
+    """Remove the page that starts now from those that wait; return None if none may start."""
+    if len(running) >= jobs:
+        return None
+    page = compiled.next_page(waiting, [worker.run.page for worker in running.values()])
+    if page:
+        waiting.remove(page)
+    return page
+
+
+def _start(run: PageRun, underway: Underway, running: Running) -> None:
     """Start the worker process of one page and enter it in `running`."""
     # Spawned, not forked: the worker inherits neither threads nor open databases.
     context = multiprocessing.get_context("spawn")
@@ -143,21 +178,29 @@ def _start(run: PageRun, running: Running) -> None:
     process = context.Process(target=work, args=(run, sender))
     with interrupts_blocked():  # a Ctrl-C from here on finds the worker among the running
         process.start()
-        running[receiver] = (process, run)
+        running[receiver] = Worker(process, run, underway)
     sender.close()
 
 
-def _receive(connection: Any, process: Any, run: PageRun) -> PageResult:
-    """Return the result of a page whose worker sent it, or died without sending it."""
+def _receive(connection: Any, worker: Worker) -> PageResult | None:
+    """Return the result of a page whose worker sent it, or died without sending it.
+
+    It is None if a cell starts.
+    """
+    run, log = worker.run, worker.underway.log
     try:
-        seconds, failure = connection.recv()
+        received = connection.recv()
+        if isinstance(received, int):
+            worker.underway.reach(received)
+            return None
+        seconds, failure = received
     except EOFError:
-        process.join()
-        message = f"the worker process ended with status {process.exitcode}; out of memory?"
+        worker.process.join()
+        message = f"the worker process ended with status {worker.process.exitcode}; out of memory?"
         seconds, failure = 0.0, Failure("WorkerDied", message)
-    process.join()
+    worker.process.join()
     connection.close()
     if failure:
-        return PageResult(run.page, "failed", seconds, run.run_id, failure=failure)
+        return PageResult(run.page, "failed", seconds, run.run_id, failure=failure, log=log)
     bundle = find_bundle(run.place / OUTPUTS, run.run_id) if run.page.declares_bundle else None
-    return PageResult(run.page, "executed", seconds, run.run_id, bundle, folder=run.place)
+    return PageResult(run.page, "executed", seconds, run.run_id, bundle, folder=run.place, log=log)

@@ -2,7 +2,8 @@
 
 import json
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -22,8 +23,10 @@ ANSI = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
 class Failure:
     """Why a page failed.
 
-    `cell` counts the code cells from 1 and `line` the lines of the page's source; both are None
-    when the failure belongs to no cell. `log` holds the last lines the engine wrote.
+    `cell` counts the code cells from 1; `line` is the number of the failing line in the page's
+    source, and `source` that line: the one that raised, or called what raised, or the cell's first
+    if no line is known. Number and cell are None when the failure belongs to no cell. `log` holds
+    the last lines that were written.
     """
 
     error: str
@@ -39,7 +42,8 @@ class PageResult:
     """The result of one page in one build.
 
     `bundle` is None if the page declares none. `folder` is the page's folder in the store; a failed
-    page may have none.
+    page may have none. `log` is the file with all that an executed page wrote, None if that is not
+    kept.
     """
 
     page: Page
@@ -49,6 +53,7 @@ class PageResult:
     bundle: Path | None = None
     failure: Failure | None = None
     folder: Path | None = None
+    log: Path | None = None
 
 
 def find_bundle(left: Path, run_id: str) -> Path | None:
@@ -81,14 +86,15 @@ def missing_bundle(left: Path, page: Page, run_id: str) -> Failure | None:
     )
 
 
-def unexpected_outcome(source: NotebookNode, executed: NotebookNode) -> Failure | None:
+def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
     """Return the first cell that lacks its figure, or whose exception is not the expected one.
 
     Args:
-        source: the page's notebook now; tags and `expects` are read here, because a stored
-            notebook keeps those of its execution.
+        page: the page now; tags and `expects` are read here, because a stored notebook keeps those
+            of its execution.
         executed: the same code cells with outputs.
     """
+    source = page.notebook
     ran = [cell for cell in executed.cells if cell.cell_type == "code"]
     places = [index for index, cell in enumerate(source.cells) if cell.cell_type == "code"]
     for index, cell in zip(places, ran, strict=True):
@@ -96,10 +102,10 @@ def unexpected_outcome(source: NotebookNode, executed: NotebookNode) -> Failure 
         kinds = {kind for out in cell.outputs for kind in out.get("data", {})}
         if "figure" in metadata.get("tags", []) and not kinds & PICTURES:
             reason = "the cell is tagged figure, but shows none."
-            return at_cell(source, index, "FigureMissing", reason)
+            return at_cell(page, index, "FigureMissing", reason)
         raised = [out for out in cell.outputs if out.output_type == "error"]
         if contradiction := _contradiction(metadata, raised):
-            return at_cell(source, index, "ExpectedException", contradiction)
+            return at_cell(page, index, "ExpectedException", contradiction, cell)
     return None
 
 
@@ -125,38 +131,56 @@ def _contradiction(metadata: NotebookNode, raised: Sequence[NotebookNode]) -> st
 
 
 def at_cell(
-    notebook: NotebookNode, index: int, error: str, message: str, log: Iterable[str] = ()
+    page: Page, index: int, error: str, message: str, ran: NotebookNode | None = None
 ) -> Failure:
     """Return a failure with the place of a cell.
 
     Args:
-        notebook: the notebook, read with its source map.
+        page: the page, read with its source map.
         index: the cell's position among all cells.
         error: name of the exception.
         message: its whole message.
-        log: last log lines.
+        ran: the cell with its outputs; the traceback among them names the failing line.
     """
-    lines = notebook.metadata.get("source_map", [])
-    numbers = [cell.cell_type for cell in notebook.cells[: index + 1]]
+    cells = page.notebook.cells
+    lines = cells[index].source.splitlines() or [""]
+    same = ran and ran.source == cells[index].source  # no comment was added after the run
+    failing = min(_failing_line(ran), len(lines)) if same else 1
     return Failure(
         error,
         message,
-        cell=numbers.count("code"),
-        line=lines[index] + 1 if index < len(lines) else None,
-        source=next(iter(notebook.cells[index].source.strip().splitlines()), ""),
-        log=tuple(log),
+        cell=[cell.cell_type for cell in cells[: index + 1]].count("code"),
+        line=_first_line(page, index) + failing - 1,
+        source=lines[failing - 1].strip(),
     )
 
 
-def last_log_lines(notebook: NotebookNode, upto: int) -> tuple[str, ...]:
-    """Return the last lines that the cells up to a position wrote, the engine's log among them."""
-    written = [
-        output.text
-        for cell in notebook.cells[: upto + 1]
-        for output in cell.get("outputs", [])
-        if output.output_type == "stream"
-    ]
-    return last_lines("".join(written))
+def _failing_line(ran: NotebookNode) -> int:
+    """Return which line of an executed cell failed, 1 if its outputs do not say so.
+
+    It is the last line of this cell in the traceback: later frames are of other cells and files.
+    """
+    errors = [out for out in ran.get("outputs", []) if out.output_type == "error"]
+    if not errors:
+        return 1
+    text = ANSI.sub("", "\n".join(errors[-1].traceback))
+    found = re.findall(rf"^ *Cell In\[{ran.execution_count}\], line (\d+)", text, re.MULTILINE)
+    # A syntax error that is found before the cell is compiled has a line, but no frame.
+    found = found or re.findall(r"\(<\w+>, line (\d+)\)$", errors[-1].evalue)
+    return int(found[-1]) if found else 1
+
+
+def _first_line(page: Page, index: int) -> int:
+    """Return the number of a cell's first line of code in the page's source, counted from 1.
+
+    The source map has the line after the fence, where options of the cell may be.
+    """
+    code, begin = page.notebook.cells[index].source.splitlines(), page.notebook.metadata.source_map
+    text: list[str] = []
+    with suppress(OSError, UnicodeError):  # the page may have been edited since it was read
+        text = page.path.read_text("utf8").splitlines()
+    places = range(begin[index], len(text))
+    return 1 + next((n for n in places if text[n : n + len(code)] == code), begin[index])
 
 
 def last_lines(text: str) -> tuple[str, ...]:
@@ -170,14 +194,15 @@ def failure_report(results: Sequence[PageResult]) -> str:
     Args:
         results: all pages of the build.
     """
-    failed = [(result.page, result.failure) for result in results if result.failure]
+    failed = [(r.page, r.failure, r.log) for r in results if r.failure]
     lines = [f"{len(failed)} of {len(results)} pages failed."]
-    for page, failure in failed:
+    for page, failure, log in failed:
         place = page.docname
         if failure.cell is not None:
             place += f", code cell {failure.cell}, line {failure.line}: {failure.source}"
         message = f"{failure.error}: {failure.message}".splitlines()
         lines += ["", place, *(f"    {line}" for line in message)]
         if failure.log:
-            lines += ["    last log lines:", *(f"    | {line}" for line in failure.log)]
+            whole = f" of {log}" if log else ""
+            lines += [f"    last lines{whole}:", *(f"    | {line}" for line in failure.log)]
     return "\n".join(lines)

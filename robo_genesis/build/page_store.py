@@ -77,7 +77,7 @@ def stored_result(page: Page, place: Path) -> PageResult | None:
         return None
     record = read_record(place)
     notebook = require_this_page(place, record, page, place.name)
-    outcome = unexpected_outcome(page.notebook, notebook)
+    outcome = unexpected_outcome(page, notebook)
     status: Status = "failed" if outcome else "reused"
     return PageResult(
         page, status, 0.0, record.run_id, recorded_bundle(place, record), outcome, place
@@ -92,10 +92,10 @@ def folders(store: Path, page: Page) -> list[Path]:
     return sorted(found, key=lambda path: path.stat().st_mtime, reverse=True)
 
 
-def last_seconds(store: Path, page: Page) -> float | None:
-    """Return how long the last stored execution of a page took, None if there was none."""
+def last_record(store: Path, page: Page) -> Record | None:
+    """Return the record of the last stored execution of a page, None if there was none."""
     with suppress(PageRefused, IndexError):
-        return read_record(folders(store, page)[0]).seconds
+        return read_record(folders(store, page)[0])
     return None
 
 
@@ -225,7 +225,7 @@ def _accepted(
     again = AGAIN.format(page.docname)
     try:
         notebook = require_this_page(place, record, page, into[page.docname].name)
-        if failure := unexpected_outcome(page.notebook, notebook):
+        if failure := unexpected_outcome(page, notebook):
             raise PageRefused("outcome", f"{failure.error}: {failure.message}")
         if bundle := recorded_bundle(place, record):
             verify(bundle, record.run_id)

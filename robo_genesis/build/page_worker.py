@@ -3,10 +3,11 @@
 import os
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Any
 
 import nbclient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError
@@ -23,7 +24,6 @@ from robo_genesis.build.page_results import (
     Failure,
     at_cell,
     last_lines,
-    last_log_lines,
     missing_bundle,
     unexpected_outcome,
 )
@@ -37,13 +37,15 @@ class PageRun:
     """One run of one page: what its worker process needs to know.
 
     `place` is the page's folder in the store; `scratch` is temporary, and is removed with the build
-    even where the worker is killed; `timeout` is in seconds, for one cell.
+    even where the worker is killed; `log` is the file that gets what cells and kernel write;
+    `timeout` is in seconds, for one cell.
     """
 
     page: Page
     run_id: str
     place: Path
     scratch: Path
+    log: Path
     timeout: int
     environment: Mapping[str, str]
 
@@ -59,11 +61,12 @@ class PageRun:
 
 
 def work(run: PageRun, connection: Connection) -> None:
-    """Execute one page in this process and send back seconds and failure.
+    """Execute one page in this process and send back its progress, then seconds and failure.
 
     Args:
         run: what to execute.
-        connection: takes one pair; a process that ends without sending it has failed as well.
+        connection: takes the number of each code cell that starts, counted from 1, and in the end
+            one pair; a process that ends without sending it has failed as well.
     """
     die_with_parent(run.scratch)
     runtime = Path(tempfile.mkdtemp(dir=run.scratch))
@@ -78,19 +81,35 @@ def work(run: PageRun, connection: Connection) -> None:
     os.environ.update(environment)
     # The engine's compiled parts write past Python: to a file, because the build prints its
     # progress here, and because a crash would lose the last lines.
-    raw = runtime / "raw.log"
-    descriptor = os.open(raw, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    descriptor = os.open(run.log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND)
     for standard in (1, 2):
         os.dup2(descriptor, standard)
     begin = time.monotonic()
-    failure = execute_page(run)
+    failure = execute_page(run, connection.send)
     if failure:
-        failure = replace(failure, log=failure.log + last_lines(raw.read_text(errors="replace")))
+        failure = replace(failure, log=last_lines(run.log.read_text("utf8", errors="replace")))
     connection.send((time.monotonic() - begin, failure))
 
 
-def execute_page(run: PageRun) -> Failure | None:
-    """Execute a page in an empty temporary folder; store it, or return why it failed."""
+class LoggingClient(nbclient.NotebookClient):
+    """Writes what cells print to this process's standard output, which is the page's log."""
+
+    def process_message(
+        self, msg: dict[str, Any], cell: NotebookNode, cell_index: int
+    ) -> NotebookNode | None:
+        """Keep one message of the kernel in the notebook, and write its text."""
+        if msg["msg_type"] == "stream":
+            os.write(1, msg["content"]["text"].encode("utf8", errors="replace"))
+        return super().process_message(msg, cell, cell_index)
+
+
+def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None:
+    """Execute a page in an empty temporary folder; store it, or return why it failed.
+
+    Args:
+        run: what to execute.
+        on_cell: called with the number of each code cell that starts.
+    """
     notebook, error = run.page.notebook, None
     begins: dict[int, float] = {}  # of each cell that started, by its index
     seconds: list[float] = []
@@ -98,6 +117,8 @@ def execute_page(run: PageRun) -> Failure | None:
     def cell_starts(cell: NotebookNode, cell_index: int) -> None:
         CleanKernelManager.busy = True
         begins[cell_index] = time.monotonic()
+        before = notebook.cells[: cell_index + 1]
+        on_cell(sum(cell.cell_type == "code" for cell in before))
 
     def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
         CleanKernelManager.busy = False
@@ -106,16 +127,16 @@ def execute_page(run: PageRun) -> Failure | None:
     begin = time.monotonic()
     with tempfile.TemporaryDirectory(dir=run.scratch) as folder:
         try:
-            nbclient.execute(
+            LoggingClient(
                 notebook,
-                cwd=folder,
+                resources={"metadata": {"path": folder}},
                 timeout=notebook.metadata.get("execution", {}).get("timeout", run.timeout),
                 kernel_manager_class=CleanKernelManager,
                 extra_arguments=ARGUMENTS,
                 record_timing=False,
                 on_cell_execute=cell_starts,
                 on_cell_executed=cell_ends,
-            )
+            ).execute()
         except Exception as caught:  # a dead kernel, or none that starts, is a failed page as well
             error = caught
     elapsed = time.monotonic() - begin
@@ -142,7 +163,7 @@ def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failu
     """Return why a page failed, None if it did not."""
     notebook = run.page.notebook
     if error is None:
-        return unexpected_outcome(notebook, notebook) or missing_bundle(
+        return unexpected_outcome(run.page, notebook) or missing_bundle(
             run.left, run.page, run.run_id
         )
     name, message = type(error).__name__, str(error)
@@ -153,4 +174,4 @@ def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failu
     if not started:
         return Failure(name, message)
     last = started[-1]
-    return at_cell(notebook, last, name, message, last_log_lines(notebook, last))
+    return at_cell(run.page, last, name, message, notebook.cells[last])

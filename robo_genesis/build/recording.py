@@ -3,13 +3,13 @@
 import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from robo_genesis.build.backend_probe import expected_backend
 from robo_genesis.build.command import TIMEOUT, Progress, say
 from robo_genesis.build.execute import execute_pages, kernel_environment
+from robo_genesis.build.page_progress import reporting
 from robo_genesis.build.page_results import PageResult, failure_report
 from robo_genesis.build.page_store import Verify, places
 from robo_genesis.build.stages import build_lock
@@ -141,13 +141,15 @@ def _execute(recording: Recording, page: Page, folder: Path, progress: Progress)
     environment = kernel_environment(
         recording.root, recording.cache, COMMAND, **contract(recording)
     )
-    [result] = execute_pages(
-        [page],
-        places([page], folder, recording.root, environment),
-        timeout=recording.timeout,
-        environment=environment,
-        on_progress=partial(progress, "execute"),
-    )
+    with reporting(progress) as report:
+        [result] = execute_pages(
+            [page],
+            places([page], folder, recording.root, environment),
+            timeout=recording.timeout,
+            environment=environment,
+            logs=recording.cache / project.LOGS,
+            report=report,
+        )
     if result.failure:
         raise RecordingError(failure_report([result]))
     return result

@@ -17,6 +17,8 @@ from robo_genesis.build import npm, up_to_date
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.command import TIMEOUT, Progress, say
 from robo_genesis.build.execute import execute_pages, kernel_environment
+from robo_genesis.build.kernels import described
+from robo_genesis.build.page_progress import reporting
 from robo_genesis.build.page_results import PageResult, failure_report
 from robo_genesis.build.page_store import (
     Verify,
@@ -206,15 +208,17 @@ def _execute(
     """
     cores = os.cpu_count() or 1
     progress("execute", f"{len(pages)} pages")
-    results = execute_pages(
-        pages,
-        into,
-        reuse=not build.release,
-        jobs=build.jobs or max(1, min(cores, len(pages))),
-        timeout=build.timeout,
-        environment=kernel_environment(build.root, build.cache, build.command),
-        on_progress=partial(progress, "execute"),
-    )
+    with reporting(progress) as report:
+        results = execute_pages(
+            pages,
+            into,
+            reuse=not build.release,
+            jobs=build.jobs or max(1, min(cores, len(pages))),
+            timeout=build.timeout,
+            environment=kernel_environment(build.root, build.cache, build.command),
+            logs=build.cache / project.LOGS,
+            report=report,
+        )
     if any(result.failure for result in results):
         raise BuildError(failure_report(results))
     return results
@@ -263,12 +267,12 @@ def build_lock(cache: Path) -> AbstractContextManager[None]:
             folders may share.
 
     Raises:
-        BuildError: another process holds it; the message names that process.
+        BuildError: another process holds it; the message names that process, its command and start.
     """
     return locked(
         cache / project.COMPILED / "build.lock",
         lambda process: BuildError(
-            f"Another build, or a test of the engine, runs here (process {process}). Wait for it, "
-            "or stop it with Ctrl-C there."
+            f"Another build, or a test of the engine, runs here:\n{described(process)}\n"
+            f"Wait until it ends, or stop it with Ctrl-C in its terminal or `kill {process}`."
         ),
     )

@@ -20,6 +20,8 @@ CACHE = ROOT / ".cache"
 STORE, COMPILED, RECORDING, STAGING = "pages", "engine", "recording", "staging"
 """Below the cache folder: executed pages, what the engine compiles, the lab that is being recorded,
 and how the names of the folders begin in which builds render."""
+LOGS = "logs"
+"""Below the cache folder: what each page wrote when it was last executed."""
 
 ENGINE = "genesis-world"
 COURSE = "robo-genesis"
@@ -45,8 +47,9 @@ SET_BY_ENGINE = ("QD_ENABLE_PYBUF",)
 """Switches that Genesis itself sets when it is imported; they decide only how messages print."""
 
 HOME_FOLDER = re.compile(r"/(?:home|Users)/[^/:;,\s]+|(?<![\w.-])/root(?![\w.-])")
+COMPILED_KERNELS = "QD_OFFLINE_CACHE_FILE_PATH"
 CACHE_FOLDERS = {
-    "QD_OFFLINE_CACHE_FILE_PATH": "kernels",
+    COMPILED_KERNELS: "kernels",
     "NUMBA_CACHE_DIR": "numba",
     "MESA_SHADER_CACHE_DIR": "mesa",
     "MPLCONFIGDIR": "matplotlib",  # its font list; also ignores a user's matplotlibrc

@@ -145,7 +145,10 @@ def plain_python(notebook: NotebookNode) -> list[str]:
 
 @lru_cache(maxsize=1024)
 def _plain_python(cell: str) -> str:
-    return TransformerManager().transform_cell(cell)
+    try:
+        return TransformerManager().transform_cell(cell)
+    except SyntaxError:  # of indentation; the execution reports its line
+        return cell
 
 
 def code_digest(page: Page) -> str:

@@ -1,6 +1,7 @@
 """`make book` on tiny books: what it publishes, and what stops it with the old site in place."""
 
 import os
+import re
 import signal
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,7 +22,7 @@ from tiny_book import (
 )
 
 from robo_genesis.build import up_to_date
-from robo_genesis.build.kernels import kill_with_descendants
+from robo_genesis.build.kernels import described, kill_with_descendants
 from robo_genesis.build.page_folder import StoreError
 from robo_genesis.build.stages import (
     Build,
@@ -187,7 +188,9 @@ def test_a_broken_page_fails_with_status_1_a_report_and_the_old_site(tmp_path):
     marker = published_marker(make_book(tmp_path, broken=notebook(broken), good=LAB))
     report = fails("book.py", tmp_path, JOBS="2")
     assert "1 of 2 pages failed." in report
-    assert "broken, code cell 1, line 10: import sys" in report
+    assert "broken, code cell 1, line 12: 1 / 0" in report
+    log = tmp_path / "cache/logs/broken.log"
+    assert f"last lines of {log}:" in report
     assert "ZeroDivisionError: division by zero" in report
     assert "| engine: last words" in report
     assert report.endswith("FAILED: nothing was published.\n")
@@ -224,20 +227,26 @@ DEAF = "signal.signal(signal.SIGINT, signal.SIG_IGN)"
 
 
 @pytest.mark.parametrize(
-    ("sent", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 130), (signal.SIGKILL, -9)]
+    ("sent", "to", "status"),
+    [
+        (signal.SIGINT, os.killpg, 130),  # as a terminal sends Ctrl-C: to all of its processes
+        (signal.SIGINT, os.kill, 130),
+        (signal.SIGTERM, os.kill, 130),
+        (signal.SIGKILL, os.kill, -9),
+    ],
 )
-def test_an_end_by_signal_leaves_the_old_site_and_no_process(tmp_path, sent, status):
+def test_an_end_by_signal_leaves_the_old_site_and_no_process(tmp_path, sent, to, status):
     pids = {tmp_path / "one.pid": "", tmp_path / "two.pid": DEAF}
     pages = (notebook(cell(WAITS.format(file=str(f), before=b))) for f, b in pids.items())
     book = make_book(tmp_path, **dict(zip(("one", "two"), pages, strict=True)))
     marker = published_marker(book)
-    process = start("book.py", tmp_path, JOBS="2")
+    process = start("book.py", tmp_path, own_group=True, JOBS="2")
     wait_for(process, *pids)
     below = {child.pid: child for child in psutil.Process(process.pid).children(recursive=True)}
     kernels = [below[int(path.read_text())] for path in pids]
     scratch = Path(kernels[0].cwd()).parent
     assert scratch.name.startswith("robo-")
-    process.send_signal(sent)
+    to(process.pid, sent)
     _, err = process.communicate(timeout=60)
     assert process.returncode == status
     assert status < 0 or "Interrupted: nothing was published." in err
@@ -302,11 +311,29 @@ def test_another_installed_engine_stops_the_build_before_any_page(tmp_path, monk
 
 
 def test_a_second_build_at_the_same_time_is_refused_with_the_first_one_s_process(tmp_path):
-    with (
-        build_lock(tmp_path),
-        pytest.raises(BuildError, match=rf"process {os.getpid()}\)"),
-        build_lock(tmp_path),
-    ):
-        pass
-    with build_lock(tmp_path):
-        pass
+    """The first build waits in a pipe that is its table of contents."""
+    first = make_book(tmp_path)
+    (first / "_toc.yml").unlink()
+    os.mkfifo(first / "_toc.yml")
+    process = start("book.py", tmp_path)
+    try:
+        wait_for(process, tmp_path / "cache/engine/build.lock")
+        make_book(tmp_path / "second")
+        report = fails("book.py", tmp_path / "second", "--cache", str(tmp_path / "cache"))
+    finally:
+        process.kill()
+        process.communicate()
+    begin = rf"process {process.pid} since \d{{4}}-\d\d-\d\d \d\d:\d\d:\d\d: "
+    assert re.search(rf"^{begin}.*build_scripts/book\.py --book {first} ", report, re.MULTILINE)
+    assert f"stop it with Ctrl-C in its terminal or `kill {process.pid}`." in report
+
+
+def test_the_lock_of_builds_is_free_after_a_build(tmp_path):
+    for _ in range(2):
+        with build_lock(tmp_path):
+            pass
+
+
+@pytest.mark.parametrize("pid", ["unknown", "4194305"])  # more than Linux gives out
+def test_a_process_that_nothing_is_known_of_is_described_by_its_id(pid):
+    assert described(pid) == f"process {pid}"

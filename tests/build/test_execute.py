@@ -4,6 +4,7 @@ import sys
 import threading
 from multiprocessing.context import SpawnProcess
 from pathlib import Path
+from types import SimpleNamespace
 
 import nbformat
 import psutil
@@ -11,8 +12,9 @@ import pytest
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
 
 from robo_genesis.build.execute import execute_pages, longest_first
+from robo_genesis.build.page_progress import Lines
 from robo_genesis.build.page_results import failure_report
-from robo_genesis.build.page_store import last_seconds, places, stored_result
+from robo_genesis.build.page_store import last_record, places, stored_result
 from robo_genesis.core.project import (
     ROOT,
     engine_cache_environment,
@@ -72,7 +74,9 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
     assert "5 of 7 pages failed." in report
     place = report.index("check, code cell 2, line ")
     part = report[place : report.index("\n\n", place)]
-    assert part.startswith("check, code cell 2, line 18: # proof\n")
+    assert part.startswith(
+        "check, code cell 2, line 19: raise CheckFailed('[one_factor] kp changed,\\nkv too')\n"
+    )
     assert "    CheckFailed: [one_factor] kp changed,\n    kv too\n" in part
     assert "    | engine line 5\n" in part
     assert part.endswith("    | engine line 19")
@@ -193,7 +197,7 @@ def test_a_page_that_changed_since_it_was_stored_is_executed_again_with_one_line
     path.unlink()
     if content:
         path.write_text(content)
-    result = execute(lab, on_progress=lambda *words: said.append(words))["lab"]
+    result = execute(lab, report=Lines(lambda *words: said.append(words)))["lab"]
     assert result.status == "executed"
     assert result.run_id != before.run_id
     assert said[0][1].startswith("changed since it was stored; executed again (")
@@ -238,7 +242,7 @@ def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path, spoil):
     spoil(tmp_path / "store" / "page")
     said = []
     with pytest.raises(OSError, match=str(tmp_path / "store" / "page")):
-        execute(tmp_path, on_progress=lambda *words: said.append(words))
+        execute(tmp_path, report=Lines(lambda *words: said.append(words)))
     assert said == []
 
 
@@ -251,11 +255,12 @@ def test_what_cannot_be_stored_fails_its_page(tmp_path):
     assert results["good"].status == "executed"
 
 
-def test_the_longest_page_starts_first_and_a_new_one_before_it(tmp_path):
-    make_book(tmp_path, **{name: notebook(cell("1")) for name in "abcd"})
-    seconds = {"a": 2.0, "b": None, "c": 30.0, "d": 2.0}
-    found = longest_first(find_pages(tmp_path / "book"), seconds)
-    assert [page.docname for page in found] == ["b", "c", "a", "d"]
+def test_the_longest_page_starts_first_and_before_it_new_ones_with_many_cells_first(tmp_path):
+    cells = {"a": 1, "b": 1, "c": 1, "d": 9, "e": 2}
+    make_book(tmp_path, **{name: notebook(*[cell("1")] * n) for name, n in cells.items()})
+    last = {name: SimpleNamespace(seconds=s) for name, s in (("a", 2.0), ("c", 30.0), ("d", 2.0))}
+    found = longest_first(find_pages(tmp_path / "book"), {"b": None, "e": None} | last)
+    assert [page.docname for page in found] == ["e", "b", "c", "d", "a"]
 
 
 def test_pages_start_in_the_order_of_their_stored_durations(tmp_path):
@@ -265,9 +270,9 @@ def test_pages_start_in_the_order_of_their_stored_durations(tmp_path):
         path = first[name].folder / "page.json"
         path.write_text(json.dumps(json.loads(path.read_text()) | {"seconds": float(seconds)}))
     pages, said = find_pages(tmp_path / "book"), []
-    assert [last_seconds(tmp_path / "store", page) for page in pages] == [0, 1, 2]
-    execute(tmp_path, reuse=False, on_progress=lambda *words: said.append(words))
-    assert [name for name, event in said if event == "started"] == ["c", "b", "a"]
+    assert [last_record(tmp_path / "store", page).seconds for page in pages] == [0, 1, 2]
+    execute(tmp_path, reuse=False, report=Lines(lambda *words: said.append(words)))
+    assert [name for name, event in said if event.startswith("started")] == ["c", "b", "a"]
 
 
 def test_kernels_are_clean(tmp_path, monkeypatch):
@@ -326,10 +331,10 @@ def test_a_long_silence_is_broken_by_what_runs(tmp_path):
     make_book(tmp_path, page=notebook(cell(code)))
 
     def hear(what, event):
-        if what == "1 running: page":
+        if what.startswith("1 running: page: cell 1 of 1, "):
             said.touch()
 
-    execute(tmp_path, timeout=30, on_progress=hear, heartbeat=0.1)
+    execute(tmp_path, timeout=30, report=Lines(hear, every=0.1))
     assert said.exists()
 
 

@@ -19,7 +19,7 @@ from robo_genesis.build.page_store import (
     folders,
     forget,
     import_pages,
-    last_seconds,
+    last_record,
     places,
     stored_result,
 )
@@ -329,13 +329,13 @@ def test_the_newest_folders_of_a_page_are_kept_and_other_pages_go(page, tmp_path
 
 
 def test_the_last_duration_is_that_of_the_newest_folder_that_can_be_read(page, tmp_path):
-    assert last_seconds(tmp_path / "store", page) is None
+    assert last_record(tmp_path / "store", page) is None
     made(page, tmp_path / "store/text/old", seconds=7)
     os.utime(tmp_path / "store/text/old", (1000, 1000))
     made(page, tmp_path / "store/text/new", seconds=3)
-    assert last_seconds(tmp_path / "store", page) == 3
+    assert last_record(tmp_path / "store", page).seconds == 3
     (tmp_path / "store/text/new/page.json").write_text("{")
-    assert last_seconds(tmp_path / "store", page) is None
+    assert last_record(tmp_path / "store", page) is None
 
 
 @pytest.mark.parametrize("broken", ["write", "rename"])
