@@ -31,7 +31,7 @@ from robo_genesis.build.site.kept import UNFIT
 from robo_genesis.build.up_to_date import history
 from robo_genesis.site.glossary import glossary_terms
 
-OWN = {"og:description", "wordcount"}
+OWN = {"og:description", "source_map", "wordcount"}
 """Metadata of a page that no other page shows."""
 
 SHOWN = (
