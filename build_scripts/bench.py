@@ -8,6 +8,7 @@ checkout; uncommitted changes are not measured. The two sides of a row run in tu
 should run on the machine. Exit status: 0 measured, 1 a command failed, 130 interrupted.
 """
 
+import atexit
 import os
 import re
 import shutil
@@ -15,6 +16,7 @@ import statistics
 import subprocess
 import sys
 import time
+import urllib.request
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
@@ -32,6 +34,8 @@ Sides = tuple[Callable[[], float], Callable[[], float]]
 """Run the course's command, or its bare counterpart, and return the elapsed time [s]."""
 
 TREE = project.CACHE / "bench"
+LONGEST = 300
+"""Seconds until `make live` must show an edit."""
 STAGE = re.compile(r"^\[ *([\d.]+) s\] (\w+)", re.MULTILINE)
 """A line of progress: seconds since the command began, and the stage."""
 SETTINGS = ("RENDER", "JOBS", "SITE_URL", project.RENDER, project.BACKEND)
@@ -117,6 +121,30 @@ def prose() -> Sides:
     return edited, partial(bare, says="build succeeded")
 
 
+def live() -> Sides:
+    """Return the times from an edit until `make live` serves it, and until Sphinx has written it."""
+    bare, page = bare_sphinx(), last_lab()
+    command, given = ("make", f"PYTHON={sys.executable}", "live"), environment(TREE, *SETTINGS)
+    server = subprocess.Popen(
+        command, cwd=TREE, env=given | {"PORT": "0"}, stdout=subprocess.PIPE, text=True
+    )
+    atexit.register(server.terminate)
+    assert server.stdout is not None
+    address = next(line.split()[0] for line in server.stdout if line.startswith("http"))
+
+    def shown() -> float:
+        sentence, begin = f"Sentence {time.time_ns()}.", time.monotonic()
+        page.path.write_text(f"{page.path.read_text('utf8')}\n\n{sentence}\n", "utf8")
+        while time.monotonic() - begin < LONGEST:
+            with urllib.request.urlopen(f"{address}{page.docname}.html") as answer:
+                if sentence in answer.read().decode():
+                    return time.monotonic() - begin
+            time.sleep(0.02)
+        raise BenchError(f"make live did not show {sentence!r} within {LONGEST} s.")
+
+    return shown, partial(bare, says="build succeeded")
+
+
 def verify() -> Sides:
     """Return the verification of all bundles, and a start of Python with its two packages."""
     return partial(make, "verify"), partial(python, "-c", "import numpy, pydantic")
@@ -155,6 +183,12 @@ def lab() -> Sides:
 ROWS = {
     "unchanged": ("make book, nothing changed", "bare Sphinx", unchanged, 1.5),
     "prose": ("make book, one page's prose edited", "bare Sphinx, kept doctrees", prose, 1.5),
+    "live": (
+        "make live, until the page has a new sentence",
+        "bare Sphinx, kept doctrees",
+        live,
+        0.7,
+    ),
     "verify": ("make verify", "start of Python, NumPy and pydantic", verify, None),
     "lab": ("make execute, last lab, kernels compiled", "nbclient on its cells", lab, 1.2),
     "jobs": ("make book, empty caches, JOBS=2", "the same with JOBS=1", jobs, None),
