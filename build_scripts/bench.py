@@ -19,6 +19,7 @@ import time
 import urllib.request
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from itertools import pairwise
 
 import nbformat
 import yaml
@@ -122,7 +123,7 @@ def prose() -> Sides:
 
 
 def live() -> Sides:
-    """Return the times from an edit until `make live` serves it, and until Sphinx has written it."""
+    """Return the time from an edit until `make live` serves it, and builds by Sphinx."""
     bare, page = bare_sphinx(), last_lab()
     command, given = ("make", f"PYTHON={sys.executable}", "live"), environment(TREE, *SETTINGS)
     server = subprocess.Popen(
@@ -211,15 +212,6 @@ def ratio(pairs: Sequence[tuple[float, float]]) -> float:
     return course / bare
 
 
-def stages(printed: str) -> dict[str, float]:
-    """Return the seconds from the first line of each stage of a build to the next stage's."""
-    lines = [(float(at), stage) for at, stage in STAGE.findall(printed)]
-    starts = {stage: at for at, stage in reversed(lines)}
-    names = sorted(starts, key=lambda name: starts[name])
-    ends = [*(starts[name] for name in names[1:]), lines[-1][0] if lines else 0.0]
-    return {name: end - starts[name] for name, end in zip(names, ends, strict=True)}
-
-
 def over_limit(name: str, pairs: Sequence[tuple[float, float]], printed: str) -> list[str]:
     """Return a line that says where the time goes, none if the row keeps its limit.
 
@@ -228,12 +220,14 @@ def over_limit(name: str, pairs: Sequence[tuple[float, float]], printed: str) ->
         pairs: elapsed times of both sides [s].
         printed: what the command printed in its last run.
     """
-    limit, found = ROWS[name][3], ratio(pairs)
+    limit, found, starts = ROWS[name][3], ratio(pairs), dict[str, float]()
     if limit is None or found <= limit:
         return []
-    parts = [f"{stage} {time:.1f} s" for stage, time in stages(printed).items()]
-    rest = statistics.median(course for course, _ in pairs) - sum(stages(printed).values())
-    where = ", ".join([*parts, f"start and rest {rest:.1f} s"])
+    for at, stage in STAGE.findall(printed):
+        starts.setdefault(stage, float(at))
+    spans = zip(starts, pairwise(starts.values()), strict=False)  # the last stage has no end
+    where = ", ".join(f"{stage} {end - begin:.1f} s" for stage, (begin, end) in spans)
+    where = where or "a command without stages"
     return [f"{name}: the ratio is {found:.2f}, the limit {limit}. The time goes into: {where}."]
 
 

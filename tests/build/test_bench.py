@@ -35,7 +35,7 @@ PRINTED = """\
             "prose",
             [(9.1, 6), (8.5, 1)],
             ["prose: the ratio is 2.51, the limit 1.5. The time goes into: execute 1.0 s, render "
-             "4.0 s, check 0.5 s, publish 0.0 s, start and rest 3.3 s."],
+             "4.0 s, check 0.5 s."],
         ),
     ],
 )  # fmt: skip
