@@ -1,5 +1,5 @@
 # `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
-# PORT=8000, BUNDLE=path (verify), GENESIS=version (repin), SITE_URL=address and EXECUTED=folder
+# PORT=8000, EXECUTE=0|1 (live), BUNDLE=path (verify), GENESIS=version (repin), SITE_URL=address and EXECUTED=folder
 # (book), PAGE=page and TO=folder (execute), LESSON=name, BACKEND=name and TO=folder (evidence),
 # OLD=path, NEW=path and REPORT=folder (compare), NEW=name (lesson), ROWS=names and RUNS=n (bench),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
@@ -104,9 +104,14 @@ compare: $(ENVIRONMENT) ## compare two bundles: OLD=path NEW=path [REPORT=folder
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
 	@"$(PY)" build_scripts/serve.py
 
+# PORT and EXECUTE reach the script as environment variables.
+.PHONY: live
+live: $(ENVIRONMENT) ## show the book on localhost while it is written (PORT=8000 EXECUTE=1)
+	@"$(PY)" build_scripts/live.py
+
 .PHONY: clean
 clean: ## remove the built site and the executed pages, keep the compiled kernels
-	@rm -rf book/_build book/_build.* .cache/pages .cache/derived .cache/release .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf book/_build book/_build.* .cache/pages .cache/render .cache/live .cache/derived .cache/release .pytest_cache .mypy_cache .ruff_cache .hypothesis
 
 .PHONY: distclean
 distclean: clean ## remove the environment and every cache too

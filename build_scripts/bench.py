@@ -1,19 +1,25 @@
 """Measure the course's commands against bare counterparts: `make bench`.
 
+A row has a limit for the ratio of its medians. Above the limit, a line says where the time goes.
+
 Environment: ROWS (names of rows, by default all) and RUNS (of each side, by default 3). It checks
 the last commit out in `.cache/bench`, with the compiled kernels and the executed pages of this
 checkout; uncommitted changes are not measured. The two sides of a row run in turn. Nothing else
 should run on the machine. Exit status: 0 measured, 1 a command failed, 130 interrupted.
 """
 
+import atexit
 import os
+import re
 import shutil
 import statistics
 import subprocess
 import sys
 import time
+import urllib.request
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from itertools import pairwise
 
 import nbformat
 import yaml
@@ -29,6 +35,10 @@ Sides = tuple[Callable[[], float], Callable[[], float]]
 """Run the course's command, or its bare counterpart, and return the elapsed time [s]."""
 
 TREE = project.CACHE / "bench"
+LONGEST = 300
+"""Seconds until `make live` must show an edit."""
+STAGE = re.compile(r"^\[ *([\d.]+) s\] (\w+)", re.MULTILINE)
+"""A line of progress: seconds since the command began, and the stage."""
 SETTINGS = ("RENDER", "JOBS", "SITE_URL", project.RENDER, project.BACKEND)
 """Further variables that would change a measured command."""
 
@@ -47,12 +57,17 @@ class BenchError(project.ProjectError):
     """A command failed or did other work than intended; the message says which and why."""
 
 
+output = ""
+"""What the measured command printed last."""
+
+
 def seconds(*command: str, says: str = "", **variables: str) -> float:
     """Run a command in the worktree, with more environment variables; return its duration [s].
 
     Raises:
         BenchError: it failed, or its output lacks the words `says`.
     """
+    global output
     passed_on = environment(TREE, *SETTINGS) | variables
     begin = time.monotonic()
     done = subprocess.run(command, cwd=TREE, env=passed_on, capture_output=True, check=False)
@@ -107,12 +122,49 @@ def prose() -> Sides:
     return edited, partial(bare, says="build succeeded")
 
 
+def live() -> Sides:
+    """Return the time from an edit until `make live` serves it, and builds by Sphinx."""
+    bare, page = bare_sphinx(), last_lab()
+    command, given = ("make", f"PYTHON={sys.executable}", "live"), environment(TREE, *SETTINGS)
+    server = subprocess.Popen(
+        command, cwd=TREE, env=given | {"PORT": "0"}, stdout=subprocess.PIPE, text=True
+    )
+    atexit.register(server.terminate)
+    assert server.stdout is not None
+    address = next(line.split()[0] for line in server.stdout if line.startswith("http"))
+
+    def shown() -> float:
+        sentence, begin = f"Sentence {time.time_ns()}.", time.monotonic()
+        page.path.write_text(f"{page.path.read_text('utf8')}\n\n{sentence}\n", "utf8")
+        while time.monotonic() - begin < LONGEST:
+            with urllib.request.urlopen(f"{address}{page.docname}.html") as answer:
+                if sentence in answer.read().decode():
+                    return time.monotonic() - begin
+            time.sleep(0.02)
+        raise BenchError(f"make live did not show {sentence!r} within {LONGEST} s.")
+
+    return shown, partial(bare, says="build succeeded")
+
+
 def verify() -> Sides:
     """Return the verification of all bundles, and a start of Python with its two packages."""
     return partial(make, "verify"), partial(python, "-c", "import numpy, pydantic")
 
 
-def execute() -> Sides:
+def jobs() -> Sides:
+    """Return builds that execute all pages and compile their kernels, two at once and in turn."""
+    cache = TREE / "cold"
+
+    def cold(number: str) -> float:
+        shutil.rmtree(cache, ignore_errors=True)
+        cache.mkdir()
+        (cache / "npm").symlink_to(project.CACHE / "npm")
+        return python("build_scripts/book.py", "--cache", str(cache), JOBS=number)
+
+    return partial(cold, "2"), partial(cold, "1")
+
+
+def lab() -> Sides:
     """Return executions of one lab with compiled kernels, by the course and by nbclient."""
     page, cache = last_lab(), TREE / "warm"
     cache.mkdir()
@@ -130,12 +182,20 @@ def execute() -> Sides:
 
 
 ROWS = {
-    "unchanged": ("make book, nothing changed", "bare Sphinx", unchanged),
-    "prose": ("make book, one page's prose edited", "bare Sphinx, kept doctrees", prose),
-    "verify": ("make verify", "start of Python, NumPy and pydantic", verify),
-    "execute": ("make execute, last lab, kernels compiled", "nbclient on its cells", execute),
+    "unchanged": ("make book, nothing changed", "bare Sphinx", unchanged, 1.5),
+    "prose": ("make book, one page's prose edited", "bare Sphinx, kept doctrees", prose, 1.5),
+    "live": (
+        "make live, until the page has a new sentence",
+        "bare Sphinx, kept doctrees",
+        live,
+        0.7,
+    ),
+    "verify": ("make verify", "start of Python, NumPy and pydantic", verify, None),
+    "lab": ("make execute, last lab, kernels compiled", "nbclient on its cells", lab, 1.2),
+    "jobs": ("make book, empty caches, JOBS=2", "the same with JOBS=1", jobs, None),
 }
-"""Name to the course's command, its bare counterpart, and what prepares both."""
+"""Name to the course's command, its bare counterpart, what prepares both, and the limit of the
+ratio, None where the row has none."""
 
 
 def chosen(given: str) -> list[str]:
@@ -144,6 +204,31 @@ def chosen(given: str) -> list[str]:
     if unknown := [name for name in names if name not in ROWS]:
         raise BenchError(f"ROWS names {', '.join(unknown)}. Choices: {', '.join(ROWS)}.")
     return names or list(ROWS)
+
+
+def ratio(pairs: Sequence[tuple[float, float]]) -> float:
+    """Return the ratio of the medians of both sides."""
+    course, bare = (statistics.median(side) for side in zip(*pairs, strict=True))
+    return course / bare
+
+
+def over_limit(name: str, pairs: Sequence[tuple[float, float]], printed: str) -> list[str]:
+    """Return a line that says where the time goes, none if the row keeps its limit.
+
+    Args:
+        name: of the row.
+        pairs: elapsed times of both sides [s].
+        printed: what the command printed in its last run.
+    """
+    limit, found, starts = ROWS[name][3], ratio(pairs), dict[str, float]()
+    if limit is None or found <= limit:
+        return []
+    for at, stage in STAGE.findall(printed):
+        starts.setdefault(stage, float(at))
+    spans = zip(starts, pairwise(starts.values()), strict=False)  # the last stage has no end
+    where = ", ".join(f"{stage} {end - begin:.1f} s" for stage, (begin, end) in spans)
+    where = where or "a command without stages"
+    return [f"{name}: the ratio is {found:.2f}, the limit {limit}. The time goes into: {where}."]
 
 
 def table(samples: Mapping[str, Sequence[tuple[float, float]]]) -> str:
@@ -155,11 +240,14 @@ def table(samples: Mapping[str, Sequence[tuple[float, float]]]) -> str:
     lines = []
     for name, pairs in samples.items():
         sides = list(zip(*pairs, strict=True))
-        ratio = statistics.median(sides[0]) / statistics.median(sides[1])
-        for label, side, shown in zip(ROWS[name][:2], sides, (f"{ratio:.2f}", ""), strict=True):
+        for label, side, shown in zip(
+            ROWS[name][:2], sides, (f"{ratio(pairs):.2f}", ""), strict=True
+        ):
             figures = {"min": min(side), "median": statistics.median(side), "max": max(side)}
             rounded = {f"{key} [s]": round(value, 2) for key, value in figures.items()}
-            lines.append({"row": name, "command": label} | rounded | {"ratio": shown})
+            limit = (ROWS[name][3] or "") if shown else ""
+            cells = {"row": name, "command": label} | rounded
+            lines.append(cells | {"ratio": shown, "limit": limit})
     return tables.markdown(lines)
 
 
@@ -168,13 +256,18 @@ def measure() -> list[str]:
     names, runs = chosen(os.environ.get("ROWS") or ""), os.environ.get("RUNS") or "3"
     if not (runs.isdecimal() and int(runs) > 0):
         raise BenchError(f"RUNS={runs!r} is not valid. Give a number from 1.")
-    samples = {}
+    samples: dict[str, list[tuple[float, float]]] = {}
+    notes: list[str] = []
     with worktree(project.ROOT, TREE, project.CACHE):
         for name in names:
             print(f"{name}: preparation, then {runs} runs of each side", flush=True)
             course, bare = ROWS[name][2]()
-            samples[name] = [(course(), bare()) for _ in range(int(runs))]
-    return [table(samples)]
+            samples[name], said = [], ""
+            for _ in range(int(runs)):
+                elapsed, said = course(), output
+                samples[name].append((elapsed, bare()))
+            notes += over_limit(name, samples[name], said)
+    return [table(samples), *notes]
 
 
 if __name__ == "__main__":

@@ -14,6 +14,9 @@ from robo_genesis.build.page_results import PageResult
 from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.evidence.fields import Strict
 
+LAST_OUTPUTS = "ROBO_GENESIS_LAST_OUTPUTS"
+"""A variable: if it is set, a page whose code changed is shown with the outputs of its last run."""
+
 
 class BuiltPages(Strict):
     """A file that the environment names.

@@ -111,7 +111,9 @@ def run_build(build: Build) -> list[str]:
             progress("release", "clean tree, current evidence")
         progress("render", "all pages")
         built = BuiltPages.of(results)
-        html = render(build.book, staging, built, build.cache / "render.log")
+        from_nothing = build.release or build.executed or site_address()
+        kept = None if from_nothing else build.cache / project.KEPT
+        html = render(build.book, staging, built, build.cache / "render.log", kept)
         progress("pack", pack(html).name)
         progress("sums", write_sums(html).name)  # last of the site's files; the checks look for it
         checked = _check(html, progress)

@@ -10,7 +10,7 @@ import json
 import os
 import platform
 import sys
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -53,22 +53,42 @@ def inputs_digest(
         book: the folder of the pages.
         environment: variables, by default those of this process.
     """
-    given = os.environ if environment is None else environment
     try:
-        book_files = files_digest(book, _inside(book, skip="_build"))
-        code = files_digest(root, (p for name in FOLDERS for p in _inside(root / name)))
+        parts = other_inputs(root, book, (), environment) | {"history": history(book)}
     except UnseenError:
         return None
-    parts = {
-        "book": [str(book), book_files],
-        "code": code,
+    return json_digest(parts)
+
+
+def other_inputs(
+    root: Path, book: Path, pages: Collection[Path], environment: Mapping[str, str] | None = None
+) -> dict[str, object]:
+    """Return what decides a build's site apart from some pages and the history of the book.
+
+    Args:
+        root: the checkout.
+        book: the folder of the pages.
+        pages: files of the book that are left out.
+        environment: variables, by default those of this process.
+
+    Raises:
+        UnseenError: a link hides some of it.
+    """
+    given = os.environ if environment is None else environment
+    kept = (path for path in _inside(book, skip="_build") if path not in pages)
+    return {
+        "book": [str(book), files_digest(book, kept)],
+        "code": files_digest(root, (p for name in FOLDERS for p in _inside(root / name))),
         "files": files_digest(root, (root / name for name in FILES)),
         "contract": environment_contract(given),
         "variables": {name: given.get(name) or "" for name in VARIABLES},
         "python": [platform.python_version(), sys.executable],
         "installed": installed(sys.path),
-        "history": history(book),
     }
+
+
+def json_digest(parts: Mapping[str, object]) -> str:
+    """Return the digest of a value as JSON."""
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 

@@ -17,11 +17,11 @@ PUBLISHED = "_build"
 """The folder of a book that holds its published site."""
 
 CACHE = ROOT / ".cache"
-STORE, COMPILED, RECORDING, STAGING = "pages", "engine", "recording", "staging"
+STORE, COMPILED, RECORDING, LOGS = "pages", "engine", "recording", "logs"
+KEPT, STAGING = "render", "staging"
 """Below the cache folder: executed pages, what the engine compiles, the lab that is being recorded,
-and how the names of the folders begin in which builds render."""
-LOGS = "logs"
-"""Below the cache folder: what each page wrote when it was last executed."""
+what each page wrote when it was last executed; what Sphinx keeps for the next build, and how the
+names of the folders begin in which builds make their sites."""
 
 ENGINE = "genesis-world"
 COURSE = "robo-genesis"

@@ -19,6 +19,7 @@ class CellTimes(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Return the table; a page without recorded times is an error of the build."""
+        self.env.note_reread()  # which pages a build runs decides the table
         executed = built_pages().executed
         rows = []
         for page in find_pages(Path(self.env.srcdir)):

@@ -27,10 +27,8 @@ NEEDED_NOWHERE = {"fontawesome.js"}
 NAMED = re.compile(r"[.#]([\w-]+)")
 """Classes and identifiers in a selector."""
 
-# Files of the theme that no page loads, and a note of Sphinx for its next build, which depends on
-# the checkout's path.
+# Files of the theme that no page loads.
 UNUSED = (
-    ".buildinfo",
     "_static/**/*.map",
     "_static/*webpack-macros.html",
     "_static/locales",

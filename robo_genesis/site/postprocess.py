@@ -1,6 +1,7 @@
 """Changes each written page last: it becomes accessible and loads only the files that it needs."""
 
 from pathlib import Path
+from typing import Any
 
 from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
@@ -9,13 +10,25 @@ from robo_genesis.site.accessibility import make_accessible
 from robo_genesis.site.page_weight import drop_unused_files, reduce_weight
 
 
+def note_page(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    """Note that a page is written in this build; the pages of earlier builds are finished."""
+    written(app).add(page)
+
+
+def written(app: Sphinx) -> set[str]:
+    """Return the names of the pages that this build has written so far."""
+    pages: set[str] = vars(app.builder).setdefault("robo_genesis_written", set())
+    return pages
+
+
 def finish_site(app: Sphinx, error: Exception | None) -> None:
-    """Finish all pages of a site that Sphinx has written."""
+    """Finish the pages that Sphinx has written."""
     if error is None and app.builder.name == "html":
-        html = Path(app.outdir)
-        drop_unused_files(html)
-        for path in html.rglob("*.html"):
+        drop_unused_files(Path(app.outdir))
+        for page in sorted(written(app)):
+            path = Path(app.builder.get_outfilename(page))  # type: ignore[attr-defined]
             path.write_text(finish_page(path.read_text("utf8"), path.parent), "utf8")
+    written(app).clear()
 
 
 def finish_page(html: str, folder: Path) -> str:
@@ -33,4 +46,5 @@ def finish_page(html: str, folder: Path) -> str:
 
 def setup(app: Sphinx) -> None:
     """Register the extension; see the module's summary."""
+    app.connect("html-page-context", note_page)
     app.connect("build-finished", finish_site)

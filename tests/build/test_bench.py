@@ -11,10 +11,36 @@ bench = SimpleNamespace(**runpy.run_path(str(ROOT / "build_scripts" / "bench.py"
 
 
 def test_the_table_has_least_median_and_most_of_both_sides_and_the_ratio_of_medians():
-    *_, course, bare = bench.table({"verify": [(3, 2), (9, 1), (4, 4)]}).splitlines()
-    assert course.split(" | ")[2:] == ["3", "4", "9", "2.00 |"]
-    assert bare.split(" | ")[2:] == ["1", "2", "4", " |"]
-    assert course.startswith("| verify | make verify | ")
+    *_, course, bare = bench.table({"lab": [(3, 2), (9, 1), (4, 4)]}).splitlines()
+    assert course.split(" | ")[2:] == ["3", "4", "9", "2.00", "1.2 |"]
+    assert bare.split(" | ")[2:] == ["1", "2", "4", "", " |"]
+    assert course.startswith("| lab | make execute, ")
+
+
+PRINTED = """\
+[    1.0 s] execute  6 pages
+[    1.5 s] execute  lessons/l04/lab  reused
+[    2.0 s] render   all pages
+[    6.0 s] check    links (3)  passed
+[    6.5 s] publish  html
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "pairs", "notes"),
+    [
+        ("prose", [(9, 6), (1, 9), (20, 1)], []),
+        ("verify", [(9, 1)], []),
+        (
+            "prose",
+            [(9.1, 6), (8.5, 1)],
+            ["prose: the ratio is 2.51, the limit 1.5. The time goes into: execute 1.0 s, render "
+             "4.0 s, check 0.5 s."],
+        ),
+    ],
+)  # fmt: skip
+def test_a_row_above_its_limit_says_where_the_time_goes(name, pairs, notes):
+    assert bench.over_limit(name, pairs, PRINTED) == notes
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,8 @@ FOLDER = "robo-genesis-site"
 """The folder that unpacking makes."""
 OFFER = ".offline-offer"
 """A page's offer of the archive; the archive's own copy of the page must not have it."""
+COMPRESSED = {".jpg", ".npz", ".png", ".webp", ".whl", ".woff2", ".zip"}
+"""Suffixes of files that compression makes no smaller."""
 DATE = (1980, 1, 1, 0, 0, 0)  # the earliest one: the same site makes the same archive
 
 
@@ -29,7 +31,8 @@ def pack(html: Path) -> Path:
     with zipfile.ZipFile(archive, "w") as packed:
         for path in files:
             entry = zipfile.ZipInfo(f"{FOLDER}/{path.relative_to(html).as_posix()}", DATE)
-            entry.compress_type = zipfile.ZIP_DEFLATED
+            packs = path.suffix not in COMPRESSED
+            entry.compress_type = zipfile.ZIP_DEFLATED if packs else zipfile.ZIP_STORED
             entry.external_attr = 0o644 << 16
             packed.writestr(entry, content(path))
     return archive

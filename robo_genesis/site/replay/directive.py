@@ -26,6 +26,7 @@ from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import marked
+from robo_genesis.site.page_files import note_files
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
 
@@ -72,7 +73,9 @@ def replay_block(
         shape = shape_file(lesson, runs.view.thing)
         inputs = model_inputs(shape, folder, runs)
         model = derived("replay", inputs, lambda: make_model(shape, runs))
-        written = write_model(Path(env.app.outdir) / FOLDER, name, model)
+        files_of = Path(env.app.outdir) / FOLDER
+        written = write_model(files_of, name, model)
+        note_files(env, files_of / f"{name}.glb", files_of / f"{name}.js")
         weight = written + len(gzip.compress(viewer.viewer()))
         up = "../" * env.docname.count("/") + FOLDER
         files = f"{up}/{name}.js", f"{up}/{VIEWER}"

@@ -10,8 +10,9 @@ from sphinx.application import Sphinx
 
 from robo_genesis.build import npm
 from robo_genesis.build.site.scripts import VIEWER
+from robo_genesis.site.page_files import REPLAYS
 
-FOLDER = "replay"
+FOLDER = REPLAYS
 """Folder of the site; Jupyter Book would load every script of `_static` on every page."""
 
 VIEWER_LICENCE = "LICENSE-Apache-2.0.txt"

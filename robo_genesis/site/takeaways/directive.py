@@ -18,10 +18,10 @@ from robo_genesis.build.built_pages import executed_notebook, page_outputs
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons.book_pages import Page, find_pages
 from robo_genesis.site.evidence.measured import BACKEND, measured
+from robo_genesis.site.page_files import TAKEAWAYS, note_files
 from robo_genesis.site.takeaways.files import Takeaways, system, write_takeaways
 from robo_genesis.site.takeaways.plain_markdown import ProseError
 
-FOLDER = "takeaways"
 Link = Callable[..., list[nodes.Node]]
 """Returns the link to a file with an optional text, and its size."""
 
@@ -35,6 +35,7 @@ class TakeawaysBox(SphinxDirective):
         """Return the box and the list; a page without a run of its own is an error."""
         name, files = self.arguments[0], staging(self.env.app)
         page, run = self.page(name), page_outputs(name) / BACKEND
+        self.env.note_dependency(self.env.doc2path(page.docname, base=False))
         try:
             found = write_takeaways(
                 page, executed_notebook(page.docname), run, files,
@@ -42,7 +43,8 @@ class TakeawaysBox(SphinxDirective):
             )  # fmt: skip
         except (LookupError, ProseError, bundle.BundleRefused) as error:
             raise self.error(f"takeaways: {error}") from error
-        links = partial(link, relative_uri(f"{self.env.docname}.html", FOLDER), files)
+        note_files(self.env, found.wheel, *found.student.parent.iterdir())
+        links = partial(link, relative_uri(f"{self.env.docname}.html", TAKEAWAYS), files)
         return [self.box(found, links), *self.downloads(found, links)]
 
     def page(self, name: str) -> Page:
@@ -119,13 +121,15 @@ def bullets(*items: Iterable[str | list[nodes.Node]]) -> nodes.Node:
 
 def staging(app: Sphinx) -> Path:
     """Return the folder that holds the files until the site is complete."""
-    return Path(app.outdir).parent / FOLDER
+    return Path(app.outdir).parent / TAKEAWAYS
 
 
 def copy_files(app: Sphinx, exception: Exception | None) -> None:
-    """Copy the files into the site."""
-    if exception is None and app.builder.format == "html" and staging(app).is_dir():
-        shutil.copytree(staging(app), Path(app.outdir) / FOLDER, dirs_exist_ok=True)
+    """Copy the files into the site, in the place of those of an earlier build."""
+    if exception is None and app.builder.format == "html":
+        shutil.rmtree(Path(app.outdir) / TAKEAWAYS, ignore_errors=True)
+        if staging(app).is_dir():
+            shutil.copytree(staging(app), Path(app.outdir) / TAKEAWAYS)
 
 
 def setup(app: Sphinx) -> None:

@@ -65,7 +65,8 @@ def write_takeaways(
     """
     name = f"{page.lesson}-{page.page}"
     own = folder / name
-    own.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(own, ignore_errors=True)
+    own.mkdir(parents=True)
     wheel = build_wheel(folder)
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(wheel.name, student.name)

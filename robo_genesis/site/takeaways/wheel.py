@@ -9,10 +9,12 @@ from functools import cache
 from pathlib import Path
 
 from robo_genesis.build.kernels import end_with_parent
+from robo_genesis.core.files import derived
 from robo_genesis.core.project import ROOT, ProjectError
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
 PACKAGE = "robo_genesis"
+CACHED = "__pycache__"
 EPOCH = "315532800"
 """1980-01-01, the oldest time that a zip can hold."""
 
@@ -21,26 +23,36 @@ BUILD = "import sys; from setuptools import build_meta; print(build_meta.build_w
 
 @cache
 def build_wheel(folder: Path, root: Path = ROOT) -> Path:
-    """Build the wheel and return its path; the labs of one site share it.
+    """Write the wheel and return its path; the labs of one site share it.
 
     Args:
         folder: gets the wheel.
-        root: the checkout, which stays as it is: the build works in a copy.
+        root: the checkout.
 
     Raises:
         ProjectError: setuptools failed; the message contains its output.
     """
+    files = [root / source for source in SOURCES]
+    files += sorted(p for p in (root / PACKAGE).rglob("*") if p.is_file() and CACHED not in p.parts)
+    inputs = (part for p in files for part in (os.fsencode(p.relative_to(root)), p.read_bytes()))
+    name, _, content = derived("wheel", inputs, lambda: built_wheel(root)).partition(b"\n")
+    wheel = folder / name.decode()
+    folder.mkdir(parents=True, exist_ok=True)
+    wheel.write_bytes(content)
+    return wheel
+
+
+def built_wheel(root: Path) -> bytes:
+    """Return the name of the wheel, a line end and its content; `root` stays as it is."""
     with tempfile.TemporaryDirectory() as name:
         copy = Path(name)
         for source in SOURCES:
             shutil.copy(root / source, copy)
-        shutil.copytree(
-            root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns("__pycache__")
-        )
+        shutil.copytree(root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns(CACHED))
         for path in copy.rglob("*"):
             path.chmod(0o755 if path.is_dir() else 0o644)  # whatever the user's umask
         done = subprocess.run(
-            [sys.executable, "-c", BUILD, str(folder.resolve())],
+            [sys.executable, "-c", BUILD, "."],
             cwd=copy,
             env=os.environ | {"SOURCE_DATE_EPOCH": EPOCH},
             capture_output=True,
@@ -48,6 +60,7 @@ def build_wheel(folder: Path, root: Path = ROOT) -> Path:
             check=False,
             preexec_fn=end_with_parent(),
         )
-    if done.returncode != 0:
-        raise ProjectError(f"The package's wheel cannot be built:\n{done.stdout}{done.stderr}")
-    return folder / done.stdout.splitlines()[-1]
+        if done.returncode != 0:
+            raise ProjectError(f"The package's wheel cannot be built:\n{done.stdout}{done.stderr}")
+        name = done.stdout.splitlines()[-1]
+        return f"{name}\n".encode() + (copy / name).read_bytes()

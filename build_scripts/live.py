@@ -1,0 +1,46 @@
+"""Show the book on localhost while it is written: `make live`.
+
+Environment: PORT (default 8000), and EXECUTE=0|1 (default 0; 1: a page whose code changed runs, as
+with `make execute`). The page in the browser reloads after each change. Nothing is published, and
+book/_build is not used. Exit status: 1 failed, 130 ended with Ctrl-C.
+"""
+
+import asyncio
+import os
+import signal
+import sys
+
+from robo_genesis.build.command import choice, parser, set_contract
+from robo_genesis.build.site.live import Live, serve
+from robo_genesis.core.project import ProjectError
+
+
+async def until_signal(live: Live, port: int) -> None:
+    """Serve until Ctrl-C or SIGTERM."""
+    serving = asyncio.ensure_future(
+        serve(live, port, lambda at: live.say(f"http://localhost:{at}/ Ctrl-C ends it."))
+    )
+    for sent in (signal.SIGINT, signal.SIGTERM):
+        asyncio.get_running_loop().add_signal_handler(sent, serving.cancel)
+    await serving
+
+
+def main() -> int | str:
+    """Serve; return the exit status, or a message if the port is not valid."""
+    args = parser(__doc__).parse_args()
+    set_contract()
+    execute = choice("EXECUTE", "0", ("0", "1")) == "1"
+    port = os.environ.get("PORT") or "8000"
+    if not port.isdecimal() or not int(port) < 65536:
+        return f"PORT={port!r} is not valid. Choices: 1 to 65535."
+    try:
+        asyncio.run(until_signal(Live(args.book, args.cache, execute=execute), int(port)))
+    except asyncio.CancelledError:
+        return 130
+    except ProjectError as error:
+        return str(error)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

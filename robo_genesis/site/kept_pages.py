@@ -1,0 +1,125 @@
+"""Makes an incremental render equal to one from nothing; `build.site.kept` keeps its folder.
+
+What decides a page beside its own source and what is the same for all pages:
+
+| while it is read | what happens |
+|---|---|
+| another page's source, included or read by a directive (`note_dependency`) | it is read again |
+| whether this build ran a page (`cell-times`) | read again each time (`note_reread`) |
+
+| while it is written | what happens |
+|---|---|
+| titles, contents, targets, equations, terms, ledger items of any page | all are written again |
+| the commit, for the history | all are written again |
+| whether its source is committed | it is written again |
+
+Files that pages leave beside the HTML are removed with the last page that left them.
+"""
+
+import hashlib
+import os
+import shutil
+from collections.abc import Iterator, Mapping, Set
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
+
+from robo_genesis.build.site.kept import UNFIT
+from robo_genesis.build.up_to_date import history
+from robo_genesis.site.glossary import glossary_terms
+
+OWN = {"og:description", "source_map", "wordcount"}
+"""Metadata of a page that no other page shows."""
+
+SHOWN = (
+    "titles", "longtitles", "tocs", "toc_secnumbers", "toc_fignumbers", "toctree_includes",
+    "domaindata", "robo_genesis_items",
+)  # fmt: skip
+"""Attributes of the environment that pages show of one another, beside metadata and terms."""
+
+
+def including_pages(
+    app: Sphinx, env: BuildEnvironment, added: Set[str], changed: Set[str], removed: Set[str]
+) -> list[str]:
+    """Return the pages that read the source of a changed page."""
+    sources = {str(env.doc2path(name, base=False)) for name in (*added, *changed)}
+    return [name for name, files in env.dependencies.items() if sources & files]
+
+
+def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
+    """Return the pages that must be written again, beside those that were read again."""
+    commit, status = history(Path(env.srcdir))
+    entries = set((status or "").split("\0"))
+    shown = hashlib.sha256(repr((commit, sorted(_shown(env)))).encode()).hexdigest()
+    before = vars(env).get("robo_genesis_shown"), vars(env).get("robo_genesis_status", set())
+    vars(env).update(robo_genesis_shown=shown, robo_genesis_status=entries)
+    if before[0] != shown:
+        return sorted(env.found_docs)
+    changed = tuple(before[1] ^ entries)
+    names = {name: str(env.doc2path(name, base=False)) for name in env.found_docs}
+    edited = [name for name, file in names.items() if any(e.endswith(file) for e in changed)]
+    return [env.config.root_doc, *edited]  # without any page, Sphinx would write no style sheet
+
+
+def _shown(env: BuildEnvironment) -> Iterator[tuple[str, Any]]:
+    for name in SHOWN:
+        yield name, plain(vars(env).get(name))
+    for page, metadata in env.metadata.items():
+        yield f"metadata {page}", plain({k: v for k, v in metadata.items() if k not in OWN})
+    yield "terms", plain(glossary_terms(env))
+
+
+def plain(value: Any) -> Any:
+    """Return a value in a form whose text depends on nothing but its content."""
+    if isinstance(value, nodes.Node):
+        return value.pformat()
+    if isinstance(value, Mapping):
+        return sorted((repr(key), plain(item)) for key, item in value.items())
+    if isinstance(value, Set):
+        return sorted(map(repr, value))
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    return repr(value)
+
+
+def drop_static_files(app: Sphinx) -> None:
+    """Remove the style sheets and scripts before any is written: pages contain their digests.
+
+    An extension may write a sheet after the pages that name it, so a page that is written again
+    would find the digest of a sheet that a page from nothing does not find.
+    """
+    shutil.rmtree(Path(app.outdir) / "_static", ignore_errors=True)
+
+
+def drop_downloads(app: Sphinx, builder: Any) -> None:
+    """Remove all downloads before pages are written: Sphinx and the ledger write all again."""
+    shutil.rmtree(Path(builder.outdir) / "_downloads", ignore_errors=True)
+
+
+def finish(app: Sphinx, error: Exception | None) -> None:
+    """Remove the pictures that no page shows any more, and report what cannot be kept.
+
+    The names of pictures with equal file names depend on the order in which they were read.
+    """
+    env = app.env
+    if error is not None or env is None:
+        return
+    named = {name: file for file, (_, name) in env.images.items()}
+    for path in (Path(app.outdir) / "_images").glob("*"):
+        if path.is_file() and path.name not in named:
+            path.unlink()
+    if any(os.path.basename(file) != name for name, file in named.items()):
+        (Path(app.outdir).parents[1] / UNFIT).touch()
+
+
+def setup(app: Sphinx) -> None:
+    """Register the steps."""
+    app.setup_extension("robo_genesis.site.page_files")
+    app.connect("builder-inited", drop_static_files, priority=0)
+    app.connect("env-get-outdated", including_pages)
+    app.connect("env-updated", outdated_pages, priority=900)  # numbers are assigned before
+    app.connect("write-started", drop_downloads)
+    app.connect("build-finished", finish)

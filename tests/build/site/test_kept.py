@@ -1,0 +1,177 @@
+"""A render that keeps doctrees and pages publishes the same bytes as a render from nothing."""
+
+import json
+import os
+import re
+from pathlib import Path
+
+import nbformat
+import pytest
+import yaml
+from tiny_book import cell, make_book, notebook
+
+from robo_genesis.build.built_pages import BuiltPages
+from robo_genesis.build.page_folder import NOTEBOOK, RECORD
+from robo_genesis.build.site import kept
+from robo_genesis.build.site.kept import State
+from robo_genesis.build.site.render import RenderError, render
+from robo_genesis.lessons.book_pages import find_pages
+
+GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
+LAW = "# Law\n\n(spring)=\n## The spring\n\nA gain of two, and a rareword.\n\n{ref}`text <there>`\n"
+TEXT = "# Text\n\n(there)=\n## There\n\nSee [](law.md) and {ref}`spring`.\n\n![A drawing](a.svg)\n"
+DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>'
+SOME = State("a", {"one": "1", "two": "2"})
+
+
+def publish(folder: Path, built: BuiltPages, keep: bool = True) -> dict[str, bytes]:
+    """Render a book and return its files."""
+    kept_folder = folder / "kept" if keep else None
+    html = render(folder / "book", folder / "staging", built, folder / "log", kept_folder)
+    return {p.relative_to(html).as_posix(): p.read_bytes() for p in html.rglob("*") if p.is_file()}
+
+
+def ran(folder: Path, printed: str) -> BuiltPages:
+    """Return the book's executed page with an output, without a run."""
+    place = folder / f"run {printed}"
+    place.mkdir()
+    (page,) = find_pages(folder / "book")
+    (code,) = (c for c in page.notebook.cells if c.cell_type == "code")
+    code.outputs = [nbformat.v4.new_output("stream", name="stdout", text=printed)]
+    page.notebook.cells = [code]
+    page.notebook.metadata["language_info"] = {"name": "python", "pygments_lexer": "python"}
+    nbformat.write(page.notebook, place / NOTEBOOK)
+    (place / RECORD).write_text(printed)
+    return BuiltPages(folders={page.docname: place})
+
+
+def replace(page: Path, *pairs: tuple[str, str]) -> None:
+    for old, new in pairs:
+        assert old in page.read_text()
+        page.write_text(page.read_text().replace(old, new))
+
+
+def edit_prose(book: Path) -> None:
+    """Edit a page and make its file look older than its last render."""
+    replace(book / "law.md", ("rareword", "frequent word"))
+    os.utime(book / "law.md", (0, 0))
+
+
+def edit_what_others_show(book: Path) -> None:
+    """Change a title, a term, a target's heading, and the picture of another page."""
+    replace(book / "law.md", ("# Law", "# Hooke"), ("## The spring", "## The stiff spring"))
+    replace(book / "glossary.md", ("A factor", "A measured factor"))
+    replace(book / "text.md", ("\n\n![A drawing](a.svg)", ""))
+
+
+def edit_contents(book: Path) -> None:
+    """Remove a page, and add one."""
+    (book / "extra.md").rename(book / "added.md")
+    toc = yaml.safe_load((book / "_toc.yml").read_text())
+    toc["chapters"][-1] = {"file": "added"}
+    (book / "_toc.yml").write_text(yaml.safe_dump(toc))
+
+
+def test_each_edit_publishes_the_same_bytes_as_a_render_from_nothing(tmp_path):
+    pages = {"glossary": GLOSSARY, "law": LAW, "text": TEXT, "run": notebook(cell("print(7)"))}
+    book = make_book(tmp_path, **pages, extra="# Extra\n\nMore.\n")
+    (book / "a.svg").write_text(DRAWING)
+    built = ran(tmp_path, "seven")
+    publish(tmp_path, built)
+    said = []
+    for edit in (edit_prose, edit_what_others_show, edit_contents):
+        edit(book)
+        if edit is edit_contents:
+            built = ran(tmp_path, "eight")
+        found = publish(tmp_path, built)
+        said.append(re.search(r"\d+ added, \d+ changed", (tmp_path / "log").read_text())[0])
+        expected = publish(tmp_path, built, keep=False)
+        assert found.keys() == expected.keys()
+        assert [name for name in found if found[name] != expected[name]] == []
+    assert said == ["0 added, 1 changed", "0 added, 3 changed", "6 added, 0 changed"]
+
+
+def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
+    book = make_book(tmp_path, text="# Text\n\n{doc}`nowhere`\n")
+    for _ in range(2):
+        with pytest.raises(RenderError, match=r"text\.md:3.*nowhere"):
+            publish(tmp_path, BuiltPages())
+        assert not (tmp_path / "kept" / kept.STATE).exists()
+    replace(book / "text.md", ("{doc}`nowhere`", "Words."))
+    assert publish(tmp_path, BuiltPages())
+    (tmp_path / "kept" / kept.STATE).unlink()  # as after a kill
+    publish(tmp_path, BuiltPages())
+    assert "2 added, 0 changed" in (tmp_path / "log").read_text()
+
+
+def test_equal_names_of_pictures_make_a_folder_unfit(tmp_path):
+    """Sphinx gives them numbers in the order of reading."""
+    book = make_book(tmp_path, one="# One\n\nWords.\n", two="# Two\n\n![Two](b/a.svg)\n")
+    for place in (book, book / "b"):
+        place.mkdir(exist_ok=True)
+        (place / "a.svg").write_text(DRAWING.replace("9", str(len(place.name))))
+    publish(tmp_path, BuiltPages())
+    assert (tmp_path / "kept" / kept.STATE).exists()
+    replace(book / "one.md", ("Words.", "![One](a.svg)"))
+    assert publish(tmp_path, BuiltPages()) == publish(tmp_path, BuiltPages(), keep=False)
+    assert not (tmp_path / "kept" / kept.STATE).exists()
+
+
+@pytest.mark.parametrize(
+    ("state", "usable", "left"),
+    [
+        (SOME, True, {"one", "two"}),
+        (State("a", {"one": "1", "two": "other"}), True, {"one"}),
+        (State("b", SOME.pages), False, set()),
+        (State(None, SOME.pages), False, set()),
+    ],
+)
+def test_changed_pages_are_read_again_and_other_changes_empty_the_folder(
+    tmp_path, state, usable, left
+):
+    doctrees = tmp_path / kept.DOCTREES
+    doctrees.mkdir(parents=True)
+    for name in SOME.pages:
+        (doctrees / f"{name}.doctree").touch()
+    kept.keep(tmp_path, SOME, SOME)
+    assert kept.prepare(tmp_path, state) == usable
+    assert {path.stem for path in doctrees.glob("*")} == left
+    assert not (tmp_path / kept.STATE).exists()
+
+
+@pytest.mark.parametrize("content", ["", "{}", "[]", '{"others": 3}', json.dumps({"others": None})])
+def test_a_damaged_state_is_no_state(tmp_path, content):
+    (tmp_path / kept.STATE).write_text(content)
+    (tmp_path / "stale").touch()
+    assert not kept.prepare(tmp_path, SOME)
+    assert not (tmp_path / "stale").exists()
+
+
+def test_an_input_that_changes_while_sphinx_runs_leaves_no_state(tmp_path):
+    kept.keep(tmp_path, SOME, State("a", {"one": "1", "two": "edited"}))
+    assert not (tmp_path / kept.STATE).exists()
+
+
+def test_the_state_has_sources_runs_and_everything_else(tmp_path, monkeypatch):
+    book = make_book(tmp_path, text="# Text\n", run=notebook(cell("print(7)")))
+    built = ran(tmp_path, "seven")
+    found = [kept.read_state(book, built)]
+
+    def changed() -> bool:
+        """Whether anything but the pages changed since the last call."""
+        found.append(kept.read_state(book, built))
+        return found[-1].others != found[-2].others
+
+    assert found[0].pages.keys() == {"index", "text", "run"}
+    assert not changed()
+    (book / "text.md").write_text("# Other\n")
+    assert not changed()
+    assert found[-1].pages != found[0].pages
+    (built.folders["run"] / RECORD).write_text("another run")
+    assert changed()
+    (book / "glossary_forms.yml").write_text("")
+    assert changed()
+    monkeypatch.setenv("LANG", "an other")
+    assert changed()
+    (book / "loop").symlink_to(book)
+    assert kept.read_state(book, built).others is None
