@@ -245,10 +245,10 @@ class Visit:
 
     def _with_closed_folds(self, page: Page) -> None:
         self.note("tab order", page.evaluate(TAB_ORDER))
-        if self.every_state:
-            self.note("axe", violations(page, **self.kind.axe), "folds closed")
         if "focus" in self.wrong and (self.every_state or self.kind.narrow < 768):
             self.note("focus", focus_complaints(page))
+        if self.every_state:
+            self.note("axe", violations(page, **self.kind.axe), "folds closed")
         if self.kind.large_text:
             page.evaluate("document.documentElement.style.fontSize = '200%'")
             settle(page)

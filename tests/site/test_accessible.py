@@ -1,4 +1,4 @@
-"""The lecture by keyboard: what the sweep of all pages only looks at is used here."""
+"""A lecture by keyboard: what the sweep of all pages only looks at is used here."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from watching import MOVING, settle
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-LECTURE = "lessons/l04-joint-control/lecture.html"
+LECTURE = "lessons/l02-life-cycle/lecture.html"
 
 
 @pytest.fixture(scope="module")
