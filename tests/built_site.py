@@ -1,8 +1,10 @@
 """Fixtures of the site that `make book` builds, and the lists of its pages."""
 
+import gzip
 import os
 import subprocess
 import sys
+import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -17,6 +19,7 @@ from bs4 import BeautifulSoup
 
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.page_store import places, stored_result
+from robo_genesis.build.site.archive import ARCHIVE, FOLDER
 from robo_genesis.core.project import BOOK, CACHE, ROOT, STORE
 from robo_genesis.lessons.book_pages import docnames, find_pages
 from robo_genesis.lessons.registry import LESSONS
@@ -37,6 +40,8 @@ LESSON_PAGES = {
 MEASURING_PAGES = [(name, page) for name, lesson in LESSONS.items() for page in lesson.pages]
 """Lesson and page of each page that leaves a bundle."""
 
+TEXT = {".html", ".css", ".js", ".json", ".svg", ".txt"}
+"""The files that a web server compresses."""
 
 OUTSIDE = dict(os.environ)
 """The environment of the tests. The engine sets switches when a test imports it, and a build with
@@ -56,6 +61,26 @@ class QuietHandler(SimpleHTTPRequestHandler):
         pass
 
 
+class CompressingHandler(QuietHandler):
+    """Serves files as a web server does: text compressed."""
+
+    def do_GET(self) -> None:
+        path = Path(self.translate_path(self.path))
+        if not path.is_file() or path.suffix not in TEXT:
+            return super().do_GET()
+        data = gzip.compress(self.read(path), compresslevel=6)
+        self.send_response(200)
+        self.send_header("Content-Type", self.guess_type(path))
+        self.send_header("Content-Encoding", "gzip")
+        self.send_header("Content-Length", str(len(data)))
+        self.end_headers()
+        self.wfile.write(data)
+
+    def read(self, path: Path) -> bytes:
+        """Return the content of a file of the site."""
+        return path.read_bytes()
+
+
 @pytest.fixture(scope="session")
 def build_output() -> str:
     command = [sys.executable, str(ROOT / "build_scripts" / "book.py")]
@@ -68,6 +93,15 @@ def build_output() -> str:
 @pytest.fixture(scope="session")
 def site(build_output) -> Path:
     return BOOK / "_build" / "html"
+
+
+@pytest.fixture(scope="session")
+def unpacked(site, tmp_path_factory) -> Path:
+    """The site as it is read from disk: out of its archive."""
+    folder = tmp_path_factory.mktemp("unpacked")
+    with zipfile.ZipFile(site / ARCHIVE) as archive:
+        archive.extractall(folder)
+    return folder / FOLDER
 
 
 def parsed(site: Path, name: str) -> BeautifulSoup:

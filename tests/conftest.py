@@ -98,6 +98,8 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> LoadScopeSch
     class ByModule(LoadScopeScheduling):
         def _split_scope(self, nodeid: str) -> str:
             file = nodeid.partition("::")[0]
+            if file.endswith("test_sweep.py"):
+                return nodeid.partition("[")[2].partition("-")[0]  # each way to visit all pages
             return ENGINE if kind(config.rootpath / file) == ENGINE else file
 
     return ByModule(config, log)

@@ -14,7 +14,7 @@ from docutils import nodes
 from docutils.core import publish_from_doctree
 from docutils.parsers.rst import DirectiveError
 from docutils.utils import new_document
-from playwright.sync_api import Page
+from playwright.sync_api import Browser, Page
 from watching import errors, violations
 from without_sphinx import Panel
 
@@ -120,8 +120,14 @@ def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_pat
     assert "visual_shape.read_shape(box)) after the box is built" in caught.value.msg
 
 
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with launched(*SOFTWARE) as browser:
+        yield browser
+
+
 @pytest.fixture
-def page(block, tmp_path) -> Iterator[Page]:
+def page(block, tmp_path, browser) -> Iterator[Page]:
     """A page that holds the replay alone, opened from disk."""
     document = new_document("page")
     document += block.deepcopy()
@@ -138,12 +144,12 @@ def page(block, tmp_path) -> Iterator[Page]:
     head += [f'<script defer src="../{n}.js"></script>' for n in ("plot", "replay")]
     file = site / "lessons" / "page.html"
     file.write_text(html.replace("</head>", f"{''.join(head)}</head>"))
-    with launched(*SOFTWARE) as browser:
-        page = browser.new_page(viewport={"width": 480, "height": 700})
-        problems = errors(page)
-        page.goto(file.as_uri())
-        yield page
-        assert problems == []
+    page = browser.new_page(viewport={"width": 480, "height": 700})
+    problems = errors(page)
+    page.goto(file.as_uri())
+    yield page
+    assert problems == []
+    page.close()
 
 
 @pytest.mark.browser

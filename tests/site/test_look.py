@@ -49,9 +49,17 @@ def page(browser, address, theme) -> Iterator[Page]:
     page = browser.new_page(
         viewport={"width": 1280, "height": 900}, color_scheme=theme, reduced_motion="reduce"
     )
-    page.goto(f"{address}/{LECTURE}", wait_until="networkidle")
+    page.goto(f"{address}/{LECTURE}")
     page.wait_for_function(f"document.documentElement.dataset.theme === {theme!r}")
     yield page
+    page.close()
+
+
+def test_light_or_dark_waits_for_no_script_file(browser, address, theme):
+    page = browser.new_page(color_scheme=theme)
+    page.route("**/*.js*", lambda route: route.abort())
+    page.goto(f"{address}/{LECTURE}")
+    assert page.evaluate("document.documentElement.dataset.theme") == theme
     page.close()
 
 

@@ -1,12 +1,11 @@
-"""Nothing comes from third parties: each page served, and out of the archive from disk."""
+"""The site is used served, and out of the archive from disk."""
 
-import zipfile
 from pathlib import Path
 
 import pytest
-from watching import SERVED_ONLY, only_from, page_names, watch
+from watching import SERVED_ONLY, watch
 
-from robo_genesis.build.site.archive import ARCHIVE, FOLDER
+from robo_genesis.build.site.archive import ARCHIVE
 from robo_genesis.build.site.checks import Site, check_site
 from robo_genesis.build.site.sums import SUMS
 
@@ -15,64 +14,10 @@ pytestmark = [pytest.mark.engine, pytest.mark.browser]
 LECTURE = "lessons/l04-joint-control/lecture.html"
 
 
-@pytest.fixture(scope="module")
-def unpacked(site, tmp_path_factory) -> Path:
-    folder = tmp_path_factory.mktemp("unpacked")
-    with zipfile.ZipFile(site / ARCHIVE) as archive:
-        archive.extractall(folder)
-    return folder / FOLDER
-
-
 @pytest.fixture(params=["served", "from disk"])
 def base(request, address, unpacked) -> str:
     """What is opened from disk comes out of the archive, whose files are those of the site."""
     return address if request.param == "served" else unpacked.as_uri()
-
-
-UNSIZED_OR_EARLY = """() => [...document.querySelectorAll("article img")]
-  .filter((image, number) => !(+image.getAttribute("width") && +image.getAttribute("height"))
-    || (number && image.getAttribute("loading") !== "lazy"))
-  .map(image => `without a size, or loaded at once: ${image.src}`)"""
-
-
-def test_every_page_opens_whole_and_asks_no_other_host(browser, base, site):
-    """On a desktop in the light where it is served, on a phone in the dark from disk."""
-    served = base.startswith("http")
-    names = [name for name in page_names(site) if served or name not in SERVED_ONLY]
-    width, scheme = (1280, "light") if served else (320, "dark")
-    wrong = {}
-    context = browser.new_context(viewport={"width": width, "height": 900}, color_scheme=scheme)
-    with only_from(context, base) as asked:
-        for name in names:
-            page = context.new_page()
-            problems = watch(page)
-            page.goto(f"{base}/{name}", wait_until="networkidle")
-            page.wait_for_function(f"document.documentElement.dataset.theme === {scheme!r}")
-            problems += page.evaluate(UNSIZED_OR_EARLY)
-            page.evaluate("for (const image of document.images) image.loading = 'eager'")
-            page.wait_for_function("[...document.images].every(image => image.complete)")
-            problems += page.evaluate(
-                "[...document.images].filter(i => !i.naturalWidth).map(i => 'empty: ' + i.src)"
-            )
-            if problems:
-                wrong[name] = problems
-            page.close()
-    context.close()
-    assert wrong == {}
-    assert asked == []
-
-
-def test_a_third_party_would_be_noticed(browser, address):
-    context = browser.new_context()
-    with only_from(context, address) as asked:
-        page = context.new_page()
-        problems = watch(page)
-        page.goto(f"{address}/index.html")
-        with page.expect_event("requestfailed"):
-            page.evaluate("new Image().src = 'https://example.org/pixel.png'")
-    assert asked == ["https://example.org/pixel.png"]
-    assert "failed: https://example.org/pixel.png" in problems
-    context.close()
 
 
 def test_search_finds_a_page_and_says_nothing_wrong(browser, base):

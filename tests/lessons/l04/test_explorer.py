@@ -6,6 +6,7 @@ from collections.abc import Iterator
 import pytest
 from bs4 import BeautifulSoup
 from playwright.sync_api import Page
+from watching import errors
 
 from robo_genesis.core.quantities import format_value
 from robo_genesis.evidence import bundle
@@ -26,17 +27,31 @@ def data(lecture) -> dict:
     return json.loads(lecture.select_one(".explorer")["data-grid"])
 
 
-@pytest.fixture(params=["served", "from disk"])
+@pytest.fixture(scope="module", params=["served", "from disk"])
 def page(request, browser, address, site) -> Iterator[Page]:
-    base = address if request.param == "served" else site.as_uri()
-    page = browser.new_page(viewport={"width": 320, "height": 900})
-    problems: list[str] = []
-    page.on("console", lambda m: problems.append(m.text) if m.type == "error" else None)
-    page.on("pageerror", lambda error: problems.append(str(error)))
+    """The lecture on a phone: served in the light, from disk in the dark."""
+    base, scheme = {"served": (address, "light"), "from disk": (site.as_uri(), "dark")}[
+        request.param
+    ]
+    page = browser.new_page(viewport={"width": 320, "height": 900}, color_scheme=scheme)
+    problems = errors(page)
     page.goto(f"{base}/{LECTURE}")
     yield page
     assert problems == []
     page.close()
+
+
+@pytest.fixture(scope="module")
+def opened(page) -> tuple[str, dict[str, str]]:
+    """What the widget shows before anybody touches it."""
+    return shown(page)
+
+
+@pytest.fixture(autouse=True)
+def untouched(request) -> None:
+    """Look at the widget before a test moves it."""
+    if "page" in request.fixturenames:
+        request.getfixturevalue("opened")
 
 
 def press(page, name, key):
@@ -89,8 +104,8 @@ def test_the_curve_is_drawn_to_scale(page, data):
     assert to_force == pytest.approx(force, abs=0.1)  # coordinates have one decimal
 
 
-def test_the_widget_opens_at_g2_with_what_the_bundle_holds(page, site):
-    sentence, metrics = shown(page)
+def test_the_widget_opens_at_g2_with_what_the_bundle_holds(opened, site):
+    sentence, metrics = opened
     assert "(the case G2)" in sentence
     records = bundle.read_metrics(site.parent / "evidence" / "l04" / "cpu")["G2"]
     assert metrics == {
@@ -122,10 +137,7 @@ def test_nothing_in_the_widget_is_cut_off_on_a_phone(page):
     assert overflow == []
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_text_and_curves_stand_out_from_the_ground(browser, address, scheme):
-    page = browser.new_page(color_scheme=scheme)
-    page.goto(f"{address}/{LECTURE}")
+def test_text_and_curves_stand_out_from_the_ground(page):
     contrasts = page.locator(".explorer").evaluate("""root => {
       const light = text => text.match(/[\\d.]+/g).slice(0, 3)
         .map(v => v / 255).map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
@@ -146,17 +158,6 @@ def test_text_and_curves_stand_out_from_the_ground(browser, address, scheme):
     }""")
     assert min(contrasts["output"], contrasts["text"]) >= 4.5, contrasts
     assert min(contrasts["curve"], contrasts["limit"]) >= 3, contrasts
-    page.close()
-
-
-def test_without_scripts_maps_table_and_a_word_remain(browser, address):
-    context = browser.new_context(java_script_enabled=False)
-    page = context.new_page()
-    page.goto(f"{address}/{LECTURE}")
-    assert not page.locator(".explorer").is_visible()
-    assert page.get_by_text("The explorer needs JavaScript").is_visible()
-    assert page.locator("#fig-l04-grid-overshoot img").is_visible()
-    context.close()
 
 
 def test_the_script_is_deferred_and_on_no_other_page(site, lecture):

@@ -1,0 +1,291 @@
+"""One visit to a page of the site: everything that the rules for every page ask is collected."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from playwright.sync_api import Browser, Page
+from watching import MOVING, drawn, foreign, settle, violations, watch
+
+BUDGET = 450_000
+"""Largest first visit before the reader asks for the viewer [bytes, compressed]."""
+STILL = 0.001
+"""Largest cumulative layout shift: a hundredth of the 0.1 that browsers call good."""
+MEASURE = 40
+"""Longest line of running text, in letter heights; one holds about two letters."""
+AXE = {
+    "runOnly": {
+        "type": "tag",
+        "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"],
+    },
+    "rules": {"target-size": {"enabled": True}},  # WCAG 2.2 AA, and off by default
+    "preload": False,  # what it fetches again cannot be fetched from disk, and no rule needs it
+    "resultTypes": ["violations"],
+}
+COLOURS = AXE | {"runOnly": ["color-contrast", "link-in-text-block"]}
+
+IN_EVERY_COLOUR = ("axe", "foreign hosts", "images", "messages", "motion", "theme")
+IN_EVERY_SHAPE = ("focus", "layout shift", "lines", "scroll boxes", "tab order", "width")
+SERVED = ("blocking scripts", "weight")
+"""Of what comes from disk, the browser tells neither compressed size nor blocking."""
+RULES = (*IN_EVERY_COLOUR, *IN_EVERY_SHAPE, *SERVED)
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """How all pages are visited.
+
+    Attributes:
+        rules: The rules of `RULES` that the visit looks at.
+        scheme: The reader's colour scheme.
+        size: Width and height of the window at first [px].
+        narrow: Width at which it is looked at in detail, after the first reading [px].
+        axe: What axe-core looks for.
+        widths: All widths at which nothing may stick out [px].
+        large_text: Whether it is looked at in letters of twice the size, too.
+    """
+
+    rules: tuple[str, ...]
+    scheme: str
+    size: tuple[int, int]
+    narrow: int
+    axe: dict[str, Any]
+    widths: tuple[int, ...] = ()
+    large_text: bool = False
+
+
+WIDTHS = (320, 390, 768, 1280, 1920, 3840)
+KINDS = {
+    "light": Kind(RULES, "light", (1280, 800), 1280, AXE, WIDTHS, large_text=True),
+    "phone": Kind((*IN_EVERY_COLOUR, *IN_EVERY_SHAPE), "dark", (390, 700), 320, AXE, (390, 320)),
+    "dark": Kind(IN_EVERY_COLOUR, "dark", (1280, 800), 1280, COLOURS),
+}
+"""The phone reads from disk. Shape does not depend on the scheme, so one desktop looks at it."""
+
+EVERY_STATE = {"index.html", "lessons/l02-life-cycle/lecture.html"}
+"""Pages that axe-core looks at with closed folds and with large text, too (it skips what a closed
+fold hides). On the desktop, these alone are gone through by Tab: all pages have the same menus."""
+
+WATCH_SHIFTS = """
+window.shifts = [];
+const note = entries => {
+  for (const { value, sources } of entries) {
+    shifts.push([value, sources.map(source => source.node?.outerHTML?.slice(0, 80))]);
+  }
+};
+const observer = new PerformanceObserver(list => note(list.getEntries()));
+observer.observe({ type: "layout-shift", buffered: true });
+window.allShifts = () => {
+  note(observer.takeRecords()); // those of which it has not been told yet
+  return shifts;
+};
+"""
+LOADED = """() => [
+  ...performance.getEntriesByType("navigation"), ...performance.getEntriesByType("resource"),
+].map(entry => ({
+  name: new URL(entry.name).pathname,
+  bytes: entry.encodedBodySize,
+  blocking: entry.renderBlockingStatus === "blocking",
+}))"""
+READ = """async () => {
+  const frame = () => new Promise(requestAnimationFrame);
+  const seen = () => [...document.images].every(image => {
+    const { top, bottom } = image.getBoundingClientRect();
+    return image.complete || !image.checkVisibility() || bottom < 0 || top > innerHeight;
+  });
+  for (let top = 0; top < document.body.scrollHeight; top += innerHeight / 2) {
+    scrollTo({ top, behavior: "instant" });
+    while (!seen()) await frame();
+    await frame();
+    await frame(); // by now the first is drawn, and its shifts are known
+  }
+  scrollTo({ top: 0, behavior: "instant" });
+}"""
+"""Reads a page to its end, and waits for the images in sight."""
+
+IMAGES = """async () => {
+  const early = [...document.querySelectorAll("article img")]
+    .filter((image, number) => !(+image.getAttribute("width") && +image.getAttribute("height"))
+      || (number && image.getAttribute("loading") !== "lazy"))
+    .map(image => `without a size, or loaded at once: ${image.src}`);
+  const all = [...document.images];
+  for (const image of all) image.loading = "eager";
+  while (!all.every(image => image.complete)) await new Promise(requestAnimationFrame);
+  const empty = all.filter(image => !image.naturalWidth).map(image => `empty: ${image.src}`);
+  const changed = all.filter(image => {
+    const style = getComputedStyle(image);
+    const edge = side => parseFloat(style[`padding${side}`]);
+    const width = image.clientWidth - edge("Left") - edge("Right");
+    const height = image.clientHeight - edge("Top") - edge("Bottom");
+    const said = image.getAttribute("width") / image.getAttribute("height");
+    const is = image.naturalWidth / image.naturalHeight;
+    const squeezed = style.objectFit === "fill" && Math.abs(width / height / is - 1) > 0.02;
+    return image.checkVisibility() && (squeezed || Math.abs(said / is - 1) > 0.02);
+  }).map(image => `another shape: ${image.src}`);
+  return [...early, ...empty, ...changed];
+}"""
+TAB_ORDER = """() => [...document.querySelectorAll("*")].filter(element => element.tabIndex > 0)
+  .map(element => element.outerHTML.slice(0, 100))"""
+NOTE_FOCUS = """() => {
+  const visited = new Set();
+  window.stops = [];
+  document.addEventListener("keyup", () => {
+    const element = document.activeElement;
+    if (element === document.body || visited.has(element)) stops.ended = true;
+    if (stops.ended) return;
+    visited.add(element);
+    const style = getComputedStyle(element);
+    const boxes = [...element.getClientRects()].filter(box => box.width && box.height);
+    const seen = boxes.some(box => {
+      const [left, top] = [Math.max(box.left, 0), Math.max(box.top, 0)];
+      const [right, bottom] = [Math.min(box.right, innerWidth), Math.min(box.bottom, innerHeight)];
+      if (right <= left || bottom <= top) return false;
+      return [0.1, 0.5, 0.9].some(share => {
+        const at = document.elementFromPoint(left + share * (right - left), (top + bottom) / 2);
+        return element.contains(at);
+      });
+    });
+    let opaque = 1;
+    for (let e = element; e; e = e.parentElement) opaque *= getComputedStyle(e).opacity;
+    stops.push({
+      what: element.outerHTML.slice(0, 120),
+      outlined: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2,
+      seen: seen && opaque > 0.5,
+    });
+  });
+}"""
+"""Notes where the focus is after each key, until it leaves the page or comes back."""
+
+OPEN_FOLDS = "document.querySelectorAll('details').forEach(fold => { fold.open = true; })"
+SCROLL_BOXES = """() => [...document.querySelectorAll("article *")].filter(element => {
+  const { overflowX, visibility } = getComputedStyle(element);
+  return /auto|scroll/.test(overflowX) && element.scrollWidth > element.clientWidth
+    && element.clientWidth && visibility === "visible";
+}).filter(element => element.tabIndex !== 0
+  || !(element.ariaLabel || element.querySelector(":scope > figcaption, :scope > caption")),
+).map(element => `not reached, or without a name: ${element.outerHTML.slice(0, 100)}`)"""
+LAYOUT = """() => {
+  const width = document.documentElement.clientWidth;
+  const scrolls = (node) => ["auto", "scroll"].includes(getComputedStyle(node).overflowX);
+  const boxed = (node) => {
+    for (let up = node.parentElement; up && up.tagName !== "MAIN"; up = up.parentElement) {
+      if (scrolls(up) && up.getBoundingClientRect().right <= width + 1) return true;
+    }
+    return false;
+  };
+  const out = [...document.querySelectorAll("article *")].filter((node) => {
+    const { right, width: own } = node.getBoundingClientRect();
+    return own > 1 && right > width + 1 && !boxed(node);
+  });
+  const long = [...document.querySelectorAll("article p:not(.admonition-title), article li")]
+    .filter((node) => !node.closest("table, figure") && node.offsetParent)
+    .filter((node) => node.clientWidth / parseFloat(getComputedStyle(node).fontSize) > MEASURE);
+  return {
+    wide: document.documentElement.scrollWidth > Math.min(width, innerWidth),
+    out: out.map((node) => node.outerHTML.slice(0, 120)),
+    long: long.map((node) => node.outerHTML.slice(0, 120)),
+  };
+}""".replace("MEASURE", str(MEASURE))
+
+
+class Visit:
+    """One page, opened once, and whatever is wrong on it by rule.
+
+    Attributes:
+        wrong: Complaints by rule; each rule of the visit's kind is there.
+    """
+
+    def __init__(self, browser: Browser, base: str, name: str, kind: Kind) -> None:
+        self.kind, self.every_state = kind, name in EVERY_STATE
+        self.wrong: dict[str, list[str]] = {rule: [] for rule in kind.rules}
+        width, height = kind.size
+        page = browser.new_page(
+            viewport={"width": width, "height": height}, color_scheme=kind.scheme
+        )
+        self.wrong["messages"], self.wrong["foreign hosts"] = watch(page), foreign(page, base)
+        page.add_init_script(WATCH_SHIFTS)
+        page.goto(f"{base}/{name}")
+        if "?q=" in name:
+            page.wait_for_selector("#search-results li a")
+        self._arrive(page)
+        page.emulate_media(reduced_motion="reduce")
+        page.clock.install()  # it runs as ever, and can be put forward
+        self._resize(page, kind.narrow)
+        self.note("motion", page.evaluate(MOVING))
+        self._with_closed_folds(page)
+        self._with_open_folds(page)
+        page.close()
+
+    def note(self, rule: str, complaints: Iterable[str], state: str = "") -> None:
+        if rule in self.wrong:
+            self.wrong[rule] += [f"{state}: {text}" if state else text for text in complaints]
+
+    def _resize(self, page: Page, width: int) -> None:
+        page.set_viewport_size({"width": width, "height": self.kind.size[1]})
+        settle(page)
+
+    def _arrive(self, page: Page) -> None:
+        """Note what the first visit costs; then read to the end."""
+        if "weight" in self.wrong:
+            page.wait_for_load_state("networkidle")
+        theme = page.evaluate("document.documentElement.dataset.theme")
+        self.note("theme", [] if theme == self.kind.scheme else [f"shown in {theme}"])
+        loaded = page.evaluate(LOADED)
+        weights = {entry["name"]: entry["bytes"] for entry in loaded}
+        self.note("weight", [str(weights)] if sum(weights.values()) > BUDGET else [])
+        blocking = [entry["name"] for entry in loaded if entry["blocking"]]
+        self.note("blocking scripts", [file for file in blocking if not file.endswith(".css")])
+        self.note("blocking scripts", [] if blocking else ["not even a style sheet: is it told?"])
+        if "layout shift" in self.wrong:
+            page.evaluate(READ)
+            shifts = page.evaluate("allShifts()")
+            moved = sum(value for value, _ in shifts) > STILL
+            self.note("layout shift", map(str, shifts) if moved else [])
+        self.note("images", page.evaluate(IMAGES))
+
+    def _with_closed_folds(self, page: Page) -> None:
+        self.note("tab order", page.evaluate(TAB_ORDER))
+        if "focus" in self.wrong and (self.every_state or self.kind.narrow < 768):
+            self.note("focus", focus_complaints(page))
+        if self.every_state:
+            self.note("axe", violations(page, **self.kind.axe), "folds closed")
+        if self.kind.large_text:
+            page.evaluate("document.documentElement.style.fontSize = '200%'")
+            settle(page)
+            wide = page.evaluate("document.documentElement.scrollWidth > innerWidth")
+            self.note("width", ["wider than the window"] if wide else [], "large text")
+            if self.every_state:
+                self.note("axe", violations(page, **self.kind.axe), "large text")
+            page.evaluate("document.documentElement.style.fontSize = '100%'")
+
+    def _with_open_folds(self, page: Page) -> None:
+        page.evaluate(OPEN_FOLDS)
+        settle(page)
+        self.note("axe", violations(page, **self.kind.axe))
+        self.note("scroll boxes", page.evaluate(SCROLL_BOXES))
+        for width in self.kind.widths:
+            page.set_viewport_size({"width": width, "height": self.kind.size[1]})
+            drawn(page)
+            layout = page.evaluate(LAYOUT)
+            self.note("width", ["wider than the window"] if layout["wide"] else [], f"{width} px")
+            self.note("width", layout["out"], f"{width} px")
+            self.note("lines", layout["long"], f"{width} px")
+
+
+def focus_complaints(page: Page) -> list[str]:
+    """Press Tab until the focus leaves the page or comes back; return the stops not seen."""
+    page.evaluate(NOTE_FOCUS)
+    for _ in range(100):
+        for _ in range(15):
+            page.keyboard.press("Tab")
+        if page.evaluate("stops.ended === true"):
+            break
+    else:
+        return ["Tab does not come to an end"]
+    stops = page.evaluate("stops")
+    page.evaluate("document.activeElement.blur()")
+    page.evaluate("scrollTo({ top: 0, behavior: 'instant' })")
+    complaints = [stop["what"] for stop in stops if not (stop["outlined"] and stop["seen"])]
+    if len(stops) < 5 or "Skip to main content" not in stops[0]["what"]:
+        complaints.append(f"begins with {stops[:1]}, and has {len(stops)} stops")
+    return complaints

@@ -1,0 +1,51 @@
+"""Each page of the site is visited on a desktop in both themes and on a phone; then the rules ask.
+
+The spoiled home page in `test_sweep_notices.py` proves that each rule can fail.
+"""
+
+import functools
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+from built_site import CompressingHandler, served
+from sweep import EVERY_STATE, IN_EVERY_COLOUR, KINDS, Kind, Visit
+from watching import SERVED_ONLY, page_names
+
+pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+
+FOUND = "search.html?q=joint"
+"""Its results come one after the other, so they move the page and weigh what all pages weigh."""
+
+
+def of(kind: Kind, name: str) -> Kind:
+    return replace(kind, rules=IN_EVERY_COLOUR) if name == FOUND else kind
+
+
+@pytest.fixture(scope="module")
+def visits(browser, site, unpacked):
+    """Visit all pages in a way of `KINDS`: from the archive on the phone, compressed elsewhere."""
+    names = [*page_names(site), FOUND]
+    assert {*names} > EVERY_STATE
+    with served(site, CompressingHandler) as address:
+
+        @functools.cache
+        def visited(way: str) -> dict[str, Visit]:
+            disk = unpacked.as_uri() if way == "phone" else address
+            return {
+                name: Visit(
+                    browser, address if name in SERVED_ONLY else disk, name, of(KINDS[way], name)
+                )
+                for name in names
+            }
+
+        yield visited
+
+
+@pytest.mark.parametrize(
+    ("way", "rule"), [(name, rule) for name, kind in KINDS.items() for rule in kind.rules]
+)
+def test_every_page_obeys(visits: Callable[[str], dict[str, Visit]], way, rule):
+    wrong = {name: visit.wrong.get(rule, []) for name, visit in visits(way).items()}
+    assert {name: complaints for name, complaints in wrong.items() if complaints} == {}
