@@ -45,8 +45,8 @@ TILTED = 1e-4
 that touch."""
 
 TWIST = 1e-2
-"""Angle by which Genesis turns a body to find further contact points [rad]: up to twice its
-`mc_perturbation`, which is 3e-3 in Genesis 1.3.3 and 5e-3 in 1.4.5."""
+"""Angle by which Genesis turns a body to find further contact points [rad]: twice its
+`mc_perturbation`, which is 3e-3 or 5e-3, depending on the version."""
 
 NO_TURN, TURN = 2.5e-7, 1e-4
 """Angle in one solver step up to which the engine may not turn a body [rad], twice what float32
@@ -57,7 +57,7 @@ RESOLVED = 4e-7
 
 ON_EDGE = 12
 """Number of steps in a run that may end otherwise, because a cube that lands on an edge has other
-contact points in the two engines. The runs have at most 2 with Genesis 1.3.3, 9 with 1.4.5."""
+contact points in the two engines. The runs have at most 2 or 9, depending on the version."""
 
 TOUCHED = 5
 """Number of states with contacts in which the rounding of a cube's angular velocity must show."""

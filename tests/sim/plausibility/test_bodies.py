@@ -67,7 +67,7 @@ def test_cross_products_are_those_of_numpy():
         (0.0, 4, []),
         (0.0, 3, ["contact"]),
         (0.005, 2, []),
-        (0.005, 4, []),  # Genesis 1.4.5 turns the cube by up to 0.01 rad to find further contacts
+        (0.005, 4, []),  # Genesis turns the cube by up to 0.01 rad to find contacts
         (0.05, 2, []),
         (0.05, 4, ["contact"]),
         (0.05, 1, ["contact"]),
