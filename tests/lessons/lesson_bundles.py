@@ -97,7 +97,7 @@ def judged_again(folder, monkeypatch, judgements):
         judgements: module, name and value with which a check fails, and the name of the check.
     """
     manifest = bundle.read_manifest(folder)
-    experiment = from_bundle(folder, manifest)
+    experiment = from_bundle(folder, manifest, bundle.read_metrics(folder))
     for module, name, value, check in judgements:
         with monkeypatch.context() as context:
             context.setattr(module, name, value)
