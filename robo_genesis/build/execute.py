@@ -196,7 +196,9 @@ def _receive(connection: Any, worker: Worker) -> PageResult | None:
         seconds, failure = received
     except EOFError:
         worker.process.join()
-        message = f"the worker process ended with status {worker.process.exitcode}; out of memory?"
+        cell = f" in cell {worker.underway.cell}" if worker.underway.cell else ""
+        status = worker.process.exitcode
+        message = f"the worker process ended{cell} with status {status}; out of memory?"
         seconds, failure = 0.0, Failure("WorkerDied", message)
     worker.process.join()
     connection.close()

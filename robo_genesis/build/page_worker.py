@@ -81,7 +81,7 @@ def work(run: PageRun, connection: Connection) -> None:
     os.environ.update(environment)
     # The engine's compiled parts write past Python: to a file, because the build prints its
     # progress here, and because a crash would lose the last lines.
-    descriptor = os.open(run.log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND)
+    descriptor = os.open(run.log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND, 0o644)
     for standard in (1, 2):
         os.dup2(descriptor, standard)
     begin = time.monotonic()

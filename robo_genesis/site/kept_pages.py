@@ -1,6 +1,6 @@
 """Makes an incremental render equal to one from nothing; `build.site.kept` keeps its folder.
 
-What decides a page beside its own source and what is the same for all pages:
+A page depends on its own source, on what is the same for all pages, and on this:
 
 | while it is read | what happens |
 |---|---|
@@ -120,6 +120,6 @@ def setup(app: Sphinx) -> None:
     app.setup_extension("robo_genesis.site.page_files")
     app.connect("builder-inited", drop_static_files, priority=0)
     app.connect("env-get-outdated", including_pages)
-    app.connect("env-updated", outdated_pages, priority=900)  # numbers are assigned before
+    app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)
     app.connect("build-finished", finish)

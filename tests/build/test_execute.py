@@ -321,6 +321,7 @@ def test_a_killed_worker_is_a_failed_page(tmp_path):
     make_book(tmp_path, page=notebook(cell(code)), good=notebook(cell("1")))
     results = execute(tmp_path)
     assert results["page"].failure.error == "WorkerDied"
+    assert "ended in cell 1 with status -9" in results["page"].failure.message
     assert results["good"].status == "executed"
 
 

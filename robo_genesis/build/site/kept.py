@@ -70,7 +70,10 @@ def _runs(built: BuiltPages) -> dict[str, object]:
 def prepare(folder: Path, state: State) -> bool:
     """Empty the folder, or mark in it the pages that changed; return whether it was usable.
 
-    The mark of success is removed: `keep` puts it back.
+    The mark of success is removed. `keep` writes it again.
+
+    Raises:
+        OSError: the folder cannot be emptied.
     """
     try:
         last = State(**json.loads((folder / STATE).read_text("utf8")))
@@ -78,8 +81,8 @@ def prepare(folder: Path, state: State) -> bool:
     except (OSError, ValueError, TypeError):
         last = State(None, {})
     usable = last.others is not None and last.others == state.others
-    if not usable:
-        shutil.rmtree(folder, ignore_errors=True)
+    if not usable and folder.exists():
+        shutil.rmtree(folder)
     folder.mkdir(parents=True, exist_ok=True)
     read_again(folder, {n for n, digest in state.pages.items() if last.pages.get(n) != digest})
     return usable

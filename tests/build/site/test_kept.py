@@ -20,6 +20,9 @@ from robo_genesis.lessons.book_pages import find_pages
 GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
 LAW = "# Law\n\n(spring)=\n## The spring\n\nA gain of two, and a rareword.\n\n{ref}`text <there>`\n"
 TEXT = "# Text\n\n(there)=\n## There\n\nSee [](law.md) and {ref}`spring`.\n\n![A drawing](a.svg)\n"
+FIGURE = "\n```{figure} a.svg\n%s\nA drawing\n```\n"
+CITING = "# Citing\n\nSee {numref}`drawn` and {eq}`force`.\n"
+DRAWN = "# Drawn\n" + FIGURE % ":name: drawn" + "\n$$\nF = k x\n$$ (force)\n"
 DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>'
 SOME = State("a", {"one": "1", "two": "2"})
 
@@ -64,6 +67,12 @@ def edit_what_others_show(book: Path) -> None:
     replace(book / "text.md", ("\n\n![A drawing](a.svg)", ""))
 
 
+def edit_numbers(book: Path) -> None:
+    """Add a figure before the one that another page cites by its number."""
+    page = book / "law.md"
+    page.write_text(page.read_text() + FIGURE % "")
+
+
 def edit_contents(book: Path) -> None:
     """Remove a page, and add one."""
     (book / "extra.md").rename(book / "added.md")
@@ -74,12 +83,13 @@ def edit_contents(book: Path) -> None:
 
 def test_each_edit_publishes_the_same_bytes_as_a_render_from_nothing(tmp_path):
     pages = {"glossary": GLOSSARY, "law": LAW, "text": TEXT, "run": notebook(cell("print(7)"))}
+    pages |= {"drawn": DRAWN, "citing": CITING}
     book = make_book(tmp_path, **pages, extra="# Extra\n\nMore.\n")
     (book / "a.svg").write_text(DRAWING)
     built = ran(tmp_path, "seven")
     publish(tmp_path, built)
     said = []
-    for edit in (edit_prose, edit_what_others_show, edit_contents):
+    for edit in (edit_prose, edit_what_others_show, edit_numbers, edit_contents):
         edit(book)
         if edit is edit_contents:
             built = ran(tmp_path, "eight")
@@ -88,7 +98,12 @@ def test_each_edit_publishes_the_same_bytes_as_a_render_from_nothing(tmp_path):
         expected = publish(tmp_path, built, keep=False)
         assert found.keys() == expected.keys()
         assert [name for name in found if found[name] != expected[name]] == []
-    assert said == ["0 added, 1 changed", "0 added, 3 changed", "6 added, 0 changed"]
+    assert said == [
+        "0 added, 1 changed",
+        "0 added, 3 changed",
+        "0 added, 1 changed",
+        "8 added, 0 changed",
+    ]
 
 
 def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
