@@ -1,5 +1,4 @@
-"""The packages that come from npm, by lock file: the site's 3D viewer, its font for
-formulas, and tools of its tests.
+"""The packages that come from npm, by lock file: viewer and math font, and tools of the tests.
 
 Node.js and npm themselves come from PyPI, so a machine needs nothing but Python.
 """
