@@ -120,10 +120,11 @@ class Number(Question):
 
     def ask(self) -> tuple[str, choice]:
         """See `Question.ask`."""
+        page, name = self.arguments
         text, causes = split_causes(self.content, JUDGED)
         if "tolerance" not in self.options:
             raise LookupError("the option tolerance is missing. Give percents: `:tolerance: 20`.")
-        return text, number(**asked_number(*self.arguments, self.options["tolerance"], causes))
+        return text, number(**asked_number(page, name, self.options["tolerance"], causes))
 
 
 def asked_number(
