@@ -43,8 +43,10 @@ def count_work(document: nodes.document) -> tuple[int, int]:
     """Return the number of visible code lines in cells, and that of questions."""
     lines = 0
     for part in document.findall(nodes.container):
-        tags = part.parent.get("cell_metadata", {}).get("tags", ())
-        if part.get("nb_element") == SOURCE and not HIDDEN.intersection(tags):
+        if part.get("nb_element") != SOURCE:
+            continue
+        cells = (node for node in above(part) if "cell_metadata" in node)
+        if not any(HIDDEN.intersection(cell["cell_metadata"].get("tags", ())) for cell in cells):
             lines += sum(bool(line.strip()) for line in part.astext().splitlines())
     return lines, len(list(document.findall(choice)))
 

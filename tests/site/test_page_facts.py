@@ -52,7 +52,8 @@ def test_minutes_follow_from_words_code_and_questions(counted, shown):
 
 def code(text, *tags):
     cell = nodes.container(nb_element="cell_code", cell_metadata={"tags": [*tags]})
-    cell += nodes.container("", nodes.literal_block(text, text), nb_element="cell_code_source")
+    source = nodes.container("", nodes.literal_block(text, text), nb_element="cell_code_source")
+    cell += nodes.container("", source)  # a fold is a further node around the code
     cell += nodes.container("", nodes.literal_block("7", "7"), nb_element="cell_code_output")
     return cell
 
