@@ -8,7 +8,7 @@ from sphinx.application import Sphinx
 from sphinx.directives.code import LiteralInclude
 
 LEFT_OUT = "\0"
-"""Stands for a line of a docstring; no Python contains it."""
+"""Marks a line of a docstring; no Python contains it."""
 
 
 class Excerpt(LiteralInclude):

@@ -23,7 +23,7 @@ FOR_BROWSERS = {
 }
 
 ACCENTS = {*"˙¨^~¯→˘ˇ´`"}
-"""What stands above a letter; marked as an accent it keeps its size and is not set as a limit."""
+"""Signs above a letter; marked as an accent it keeps its size and is not set as a limit."""
 
 NAMESPACE = "http://www.w3.org/1998/Math/MathML"
 ElementTree.register_namespace("", NAMESPACE)
