@@ -80,13 +80,14 @@ WORDS = (?<![./-])(?<!here )(?:$$(sed 's/->.*//; s/^[a-z]/\\b[&\U&]/' .words.txt
 PROSE := robo_genesis build_scripts README.md CONTRIBUTING.md CHANGELOG.md book/_decisions
 
 .PHONY: lint
-lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell and the schema of workflows
+lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages and the schema of workflows
 	@"$(PY)" -m ruff check .
 	@"$(PY)" -m ruff format --check .
 	@"$(PY)" -m mypy
 	@"$(PY)" -c 'from importlinter.cli import lint_imports_command; lint_imports_command()' --no-logo --no-cache
 	@"$(PY)" -m codespell_lib
 	@"$(PY)" -m codespell_lib --dictionary .words.txt --regex "$(WORDS)" $(PROSE)
+	@"$(PY)" build_scripts/sizes.py
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-actions .github/actions/*/action.yml
 

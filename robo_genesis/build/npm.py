@@ -1,4 +1,4 @@
-"""The packages that come from npm, by lock file: the site's 3D viewer, and tools of its tests.
+"""The packages that come from npm, by lock file: viewer and math font, and tools of the tests.
 
 Node.js and npm themselves come from PyPI, so a machine needs nothing but Python.
 """
@@ -18,6 +18,10 @@ LOCK = ("package.json", "package-lock.json")
 SETTINGS = ".npmrc"
 
 PUBLISHED = {
+    "@fontsource/stix-two-math/files/stix-two-math-latin-400-normal.woff":
+        "794b8382140b9a061229bcdb5f3786c00e0bad91376d060fa1565184c90bf7c4",
+    "@fontsource/stix-two-math/LICENSE":
+        "0c8b99c034064cbb3c8ad9ba4531b89e179645b93d612da3e8be1cc52b393e58",
     "@google/model-viewer/dist/model-viewer-umd.min.js":
         "d785423b1d046ea84a9f59ef6cf15f3077603e1bf938b01ced9b0240691884a2",
     "@google/model-viewer/LICENSE":

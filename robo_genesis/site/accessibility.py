@@ -15,6 +15,9 @@ def make_accessible(page: BeautifulSoup) -> None:
     # The control around an icon has its name as text or label.
     for icon in page.select(ICONS):
         icon["aria-hidden"] = "true"
+    # A fold of code shows an icon; its text is for screen readers and, as a title, for the mouse.
+    for fold in page.select("details.hide.above-input > summary"):
+        fold["title"] = "Show or hide source"
     # A label would replace the visible text, by which speech input finds a control.
     for element in page.select(NAMED_BY_TEXT):
         del element["aria-label"]

@@ -9,6 +9,8 @@ from latex2mathml.converter import convert
 from sphinx.util import logging
 from sphinx.util.math import get_node_equation_number
 
+from robo_genesis.site.math_font import missing
+
 LOGGER = logging.getLogger(__name__)
 
 # latex2mathml knows `split` and `align*`, which align the same way; the numbers are Sphinx's own.
@@ -20,6 +22,12 @@ FOR_BROWSERS = {
     r'mathvariant="bold(?:-italic)?"': 'style="font-weight: bold"',
 }
 
+ACCENTS = {*"˙¨^~¯→˘ˇ´`"}
+"""Signs above a letter; marked as an accent it keeps its size and is not set as a limit."""
+
+NAMESPACE = "http://www.w3.org/1998/Math/MathML"
+ElementTree.register_namespace("", NAMESPACE)
+
 
 def to_mathml(latex: str, display: str) -> str:
     """Return a formula as one `<math>` element.
@@ -29,18 +37,27 @@ def to_mathml(latex: str, display: str) -> str:
         display: `block` or `inline`.
 
     Raises:
-        ValueError: the formula is not balanced or uses an unknown command.
+        ValueError: the formula is not balanced, uses an unknown command, or a character that the
+            site's math font lacks.
     """
     for name, known in ENVIRONMENTS.items():
         latex = re.sub(rf"\\(begin|end)\{{{name}\}}", rf"\\\1{{{known}}}", latex)
     try:
-        markup = convert(latex, display=display)
-        ElementTree.fromstring(markup)
+        tree = ElementTree.fromstring(convert(latex, display=display))
     except Exception as error:  # the converter's parser leaks KeyError, IndexError and its own
         raise ValueError(f"{latex!r} is not valid: {type(error).__name__} {error}") from error
+    for over in tree.iter(f"{{{NAMESPACE}}}mover"):
+        if over[1].text in ACCENTS:
+            over.set("accent", "true")
+    markup = ElementTree.tostring(tree, encoding="unicode")
     unknown = re.search(r"\\[A-Za-z]*", markup)
     if unknown:
         raise ValueError(f"{latex!r} uses {unknown[0]}, which latex2mathml does not know.")
+    if lacking := missing("".join(tree.itertext())):
+        raise ValueError(
+            f"{latex!r} shows {lacking}, which the site's font for formulas does not have. Use "
+            "another symbol, or add it to SHOWN in robo_genesis/site/math_font.py."
+        )
     for pattern, replacement in FOR_BROWSERS.items():
         markup = re.sub(pattern, replacement, markup)
     return markup

@@ -1,17 +1,34 @@
-"""Multiple choice whose right answer was measured.
+"""Questions whose right answer was measured: multiple choice, or a number with a tolerance.
 
-A page asks how one metric of a case compares with that of another. The right option is read from
-the accepted bundle when the page is rendered, so it cannot become stale:
+A page asks how one metric of a case compares with that of another, or for the value of a metric.
+The right answer is read from the accepted bundle when the page is rendered, so it cannot become
+stale. A list below the question gives the cause for each answer; it may be left out:
 
     ```{choice} l04/lecture rise_time G1 G2
     When does G2 reach 90 % of its step?
+
+    - lower: Both runs deliver 87 N·m until 0.07 s, so KP cannot matter before that.
+    - unknown: Both runs reach 90 % in this window.
     ```
+
+    ```{number} l04/lecture G2.overshoot
+    :tolerance: 20
+    How large is the overshoot of G2?
+
+    - low: Saturation makes the overshoot larger than the linear formula says.
+    ```
+
+The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent.
 """
 
+import re
+from collections.abc import Mapping, Sequence
 from html import escape
+from types import MappingProxyType
 from typing import Any
 
 from docutils import nodes
+from docutils.parsers.rst.directives import percentage
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -23,31 +40,120 @@ from robo_genesis.site.evidence.measured import BACKEND, measured
 
 EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same, within the lesson's resolution", "higher": "more"}
-UNDECIDED = "this window cannot tell"
+UNDECIDED = "this record cannot tell"
+UNKNOWN = "unknown"
+"""The key of the option that no order was observed."""
+JUDGED = ("right", "low", "high")
+"""The keys of an answer that is a number."""
+CAUSE = re.compile(r"[-*] +(\w+): +(.+)", re.DOTALL)
 """The relation of the second case to the first, in a reader's words."""
 
 
 class choice(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes in lower case
-    """A question; `options` are (text, right), `answer` and `origin` describe the measurement."""
+    """A question; `options` are (text, right, cause), `answer` and `origin` what was measured."""
 
 
-class Choice(SphinxDirective):
-    """Ask how the second of two cases compares with the first in one metric."""
+class number(choice):  # noqa: N801
+    """A question for a number: `value`, `tolerance` and `unit`, with (key, text) as `feedback`."""
 
-    required_arguments = 4
+
+def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict[str, str]]:
+    """Return the question, and the cause of each answer that has one.
+
+    Args:
+        content: lines; each cause begins a line with `- key:`.
+        keys: the valid keys.
+
+    Raises:
+        LookupError: a key is not valid or given twice; the message lists the valid ones.
+    """
+    question, *items = re.split(r"\n(?=[-*] )", "\n".join(content))
+    causes: dict[str, str] = {}
+    for item in items:
+        found = CAUSE.fullmatch(item.strip())
+        if found is None or found[1] not in keys or found[1] in causes:
+            valid = ", ".join(f"`- {key}: …`" for key in keys)
+            raise LookupError(f"{item.strip()!r} is not a cause. Valid, once each: {valid}.")
+        causes[found[1]] = " ".join(found[2].split())
+    return " ".join(question.split()), causes
+
+
+class Question(SphinxDirective):
+    """Ask for something that was measured."""
+
     has_content = True
 
     def run(self) -> list[nodes.Node]:
-        """Return the question with its options; an unknown page, case or metric is an error."""
-        lesson_page, metric, *cases = self.arguments
+        """Return the question; an unknown page, case, metric or key is an error."""
         try:
-            order, unit, answer, origin = measured_order(lesson_page, metric, cases)
+            text, node = self.ask()
         except (LookupError, bundle.BundleRefused) as error:
-            raise self.error(f"choice: {error}") from error
-        question, messages = self.parse_inline(" ".join(self.content), lineno=self.lineno)
-        number = self.env.new_serialno("choice")
-        shown = {"number": number, "options": options(unit, order), "answer": answer}
-        return [choice("", *question, **shown, origin=origin), *messages]
+            raise self.error(f"{self.name}: {error}") from error
+        question, messages = self.parse_inline(text, lineno=self.lineno)
+        node += question
+        node["number"] = self.env.new_serialno("choice")
+        return [node, *messages]
+
+    def ask(self) -> tuple[str, choice]:
+        """Return the question's text, and its node with everything that was measured."""
+        raise NotImplementedError
+
+
+class Choice(Question):
+    """Ask how the second of two cases compares with the first in one metric."""
+
+    required_arguments = 4
+
+    def ask(self) -> tuple[str, choice]:
+        """See `Question.ask`."""
+        lesson_page, metric, *cases = self.arguments
+        text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
+        order, unit, answer, origin = measured_order(lesson_page, metric, cases)
+        return text, choice(options=options(unit, order, causes), answer=answer, origin=origin)
+
+
+class Number(Question):
+    """Ask for the value of one metric."""
+
+    required_arguments = 2
+    option_spec = {"tolerance": percentage}  # noqa: RUF012 - as docutils declares it
+
+    def ask(self) -> tuple[str, choice]:
+        """See `Question.ask`."""
+        page, name = self.arguments
+        text, causes = split_causes(self.content, JUDGED)
+        if "tolerance" not in self.options:
+            raise LookupError("the option tolerance is missing. Give percents: `:tolerance: 20`.")
+        return text, number(**asked_number(page, name, self.options["tolerance"], causes))
+
+
+def asked_number(
+    lesson_page: str, name: str, percent: int, causes: Mapping[str, str]
+) -> dict[str, Any]:
+    """Return the attributes of a question for a number.
+
+    Args:
+        lesson_page: as `l04/lab`.
+        name: `case.metric`.
+        percent: the tolerance relative to the value.
+        causes: texts by `JUDGED`, any of them.
+
+    Raises:
+        LookupError: there is no such metric, or it has no value.
+        BundleRefused: the bundle cannot be read.
+    """
+    text, origin = measured(lesson_page, name)
+    case, _, metric = name.partition(".")
+    record = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)[case][metric]
+    if record.value is None:
+        raise LookupError(f"{lesson_page} did not observe {name}. Ask with {{choice}}.")
+    verdicts = {"right": "Yes.", "low": "Too low.", "high": "Too high."}
+    feedback = [(key, f"{said} {causes.get(key, '')}".strip()) for key, said in verdicts.items()]
+    return {
+        "value": record.value, "tolerance": abs(record.value) * percent / 100,
+        "unit": "" if record.unit == "1" else record.unit, "feedback": feedback,
+        "answer": f"{text}; answers within {percent} % count as right.", "origin": origin,
+    }  # fmt: skip
 
 
 def measured_order(
@@ -68,36 +174,64 @@ def measured_order(
     return found.order, found.unit, comparison_sentence((cases[0], cases[1]), found), origin
 
 
-def options(unit: str, order: str | None) -> list[tuple[str, bool]]:
-    """Return each option and whether it was measured; exactly one is true."""
+def options(
+    unit: str, order: str | None, causes: Mapping[str, str] = MappingProxyType({})
+) -> list[tuple[str, bool, str]]:
+    """Return each option, whether it was measured, and its cause; exactly one is true."""
     words = EARLIER if unit == "s" else LOWER
-    return [*((text, order == name) for name, text in words.items()), (UNDECIDED, order is None)]
+    told = [(text, order == name, causes.get(name, "")) for name, text in words.items()]
+    return [*told, (UNDECIDED, order is None, causes.get(UNKNOWN, ""))]
 
 
-def visit_choice(self: Any, node: choice) -> None:
+def visit_question(self: Any, node: choice) -> None:
     """Open the question; its text follows."""
-    self.body.append('<fieldset class="choice"><legend>')
+    attributes = ""
+    if isinstance(node, number):
+        attributes = f' data-value="{node["value"]!r}" data-tolerance="{node["tolerance"]!r}"'
+    self.body.append(f'<fieldset class="choice"{attributes}><legend>')
 
 
 def depart_choice(self: Any, node: choice) -> None:
-    """Write the options, each with its feedback, and the answer in a fold; no script is needed."""
+    """Write the options, each with its feedback, which choice.js also announces."""
     name, answer = f"choice-{node['number']}", escape(node["answer"])
     rows = [
         f'<div><input type="radio" name="{name}" id="{name}-{k}"/>'
         f'<label for="{name}-{k}">{escape(text)}</label>'
-        f'<p class="feedback {"right" if right else "wrong"}">{"Yes" if right else "No"}. {answer}'
-        "</p></div>"
-        for k, (text, right) in enumerate(node["options"])
+        f'<p class="feedback {"right" if right else "wrong"}">{"Yes" if right else "No"}. '
+        f"{f'{escape(cause)} ' if cause else ''}{answer}</p></div>"
+        for k, (text, right, cause) in enumerate(node["options"])
     ]
-    right = next(text for text, is_right in node["options"] if is_right)
+    right = next(text for text, is_right, _ in node["options"] if is_right)
+    close(self, node, "".join(rows), f"<strong>{escape(right)}</strong>. {answer}")
+
+
+def depart_number(self: Any, node: number) -> None:
+    """Write the field; choice.js shows the feedback that fits the number."""
+    name = f"choice-{node['number']}"
+    texts = "".join(
+        f'<p class="feedback {"right" if key == "right" else "wrong"}" data-key="{key}">'
+        f"{escape(text)}</p>"
+        for key, text in node["feedback"]
+    )
+    field = (
+        f'<div class="number"><input type="number" step="any" id="{name}"/>'
+        f'<label for="{name}">{escape(node["unit"]) or "your number"}</label>{texts}</div>'
+    )
+    close(self, node, field, escape(node["answer"]))
+
+
+def close(self: Any, node: choice, inside: str, answer: str) -> None:
+    """End a question: what is inside, a place for announcements, and the answer in a fold."""
     self.body.append(
-        f"</legend>{''.join(rows)}<details><summary>Answer</summary>"
-        f"<p><strong>{escape(right)}</strong>. {answer}</p>"
+        f'</legend>{inside}<output class="visually-hidden" aria-live="polite"></output>'
+        f"<details><summary>Answer</summary><p>{answer}</p>"
         f'<p class="origin">{escape(node["origin"])}.</p></details></fieldset>'
     )
 
 
 def setup(app: Sphinx) -> None:
-    """Register the directive."""
+    """Register the directives."""
     app.add_directive("choice", Choice)
-    app.add_node(choice, html=(visit_choice, depart_choice))
+    app.add_directive("number", Number)
+    app.add_node(choice, html=(visit_question, depart_choice))
+    app.add_node(number, html=(visit_question, depart_number))

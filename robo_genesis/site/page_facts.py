@@ -1,4 +1,4 @@
-"""A page's reading time below its title, its Git history at its end, and its description."""
+"""A page's minutes below its title, its Git history at its end, and its description."""
 
 import textwrap
 from functools import lru_cache
@@ -12,13 +12,21 @@ from sphinx.application import Sphinx
 
 from robo_genesis.core.git import git_or_none
 from robo_genesis.site.evidence.origin import above
+from robo_genesis.site.multiple_choice import choice
 
 WORDS_A_MINUTE = 200
 """A slow pace, for technical prose; code, tables and formulas are not counted."""
+LINES_A_MINUTE = 10
+"""The pace of somebody who runs and changes visible code."""
+MINUTES_A_QUESTION = 2
 COMMITS = 6
 """Number of the latest commits of a page that are listed."""
 DESCRIPTION = 200
 """Longest description, in characters: search engines show about as many."""
+SOURCE = "cell_code_source"
+"""What MyST-NB calls the code of a cell."""
+HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
+"""Tags of cells whose code is not visible."""
 UNCOUNTED = (nodes.literal_block, nodes.table, nodes.math, nodes.math_block, nodes.raw)
 
 
@@ -31,10 +39,29 @@ def count_words(document: nodes.document) -> int:
     )
 
 
-def reading_time(words: int) -> str:
-    """Return the time to read some words in whole minutes, with the numbers behind it."""
-    minutes = max(1, round(words / WORDS_A_MINUTE))
-    return f"About {minutes} min to read: {words:,} words of text at {WORDS_A_MINUTE} a minute."
+def count_work(document: nodes.document) -> tuple[int, int]:
+    """Return the number of visible code lines in cells, and that of questions."""
+    lines = 0
+    for part in document.findall(nodes.container):
+        if part.get("nb_element") != SOURCE:
+            continue
+        cells = (node for node in above(part) if "cell_metadata" in node)
+        if not any(HIDDEN.intersection(cell["cell_metadata"].get("tags", ())) for cell in cells):
+            lines += sum(bool(line.strip()) for line in part.astext().splitlines())
+    return lines, len(list(document.findall(choice)))
+
+
+def minutes(words: int, code_lines: int = 0, questions: int = 0) -> str:
+    """Return the time to read and to work in whole minutes.
+
+    Args:
+        words: of running text.
+        code_lines: visible lines of code, which a reader runs and changes.
+        questions: to be answered.
+    """
+    read = max(1, round(words / WORDS_A_MINUTE))
+    work = round(code_lines / LINES_A_MINUTE + questions * MINUTES_A_QUESTION)
+    return f"About {read} min to read{f', {work} min to work' if work else ''}."
 
 
 @lru_cache(maxsize=8)
@@ -73,7 +100,7 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     if section is None:
         return
     if docname != app.config.root_doc:
-        time = reading_time(count_words(document))
+        time = minutes(count_words(document), *count_work(document))
         section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))
     section += nodes.raw("", history_html(Path(app.env.doc2path(docname))), format="html")
 

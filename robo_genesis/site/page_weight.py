@@ -14,6 +14,7 @@ from PIL import Image
 NEEDED_BY = {
     "div.highlight": {"clipboard.min.js", "copybutton.js"},
     ".sd-tab-set": {"design-tabs.js"},
+    "fieldset.choice": {"choice.js"},
     ".explorer": {"explorer.js"},
     ".explorer, .replay": {"plot.js"},
     ".replay": {"replay.js"},

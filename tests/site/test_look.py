@@ -23,6 +23,7 @@ READ = {
     "term": "article a.term-link",
     "code in text": "article p code",
     "reading time": "article .page-facts",
+    "state of evidence": "article .status-line > summary",
     "provenance": "article .provenance",
     "caption": "article figcaption .caption-text",
     "table": "article td",
@@ -70,7 +71,7 @@ def style(page: Page, selector: str, name: str) -> str:
 
 def test_the_page_s_ground_is_one_that_the_palette_was_held_against(page, theme):
     assert hexadecimal(style(page, "body", "backgroundColor")) in GROUNDS[theme]
-    panel = hexadecimal(style(page, "ul.lesson-status", "backgroundColor"))
+    panel = hexadecimal(style(page, "div.evidence-panel", "backgroundColor"))
     assert panel in GROUNDS[theme]
 
 

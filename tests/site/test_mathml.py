@@ -22,7 +22,12 @@ def test_the_course_s_kind_of_math_is_converted_whole(latex):
 
 @pytest.mark.parametrize(
     ("latex", "said"),
-    [(r"\foo{x}", r"uses \\foo"), (r"\frac{a}{", "not valid"), (r"a & b", "not valid")],
+    [
+        (r"\foo{x}", r"uses \\foo"),
+        (r"\frac{a}{", "not valid"),
+        (r"a & b", "not valid"),
+        (r"\oiint x", "shows ∯, which the site's font for formulas does not have"),
+    ],
 )
 def test_bad_math_is_refused_with_the_formula(latex, said):
     with pytest.raises(ValueError, match=said):
@@ -34,3 +39,9 @@ def test_alignment_and_bold_use_what_browsers_implement():
     bold = to_mathml(r"\boldsymbol{q}", "inline")
     assert "mathvariant" not in bold
     assert 'style="font-weight: bold"' in bold
+
+
+@pytest.mark.parametrize("accent", [r"\dot", r"\ddot", r"\hat", r"\tilde", r"\vec", r"\bar"])
+def test_an_accent_is_marked_as_one(accent):
+    assert '<mover accent="true">' in to_mathml(rf"{accent}{{q}}", "inline")
+    assert "accent" not in to_mathml(r"\overset{!}{=}", "inline")

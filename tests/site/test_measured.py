@@ -1,10 +1,14 @@
 """Numbers that pages insert come from the bundle, and an unknown one stops the build."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from robo_genesis.core import project
 from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.status import Status
 from robo_genesis.site.evidence.measured import measured as insert
+from robo_genesis.site.evidence.measured import state_words, status_fold, visit_status
 
 
 def test_a_metric_comes_with_unit_and_origin(outputs, experiment):
@@ -30,3 +34,27 @@ def test_an_unknown_metric_names_those_there_are(outputs, name):
 def test_a_page_without_bundle_is_refused(outputs):
     with pytest.raises(BundleRefused, match=r"manifest\.json is not in"):
         insert("l04/lecture", "G2.overshoot")
+
+
+@pytest.mark.parametrize("state", ["stale", "refused", "failed", "inconclusive", "missing"])
+def test_the_line_names_each_state_and_calls_no_such_run_measured(state):
+    assert state_words(Status(state, "cpu", "why", None)) == f"CPU run: {state}"
+    assert state_words(Status(state, "x<y", "why", None)) == f"x<y run: {state}"
+
+
+def test_the_line_of_an_accepted_run_has_its_engine():
+    predicate = SimpleNamespace(engine=SimpleNamespace(version="9.8.7"))
+    manifest = SimpleNamespace(predicate=predicate)
+    accepted = Status("verified", "amdgpu", "", manifest)
+    assert state_words(accepted) == "Measured on AMD GPU with Genesis 9.8.7"
+    unclear = Status("inconclusive", "amdgpu", "", manifest)
+    assert state_words(unclear) == "AMD GPU run: inconclusive"
+
+
+def test_the_words_of_the_line_are_text_and_not_markup():
+    page = SimpleNamespace(body=[])
+    visit_status(page, status_fold("", line=[("stale", "x<y run: stale")]))
+    assert page.body == [
+        '<details class="status-line"><summary>'
+        '<span class="status-word state-stale">x&lt;y run: stale</span></summary>'
+    ]

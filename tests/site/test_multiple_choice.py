@@ -5,9 +5,18 @@ from types import SimpleNamespace
 
 import pytest
 
+from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.site import multiple_choice
-from robo_genesis.site.multiple_choice import UNDECIDED, measured_order, options
+from robo_genesis.site.multiple_choice import (
+    LOWER,
+    UNDECIDED,
+    UNKNOWN,
+    asked_number,
+    measured_order,
+    options,
+    split_causes,
+)
 
 
 @pytest.mark.parametrize(
@@ -21,7 +30,7 @@ from robo_genesis.site.multiple_choice import UNDECIDED, measured_order, options
     ],
 )
 def test_exactly_the_measured_option_is_right(unit, order, text):
-    assert [name for name, right in options(unit, order) if right] == [text]
+    assert [name for name, right, _ in options(unit, order) if right] == [text]
 
 
 def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
@@ -43,15 +52,104 @@ def test_an_unknown_metric_or_case_names_those_there_are(outputs, metric, case):
         measured_order("l04/lab", metric, ["G1", case])
 
 
-def test_each_option_tells_yes_or_no_and_the_text_is_escaped():
-    shown = {"options": options("s", "higher"), "answer": "G1 < G2", "origin": "Measured"}
-    node, page = multiple_choice.choice("", number=3, **shown), SimpleNamespace(body=[])
-    multiple_choice.visit_choice(page, node)
-    multiple_choice.depart_choice(page, node)
-    html = "".join(page.body)
-    assert re.findall(r'feedback (\w+)">(\w+)\.', html) == [
-        ("wrong", "No"), ("wrong", "No"), ("right", "Yes"), ("wrong", "No"),
-    ]  # fmt: skip
+KEYS = [*LOWER, UNKNOWN]
+
+
+def test_a_question_s_causes_follow_it():
+    asked = [
+        "When does",
+        "it end?",
+        "",
+        "- lower: Not before",
+        "  the limit.",
+        "- unknown: It ends.",
+    ]
+    causes = {"lower": "Not before the limit.", "unknown": "It ends."}
+    assert split_causes(asked, KEYS) == ("When does it end?", causes)
+    assert split_causes(["When?"], KEYS) == ("When?", {})
+
+
+@pytest.mark.parametrize("line", ["- lowest: No.", "- no cause", "- lower: a\n- lower: b"])
+def test_a_cause_without_a_valid_key_is_refused_with_the_valid_ones(line):
+    with pytest.raises(LookupError, match=r"is not a cause.*`- lower: …`, .*`- unknown: …`"):
+        split_causes(["When?", *line.splitlines()], KEYS)
+
+
+def written(node):
+    page = SimpleNamespace(body=[])
+    multiple_choice.visit_question(page, node)
+    numeric = isinstance(node, multiple_choice.number)
+    (multiple_choice.depart_number if numeric else multiple_choice.depart_choice)(page, node)
+    return "".join(page.body)
+
+
+SHOWN = {"number": 3, "answer": "G1 < G2", "origin": "Measured"}
+
+
+def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
+    node = multiple_choice.choice("", options=options("s", "higher", {"lower": "F < 9"}), **SHOWN)
+    html = written(node)
+    assert re.findall(r'feedback (\w+)">(\w+)\. (.*?)</p>', html) == [
+        ("wrong", "No", "F &lt; 9 G1 &lt; G2"),
+        ("wrong", "No", "G1 &lt; G2"),
+        ("right", "Yes", "G1 &lt; G2"),
+        ("wrong", "No", "G1 &lt; G2"),
+    ]
     assert html.count('name="choice-3"') == 4
-    assert "G1 &lt; G2" in html
     assert "<strong>later</strong>" in html
+    assert 'aria-live="polite"></output>' in html
+
+
+def test_the_right_number_is_the_bundle_s(outputs, experiment):
+    found = asked_number("l04/lab", "G2.overshoot", 20, {"low": "The motor saturates."})
+    value = experiment.metrics["G2"].overshoot
+    assert found["value"] == pytest.approx(value)
+    assert found["tolerance"] == pytest.approx(value / 5)
+    assert found["feedback"][1] == ("low", "Too low. The motor saturates.")
+    assert found["answer"].startswith(f"{value:.4f} rad; answers within 20 %")
+    with pytest.raises(LookupError, match=r"Known: .*G2\.overshoot"):
+        asked_number("l04/lab", "G2.overshot", 20, {})
+
+
+FEEDBACK = [("right", "Yes."), ("low", "Too low. It saturates."), ("high", "Too high.")]
+
+
+@pytest.fixture
+def asked(browser):
+    """A page with a choice and a number, and the course's script and style."""
+    first = multiple_choice.choice("", options=options("s", None, {"lower": "Why"}), **SHOWN)
+    given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
+    second = multiple_choice.number("", **SHOWN | {"number": 4}, **given)
+    script, style = (BOOK / "_static" / name for name in ("choice.js", "course.css"))
+    page = browser.new_page()
+    page.set_content(
+        f"<!doctype html><style>{style.read_text()}</style>{written(first)}{written(second)}"
+    )
+    page.add_script_tag(path=script)
+    yield page
+    page.close()
+
+
+@pytest.mark.browser
+def test_feedback_is_announced_by_keyboard_too(asked):
+    asked.locator("#choice-3-0").focus()
+    asked.keyboard.press("Space")
+    said = asked.locator("fieldset output")
+    assert said.first.inner_text() == "No. Why G1 < G2"
+    asked.keyboard.press("ArrowUp")  # from the first option to the last
+    assert said.first.inner_text() == "Yes. G1 < G2"
+
+
+@pytest.mark.browser
+def test_a_number_is_right_within_its_tolerance(asked):
+    for typed, text in (
+        ("0.041", "Yes."),
+        ("0.039", "Too low. It saturates."),
+        ("0.061", "Too high."),
+        ("", ""),
+    ):
+        asked.locator("#choice-4").fill(typed)
+        asked.keyboard.press("Tab")
+        assert asked.locator("fieldset output").last.inner_text() == text
+        shown = [t.inner_text() for t in asked.locator(".number .feedback").all() if t.is_visible()]
+        assert shown == [text] * bool(text)

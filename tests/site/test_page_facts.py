@@ -3,12 +3,14 @@
 import pytest
 from bs4 import BeautifulSoup
 from built_site import parsed
+from docutils import nodes
 from docutils.core import publish_doctree
 from tiny_book import git, make_book
 
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.site.render import render
 from robo_genesis.site import page_facts as facts
+from robo_genesis.site.multiple_choice import choice
 
 
 def commit(folder, text, subject):
@@ -37,15 +39,29 @@ def test_words_of_code_tables_and_formulas_do_not_count():
 
 
 @pytest.mark.parametrize(
-    ("words", "shown"),
+    ("counted", "shown"),
     [
-        (0, "About 1 min to read: 0 words of text at 200 a minute."),
-        (500, "About 2 min to read: 500 words of text at 200 a minute."),
-        (9000, "About 45 min to read: 9,000 words of text at 200 a minute."),
+        ((0,), "About 1 min to read."),
+        ((500,), "About 2 min to read."),
+        ((9000, 104, 3), "About 45 min to read, 16 min to work."),
     ],
 )
-def test_minutes_follow_from_words(words, shown):
-    assert facts.reading_time(words) == shown
+def test_minutes_follow_from_words_code_and_questions(counted, shown):
+    assert facts.minutes(*counted) == shown
+
+
+def code(text, *tags):
+    cell = nodes.container(nb_element="cell_code", cell_metadata={"tags": [*tags]})
+    source = nodes.container("", nodes.literal_block(text, text), nb_element="cell_code_source")
+    cell += nodes.container("", source)  # a fold is a further node around the code
+    cell += nodes.container("", nodes.literal_block("7", "7"), nb_element="cell_code_output")
+    return cell
+
+
+def test_work_is_in_visible_code_and_questions():
+    document = publish_doctree("Text.\n\n::\n\n  typed = 1\n")
+    document += [code("a\n\nb"), code("c", "hide-input"), code("d", "inputs"), choice()]
+    assert facts.count_work(document) == (3, 1)
 
 
 def test_history_lists_the_latest_commits_newest_first_and_uncommitted_changes(checkout):
@@ -80,7 +96,7 @@ def test_a_page_has_all_three_and_the_home_page_no_time(tmp_path):
     book = make_book(tmp_path, page=text)
     html = render(book, tmp_path / "staging", BuiltPages(), tmp_path / "render.log")
     page, home = parsed(html, "page"), parsed(html, "index")
-    assert "About 1 min to read: 108 words" in page.select_one("h1 + p.page-facts").get_text()
+    assert "About 1 min to read." in page.select_one("h1 + p.page-facts").get_text()
     assert not home.select(".page-facts")
     for found in (page, home):
         assert "no Git history" in found.select_one("details.page-history").get_text()

@@ -29,6 +29,10 @@ def writer(tmp_path):
         ("```{math}\n:label: law\nx = 1\n```", "$$\nx = 1\n$$"),
         ("$$\n[a](b) = 1\n$$", "$$\n[a](b) = 1\n$$"),
         ("```{choice} l04/lab rise_time G1 G2\nWhen?\n```", "**Question.** When?"),
+        (
+            "```{number} l04/lab G1.overshoot\n:tolerance: 9\nHow\nmuch?\n\n- low: Aha.\n```",
+            "**Question.** How\nmuch?",
+        ),
         (":::{admonition} First\n:class: tip\nDo *it*.\n:::", "> **First**\n> \n> Do *it*."),
         (":::{note}\nMind.\n:::", "> **Note**\n> \n> Mind."),
         ("- item\n\n  ```{term-list}\n  gone\n  ```\n- next", "- item\n\n- next"),

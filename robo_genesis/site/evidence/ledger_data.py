@@ -16,6 +16,9 @@ ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)
 
 RASTERS = (".png", ".webp", ".jpg", ".jpeg")
 
+MEASURED = "Measured"
+"""How the line below an item begins whose runs are all accepted."""
+
 UNMEASURED = {
     "illustration": "Illustration, not measured.",
     "settings": "Chosen, not measured.",
@@ -97,7 +100,7 @@ def provenance(kind: str, runs: Sequence[Run]) -> str:
         for run in runs
         if (accepted := run.predicate)
     )
-    return f"Measured {' and '.join(origins)}"
+    return f"{MEASURED} {' and '.join(origins)}"
 
 
 def facts(backend: str, predicate: Predicate) -> dict[str, str]:

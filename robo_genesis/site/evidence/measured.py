@@ -9,11 +9,12 @@ Roles and a directive, as pages write them:
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
 | {lesson-state}`l04` | a badge for each backend of a lesson: backend and state |
-| {lesson-status} l04 (directive) | the runs of a lesson with their states |
+| {lesson-status} l04 (directive) | one line with the states of a lesson's runs, details in a fold |
 """
 
 import importlib.metadata
 from functools import lru_cache
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +38,8 @@ from robo_genesis.site.evidence.ledger_data import Run
 
 BACKEND = project.BUILD_BACKEND
 REFERENCE = "amdgpu"
+READABLE = {"cpu": "CPU", "amdgpu": "AMD GPU", "cuda": "CUDA GPU"}
+"""The names of backends in the line below a title."""
 REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"
 
 
@@ -129,18 +132,32 @@ def lesson_badges(book: Path, lesson: str) -> list[nodes.Node]:
     return [node for badge in badges for node in (badge, nodes.Text(" "))][:-1]
 
 
+class status_fold(nodes.General, nodes.Element):  # noqa: N801
+    """A fold whose line gives the state of each run; `line` holds (state, words) of each."""
+
+
+def state_words(status: Status) -> str:
+    """Return the state of a run in a few words; only an accepted run counts as measured."""
+    if status.state == "verified" and status.manifest is not None:
+        engine = status.manifest.predicate.engine.version
+        return f"Measured on {READABLE.get(status.backend, status.backend)} with Genesis {engine}"
+    return f"{READABLE.get(status.backend, status.backend)} run: {status.state}"
+
+
 class LessonStatus(SphinxDirective):
-    """List the runs of a lesson's lab, each with a badge and a sentence."""
+    """Show the states of a lesson's runs in one line, and a sentence on each behind it."""
 
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
-        """Return one line per backend."""
+        """Return the fold; inside it is one line per backend."""
+        statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
         lines = nodes.bullet_list(classes=["lesson-status"])
-        for status in lesson_statuses(Path(self.env.srcdir), self.arguments[0]):
+        for status in statuses:
             line = nodes.paragraph("", "", badge_node(status), nodes.Text(f" {status.sentence}"))
             lines += nodes.list_item("", line)
-        return [lines]
+        words = [(status.state, state_words(status)) for status in statuses]
+        return [status_fold("", lines, line=words)]
 
 
 class LessonState(SphinxRole):
@@ -180,6 +197,15 @@ def visit_measured(self: Any, node: measured_value) -> None:
     self.body.append(self.starttag(node, "span", "", tabindex="0", role="note", **provenance))
 
 
+def visit_status(self: Any, node: status_fold) -> None:
+    """Open the fold behind its line."""
+    words = " · ".join(
+        f'<span class="status-word state-{state}">{escape(text)}</span>'
+        for state, text in node["line"]
+    )
+    self.body.append(f'<details class="status-line"><summary>{words}</summary>')
+
+
 def setup(app: Sphinx) -> None:
     """Register roles, directive and writer."""
     app.add_role("measured", Measured())
@@ -187,4 +213,5 @@ def setup(app: Sphinx) -> None:
     app.add_role("engine-source", EngineSource())
     app.add_role("engine-release", EngineRelease())
     app.add_directive("lesson-status", LessonStatus)
+    app.add_node(status_fold, html=(visit_status, lambda self, _: self.body.append("</details>")))
     app.add_node(measured_value, html=(visit_measured, lambda self, _: self.body.append("</span>")))

@@ -24,7 +24,7 @@ from robo_genesis.build.shown import marked
 from robo_genesis.lessons.book_pages import find_pages
 from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
-from robo_genesis.site.evidence.ledger_data import Item, Run
+from robo_genesis.site.evidence.ledger_data import MEASURED, Item, Run
 from robo_genesis.site.evidence.origin import INPUTS, above, came_from_a_cell, origin
 
 TITLE = 80
@@ -153,14 +153,20 @@ def _short(text: str) -> str:
 
 
 def add_line(holder: nodes.Element, text: str, row: str) -> None:
-    """Insert the line of provenance at the end of the caption, or below an item without one."""
+    """Insert the line of provenance at the end of the caption, or below an item without one.
+
+    What was measured has an icon, and the words appear under the mouse or the focus. What was not
+    measured says so in words.
+    """
     link = nodes.reference("", "ledger", internal=True, refuri="", ledger_row=row)
     caption = holder.next_node(nodes.caption) if isinstance(holder, nodes.figure) else None
-    parts = [nodes.Text(f"{text} · " if text[-1] != "." else f"{text} "), link]
+    joint = nodes.inline("", " · " if text[-1] != "." else " ", classes=["provenance-joint"])
+    parts = [nodes.inline("", text, classes=["provenance-text"]), joint, link]
+    classes = ["provenance", *(["as-icon"] if text.startswith(MEASURED) else [])]
     if caption is not None:
-        caption += [nodes.Text(" "), nodes.inline("", "", *parts, classes=["provenance"])]
+        caption += [nodes.Text(" "), nodes.inline("", "", *parts, classes=classes)]
     else:
-        line = nodes.paragraph("", "", *parts, classes=["provenance"])
+        line = nodes.paragraph("", "", *parts, classes=classes)
         block = next(above(holder, nodes.paragraph), holder)
         block.parent.insert(block.parent.index(block) + 1, line)
 

@@ -15,6 +15,8 @@ from robo_genesis.site.evidence.origin import above, origin
 
 OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
     "evidence-badge": (evidence_badge, "Use {lesson-status} or {lesson-state}."),
+    "status-line": ((), "Use {lesson-status}."),
+    "status-word": ((), "Use {lesson-status}."),
     "measured": (measured_value, "Use {measured}."),
     "provenance": ((), "The build writes that line below each figure and measured table."),
 }

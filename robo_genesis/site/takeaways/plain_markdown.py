@@ -107,8 +107,9 @@ def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
             return f"```{argument}\n{body}\n```"
         case "math":
             return f"$$\n{body.strip()}\n$$"
-        case "choice":
-            return f"**Question.** {plain(body, writer)}"
+        case "choice" | "number":
+            question = re.split(r"\n(?=[-*] )", body)[0]  # the causes below it answer it
+            return f"**Question.** {plain(question, writer)}"
         case "figure":
             return f"*On the site, a figure: {plain(body, writer)}*"
     return ""

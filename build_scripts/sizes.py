@@ -1,0 +1,25 @@
+"""Print the size of each executed page and compare it with the limits: a part of `make lint`.
+
+Exit status: 0 all pages keep their limits or are exempt; 1 otherwise.
+"""
+
+import sys
+
+from robo_genesis.core.project import BOOK, ProjectError
+from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.site.page_sizes import report
+
+
+def main() -> int | str:
+    """Print the lines and return the exit status, or why no page could be read."""
+    try:
+        lines, problems = report(find_pages(BOOK))
+    except ProjectError as error:
+        return f"The size of pages cannot be computed: {error}"
+    print(*lines, sep="\n")
+    print(*problems, sep="\n", end="\n" * bool(problems), file=sys.stderr)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,104 @@
+"""The font of formulas: the part of STIX Two Math that the course uses, in a style sheet.
+
+Few systems have a font with the tables that a browser needs to place accents, bars and brackets.
+Without one the dot of a velocity is smaller than a pixel. The font is inside the style sheet: it
+comes with the first frame, so that nothing moves, and a page opened from disk may use it.
+"""
+
+import base64
+import io
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from fontTools import subset
+from fontTools.ttLib import TTFont
+from sphinx.application import Sphinx
+
+from robo_genesis.build import npm
+
+PACKAGE = "@fontsource/stix-two-math"
+FILE = f"{PACKAGE}/files/stix-two-math-latin-400-normal.woff"
+STYLE, LICENCE = "math.css", "math-font-LICENSE.txt"
+
+SHOWN = {
+    *map(chr, range(0x20, 0x7F)),  # ASCII
+    *"\N{NO-BREAK SPACE}¬¯±´·×÷ˆˇ˘˙˜–—‖…′″‴",
+    *map(chr, range(0x0300, 0x0309)),  # accents
+    *"ΑΒΓΔΕΖΗΘΙΚΛΜΝΞΟΠΡΣΤΥΦΧΨΩαβγδεζηθικλμνξοπρςστυφχψωϑϕϖϱϵ",
+    *map(chr, range(0x2061, 0x2065)),  # operators that are not seen
+    *"←↑→↓↔⇐⇑⇒⇓⇔",
+    *"∀∂∃∅∆∇∈∉∏∑−∓∗∘√∝∞∠∣∥∧∨∩∪∫≈≔≠≡≤≥≪≫⊤⊥⋅⋮⋯⋱⌈⌉⌊⌋⟨⟩¨¸°",
+    *map(chr, range(0x1D400, 0x1D434)),  # bold letters
+}
+"""The characters that a formula may contain."""
+
+ITALIC = {*map(chr, (*range(0x1D434, 0x1D468), *range(0x1D6E2, 0x1D71C)))} - {"\U0001d455"} | {"ℎ"}
+"""The letters that a browser shows for a variable of one letter; Unicode's italic h is Planck's."""
+
+
+def missing(text: str) -> str:
+    """Return the characters of a formula that the font does not have, sorted."""
+    return "".join(sorted(set(text) - SHOWN - ITALIC - set("\n")))
+
+
+@cache
+def font() -> bytes:
+    """Return the part of the font for `SHOWN` as WOFF; the same bytes each time."""
+    whole = TTFont(io.BytesIO(npm.published(FILE)), recalcTimestamp=False)
+    options = subset.Options(
+        layout_features=["ssty"],  # the forms for superscripts
+        drop_tables=["GPOS", "GDEF", "gasp"],
+        name_IDs=[0, 1, 2, 13, 14],  # copyright, name, licence
+        hinting=False,
+        glyph_names=False,
+        notdef_outline=True,
+    )
+    cut = subset.Subsetter(options)
+    cut.populate(unicodes=map(ord, SHOWN | ITALIC))
+    cut.subset(whole)
+    whole.flavor = "woff"
+    stream = io.BytesIO()
+    whole.save(stream)
+    return stream.getvalue()
+
+
+def css() -> str:
+    """Return the style sheet; it raises accents, which browsers set close enough to touch."""
+    about = npm.locked(PACKAGE)
+    data = base64.b64encode(font()).decode()
+    return (
+        f"/* A part of STIX Two Math ({PACKAGE} {about['version']}, {about['license']}), "
+        f"see {LICENCE}. */\n"
+        '@font-face { font-family: "Course Math"; '
+        f'src: url("data:font/woff;base64,{data}") format("woff"); }}\n'
+        'math { font-family: "Course Math", math; font-size: 1.15em; }\n'
+        "mover[accent] > :last-child { position: relative; top: -0.14em; }\n"
+    )
+
+
+def write_css(app: Sphinx) -> None:
+    """Write style sheet and licence where Sphinx collects the site's own."""
+    if app.builder.format != "html":
+        return
+    folder = Path(app.outdir) / "_static"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / STYLE).write_text(css(), "utf8")
+    (folder / LICENCE).write_bytes(npm.published(f"{PACKAGE}/LICENSE"))
+
+
+def add_css(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    """Load the style sheet on a page with a formula."""
+    if doctree is not None and next(doctree.findall(_is_math), None) is not None:
+        app.add_css_file(STYLE)
+
+
+def _is_math(node: nodes.Node) -> bool:
+    return isinstance(node, nodes.math | nodes.math_block)
+
+
+def setup(app: Sphinx) -> None:
+    """Register the style sheet."""
+    app.connect("builder-inited", write_css)
+    app.connect("html-page-context", add_css)

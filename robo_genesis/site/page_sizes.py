@@ -1,0 +1,170 @@
+"""The size of each page in its source, and the limits for its kind; `make lint` compares them."""
+
+import re
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from docutils.parsers.rst.directives.misc import TestDirective
+from myst_parser.parsers.directives import parse_directive_text
+from nbformat import NotebookNode
+from sphinx.config import Config
+from sphinx.directives.code import LiteralIncludeReader
+
+from robo_genesis.lessons.book_pages import Page
+from robo_genesis.site.excerpts import without_docstrings
+from robo_genesis.site.page_facts import (
+    HIDDEN,
+    LINES_A_MINUTE,
+    MINUTES_A_QUESTION,
+    WORDS_A_MINUTE,
+)
+
+COLUMN = 80
+"""Most characters in a line of an excerpt that the column shows without scrolling."""
+
+MEASURES = {
+    "words": "words of prose", "cells": "visible code cells",
+    "longest": "lines in its longest visible cell", "plots": "plots",
+    "minutes": "minutes to read and to work", "widest": "characters in its widest excerpt",
+}  # fmt: skip
+"""What is counted, in words."""
+
+LIMITS = {
+    "lecture": {"words": 3300, "cells": 12, "longest": 15, "plots": 7, "minutes": 45},
+    "lab": {"minutes": 80},
+    "mistakes": {"words": 2000},
+    "deeper": {"words": 2000},
+}
+"""The largest numbers by kind of page: the first word of its name."""
+
+EXEMPT = {
+    "lessons/l02-life-cycle/lecture", "lessons/l02-life-cycle/lab",
+    "lessons/l03-rigid-bodies/lecture", "lessons/l03-rigid-bodies/lab",
+    "lessons/l04-joint-control/lecture",
+}  # fmt: skip
+"""Pages that have their old form: `make lint` does not refuse their size, nor do tests their tab
+stops. An entry that is not needed any more is an error."""
+
+FENCE = re.compile(r"\s*(?P<marks>`{3,}|:{3,}|~{3,})(?:\{(?P<name>[\w:-]+)\})?(?P<rest>.*)")
+SHOWN_AS_PROSE = {"admonition", "note", "tip", "important", "warning", "caution", "hint", "seealso"}
+FOLDED = re.compile(r":class:.*\bdropdown\b")
+OPTION = re.compile(r"\s*:[\w-]+:( |$)")
+NOT_PROSE = re.compile(r"\s*(\||\(.+\)=$|<)")
+INCLUDE = re.compile(r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
+PLOT = re.compile(r"\bplots?\.\w+|_plots\.\w+|\bsubplots\(")
+QUESTION = re.compile(r"^ *[`:]{3,}\{(?:choice|number)\}", re.MULTILINE)
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """The size of one page; the fields are those of `MEASURES`."""
+
+    words: int
+    cells: int
+    longest: int
+    plots: int
+    minutes: int
+    widest: int
+
+
+def size(notebook: NotebookNode, folder: Path) -> Size:
+    """Return the size of a page.
+
+    Args:
+        notebook: the page's source.
+        folder: of the page, from which its excerpts are read.
+    """
+    texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    visible = [c for c in code if not HIDDEN.intersection(c.metadata.get("tags", ()))]
+    lines = [sum(bool(line.strip()) for line in cell.source.splitlines()) for cell in visible]
+    words = sum(len(line.split()) for text in texts for line in prose(text))
+    questions = sum(len(QUESTION.findall(text)) for text in texts)
+    work = sum(lines) / LINES_A_MINUTE + questions * MINUTES_A_QUESTION
+    return Size(
+        words=words,
+        cells=len(visible),
+        longest=max(lines, default=0),
+        plots=sum(bool(PLOT.search(cell.source)) for cell in code),
+        minutes=round(words / WORDS_A_MINUTE + work),
+        widest=max((width for text in texts for width in excerpt_widths(text, folder)), default=0),
+    )
+
+
+def prose(text: str) -> Iterator[str]:
+    """Yield the lines of running text: no folds, tables, captions, code, formulas or targets."""
+    lines = text.splitlines()
+    open_fences: list[tuple[str, bool]] = []  # the marks, and whether what is inside is prose
+    for number, line in enumerate(lines):
+        fence = FENCE.match(line)
+        if fence and not fence["name"] and not fence["rest"].strip() and open_fences:
+            if fence["marks"].startswith(open_fences[-1][0]):
+                open_fences.pop()
+        elif fence:
+            options = [o for o in lines[number + 1 : number + 5] if OPTION.match(o)]
+            inside = fence["name"] in SHOWN_AS_PROSE and not any(map(FOLDED.search, options))
+            open_fences.append((fence["marks"], inside))
+        elif all(inside for _, inside in open_fences) and not (
+            NOT_PROSE.match(line) or (open_fences and OPTION.match(line))
+        ):
+            yield line
+
+
+def excerpt_widths(text: str, folder: Path) -> Iterator[int]:
+    """Yield the widest line of each excerpt of the package, as the page shows it."""
+    for path, body in INCLUDE.findall(text):
+        options = parse_directive_text(TestDirective, path, body).options
+        if "dedent" in options:
+            options["dedent"] = int(options["dedent"])
+        code, _ = LiteralIncludeReader(str((folder / path).resolve()), options, Config()).read()
+        yield max(map(len, without_docstrings(code).splitlines()), default=0)
+
+
+def excess(found: Size, kind: str) -> list[str]:
+    """Return a phrase for each number of a page that is over the limit for its kind."""
+    limits = {**LIMITS.get(kind, {}), "widest": COLUMN}
+    return [
+        f"{number:,} {MEASURES[name]} (at most {limit:,})"
+        for name, limit in limits.items()
+        if (number := getattr(found, name)) > limit
+    ]
+
+
+def report(
+    pages: Collection[Page], exempt: Collection[str] = frozenset(EXEMPT)
+) -> tuple[list[str], list[str]]:
+    """Return a line for each page, and the problems.
+
+    Args:
+        pages: the executed pages of the book.
+        exempt: names of pages whose size is not refused.
+    """
+    lines, over = [], {}
+    for page in pages:
+        found = size(page.notebook, page.path.parent)
+        numbers = ", ".join(f"{getattr(found, name):,} {what}" for name, what in MEASURES.items())
+        lines.append(f"{page.docname}: {numbers}")
+        if problem := excess(found, page.path.stem.partition("-")[0]):
+            over[page.docname] = problem
+    return lines, problems(over, exempt)
+
+
+def problems(over: Mapping[str, list[str]], exempt: Collection[str]) -> list[str]:
+    """Return what to do about pages that are too large, and about exemptions without need.
+
+    Args:
+        over: for each page that is over a limit, the phrases of `excess`.
+        exempt: names of pages.
+    """
+    large = [
+        f"{name} is over its size: {'; '.join(over[name])}. Shorten it, or move a part to a deeper "
+        "page."
+        for name in over
+        if name not in exempt
+    ]
+    return large + [
+        f"{name} keeps all limits, so its exemption is not needed. Remove it from EXEMPT in "
+        "robo_genesis/site/page_sizes.py."
+        for name in sorted(set(exempt) - over.keys())
+    ]

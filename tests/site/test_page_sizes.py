@@ -1,0 +1,76 @@
+"""What counts as prose, code and plots of a page, and which sizes are refused."""
+
+import pytest
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from robo_genesis.core.project import BOOK
+from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.site import page_sizes
+from robo_genesis.site.page_sizes import EXEMPT, LIMITS, Size, excess, problems, prose, size
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("# Title\n\nTwo words.", "# Title Two words."),
+        ("A.\n\n| a | b |\n| - | - |\n\n(old-name)=\nB.", "A. B."),
+        ("A.\n```{figure} a.svg\n:alt: x\n\nA caption.\n```\nB.", "A. B."),
+        ("A.\n:::{dropdown} Fold\nIn it.\n:::\nB.", "A. B."),
+        (":::{admonition} Title\n:class: tip\nIn it.\n:::", "In it."),
+        (":::{admonition} Title\n:class: tip dropdown\nIn it.\n:::\nB.", "B."),
+        ("::::{dropdown} Fold\n:::{note}\nIn it.\n:::\nIn it.\n::::\nB.", "B."),
+        ("```python\ncode\n```\nB.", "B."),
+        ("```{math}\nx + 1\n```\nB.", "B."),
+    ],
+)
+def test_folds_tables_captions_and_code_are_not_prose(text, words):
+    assert " ".join(" ".join(prose(text)).split()) == words
+
+
+EXCERPT = "```{literalinclude} code.py\n:language: python\n:pyobject: f\n```"
+
+
+def test_a_page_s_size(tmp_path):
+    (tmp_path / "code.py").write_text(f'def f():\n    """{"x" * 90}"""\n    return {"1" * 70}\n')
+    asked = "```{choice} l04/lab a b c\nWhen?\n```"
+    cells = [
+        new_markdown_cell(f"{'word ' * 400}\n\n{EXCERPT}\n\n{asked}"),
+        new_code_cell("a = 1\n\nb = 2\npage.show(l04.plots.baseline)"),
+        new_code_cell("page.show(l04.study_plots.theory)", metadata={"tags": ["hide-input"]}),
+        new_code_cell("c = 3"),
+    ]
+    found = size(new_notebook(cells=cells), tmp_path)
+    assert found == Size(words=400, cells=2, longest=3, plots=2, minutes=4, widest=81)
+
+
+def page_of(**numbers):
+    return Size(**dict.fromkeys(Size.__slots__, 0) | numbers)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "limit"),
+    [(kind, *item) for kind, limits in LIMITS.items() for item in limits.items()],
+)
+def test_each_limit_is_kept_exactly(kind, name, limit):
+    assert excess(page_of(**{name: limit}), kind) == []
+    (phrase,) = excess(page_of(**{name: limit + 1}), kind)
+    assert phrase.endswith(f"(at most {limit:,})")
+
+
+def test_a_wide_excerpt_is_refused_on_every_page():
+    assert excess(page_of(widest=81, words=9999), "index") == [
+        "81 characters in its widest excerpt (at most 80)"
+    ]
+
+
+def test_a_large_page_and_an_exemption_without_need_are_named():
+    over = {"new": ["4,000 words of prose (at most 3,300)"], "old": ["9 plots (at most 7)"]}
+    large, unneeded = problems(over, {"old", "small"})
+    assert large.startswith("new is over its size: 4,000 words of prose (at most 3,300). Shorten")
+    assert unneeded.startswith("small keeps all limits, so its exemption is not needed. Remove it")
+
+
+def test_the_course_s_pages_keep_their_sizes():
+    lines, found = page_sizes.report(find_pages(BOOK))
+    assert found == []
+    assert {line.partition(":")[0] for line in lines} >= EXEMPT
