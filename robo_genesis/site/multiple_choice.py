@@ -23,6 +23,7 @@ from robo_genesis.site.evidence.measured import BACKEND, measured
 
 EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same, within the lesson's resolution", "higher": "more"}
+CLOSE = "too close to call, within the margin of {} {}"
 UNDECIDED = "this window cannot tell"
 """The relation of the second case to the first, in a reader's words."""
 
@@ -46,7 +47,8 @@ class Choice(SphinxDirective):
             raise self.error(f"choice: {error}") from error
         question, messages = self.parse_inline(" ".join(self.content), lineno=self.lineno)
         number = self.env.new_serialno("choice")
-        shown = {"number": number, "options": options(unit, order), "answer": answer}
+        margin = declared_margin(lesson_page.split("/")[0], metric)
+        shown = {"number": number, "options": options(unit, order, margin), "answer": answer}
         return [choice("", *question, **shown, origin=origin), *messages]
 
 
@@ -64,13 +66,22 @@ def measured_order(
     first, second = (records[case][metric] for case in cases)
     lesson = find_lesson(lesson_page.split("/")[0])
     noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION
-    found = compare_values(noun, first.unit, first.value, second.value, resolution)
+    values, margin = (first.value, second.value), declared_margin(lesson_page.split("/")[0], metric)
+    found = compare_values(noun, first.unit, *values, resolution, margin)
     return found.order, found.unit, comparison_sentence((cases[0], cases[1]), found), origin
 
 
-def options(unit: str, order: str | None) -> list[tuple[str, bool]]:
+def declared_margin(lesson: str, metric: str) -> float:
+    """Return the margin that a lesson declares for orderings of a metric, 0 if it declares none."""
+    found = (m for _, name, _, m in find_lesson(lesson).spec.RELATIONS if name == metric)
+    return max(found, default=0.0)
+
+
+def options(unit: str, order: str | None, margin: float = 0.0) -> list[tuple[str, bool]]:
     """Return each option and whether it was measured; exactly one is true."""
-    words = EARLIER if unit == "s" else LOWER
+    words = dict(EARLIER if unit == "s" else LOWER)
+    if margin:
+        words["equal"] = CLOSE.format(f"{margin:g}", "samples" if unit == "1" else unit)
     return [*((text, order == name) for name, text in words.items()), (UNDECIDED, order is None)]
 
 

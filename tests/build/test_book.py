@@ -36,6 +36,8 @@ from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.lessons.book_pages import PageError
 
 FACTS = SimpleNamespace(
+    lesson="l02",
+    page="lab",
     engine=SimpleNamespace(version="1.2.3"),
     backend=SimpleNamespace(requested="cpu", actual="cpu"),
     render=SimpleNamespace(mode="camera", renderer="llvmpipe"),

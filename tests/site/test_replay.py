@@ -362,11 +362,11 @@ def test_two_replays_of_a_page_are_two(browser, address, site, files):
     page.close()
 
 
-def test_without_scripts_figure_film_and_table_remain(browser, address):
+def test_without_scripts_figures_and_table_remain(browser, address):
     page = open_lecture(browser, address, java_script_enabled=False)
     assert not page.locator(REPLAY).is_visible()
     assert page.locator("#fig-l04-gains img").is_visible()
-    assert page.locator("#fig-l04-film img").is_visible()
+    assert page.locator("#fig-l04-posture img").is_visible()
     assert page.get_by_text("moves farthest").first.is_visible()
     page.locator(f"{BLOCK} summary").click()
     assert page.locator(f"{BLOCK} tbody tr").count() == 121

@@ -12,7 +12,7 @@ from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block
 from robo_genesis.lessons.l04 import text as l04
 from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import ONE_FACTOR, PREDICTIONS, RESOLUTION
+from robo_genesis.lessons.l04.spec import MARGINS, ONE_FACTOR, PREDICTIONS, RESOLUTION
 from robo_genesis.lessons.l04.study_spec import AT_REST
 
 UNITS, LABELS = StepMetrics.about("unit"), StepMetrics.about("noun")
@@ -246,6 +246,7 @@ def test_any_outcome_gives_four_blocks_of_sentences_with_measured_numbers(
     assert [block.title[:2] for block in blocks] == ["1.", "2.", "3.", "4."]
     texts = [format_value(value, unit) for m in metrics.values() for _, value, unit in m.items()]
     texts += [format_value(limit, "N·m"), "0.01", "99", "90"]
+    texts += [f"{margin:g}" for margin in MARGINS.values()]
     rises = [metrics[name].rise_time for name in ("G2", "G3")]
     if None not in rises:
         texts.append(format_value(abs(rises[1] - rises[0]), "s"))
