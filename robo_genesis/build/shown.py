@@ -76,7 +76,8 @@ def accepted_experiment(folder: Path, manifest: Manifest) -> Experiment:
 
     Metrics that another machine computes again may differ in the last digit.
     """
-    run, recorded = from_bundle(folder, manifest), bundle.read_metrics(folder)
+    recorded = bundle.read_metrics(folder)
+    run = from_bundle(folder, manifest, recorded)
     metrics = {
         case: type(found)(**{name: recorded[case][name].value for name in found.about("unit")})
         for case, found in run.metrics.items()

@@ -1,5 +1,6 @@
 """The types of the fields of a bundle's JSON files: bounded texts, digests, strict records."""
 
+from functools import lru_cache
 from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -16,6 +17,7 @@ Timestamp = Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d{
 def _plain(limit: int, other: str = "") -> AfterValidator:
     """Return a check of length and characters; a page or a terminal may show the text."""
 
+    @lru_cache(maxsize=1024)  # most texts of a bundle are labels that occur many times
     def check(text: str) -> str:
         if len(text) > limit:
             raise ValueError(f"expected at most {limit} characters, found {len(text)}")

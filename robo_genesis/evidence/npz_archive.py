@@ -11,7 +11,7 @@ import struct
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +34,7 @@ BEYOND = 2**32 - 1
 """A size in a member's header that the extra field gives instead."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Member:
     """One packed array: name of the array, checksum and size of its file, packed bytes."""
 
@@ -43,7 +43,7 @@ class Member:
     size: int
     packed: bytes
 
-    @property
+    @cached_property
     def local(self) -> bytes:
         """The header before the packed bytes."""
         name = f"{self.name}.npy".encode()
@@ -145,25 +145,29 @@ def _array(name: str, file: bytes) -> np.ndarray:
     if file[: len(MAGIC)] != MAGIC:
         raise ValueError(f"{name} has another version of the npy format than 1.0")
     begin = len(MAGIC) + 2 + int.from_bytes(file[len(MAGIC) : len(MAGIC) + 2], "little")
-    shape, fortran, dtype = _header(file[:begin])
+    shape, fortran, dtype, exact = _header(file[:begin])
     found = f"{dtype.str}, {'Fortran' if fortran else 'C'} order, shape {shape}"
     if dtype.str not in VALID or fortran or any(n < 0 for n in shape):
         raise ValueError(f"{name} is {found}; valid types are {', '.join(VALID)} in C order")
     if len(file) - begin != math.prod(shape) * dtype.itemsize:
         raise ValueError(f"{name} has {len(file)} bytes, which do not fit {found}")
-    array = np.frombuffer(file, dtype, offset=begin).reshape(shape)
-    if _npy(array) != file:
+    if not exact:
         raise ValueError(f"{name} has another header than the recorder writes")
-    return array
+    return np.frombuffer(file, dtype, offset=begin).reshape(shape)
 
 
 @lru_cache(maxsize=256)
-def _header(content: bytes) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
-    """Return shape, whether the order is Fortran's, and type of an npy file, from its header."""
-    stream = io.BytesIO(content)
+def _header(content: bytes) -> tuple[tuple[int, ...], bool, np.dtype[Any], bool]:
+    """Return shape, whether the order is Fortran's, and type of an npy file, from its header.
+
+    The last value is whether the header is, to the byte, the one that the recorder writes.
+    """
+    stream, again = io.BytesIO(content), io.BytesIO()
     npy.read_magic(stream)
     shape, fortran, dtype = npy.read_array_header_1_0(stream)
-    return tuple(shape), bool(fortran), dtype
+    of = {"descr": npy.dtype_to_descr(dtype), "fortran_order": fortran, "shape": shape}
+    npy.write_array_header_1_0(again, of)
+    return tuple(shape), bool(fortran), dtype, again.getvalue() == content
 
 
 def _npy(array: np.ndarray) -> bytes:

@@ -14,10 +14,13 @@ from robo_genesis.lessons.experiment import Experiment, MeasuringPage
 from robo_genesis.lessons.registry import find_page
 
 
-def from_bundle(folder: Path, manifest: Manifest) -> Experiment:
+def from_bundle(
+    folder: Path, manifest: Manifest, metrics: Mapping[str, Mapping[str, Metric]]
+) -> Experiment:
     """Return the experiment whose arrays, readings and frames are in a bundle.
 
-    The recorded metrics and checks are not part of it: the experiment computes its own.
+    Of its `metrics`, as `bundle.read_metrics` returns them, only the readings of the engine are
+    part of it: the experiment computes its own metrics and checks.
 
     Raises:
         BundleRefused: `cases`, `labels`, `metrics`, `frames`, or as `read_run` and the page's
@@ -32,7 +35,7 @@ def from_bundle(folder: Path, manifest: Manifest) -> Experiment:
         page=page,
         traces={name: trace_files.read_run(folder, arrays, name, page.kind) for name in page.runs},
         links=arrays.coords["link"],
-        readings=readings(bundle.read_metrics(folder), page, rendered),
+        readings=readings(metrics, page, rendered),
         frames=read_frames(folder, predicate),
         rendered=rendered,
         joints=trace_files.read_joints(arrays) if page.joints else None,

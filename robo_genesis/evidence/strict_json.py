@@ -39,10 +39,11 @@ def parse_strict(text: str, where: str) -> Any:
             object_pairs_hook=_no_duplicates,
             parse_int=_integer,
             parse_float=_float,
+            parse_constant=_float,
         )
         _require_depth(value)
-        # Infinity and NaN cannot be written as JSON, nor a lone surrogate as UTF-8.
-        json.dumps(value, ensure_ascii=False, allow_nan=False).encode()
+        if "\\u" in text:  # a lone surrogate cannot be written as UTF-8
+            json.dumps(value, ensure_ascii=False).encode()
     except (ValueError, RecursionError) as error:
         raise BundleRefused(
             "bad-json", f"{where}: {error}, expected strict JSON in UTF-8. {AGAIN}"
@@ -58,19 +59,20 @@ def _integer(text: str) -> int:
 
 def _float(text: str) -> float:
     value = float(text)
-    if abs(value) > LARGEST:
-        raise ValueError(f"{shown(text)} is a number beyond ±2⁵³")
+    if not abs(value) <= LARGEST:
+        raise ValueError(f"{shown(text)} is not a number within ±2⁵³")
     return value
 
 
 def _require_depth(value: Any) -> None:
     """Raise ValueError if lists and objects are nested too deeply; nothing here is recursive."""
-    level, depth = [value], 0
+    level: list[Any] = [[value]]
+    depth = 0
     while level := [
         inner
         for outer in level
-        if isinstance(outer, dict | list)
         for inner in (outer.values() if isinstance(outer, dict) else outer)
+        if isinstance(inner, (dict, list))
     ]:
         depth += 1
         if depth > DEEPEST:
@@ -78,17 +80,19 @@ def _require_depth(value: Any) -> None:
 
 
 def _no_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    keys = [key for key, _ in pairs]
-    if len(set(keys)) != len(keys):
-        raise ValueError(f"duplicate key among {shown(keys)}")
-    return dict(pairs)
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        raise ValueError(f"duplicate key among {shown([key for key, _ in pairs])}")
+    return found
 
 
 def differences(found: Any, expected: Any, path: str = "") -> Iterator[tuple[str, Any, Any]]:
     """Yield (path, found, expected) where two JSON values differ; `absent` is a missing entry."""
+    if found == expected:
+        return
     if isinstance(found, dict) and isinstance(expected, dict):
         for name in sorted(found.keys() | expected.keys()):
             inner = f"{path}.{name}" if path else name
             yield from differences(found.get(name, "absent"), expected.get(name, "absent"), inner)
-    elif found != expected:
+    else:
         yield path, found, expected

@@ -5,6 +5,7 @@ joints, of free bodies.
 """
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import TypeVar
 
@@ -58,6 +59,9 @@ KINDS: dict[type[TimeSeries], dict[str, Field]] = {
 }
 DTYPES = {"t": "float64", "target": "float64", "contacts": "int32"}
 """Types of fields; all others are float32, in which the engine computes."""
+
+_name_of = cache(str)
+"""Returns the name of a type, of which there are three."""
 
 Kind = TypeVar("Kind", bound=TimeSeries)
 
@@ -195,7 +199,7 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
     _check_labels(arrays, case, known)
     values = read_archive(folder / described.file, described.file, [n for n, *_ in known.values()])
     for name, variable in described.variables.items():
-        found = (list(values[name].shape), str(values[name].dtype))
+        found = (list(values[name].shape), _name_of(values[name].dtype))
         what = f"shape and type of {name}"
         expect("bad-array", described.file, what, found, (variable.shape, variable.dtype))
     try:

@@ -1,14 +1,14 @@
 """Accept or refuse a bundle: whatever can be recomputed from its arrays is recomputed."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from robo_genesis.core import project
 from robo_genesis.core.checks import Check, Value
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, shown
 from robo_genesis.evidence import bundle, bundle_files, evidence_key, manifest_rules
-from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.strict_json import differences
 from robo_genesis.lessons.experiment import Experiment
@@ -58,13 +58,14 @@ def verify_bundle(
     manifest_rules.check_log(folder, manifest, root)
     manifest_rules.check_engine_files(manifest)
     evidence_key.check_current(manifest, root, book)
-    experiment = from_bundle(folder, manifest)
-    check_metrics(folder, experiment)
+    metrics = bundle.read_metrics(folder)
+    experiment = from_bundle(folder, manifest, metrics)
+    check_metrics(metrics, experiment)
     check_outcomes(manifest, experiment.outcomes())
     return as_judged_today(manifest)
 
 
-def check_metrics(folder: Path, experiment: Experiment) -> None:
+def check_metrics(recorded: Mapping[str, Mapping[str, Metric]], experiment: Experiment) -> None:
     """Require that metrics.json has the values, units, classes and sources of the runs.
 
     Raises:
@@ -72,14 +73,14 @@ def check_metrics(folder: Path, experiment: Experiment) -> None:
     """
     found = {
         group: {name: metric.model_dump(by_alias=True) for name, metric in metrics.items()}
-        for group, metrics in bundle.read_metrics(folder).items()
+        for group, metrics in recorded.items()
     }
     try:
         expected = experiment.records()
     except (LookupError, ValueError, ArithmeticError) as error:
         raise BundleRefused("bad-trace", f"arrays: {error} {AGAIN}") from error
-    for name, recorded, computed in differences(found, expected):
-        expect("metrics", "metrics.json", name, recorded, computed)
+    for name, here, there in differences(found, expected):
+        expect("metrics", "metrics.json", name, here, there)
 
 
 def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:

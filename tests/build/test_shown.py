@@ -50,7 +50,7 @@ def page_of(*sources: str) -> Page:
 @pytest.fixture(scope="module")
 def sound(folder):
     """The page as it was executed."""
-    run = from_bundle(folder, bundle.read_manifest(folder))
+    run = from_bundle(folder, bundle.read_manifest(folder), bundle.read_metrics(folder))
     outputs = {
         name: new_output(
             "display_data", shown.mime_data(name, run, []), metadata=shown.metadata(name, [])

@@ -261,7 +261,7 @@ def measured_again(folder):
 
 def checked_again(folder):
     """Make the recorded checks those of the arrays and joints, failures included."""
-    run = from_bundle(folder, bundle.read_manifest(folder))
+    run = from_bundle(folder, bundle.read_manifest(folder), bundle.read_metrics(folder))
     predicate(checks=[outcome.record() for outcome in run.outcomes()])(folder)
 
 

@@ -96,7 +96,9 @@ def experiments(build_output) -> dict[tuple[str, str], Experiment]:
     found, built = {}, executed_pages()
     for lesson, page in MEASURING_PAGES:
         folder = built.outputs[f"{lesson}/{page}"] / "cpu"
-        found[lesson, page] = from_bundle(folder, bundle.read_manifest(folder))
+        found[lesson, page] = from_bundle(
+            folder, bundle.read_manifest(folder), bundle.read_metrics(folder)
+        )
     return found
 
 

@@ -33,6 +33,26 @@ def test_ambiguous_or_broken_json_is_refused(text):
         parse_strict(text, "metrics.json")
 
 
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[NaN]", "'NaN' is not a number within"),
+        ("[1e999]", "'1e999' is not a number within"),
+        ('["\\ud800"]', "surrogates not allowed"),
+        ('{"\\udfff": 1}', "surrogates not allowed"),
+        ("[" * 33 + "]" * 33, "nested in more than 32 levels"),
+        ('{"a": ' * 33 + "{}" + "}" * 33, "nested in more than 32 levels"),
+    ],
+)
+def test_a_value_that_json_cannot_hold_is_named(text, says):
+    with refused(f"bad-json: metrics.json: .*{says}"):
+        parse_strict(text, "metrics.json")
+
+
+def test_escapes_of_whole_characters_are_read():
+    assert parse_strict(r'["\u00e4", "\ud83e\udd16"]', "metrics.json") == ["ä", "🤖"]
+
+
 def test_differences_name_the_path_and_both_values():
     found = differences({"a": {"b": 1, "c": [2]}}, {"a": {"b": None, "c": [2]}, "d": 3})
     assert list(found) == [("a.b", 1, None), ("d", "absent", 3)]

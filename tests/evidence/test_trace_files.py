@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 from robo_genesis.core.trace import Trace
+from robo_genesis.evidence import npz_archive
 from robo_genesis.evidence.bundle import BundleRefused, read_arrays
+from robo_genesis.evidence.npz_archive import read_archive, write_archive
 from robo_genesis.evidence.trace_files import (
     FIELDS,
     dof_units,
@@ -100,6 +102,25 @@ def test_each_dof_has_its_own_unit(joints, written, field):
 def test_other_arrays_than_the_described_ones_are_refused(spoil, changed, message):
     with pytest.raises(BundleRefused, match=rf"^bad-array: .*{message}"):
         read_trace(*spoil(**changed), "G1")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (b"'shape': (3,), }", b"'shape': ( 3,),}"),
+        (b"'fortran_order': False", b"'fortran_order':False "),
+        (b" \n", b"\n\n"),
+    ],
+    ids=["shape", "order", "padding"],
+)
+def test_an_array_with_another_header_is_refused_each_time(tmp_path, monkeypatch, old, new):
+    file, path = npz_archive._npy(np.zeros(3)), tmp_path / "G1.npz"
+    assert file.count(old) == 1
+    monkeypatch.setattr(npz_archive, "_npy", lambda array: file.replace(old, new))
+    write_archive(path, {"t_s": np.zeros(3)})
+    for _ in range(2):
+        with pytest.raises(BundleRefused, match=r"^bad-array: .*t_s has another header"):
+            read_archive(path, "G1.npz", ["t_s"])
 
 
 SINGLE = io.BytesIO()

@@ -117,8 +117,12 @@ def poses(trace: Trace, links: Sequence[str]) -> Iterator[Breach]:
 
 
 @cache
-def _robot() -> tuple[Any, list[int], list[int]]:
-    """Return the model without shapes and actuators, and indices of the joints in qpos and qvel."""
+def _robot() -> tuple[Any, Any, list[int], list[int]]:
+    """Return the model without shapes and actuators, its data, and the joints in qpos and qvel.
+
+    The data are made once, because that takes as long as a hundred states. Every use sets all of
+    `qpos` and `qvel` that it reads.
+    """
     import mujoco
 
     spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
@@ -126,7 +130,8 @@ def _robot() -> tuple[Any, list[int], list[int]]:
         spec.delete(part)
     model = spec.compile()
     joints = [model.joint(name) for name in JOINT_NAMES]
-    return model, [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
+    q_at, dof_at = [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
+    return model, mujoco.MjData(model), q_at, dof_at
 
 
 def _links() -> set[str]:
@@ -139,17 +144,16 @@ def link_poses(q: FloatArray, links: Sequence[str]) -> tuple[FloatArray, FloatAr
     """Return positions (n, l, 3) [m] and orientations (n, l, 4) of links at `q` (n, d)."""
     import mujoco
 
-    model, q_at, _ = _robot()
-    data = mujoco.MjData(model)
+    model, data, q_at, _ = _robot()
     bodies = [model.body(name).id for name in links]
     position, orientation = np.empty((len(q), model.nbody, 3)), np.empty((len(q), model.nbody, 4))
     joints = np.empty((len(q), model.nq))
     joints[:, q_at] = q
     qpos, xpos, xquat = data.qpos, data.xpos, data.xquat
-    for k, values in enumerate(joints):
+    for values, places, turns in zip(joints, position, orientation, strict=True):
         qpos[:] = values
         mujoco.mj_kinematics(model, data)
-        position[k], orientation[k] = xpos, xquat
+        places[:], turns[:] = xpos, xquat
     return position[:, bodies], orientation[:, bodies]
 
 
@@ -183,27 +187,28 @@ def last_step(
     """Return velocity and net force, each (n, d), at the positions (n, d) before the last step."""
     import mujoco
 
-    model, q_at, dof_at = _robot()
-    data, h = mujoco.MjData(model), case.dt / case.substeps
+    (model, data, q_at, dof_at), h = _robot(), case.dt / case.substeps
     damping, diagonal = model.dof_damping[dof_at], model.M_rowadr + model.M_rownnz - 1
-    states, applied, after, bias = np.zeros((4, len(q_before), model.nv))
-    states[:, q_at], applied[:, dof_at], after[:, dof_at] = q_before, trace.internal_force, trace.qd
-    implicit = np.zeros(model.nv)
-    implicit[dof_at] = h * (damping + case.kv)
-    qpos, qvel, mass, change = data.qpos, data.qvel, data.M, np.zeros((1, model.nv))
-    for k, state in enumerate(states):
+    states, impulses, speeds, bias = np.zeros((4, len(q_before), model.nv))
+    states[:, q_at], speeds[:, dof_at] = q_before, trace.qd
+    impulses[:, dof_at] = -h * trace.internal_force.astype(np.float64)
+    qpos, qvel, mass, solved = data.qpos, data.qvel, data.M, np.zeros((1, model.nv))
+    change = solved[0]
+    implicit = np.zeros(mass.shape)
+    implicit[diagonal[dof_at]] = h * (damping + case.kv)
+    for state, impulse, speed, effort in zip(states, impulses[:, None], speeds, bias, strict=True):
         qpos[:] = state
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_makeM(model, data)
-        mass[diagonal] += implicit
+        mass += implicit
         mujoco.mj_factorM(model, data)
-        mujoco.mj_solveM(model, data, change, applied[k : k + 1])
-        qvel[:] = after[k] - h * change[0]
+        mujoco.mj_solveM(model, data, solved, impulse)
+        speed += change
+        qvel[:] = speed
         mujoco.mj_comVel(model, data)
-        mujoco.mj_rne(model, data, 0, bias[k])
-        after[k] = qvel
-    velocity = after[:, dof_at]
+        mujoco.mj_rne(model, data, 0, effort)
+    velocity = speeds[:, dof_at]
     control = control_law(case, q_before, velocity)
     return velocity, control - bias[:, dof_at] - damping * velocity
 

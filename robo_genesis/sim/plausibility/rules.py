@@ -63,9 +63,9 @@ def apart(
         expected: of the same shape, or one that broadcasts to it.
         tolerance: of all entries, or of a shape that broadcasts to theirs.
     """
-    expected, room = (np.broadcast_to(of, found.shape) for of in (expected, tolerance))
-    beyond = np.abs(found.astype(np.float64) - expected) - room
+    beyond = np.abs(np.subtract(found, expected, dtype=np.float64)) - tolerance
     if beyond.size and not beyond.max() <= 0:
+        expected, room = (np.broadcast_to(of, found.shape) for of in (expected, tolerance))
         at = tuple(int(k) for k in np.unravel_index(int(beyond.argmax()), beyond.shape))
         where = f"{what} at index {list(at)}" if at else what
         yield Breach(code, where, float(found[at]), f"{float(expected[at])!r} ± {room[at]:g}")
@@ -75,13 +75,13 @@ def times(trace: TimeSeries, steps: int, dt: float) -> Iterator[Breach]:
     """Yield a number of steps [1] or a time step [s] that is not that of the case."""
     if trace.steps != steps:
         yield Breach("stamps", "number of steps", trace.steps, steps)
-    elif not np.allclose(trace.t, np.arange(steps + 1) * dt, rtol=0, atol=TIME):
+    elif (np.abs(trace.t - np.arange(steps + 1) * dt) > TIME).any():
         yield Breach("stamps", "dt of the stamps [s]", trace.dt, dt)
 
 
 def unit_quaternions(quat: FloatArray) -> Iterator[Breach]:
     """Yield the quaternion, of an array (…, 4), whose norm is farthest from 1."""
-    norm = np.linalg.norm(quat.astype(np.float64), axis=-1)
+    norm = np.sqrt(np.einsum("...i,...i", quat, quat, dtype=np.float64))
     yield from apart("pose", "norm of link_quat", norm, np.ones(()), UNIT)
 
 
@@ -108,12 +108,9 @@ def computed_again(
 
 def copied(trace: TimeSeries, others: Mapping[str, TimeSeries]) -> Iterator[Breach]:
     """Yield the first run of another engine whose arrays of motion are the same to the last bit."""
-    for name, other in others.items():
-        same = [
-            np.array_equal(getattr(trace, field.name), getattr(other, field.name))
-            for field in fields(trace)
-            if field.name in ("q", "qd", "link_pos", "link_quat", "link_vel", "link_ang")
-        ]
-        if all(same):
-            what = f"run with the same motion as {name}, to the last bit,"
+    of_motion = ("q", "qd", "link_pos", "link_quat", "link_vel", "link_ang")
+    motion = [field.name for field in fields(trace) if field.name in of_motion]
+    for label, other in others.items():
+        if all(np.array_equal(getattr(trace, name), getattr(other, name)) for name in motion):
+            what = f"run with the same motion as {label}, to the last bit,"
             yield Breach("second-engine", what, "of another engine", "different")

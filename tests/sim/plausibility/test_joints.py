@@ -5,7 +5,7 @@ import pytest
 
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.sim import mujoco_joints
-from robo_genesis.sim.plausibility.joints import driven_in_mujoco
+from robo_genesis.sim.plausibility.joints import driven_in_mujoco, last_step, link_poses
 
 LINKS, HOW = ("link7", "hand"), (0.01, "Euler")
 CASE = spec.G2
@@ -39,3 +39,12 @@ def test_an_altered_array_is_a_breach(array, code):
 def test_a_run_by_another_integrator_is_a_breach():
     other = mujoco_joints.run_case(CASE, LINKS, HOW[0], "implicitfast")
     assert "motion" in codes(other)
+
+
+def test_one_run_leaves_nothing_behind_that_changes_the_next():
+    other = replace(CASE, kv=CASE.kv * 3, q_start=CASE.q_start + 0.1)
+    before = [*link_poses(RUN.q, LINKS), *last_step(RUN, CASE, RUN.q[1:])]
+    link_poses(RUN.q + 1, LINKS)
+    last_step(RUN, other, RUN.q[1:] - 1)
+    after = [*link_poses(RUN.q, LINKS), *last_step(RUN, CASE, RUN.q[1:])]
+    assert all(np.array_equal(*pair) for pair in zip(before, after, strict=True))
