@@ -1,19 +1,23 @@
 """The bundles of the lecture and the deeper pages: runs, metrics and checks are verified too."""
 
+import json
 import re
 import shutil
 from pathlib import Path
 
 import pytest
+from bs4 import BeautifulSoup
 from bundles import written
 from lessons.l04.conftest import PAGES, of_page
 from lessons.lesson_bundles import altered, judged_again, pop, refused, without_run
 from spoilers import edit, seal
 
+from robo_genesis.core.shown import ShownError
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.l04 import LESSON, spec, study_spec
+from robo_genesis.site.explorer import explorer_html
 
 
 @pytest.fixture(scope="module")
@@ -167,3 +171,16 @@ def test_an_altered_finding_is_refused(studied, page, check):
     folder = studied(page)
     altered(check)(folder)
     assert refused(folder).startswith("checks: ")
+
+
+def test_a_page_can_show_the_explorer_of_another_page_s_runs(sound, study_runs):
+    html = BeautifulSoup(explorer_html("l04", sound["batch"]), "html.parser")
+    data = json.loads(html.select_one(".explorer")["data-grid"])
+    (g2,) = (point for point in data["points"] if point["case"] == "G2")
+    overshoot = study_runs.metrics["grid_step_250mrad_KP_7000_KV_100"].overshoot
+    assert g2["metrics"][data["labels"].index("overshoot")] == f"{overshoot:.4f} rad"
+
+
+def test_a_lesson_without_an_explorer_is_named(sound):
+    with pytest.raises(ShownError, match=r"lessons\.l02\.explorer\.markup"):
+        explorer_html("l02", sound["batch"])

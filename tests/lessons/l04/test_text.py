@@ -80,6 +80,21 @@ def test_a_comparison_says_what_was_measured_or_not_observed(metric, values, say
     assert sentence == f"The {LABELS[metric]} {says}"
 
 
+@pytest.mark.parametrize(
+    ("values", "order", "says"),
+    [
+        ((0.12, 0.11), "equal",
+         "is too close to call: G1 0.12 s, G2 0.11 s, within the margin of 0.015 s."),
+        ((0.12, 0.12), "equal", "does not change measurably (G1 0.12 s, G2 0.12 s)."),
+        ((0.13, 0.11), "lower", "goes down (G1 0.13 s, G2 0.11 s)."),
+    ],
+)  # fmt: skip
+def test_a_difference_within_the_margin_is_too_close_to_call(values, order, says):
+    found = compare("rise_time", *pair("rise_time", values), RESOLUTION, MARGINS["rise_time"])
+    assert found.order == order
+    assert comparison_sentence(NAMES, found) == f"The rise time {says}"
+
+
 CONFIRMED = {
     "no later": {"lower", "equal"},
     "later": {"higher"},
