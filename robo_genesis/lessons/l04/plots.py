@@ -10,13 +10,13 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import marks_of
 from robo_genesis.core.plotting import LIMIT, look
+from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SETTLING_BAND
-from robo_genesis.lessons.l04.spec import CASE_MARKS, STEPPED_JOINT
+from robo_genesis.lessons.l04.metrics import SETTLING_BAND
+from robo_genesis.lessons.l04.spec import CASE_MARKS, ENTRY, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_spec import ASSIGNED, COMPARED
-from robo_genesis.lessons.l04.theory import IdealJoint
 from robo_genesis.sim.franka import LINK_PARENTS
 from robo_genesis.sim.joints import JointMap
 
@@ -85,21 +85,23 @@ def baseline_forces(run: Experiment) -> Figure:
 
 
 def defined(run: Experiment) -> Figure:
-    """Draw an invented response with rise time, overshoot, settling time and final error."""
-    figure, t = Figure(figsize=(7, 4)), np.linspace(0, 1, 401)
-    ax, rest, band = figure.subplots(), 0.975, 0.05
-    q = rest * IdealJoint(inertia=1.0, damping=16.0, kp=400.0).response(t)
-    _target(ax, 1.0)
-    ax.axhspan(1 - band, 1 + band, color=BAND, zorder=0)
-    ax.plot(t, q, **look("target", linestyle=(0, (4, 2)), linewidth=1.6))
-    risen, peak = int((q >= RISE_FRACTION).argmax()), int(q.argmax())
-    settled = int(np.flatnonzero(np.abs(q - 1) > band)[-1]) + 1
-    _note(ax, (t[risen], q[risen]), "rise time: 90 % of the step", (24, -80))
-    _note(ax, (t[peak], q[peak]), "overshoot: peak above the target", (24, -2))
-    _note(ax, (t[settled], q[settled]), "settling time: in the band from here on", (10, -46))
-    _note(ax, (1.0, (1 + rest) / 2), "final error", (-40, 36))
-    _finish(ax, "An invented response to a step", "share of the step", 1.03)
-    ax.set_xticks([])
+    """Draw the position of G2 with its rise time, overshoot, settling time and final error."""
+    figure, trace, m = Figure(figsize=(7, 4)), run.traces["G2"], run.metrics["G2"]
+    ax, q, target = figure.subplots(), trace.q[:, ENTRY], float(trace.target[0, ENTRY])
+    _target(ax, target, SETTLING_BAND)
+    ax.plot(trace.t, q, marker=".", markersize=6, **solid(CASE_MARKS["G2"]))
+    times = [(m.rise_time, "rise time, 90 % of the step", (22, -40)),
+             (m.settling_time, "settling time, in the band from here on", (16, -70))]  # fmt: skip
+    for time, name, offset in times:
+        if time is not None:
+            at = time, float(q[round(time / trace.dt)])
+            _note(ax, at, f"{name}: {format_value(time, 's')}", offset)
+    peak, last = int(q.argmax()), int(np.abs(trace.t - START).argmin())
+    overshoot, error = (format_value(value, "rad") for value in (m.overshoot, m.final_error))
+    _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", (30, -4))
+    _note(ax, (START, float(q[last])), f"final error: {error}, at the end", (-170, -30))
+    unit = run.joints.position_units[ENTRY]
+    _finish(ax, f"Position of {STEPPED_JOINT} in G2", f"q [{unit}]", START)
     return figure
 
 
