@@ -90,8 +90,8 @@ def defined(run: Experiment) -> Figure:
     ax, q, target = figure.subplots(), trace.q[:, ENTRY], float(trace.target[0, ENTRY])
     _target(ax, target, SETTLING_BAND)
     ax.plot(trace.t, q, marker=".", markersize=6, **solid(CASE_MARKS["G2"]))
-    times = [(m.rise_time, "rise time, 90 % of the step", (22, -40)),
-             (m.settling_time, "settling time, in the band from here on", (16, -70))]  # fmt: skip
+    times = [(m.rise_time, "rise time, 90 % of the step", (22, -75)),
+             (m.settling_time, "settling time, in the band from here on", (16, -36))]  # fmt: skip
     for time, name, offset in times:
         if time is not None:
             at = time, float(q[round(time / trace.dt)])
@@ -99,7 +99,7 @@ def defined(run: Experiment) -> Figure:
     peak, last = int(q.argmax()), int(np.abs(trace.t - START).argmin())
     overshoot, error = (format_value(value, "rad") for value in (m.overshoot, m.final_error))
     _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", (30, -4))
-    _note(ax, (START, float(q[last])), f"final error: {error}, at the end", (-170, -30))
+    _note(ax, (START, float(q[last])), f"final error: {error}, at the end", (-130, 22))
     unit = run.joints.position_units[ENTRY]
     _finish(ax, f"Position of {STEPPED_JOINT} in G2", f"q [{unit}]", START)
     return figure
