@@ -93,7 +93,7 @@ def outcomes_of_predictions(run: Experiment) -> str:
                 "prediction": f"{found.label}: {other} {claim} than {one}",
                 "measured": " → ".join(values),
                 "margin": format_margin(margin, found.unit),
-                "outcome": f"{held}, too close to call" if close else held,
+                "outcome": f"{held} (too close to call)" if close else held,
             }
         )
     return tables.markdown(rows)

@@ -224,4 +224,4 @@ def _stepped_sentence(run: Experiment, case: str) -> str:
     )
     if abs(model - small) < abs(ideal - small):
         return f"{words} The solver's step explains most of the difference."
-    return f"{words} The solver's step alone does not explain the difference: neighbours move, too."
+    return f"{words} The solver's step alone does not explain the difference: neighbours also move."
