@@ -8,6 +8,7 @@ A page calls `gs.init` itself; `open_page` follows it:
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -48,13 +49,14 @@ def open_page(lesson: str, name: str) -> "LessonPage":
         EngineError: a page is open already, Genesis is not initialised, or it was initialised with
             another backend, seed or precision.
     """
-    find_page(lesson, name)
+    declared = find_page(lesson, name)
     if _opened:
         raise session.EngineError(
             f"The page {_opened[0]} is open in this process, and a process has one page. Restart "
             "the kernel and run all cells from the top."
         )
     contract = session.read_contract()
+    contract = replace(contract, render=contract.render and declared.camera)
     page = LessonPage(lesson, name, contract, session.started(contract))
     _opened.append(f"{lesson}/{name}")
     plotting.use_course_style()
@@ -71,7 +73,7 @@ class LessonPage:
     | `frames` | camera frames by name |
     | `joints` | the `JointMap` of the arrays' DOFs, None for free bodies |
     | `links` | names of the links, in the order of the arrays |
-    | `render` | whether the environment requests a camera |
+    | `render` | whether the environment requests a camera and the page declares one |
     | `folder` | of the page's outputs |
     | `log` | the engine's log |
     | `backend` | the backend as it was found |

@@ -31,7 +31,7 @@ PAGES = tuple(docnames(BOOK / "_toc.yml"))
 """Every page of the book in reading order."""
 
 LESSON_PAGES = {
-    (Path(name).parent.name.partition("-")[0], Path(name).name): name
+    (Path(name).parent.name.partition("-")[0], Path(name).name.removeprefix("deeper-")): name
     for name in PAGES
     if name.startswith("lessons/")
 }

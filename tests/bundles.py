@@ -13,6 +13,7 @@ from robo_genesis.evidence.evidence_key import page_code
 from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.lessons.registry import find_page
 from robo_genesis.sim import camera, session
 from robo_genesis.sim.engine_log import EngineLog
 
@@ -65,7 +66,8 @@ def recorder(quiet, tmp_path, engine):
 def recorder_of(patch, engine, outputs: Path, lesson: str, page: str) -> Recorder:
     patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
     name_code(patch, lesson, page)
-    return Recorder(lesson, page, session.Contract("cpu", True, outputs), engine)
+    rendered = find_page(lesson, page).camera
+    return Recorder(lesson, page, session.Contract("cpu", rendered, outputs), engine)
 
 
 def name_code(patch, lesson: str, page: str) -> None:
@@ -78,7 +80,9 @@ def name_code(patch, lesson: str, page: str) -> None:
 def written(engine, outputs: Path, lesson: str, page: str, experiment: Experiment) -> Path:
     """Write the bundle of a page below a folder without a real engine, and return its folder."""
     with without_engine(engine.backend) as patch:
-        return recorder_of(patch, engine, outputs, lesson, page).write(experiment, RENDERER)
+        return recorder_of(patch, engine, outputs, lesson, page).write(
+            experiment, RENDERER if experiment.page.camera else None
+        )
 
 
 @pytest.fixture(scope="session")

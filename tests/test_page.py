@@ -168,6 +168,11 @@ def test_finish_names_the_check_that_failed(page, displayed, capsys):
     assert "PASSED" not in capsys.readouterr().out
 
 
+def test_a_page_that_declares_no_camera_renders_none(page, monkeypatch):
+    monkeypatch.setattr(pages, "_opened", [])
+    assert not rg.open_page("l04", "formula").render
+
+
 def test_without_a_camera_no_frame_is_taken(page):
     page.render = False
     page.capture(None, "initial")

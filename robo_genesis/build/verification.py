@@ -12,6 +12,7 @@ from robo_genesis.core.files import derived
 from robo_genesis.core.project import BACKEND, RENDER, environment_contract
 from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.lessons.registry import find_page
 from robo_genesis.lessons.sources import import_closure
 
 
@@ -70,13 +71,16 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> str:
 def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
     """Raise BundleRefused if a bundle's backend or camera is not the requested one.
 
+    A page that declares no camera must have none.
+
     Args:
         predicate: the predicate of the bundle's manifest.
         contract: the variables that requested it.
     """
     remedy = "Write gs.init(backend=rg.backend(), ...), and a camera where page.render is true."
     backend, render = contract[BACKEND], contract[RENDER]
-    mode = "camera" if render == "1" else "skip"
+    camera = render == "1" and find_page(predicate.lesson, predicate.page).camera
+    mode = "camera" if camera else "skip"
     found = predicate.backend.requested
     expect("backend", "manifest.json", "backend.requested", found, backend, remedy)
     expect("frames", "manifest.json", "render.mode", predicate.render.mode, mode, remedy)

@@ -12,7 +12,8 @@ from robo_genesis.core.quantities import format_value
 class Comparison:
     """One metric of two cases. `order` is that of the second relative to the first.
 
-    It is lower, equal or higher, and None if the values cannot be ranked.
+    It is lower, equal or higher, and None if the values cannot be ranked. It is equal where the
+    values differ by no more than the declared `margin`.
     """
 
     label: str
@@ -20,21 +21,36 @@ class Comparison:
     first: float | None
     second: float | None
     order: str | None
+    margin: float = 0.0
 
 
 def compare(
-    metric: str, first: CaseMetrics, second: CaseMetrics, resolution: Mapping[str, float]
+    metric: str,
+    first: CaseMetrics,
+    second: CaseMetrics,
+    resolution: Mapping[str, float],
+    margin: float = 0.0,
 ) -> Comparison:
     """Order one metric of two cases; a difference below the resolution of its unit is equal."""
     noun, unit = (first.about(what)[metric] for what in ("noun", "unit"))
-    return compare_values(noun, unit, getattr(first, metric), getattr(second, metric), resolution)
+    values = getattr(first, metric), getattr(second, metric)
+    return compare_values(noun, unit, *values, resolution, margin)
 
 
 def compare_values(
-    label: str, unit: str, a: float | None, b: float | None, resolution: Mapping[str, float]
+    label: str,
+    unit: str,
+    a: float | None,
+    b: float | None,
+    resolution: Mapping[str, float],
+    margin: float = 0.0,
 ) -> Comparison:
-    """Order the values `a` and `b` of one metric in two cases; `label` is its name in prose."""
-    return Comparison(label, unit, a, b, order(a, b, resolution[unit]))
+    """Order the values `a` and `b` of one metric in two cases; `label` is its name in prose.
+
+    A difference up to the margin is equal, as is one up to the resolution of the unit.
+    """
+    found = order(a, b, max(resolution[unit], margin))
+    return Comparison(label, unit, a, b, found, margin)
 
 
 def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
@@ -50,6 +66,9 @@ def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
             f"The {label} was observed for {seen} alone ({values}); within this window "
             f"{unseen} is the slower one, by how much is unknown."
         )
+    if comparison.order == "equal" and comparison.margin and first != second:
+        margin = f"{comparison.margin:g} {'samples' if unit == '1' else unit}"
+        return f"The {label} is too close to call: {values}, within the margin of {margin}."
     verb = {"lower": "goes down", "higher": "goes up", "equal": "does not change measurably"}
     return f"The {label} {verb[comparison.order]} ({values})."
 

@@ -62,6 +62,7 @@ class MeasuringPage:
     | `claims` | by check of the lesson, what it requires |
     | `parameters` | returns every configured input as JSON values |
     | `validate` | refuses arrays that no run can have |
+    | `camera` | whether it has camera frames where the environment asks for them |
 
     The code that measures needs no declaration: `sources.measuring_modules` finds it. The `spec` of
     a lesson is not in it, because `parameters` covers it.
@@ -77,6 +78,7 @@ class MeasuringPage:
     links: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
     validate: Callable[["Experiment"], None] = field(default=lambda run: None)
+    camera: bool = True
 
     @property
     def cases(self) -> dict[str, Any]:

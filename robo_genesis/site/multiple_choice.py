@@ -40,6 +40,7 @@ from robo_genesis.site.evidence.measured import BACKEND, measured
 
 EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same, within the lesson's resolution", "higher": "more"}
+CLOSE = "too close to call, within the margin of {} {}"
 UNDECIDED = "this record cannot tell"
 UNKNOWN = "unknown"
 """The key of the option that no order was observed."""
@@ -109,7 +110,9 @@ class Choice(Question):
         lesson_page, metric, *cases = self.arguments
         text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
         order, unit, answer, origin = measured_order(lesson_page, metric, cases)
-        return text, choice(options=options(unit, order, causes), answer=answer, origin=origin)
+        margin = declared_margin(lesson_page.split("/")[0], metric)
+        shown = options(unit, order, causes, margin)
+        return text, choice(options=shown, answer=answer, origin=origin)
 
 
 class Number(Question):
@@ -170,15 +173,27 @@ def measured_order(
     first, second = (records[case][metric] for case in cases)
     lesson = find_lesson(lesson_page.split("/")[0])
     noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION
-    found = compare_values(noun, first.unit, first.value, second.value, resolution)
+    values, margin = (first.value, second.value), declared_margin(lesson_page.split("/")[0], metric)
+    found = compare_values(noun, first.unit, *values, resolution, margin)
     return found.order, found.unit, comparison_sentence((cases[0], cases[1]), found), origin
 
 
+def declared_margin(lesson: str, metric: str) -> float:
+    """Return the margin that a lesson declares for orderings of a metric, 0 if it declares none."""
+    found = (m for _, name, _, m in find_lesson(lesson).spec.RELATIONS if name == metric)
+    return max(found, default=0.0)
+
+
 def options(
-    unit: str, order: str | None, causes: Mapping[str, str] = MappingProxyType({})
+    unit: str,
+    order: str | None,
+    causes: Mapping[str, str] = MappingProxyType({}),
+    margin: float = 0.0,
 ) -> list[tuple[str, bool, str]]:
     """Return each option, whether it was measured, and its cause; exactly one is true."""
-    words = EARLIER if unit == "s" else LOWER
+    words = dict(EARLIER if unit == "s" else LOWER)
+    if margin:
+        words["equal"] = CLOSE.format(f"{margin:g}", "samples" if unit == "1" else unit)
     told = [(text, order == name, causes.get(name, "")) for name, text in words.items()]
     return [*told, (UNDECIDED, order is None, causes.get(UNKNOWN, ""))]
 

@@ -37,6 +37,8 @@ from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.lessons.book_pages import PageError
 
 FACTS = SimpleNamespace(
+    lesson="l02",
+    page="lab",
     engine=SimpleNamespace(version="1.2.3"),
     backend=SimpleNamespace(requested="cpu", actual="cpu"),
     render=SimpleNamespace(mode="camera", renderer="llvmpipe"),
@@ -174,6 +176,17 @@ def test_a_bundle_of_another_backend_is_refused():
     said = r"backend: .* backend\.requested is 'cpu', expected 'auto'"
     with pytest.raises(BundleRefused, match=said):
         require_contract(FACTS, contract)
+
+
+@pytest.mark.parametrize(("page", "mode"), [("lab", "camera"), ("formula", "skip")])
+def test_a_page_must_render_exactly_if_it_declares_a_camera(page, mode):
+    contract = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "1"}
+    facts = SimpleNamespace(**vars(FACTS) | {"lesson": "l04", "page": page})
+    facts.render = SimpleNamespace(mode=mode)
+    require_contract(facts, contract)
+    facts.render = SimpleNamespace(mode={"camera": "skip", "skip": "camera"}[mode])
+    with pytest.raises(BundleRefused, match=rf"frames: .* expected '{mode}'"):
+        require_contract(facts, contract)
 
 
 def test_a_build_compares_its_bundles_with_its_own_contract(tmp_path, monkeypatch):

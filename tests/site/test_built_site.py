@@ -20,13 +20,13 @@ PIN = project.engine_pin()
 def test_pages_show_executed_outputs_and_their_verdict(site, lesson, name):
     found = parsed(site, LESSON_PAGES[lesson, name])
     assert f"{lesson.upper()} CHECK: PASSED" in found.get_text()
-    assert found.select("div.cell_output img[src$='.svg']")
+    assert found.select("article img[src$='.svg']")
 
 
 @pytest.mark.parametrize(
     ("lesson", "name"),
     [
-        *((lesson, name) for (lesson, _), name in LESSON_PAGES.items()),
+        *((le, name) for (le, page), name in LESSON_PAGES.items() if page in ("lecture", "lab")),
         (next(iter(LESSONS)), "index"),
     ],
 )

@@ -22,7 +22,10 @@ TESTS = Path(__file__).parents[1]
 ANCHORS = [TESTS / "site" / "anchors.txt", *sorted(TESTS.glob("lessons/*/anchors.txt"))]
 """The anchors of each lesson's pages are a file beside the lesson's tests."""
 
-PLACES = "article section[id], article section > span[id], article figure[id], article dt[id]"
+PLACES = (
+    "article section[id], article section > span[id], article p[id], article p > span[id], "
+    "article figure[id], article dt[id]"
+)
 NUMBERED = re.compile(r"id\d+$")
 
 

@@ -13,6 +13,7 @@ from robo_genesis.site.multiple_choice import (
     UNDECIDED,
     UNKNOWN,
     asked_number,
+    declared_margin,
     measured_order,
     options,
     split_causes,
@@ -31,6 +32,19 @@ from robo_genesis.site.multiple_choice import (
 )
 def test_exactly_the_measured_option_is_right(unit, order, text):
     assert [name for name, right, _ in options(unit, order) if right] == [text]
+
+
+@pytest.mark.parametrize(
+    ("metric", "unit", "text"),
+    [
+        ("rise_time", "s", "too close to call, within the margin of 0.015 s"),
+        ("saturation_samples", "1", "too close to call, within the margin of 1.5 samples"),
+        ("settling_time", "s", "at the same sample"),
+    ],
+)
+def test_a_difference_within_the_declared_margin_is_too_close_to_call(metric, unit, text):
+    shown = options(unit, "equal", margin=declared_margin("l04", metric))
+    assert [name for name, right, _ in shown if right] == [text]
 
 
 def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):

@@ -24,17 +24,16 @@ def test_the_page_has_its_colours(page):
     expect(page.locator("article h2").first).to_have_css("border-top-width", "1px")
 
 
-def test_of_the_replay_figure_film_and_table_remain(page):
+def test_of_the_replay_figures_and_table_remain(page):
     assert not page.locator(REPLAY).is_visible()
     assert page.locator("#fig-l04-gains img").is_visible()
-    assert page.locator("#fig-l04-film img").is_visible()
+    assert page.locator("#fig-l04-posture img").is_visible()
     assert page.get_by_text("moves farthest").first.is_visible()
     page.locator(f"{BLOCK} summary").click()
     assert page.locator(f"{BLOCK} tbody tr").count() == 121
     assert page.locator(f"{BLOCK} table").is_visible()
 
 
-def test_of_the_explorer_maps_and_a_word_remain(page):
+def test_of_the_explorer_a_sentence_remains(page):
     assert not page.locator(".explorer").is_visible()
     assert page.get_by_text("The explorer needs JavaScript").is_visible()
-    assert page.locator("#fig-l04-grid-overshoot img").is_visible()

@@ -1,19 +1,29 @@
 """L04, robot models, degrees of freedom, and joint control."""
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robo_genesis.core.channels import View
+from robo_genesis.core.checks import Finding
 from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
 from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, on_demand
-from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
+from robo_genesis.lessons.experiment import (
+    Experiment,
+    MeasuringPage,
+    Readings,
+    Run,
+    counts,
+    runs_of,
+)
 from robo_genesis.lessons.l04 import (
     backend_mistake,
     checks,
     claims_text,
     engine_comparison,
+    exercises,
     explorer,
     lecture_text,
     mistakes,
@@ -28,7 +38,6 @@ from robo_genesis.lessons.l04 import (
 from robo_genesis.lessons.l04.batch import run_batch
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
 from robo_genesis.sim import mujoco_joints
-from robo_genesis.sim.film import FilmedScene
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import (
     assign_path,
@@ -44,8 +53,9 @@ if TYPE_CHECKING:
     from robo_genesis.lessons.l04 import plots, study_plots
 
 __all__ = [
-    "CAMERA", "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LECTURE", "LESSON", "SUBSTEPS",
-    "FilmedScene", "assign_path", "backend_mistake", "differences", "engine_comparison", "explorer",
+    "BATCH", "CAMERA", "DT", "FORMULA", "FRANKA_MJCF", "INTEGRATOR", "JOINT_NAMES", "LAB",
+    "LECTURE", "LESSON", "MISTAKES", "SUBSTEPS", "assign_path", "backend_mistake", "differences",
+    "engine_comparison", "exercises", "explorer",
     "lecture_text", "mistakes", "mujoco_joints", "plots", "read_shape", "reset", "resolve_joints",
     "run_batch", "run_case", "spec", "study", "study_plots", "study_spec", "text", "theory_text",
     "validate",
@@ -54,35 +64,9 @@ __all__ = [
 __getattr__ = on_demand(__name__, "plots", "study_plots")
 
 
-STUDY_RUNS = {
-    # A run that holds its start has no step, so it has no metrics.
-    **{n: Run(case, not n.endswith("_hold")) for n, case in study_spec.STEP_CASES.items()},
-    **runs_of(study_spec.LONGER_CASES),
-    **runs_of(study_spec.SUBSTEP_CASES),
-    **{
-        name: Run(spec.CASES[second.case], note="run in MuJoCo, not in Genesis")
-        for name, second in study_spec.SECOND_RUNS.items()
-    },
-    study_spec.ASSIGNED: Run(
-        spec.BASELINE,
-        measured=False,
-        note="state overwritten at each sample, no step taken; its time is nominal",
-    ),
-    **{
-        name: Run(case, note="in a scene with a copy of the robot for each run of the grid")
-        for name, case in study_spec.GRID_CASES.items()
-    },
-}
-
-
 def readings(rendered: bool) -> dict[str, Readings]:
     """Return the engine's counts of the robot."""
     return {"model": counts(spec.EXPECTED_MODEL)}
-
-
-def study_readings(rendered: bool) -> dict[str, Readings]:
-    """Return those of the lecture, which also reads what theory needs of the stepped joint."""
-    return readings(rendered) | {study.GROUP: Readings(study.UNITS)}
 
 
 LAB = MeasuringPage(
@@ -96,18 +80,78 @@ LAB = MeasuringPage(
     parameters=spec.parameters,
     validate=plausibility.require_possible_runs,
 )
-LECTURE = replace(
+MISTAKES = replace(LAB, checks=checks.WITHOUT_CAMERA, camera=False)
+
+
+def with_runs(
+    page: MeasuringPage,
+    name: str,
+    runs: Mapping[str, Run],
+    units: Mapping[str, str],
+    own: Sequence[Callable[[Experiment], Iterable[Finding]]],
+) -> MeasuringPage:
+    """Return a page with runs, readings and checks beside those of the given one."""
+    of_joint = {study.GROUP: Readings(units)} if units else {}
+    return replace(
+        page,
+        runs={**page.runs, **runs},
+        readings=lambda rendered: readings(rendered) | of_joint,
+        checks=(*page.checks, *own),
+        parameters=lambda: spec.parameters() | study_spec.parameters(name),
+    )
+
+
+ASSIGNED = Run(
+    spec.BASELINE,
+    measured=False,
+    note="state overwritten at each sample, no step taken; its time is nominal",
+)
+LECTURE = with_runs(
     LAB,
-    runs=runs_of(spec.CASES) | STUDY_RUNS,
-    readings=study_readings,
-    checks=(*checks.CHECKS, *study_checks.CHECKS),
-    parameters=lambda: spec.parameters() | study_spec.parameters(),
+    "lecture",
+    {**runs_of(study_spec.LONGER_CASES), study_spec.ASSIGNED: ASSIGNED},
+    study.GRAVITY,
+    study_checks.LECTURE,
+)
+FORMULA = with_runs(
+    MISTAKES,
+    "formula",
+    # A run that holds its start has no step, so it has no metrics.
+    {n: Run(case, not n.endswith("_hold")) for n, case in study_spec.STEP_CASES.items()},
+    study.AT_START | study.MASSES | study.GRAVITY,
+    study_checks.FORMULA,
+)
+IN_MUJOCO = {
+    name: Run(spec.CASES[second.case], note="run in MuJoCo, not in Genesis")
+    for name, second in study_spec.SECOND_RUNS.items()
+}
+INTEGRATOR = with_runs(
+    MISTAKES,
+    "integrator",
+    runs_of(study_spec.SUBSTEP_CASES) | IN_MUJOCO,
+    study.AT_START | study.IN_MUJOCO,
+    study_checks.INTEGRATOR,
+)
+GRID_NOTE = "in a scene with a copy of the robot for each run of the grid"
+BATCH = with_runs(
+    MISTAKES,
+    "batch",
+    {name: Run(case, note=GRID_NOTE) for name, case in study_spec.GRID_CASES.items()},
+    {},
+    study_checks.GRID_CHECKS,
 )
 
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, StepMetrics),
-    pages={"lab": LAB, study_spec.PAGE: LECTURE},
+    pages={
+        "lab": LAB,
+        "lecture": LECTURE,
+        "formula": FORMULA,
+        "integrator": INTEGRATOR,
+        "batch": BATCH,
+        "mistakes": MISTAKES,
+    },
     filmed=Filmed("the Franka"),
     marks=spec.CASE_MARKS,
     compared=Compared(

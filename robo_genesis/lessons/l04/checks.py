@@ -139,3 +139,4 @@ CHECKS = (
     mapping, configuration, target_limits, baseline_approaches, stamps, same_start, one_factor,
     control_law, not_observed, measurements, saturation, posture,
 )  # fmt: skip
+WITHOUT_CAMERA = tuple(check for check in CHECKS if check is not posture)

@@ -37,15 +37,19 @@ CLAIMS: dict[str, str] = {
     "theory_small_step": (
         "Theory predicts a small step's overshoot, and its curve better than a large step's."
     ),
+    "stepped_model": (
+        "A model of one joint with the solver's step predicts overshoot of small and large steps."
+    ),
     "gravity_support": (
         "Where a case ends nearly at rest, KP × final error agrees with the gravity effort."
     ),
     "convergence": "G2's overshoot in Genesis falls with each refinement of the solver's step.",
     "one_limit": (
-        "With a finer solver step, all engines and integrators approach the same overshoot of G2."
+        "With a finer solver step, the stable runs of both engines approach the same overshoot of "
+        "G2."
     ),
     "second_engine_order": (
-        "Every ordering that the lesson claims holds in Genesis and in MuJoCo, both integrators."
+        "Every ordering that the lesson claims holds in Genesis and in the stable runs of MuJoCo."
     ),
     "implicit_term": (
         "A commanded position adds h (d + KV) to the joint's entry in the engine's mass matrix."

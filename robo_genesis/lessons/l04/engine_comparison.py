@@ -36,8 +36,7 @@ def convergence_table(run: Experiment) -> str:
 
 def convergence_conclusions(run: Experiment) -> str:
     """Describe the effect of a finer solver step in each engine."""
-    overshoot = {engine: study.overshoot_by_substeps(run, engine) for engine in ENGINES}
-    return bullets(convergence_sentences(overshoot, spec.G2.substeps))
+    return bullets(convergence_sentences(stable_overshoots(run), spec.G2.substeps))
 
 
 def relation_table(run: Experiment) -> str:
@@ -73,12 +72,26 @@ def _second(run: Experiment, case: str) -> dict[str, Trace]:
     return {name: found[name] for name in study_spec.SECOND_INTEGRATORS}
 
 
-def convergence_rows(run: Experiment) -> list[dict[str, Any]]:
-    """Return for each solver step G2's overshoot in both engines."""
+def stable_overshoots(run: Experiment) -> dict[str, dict[int, float]]:
+    """Return by engine and number of substeps G2's overshoot [rad]; unstable runs are left out."""
     found = {engine: study.overshoot_by_substeps(run, engine) for engine in ENGINES}
+    return {
+        engine: {n: v for n, v in values.items() if not study.unstable(run, engine, n)}
+        for engine, values in found.items()
+    }
+
+
+def convergence_rows(run: Experiment) -> list[dict[str, Any]]:
+    """Return for each solver step G2's overshoot in both engines; unstable runs are marked."""
+    found = {engine: study.overshoot_by_substeps(run, engine) for engine in ENGINES}
+    stable = stable_overshoots(run)
     return [
-        {"substeps": n, "solver step [s]": f"{spec.G2.dt / n:g}"}
-        | {ENGINE_LABELS[engine]: format_value(v[n], "rad") for engine, v in found.items()}
+        {"substeps": n, "h": f"{1000 * spec.G2.dt / n:g} ms"}
+        | {
+            ENGINE_LABELS[engine]: format_value(v[n], "rad")
+            + ("" if n in stable[engine] else " (unstable)")
+            for engine, v in found.items()
+        }
         for n in study_spec.SUBSTEPS_STUDIED
     ]
 
@@ -89,11 +102,17 @@ def convergence_sentences(
     """Describe the effect of a finer solver step on the overshoot, in each engine.
 
     Args:
-        overshoot: by engine and number of substeps [rad].
+        overshoot: by engine and number of substeps [rad], stable runs alone.
         declared: substeps of the lesson's own runs.
     """
     finest = max(next(iter(overshoot.values())))
     for engine, values in overshoot.items():
+        if declared not in values:
+            yield (
+                f"{ENGINE_LABELS[engine]} is unstable at {declared} substeps. Its runs there are "
+                "left out of the spread."
+            )
+            continue
         coarse, fine = values[declared], values[finest]
         change = (
             "does not change measurably"
@@ -103,14 +122,14 @@ def convergence_sentences(
         yield (
             f"{ENGINE_LABELS[engine]}: from {declared} to {finest} substeps the overshoot {change}."
         )
-    columns = ([values[n] for values in overshoot.values()] for n in (declared, finest))
+    columns = ([v[n] for v in overshoot.values() if n in v] for n in (declared, finest))
     before, after = (max(column) - min(column) for column in columns)
     spread = f"from {format_value(before, 'rad')} to {format_value(after, 'rad')}"
     yield (
-        f"The spread between them falls {spread}: the difference at the lesson's step comes mostly "
-        "from the numerical method, not from the robot models."
+        f"The spread of the stable runs falls {spread}: the difference at the lesson's step comes "
+        "mostly from the numerical method, not from the robot models."
         if after <= study_spec.SPREAD_SHARE * before
-        else f"The spread between them changes {spread}. A finer step does not bring them "
+        else f"The spread of the stable runs changes {spread}. A finer step does not bring them "
         "together, so look for a difference between the models as well."
     )
 
@@ -189,17 +208,21 @@ def relation_rows(run: Experiment) -> list[dict[str, Any]]:
             state, _ = relation_outcome(run, engine, relation)
             found = study.compared(run, engine)
             values = [format_value(getattr(found[case], metric), UNITS[metric]) for case in pair]
-            row[ENGINE_LABELS[engine]] = f"{state}: {values[0]} → {values[1]}"
+            shown = "unstable" if study.unstable(run, engine) else state
+            row[ENGINE_LABELS[engine]] = f"{shown}: {values[0]} → {values[1]}"
         rows.append(row)
     return rows
 
 
 def survival_sentence(run: Experiment) -> str:
-    """Count the claimed orderings that every engine shows, and name the others."""
+    """Count the claimed orderings that every stable engine shows, and name the others."""
     failed = []
+    stable = [engine for engine in ENGINES if not study.unstable(run, engine)]
+    left = [ENGINE_LABELS[engine] for engine in ENGINES if engine not in stable]
+    out = f" {listed(left)} is left out, because its runs are unstable." if left else ""
     for relation in spec.RELATIONS:
         pair, metric, order, _ = relation
-        states = {engine: relation_outcome(run, engine, relation)[0] for engine in ENGINES}
+        states = {engine: relation_outcome(run, engine, relation)[0] for engine in stable}
         not_held = [f"{ENGINE_LABELS[e]}: {s}" for e, s in states.items() if s != HELD]
         if not_held:
             claim = f"{NOUNS[metric]} {order} in {pair[1]} than in {pair[0]}"
@@ -207,14 +230,19 @@ def survival_sentence(run: Experiment) -> str:
     count = len(spec.RELATIONS)
     if not failed:
         return (
-            f"All {count} orderings that this lesson claims hold in every column. The numbers "
-            "themselves differ: quote a number only together with engine, integrator and solver "
-            "step."
+            f"All {count} orderings that this lesson claims hold in {listed(_labels(stable))}. The "
+            "numbers themselves differ: quote a number only together with engine, integrator and "
+            f"solver step.{out}"
         )
     return (
-        f"Of the {count} orderings that this lesson claims, {count - len(failed)} hold in every "
-        f"column. These do not survive the change of engine or integrator: {', '.join(failed)}."
+        f"Of the {count} orderings that this lesson claims, {count - len(failed)} hold in "
+        f"{listed(_labels(stable))}. These do not survive the change of engine or integrator: "
+        f"{', '.join(failed)}.{out}"
     )
+
+
+def _labels(engines: Sequence[str]) -> list[str]:
+    return [ENGINE_LABELS[engine] for engine in engines]
 
 
 def explicit_rows(
@@ -246,8 +274,7 @@ def explicit_sentence(names: Sequence[str], ratio: FloatArray, traces: Mapping[s
     over = [name for name, value in zip(names, ratio, strict=True) if value > 2]
     sentences = [f"h (KV + d) / I is above two for {listed(over or ['no joint'])}."]
     for integrator, trace in traces.items():
-        often = is_saturated(trace.control_force, trace.effort_limit).mean(axis=0) > 0.5
-        clipped = [name for name, flag in zip(names, often, strict=True) if flag]
+        clipped = study.unstable_joints(trace)
         sentences.append(
             f"With {integrator}, {listed(clipped or ['no joint'])} had a clipped effort in more "
             "than half of all samples."

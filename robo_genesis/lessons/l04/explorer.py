@@ -144,6 +144,6 @@ def markup(run: Experiment) -> str:
         f'<output for="{" ".join(f"explorer-{a[0]}" for a in AXES)}" '
         'aria-live="polite"></output>'
         f'<div class="plots" data-curves="{" ".join(RESOLUTION)}"></div><dl></dl></div>'
-        "<p>The explorer needs JavaScript. The maps above and the table below show the same runs."
-        "</p>"
+        "<p>The explorer needs JavaScript. The table of all runs on the page about the grid shows "
+        "the same.</p>"
     )

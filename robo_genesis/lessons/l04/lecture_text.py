@@ -1,15 +1,22 @@
-"""Tables and sentences of the lecture alone: what was set, the force limit, a longer window."""
+"""Tables and sentences of the lecture: first demand, predictions, gravity, a longer window."""
 
+from collections.abc import Iterator, Mapping
 from itertools import groupby
+from typing import Any
+
+import numpy as np
 
 from robo_genesis.core import tables
+from robo_genesis.core.comparison import compare
+from robo_genesis.core.orderings import HELD_BY
 from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import bullets
+from robo_genesis.core.text import bullets, listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l04 import spec, study_spec
+from robo_genesis.lessons.l04 import spec, study, study_spec, text
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated
 from robo_genesis.lessons.l04.study import same_beginning
+from robo_genesis.lessons.l04.theory_text import share_text
 
 
 def force_ranges(run: Experiment) -> str:
@@ -29,33 +36,157 @@ def force_ranges(run: Experiment) -> str:
 
 
 def first_demand(run: Experiment) -> str:
-    """Compare the first demand of the PD equation with control force and limit."""
-    trace, case, k = run.traces["baseline"], spec.BASELINE, spec.ENTRY
-    demand = float(case.kp[k] * (case.q_target[k] - trace.q[0, k]))
-    values = {
-        "demand by the PD equation": demand,
-        "control force at t = 0 (before the first step, not counted)": float(
-            trace.start_control_force[k]
-        ),
-        "limit, read back": float(trace.effort_limit[k]),
-    }
-    unit = run.joints.effort_units[k]
-    return tables.markdown(
-        [
-            {f"{spec.STEPPED_JOINT}, baseline": name, unit: f"{value:.1f}"}
-            for name, value in values.items()
-        ]
-    )
+    """Compare for each case the effort that the PD law asks for at t = 0 with what it gets."""
+    k, rows = spec.ENTRY, []
+    for name, case in study_spec.COMPARED.items():
+        trace = run.traces[name]
+        demand = float(case.kp[k] * (case.q_target[k] - trace.q[0, k]))
+        rows.append(
+            {
+                "case": name,
+                "asks for, t = 0": f"{demand:.0f} {run.joints.effort_units[k]}",
+                "gets": f"{float(trace.start_control_force[k]):.0f} {run.joints.effort_units[k]}",
+                "at the same limit until": format_value(clipped_until(trace, k), "s"),
+            }
+        )
+    return tables.markdown(rows)
 
 
-def predictions(run: Experiment) -> str:
-    """Return the predictions, which were written down before the runs."""
-    nouns = StepMetrics.about("noun")
+def clipped_until(trace: Trace, entry: int) -> float | None:
+    """Return the last time [s] to which the effort stays at the limit that it has at t = 0.
+
+    None if the first effort is not clipped.
+    """
+    start, limit = trace.start_control_force[entry], trace.effort_limit[entry]
+    if not is_saturated(float(start), float(limit)):
+        return None
+    force = trace.control_force[:, entry]
+    held = np.append(is_saturated(force, limit) & (np.sign(force) == np.sign(start)), False)
+    return float(trace.t[int(held.argmin())])
+
+
+def shared_starts(run: Experiment) -> str:
+    """Describe the motion of each compared pair while both have the same clipped effort."""
+    changed, traces = text.changes(run), {name: run.traces[name] for name in study_spec.COMPARED}
     return bullets(
-        f"{one} → {other}: {nouns[metric]} {order}"
-        for (one, other), claims in spec.PREDICTIONS.items()
-        for metric, order in claims
+        f"{one} and {other}: "
+        + text.start_sentence((one, other), traces, entries, spec.ENTRY, spec.RESOLUTION)
+        for (one, other), entries in changed.items()
     )
+
+
+def compared_metrics(run: Experiment) -> str:
+    """Return the metrics of G1 to G3."""
+    return tables.metric_table({name: run.metrics[name] for name in study_spec.COMPARED})
+
+
+def outcomes_of_predictions(run: Experiment) -> str:
+    """Return the outcome of each prediction of the lesson; a close one is too close to call."""
+    rows = []
+    for (one, other), metric, claim, margin in spec.RELATIONS:
+        found = compare(metric, run.metrics[one], run.metrics[other], spec.RESOLUTION, margin)
+        values = (format_value(v, found.unit) for v in (found.first, found.second))
+        close = found.order == "equal" and found.first != found.second
+        held = "held" if found.order in HELD_BY[claim] else "**did not hold**"
+        rows.append(
+            {
+                "prediction": f"{found.label}: {other} {claim} than {one}",
+                "measured": " → ".join(values),
+                "margin": format_margin(margin, found.unit),
+                "outcome": f"{held} (too close to call)" if close else held,
+            }
+        )
+    return tables.markdown(rows)
+
+
+def format_margin(margin: float, unit: str) -> str:
+    """Write a margin with its unit."""
+    return f"{margin:g} {'samples' if unit == '1' else unit}"
+
+
+def gravity_table(run: Experiment) -> str:
+    """Return KP × final error beside gravity for each case."""
+    return tables.markdown(gravity_rows(*_balance(run)))
+
+
+def gravity_conclusions(run: Experiment) -> str:
+    """Return what the table of gravity supports."""
+    return bullets(gravity_sentences(*_balance(run)))
+
+
+def _balance(
+    run: Experiment,
+) -> tuple[dict[str, float], dict[str, StepMetrics], dict[str, float]]:
+    """Return KP, metrics and gravity effort by case."""
+    kp = {name: float(case.kp[spec.ENTRY]) for name, case in spec.CASES.items()}
+    metrics = {name: run.metrics[name] for name in spec.CASES}
+    gravity = {name: run.readings[study.GROUP][f"gravity_{name}"] for name in spec.CASES}
+    return kp, metrics, gravity
+
+
+def disagreement(support: float, effort: float) -> float:
+    """Return the difference between support and gravity effort as a share of the effort."""
+    return abs(support - effort) / abs(effort)
+
+
+def gravity_rows(
+    kp: Mapping[str, float], metrics: Mapping[str, StepMetrics], gravity: Mapping[str, float]
+) -> list[dict[str, Any]]:
+    """Return for each case its support at the last sample, the gravity effort, and how it ended.
+
+    Args:
+        kp: by case [N·m/rad].
+        metrics: by case.
+        gravity: by case, the effort that holds its end state [N·m].
+    """
+    return [
+        {
+            "case": name,
+            "KP × final error": format_value(support, "N·m"),
+            "gravity, engine": format_value(effort, "N·m"),
+            "apart": share_text(disagreement(support, effort)),
+            "final velocity": format_value(metrics[name].final_velocity, "rad/s"),
+            "settled from": format_value(metrics[name].settling_time, "s"),
+        }
+        for name, effort in gravity.items()
+        for support in [kp[name] * metrics[name].final_error]
+    ]
+
+
+def gravity_sentences(
+    kp: Mapping[str, float], metrics: Mapping[str, StepMetrics], gravity: Mapping[str, float]
+) -> Iterator[str]:
+    """Say what the table of `gravity_rows` supports, and what it does not prove."""
+    moving = [name for name in gravity if abs(metrics[name].final_velocity) > study_spec.AT_REST]
+    agree = [
+        name
+        for name, effort in gravity.items()
+        if disagreement(kp[name] * metrics[name].final_error, effort)
+        <= study_spec.GRAVITY_AGREEMENT
+        and name not in moving
+    ]
+    differ = [name for name in gravity if name not in (*agree, *moving)]
+    limit = share_text(study_spec.GRAVITY_AGREEMENT)
+    if agree:
+        yield (
+            f"{listed(agree)} ended nearly at rest, with a support within {limit} of gravity. A "
+            "balance of the two would look like this, without an integral term in the controller."
+        )
+    if differ:
+        yield (
+            f"{listed(differ)} ended nearly at rest, with a support more than {limit} off gravity. "
+            "Gravity alone does not explain the error. Look at tail, saturation, contacts."
+        )
+    if moving:
+        yield (
+            f"{listed(moving)} still moved at the last sample. The error there belongs to the "
+            "transient and supports nothing about gravity."
+        )
+    if agree or differ:
+        yield (
+            "This does not prove that the error would remain beyond this window, that nothing else "
+            "contributes to it within the tolerance, or that another pose would leave the same one."
+        )
 
 
 def saturation_of_g2(run: Experiment) -> str:

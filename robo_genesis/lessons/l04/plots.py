@@ -1,6 +1,7 @@
 """Figures of lesson L04: functions of the experiment, and of axes; no numerics, no show()."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,15 +9,33 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import marks_of
-from robo_genesis.core.plotting import LIMIT, TARGET, channel, finish, legend_above, look
+from robo_genesis.core.plotting import LIMIT, look
+from robo_genesis.core.quantities import format_value
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
-from robo_genesis.lessons.l04.spec import CASE_MARKS, STEPPED_JOINT
+from robo_genesis.lessons.l04.spec import CASE_MARKS, ENTRY, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_spec import ASSIGNED, COMPARED
-from robo_genesis.sim import joint_channels
 from robo_genesis.sim.franka import LINK_PARENTS
 from robo_genesis.sim.joints import JointMap
+
+START = 0.4
+"""End of the time axis where the compared cases differ [s]."""
+
+LINE: dict[str, Any] = {"color": "#7a7a7a", "linewidth": 0.9, "zorder": 1}
+"""A thin solid line for a target or for zero."""
+
+BAND = "#e9e4d4"
+
+Label = tuple[float, tuple[float, float]]
+"""Time of the labelled sample [s], and where its text is relative to it [pt]."""
+
+GAINS_LABELS: Mapping[str, Mapping[str, Label]] = {
+    "position": {"G1": (0.15, (-6, 7)), "G2": (0.15, (8, 4)), "G3": (0.11, (12, -12))},
+    "velocity": {"G1": (0.06, (-30, 8)), "G2": (0.1, (10, -2)), "G3": (0.11, (12, 2))},
+    "control force": {"G1": (0.09, (-26, -4)), "G2": (0.21, (10, 4)), "G3": (0.14, (12, -10))},
+}
 
 
 def posture(run: Experiment) -> Figure:
@@ -33,7 +52,7 @@ def links(run: Experiment, name: str) -> Figure:
 
 def assigned(run: Experiment) -> Figure:
     """Draw the stepped joint with assigned states and with a commanded target."""
-    figure = Figure(figsize=(7, 3.8))
+    figure = Figure(figsize=(7, 3.4))
     both = run.traces[ASSIGNED], run.traces["baseline"]
     assigned_and_commanded(figure.subplots(), *both, run.joints, STEPPED_JOINT)
     return figure
@@ -41,58 +60,89 @@ def assigned(run: Experiment) -> Figure:
 
 def baseline(run: Experiment) -> Figure:
     """Draw position, velocity and control force of the stepped joint in the baseline."""
-    figure = Figure(figsize=(7, 8))
-    axes = figure.subplots(3, 1, sharex=True)
-    response(axes, {"baseline": run.traces["baseline"]}, run.joints, STEPPED_JOINT)
+    figure = Figure(figsize=(7, 7))
+    response(
+        figure.subplots(3, 1, sharex=True), {"baseline": run.traces["baseline"]}, run.joints,
+        STEPPED_JOINT, 0.6,
+    )  # fmt: skip
     return figure
 
 
 def compared(run: Experiment) -> Figure:
-    """Draw position, velocity and control force of the stepped joint in the compared cases."""
-    return _compared(run)
-
-
-def compared_start(run: Experiment) -> Figure:
-    """Draw the beginning of the same, enlarged, with a mark at every sample."""
-    return _compared(run, until=0.35)
-
-
-def _compared(run: Experiment, until: float | None = None) -> Figure:
-    figure = Figure(figsize=(7, 8.5))
+    """Draw the beginning of the compared cases: position, velocity, control force of the joint."""
+    figure = Figure(figsize=(7, 8))
     traces = {name: run.traces[name] for name in COMPARED}
-    response(figure.subplots(3, 1, sharex=True), traces, run.joints, STEPPED_JOINT, until)
+    axes = figure.subplots(3, 1, sharex=True)
+    response(axes, traces, run.joints, STEPPED_JOINT, START, GAINS_LABELS)
     return figure
 
 
 def baseline_forces(run: Experiment) -> Figure:
     """Draw both force getters of the baseline."""
-    figure = Figure(figsize=(7, 3.8))
+    figure = Figure(figsize=(7, 3.4))
     two_forces(figure.subplots(), run.traces["baseline"], run.joints, STEPPED_JOINT)
     return figure
 
 
-def position(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
+def defined(run: Experiment) -> Figure:
+    """Draw the position of G2 with its rise time, overshoot, settling time and final error."""
+    figure, trace, m = Figure(figsize=(7, 4)), run.traces["G2"], run.metrics["G2"]
+    ax, q, target = figure.subplots(), trace.q[:, ENTRY], float(trace.target[0, ENTRY])
+    _target(ax, target, SETTLING_BAND)
+    ax.plot(trace.t, q, marker=".", markersize=6, **solid(CASE_MARKS["G2"]))
+    times = [(m.rise_time, "rise time, 90 % of the step", (22, -75)),
+             (m.settling_time, "settling time, in the band from here on", (16, -36))]  # fmt: skip
+    for time, name, offset in times:
+        if time is not None:
+            at = time, float(q[round(time / trace.dt)])
+            _note(ax, at, f"{name}: {format_value(time, 's')}", offset)
+    peak, last = int(q.argmax()), int(np.abs(trace.t - START).argmin())
+    overshoot, error = (format_value(value, "rad") for value in (m.overshoot, m.final_error))
+    _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", (30, -4))
+    _note(ax, (START, float(q[last])), f"final error: {error}, at the end", (-130, 22))
+    unit = run.joints.position_units[ENTRY]
+    _finish(ax, f"Position of {STEPPED_JOINT} in G2", f"q [{unit}]", START)
+    return figure
+
+
+def solid(mark: str, **more: Any) -> dict[str, Any]:
+    """Return the look of measured data: the colour of a mark, and a solid line."""
+    return look(mark, **{"linestyle": "-", **more})
+
+
+def position(
+    ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str, until: float,
+    labels: Mapping[str, Label] | None = None,
+) -> Axes:  # fmt: skip
     """Draw q of one joint for each trace, the common target and its settling band."""
-    drawn, *_ = joint_channels.channels(traces, joints, joint)
-    target, *_ = joint_channels.levels(traces, joints, joint, SETTLING_BAND)
-    return channel(ax, next(iter(traces.values())).t, drawn, joint, CASE_MARKS, [target])
+    k, first = joints.entry(joint), next(iter(traces.values()))
+    _target(ax, float(first.target[0, k]), SETTLING_BAND)
+    _curves(ax, {name: (trace.t, trace.q[:, k]) for name, trace in traces.items()}, labels)
+    return _finish(ax, f"Position of {joint}", f"q [{joints.position_units[k]}]", until)
 
 
-def velocity(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
+def velocity(
+    ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str, until: float,
+    labels: Mapping[str, Label] | None = None,
+) -> Axes:  # fmt: skip
     """Draw q̇ of one joint for each trace."""
     k = joints.entry(joint)
-    for name, mark in marks_of(list(traces), CASE_MARKS).items():
-        ax.plot(traces[name].t_step, traces[name].qd[:, k], label=name, **look(mark))
-    return finish(ax, f"Velocity of {joint}", f"q̇ [{joints.position_units[k]}/s]")
+    ax.axhline(0, **LINE)
+    _curves(ax, {name: (trace.t_step, trace.qd[:, k]) for name, trace in traces.items()}, labels)
+    return _finish(ax, f"Velocity of {joint}", f"q̇ [{joints.position_units[k]}/s]", until)
 
 
-def control_force(ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str) -> Axes:
+def control_force(
+    ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str, until: float,
+    labels: Mapping[str, Label] | None = None,
+) -> Axes:  # fmt: skip
     """Draw the control force of one joint for each trace, between the limits read back."""
     k = joints.entry(joint)
-    for name, mark in marks_of(list(traces), CASE_MARKS).items():
-        ax.plot(traces[name].t_step, traces[name].control_force[:, k], label=name, **look(mark))
-    _limits(ax, next(iter(traces.values())), k)
-    return finish(ax, f"Control force of {joint}", f"control force [{joints.effort_units[k]}]")
+    _limits(ax, next(iter(traces.values())), k, until)
+    curves = {name: (trace.t_step, trace.control_force[:, k]) for name, trace in traces.items()}
+    _curves(ax, curves, labels)
+    ylabel = f"control force [{joints.effort_units[k]}]"
+    return _finish(ax, f"Control force of {joint}", ylabel, until)
 
 
 def response(
@@ -100,49 +150,95 @@ def response(
     traces: Mapping[str, Trace],
     joints: JointMap,
     joint: str,
-    until: float | None = None,
+    until: float,
+    labels: Mapping[str, Mapping[str, Label]] | None = None,
 ) -> Sequence[Axes]:
-    """Draw position, velocity and control force of one joint on three axes.
-
-    `until` [s] shows the beginning alone, enlarged, with a mark at every sample.
-    """
-    for ax, draw in zip(axes, (position, velocity, control_force), strict=True):
-        draw(ax, traces, joints, joint)
-        if until is not None:
-            ax.set_xlim(-0.01, until)
-            for line in ax.get_lines():
-                if np.size(line.get_xdata()) > 2:  # a curve of samples, not a limit
-                    line.set(marker=".", markersize=6)
-            legend_above(ax)  # again, with the marks
+    """Draw position, velocity and control force of one joint on three axes, to `until` [s]."""
+    panels = {"position": position, "velocity": velocity, "control force": control_force}
+    for ax, (name, draw) in zip(axes, panels.items(), strict=True):
+        draw(ax, traces, joints, joint, until, labels[name] if labels else None)
         ax.label_outer()
     return axes
 
 
 def two_forces(ax: Axes, trace: Trace, joints: JointMap, joint: str) -> Axes:
     """Draw both force getters of one run: they answer different questions."""
-    k = joints.entry(joint)
-    drawn = look("baseline", label="get_dofs_control_force")
-    ax.plot(trace.t_step, trace.control_force[:, k], **drawn)
-    ax.plot(trace.t_step, trace.internal_force[:, k], **look("other", label="get_dofs_force"))
-    _limits(ax, trace, k)
-    return finish(ax, f"Forces on {joint}", f"force [{joints.effort_units[k]}]")
-
-
-def _limits(ax: Axes, trace: Trace, k: int) -> None:
-    limit = float(trace.effort_limit[k])
-    ax.axhline(limit, label="limit, read back", **LIMIT)
-    ax.axhline(-limit, **LIMIT)
+    k, until = joints.entry(joint), 0.6
+    _limits(ax, trace, k, until)
+    for name, array, mark, label in (
+        ("get_dofs_control_force", trace.control_force, "baseline", (0.35, (4, 10))),
+        ("get_dofs_force", trace.internal_force, "other", (0.3, (10, -22))),
+    ):
+        ax.plot(trace.t_step, array[:, k], label=name, marker=".", markersize=5, **solid(mark))
+        _direct(ax, trace.t_step, array[:, k], name, solid(mark)["color"], label)
+    return _finish(ax, f"Forces on {joint}", f"force [{joints.effort_units[k]}]", until)
 
 
 def assigned_and_commanded(
     ax: Axes, assigned: Trace, commanded: Trace, joints: JointMap, joint: str
 ) -> Axes:
-    """Draw a state that is assigned at every step and one that is commanded, over time."""
+    """Draw a state that is assigned at every sample and one that is commanded, over time."""
     k = joints.entry(joint)
-    ax.axhline(float(commanded.target[0, k]), label="target", **TARGET)
-    written = look("other", label="state assigned: set_dofs_position")
-    ax.plot(assigned.t, assigned.q[:, k], **written)
-    measured = look("baseline", label="target commanded: control_dofs_position")
-    ax.plot(commanded.t, commanded.q[:, k], **measured)
+    _target(ax, float(commanded.target[0, k]))
+    written = {"color": look("other")["color"], "linestyle": "", "marker": "x", "markersize": 4}
+    ax.plot(assigned.t[::4], assigned.q[::4, k], label="assigned: set_dofs_position", **written)
+    name = "commanded: control_dofs_position"
+    ax.plot(commanded.t, commanded.q[:, k], label=name, **solid("baseline"))
+    _direct(ax, assigned.t, assigned.q[:, k], "assigned: set_dofs_position", written["color"],
+            (0.64, (10, -12)))  # fmt: skip
+    _direct(ax, commanded.t, commanded.q[:, k], name, solid("baseline")["color"], (0.2, (14, -8)))
     unit = joints.position_units[k]
-    return finish(ax, f"Assigned or commanded, {joint}", f"q [{unit}]", "lower right")
+    return _finish(ax, f"Assigned or commanded, {joint}", f"q [{unit}]", float(commanded.t[-1]))
+
+
+def _curves(
+    ax: Axes, curves: Mapping[str, tuple[Any, Any]], labels: Mapping[str, Label] | None
+) -> None:
+    """Draw one solid line with a mark at each sample for each case, labelled directly."""
+    for name, mark in marks_of(list(curves), CASE_MARKS).items():
+        t, values = curves[name]
+        ax.plot(t, values, label=name, marker=".", markersize=5, **solid(mark))
+        if labels:
+            _direct(ax, t, values, name, look(mark)["color"], labels[name])
+
+
+def _direct(
+    ax: Axes, t: FloatArray, values: FloatArray, text: str, color: str, label: Label
+) -> None:
+    """Write a name beside the sample of a curve that is nearest to a time."""
+    time, offset = label
+    n = int(np.abs(t - time).argmin())
+    ax.annotate(text, (float(t[n]), float(values[n])), offset, textcoords="offset points",
+                color=color, fontsize="small", fontweight="bold")  # fmt: skip
+
+
+def _note(ax: Axes, at: tuple[float, float], text: str, offset: tuple[float, float]) -> None:
+    """Point to a place and write a note beside it."""
+    arrow = {"arrowstyle": "->", "color": "#4d4d4d", "linewidth": 0.9}
+    ax.annotate(text, at, offset, textcoords="offset points", fontsize="small", arrowprops=arrow)
+
+
+def _target(ax: Axes, value: float, band: float | None = None) -> None:
+    """Draw the target with its settling band, and name both at the left edge."""
+    if band is not None:
+        ax.axhspan(value - band, value + band, color=BAND, zorder=0)
+    ax.axhline(value, **LINE)
+    name = "target" if band is None else f"target ±{band:g} rad"
+    ax.annotate(name, (0, value), (4, 6 if band else -12), textcoords="offset points",
+                fontsize="small")  # fmt: skip
+
+
+def _limits(ax: Axes, trace: Trace, k: int, until: float) -> None:
+    """Draw both limits that were read back, and name the upper one."""
+    limit = float(trace.effort_limit[k])
+    ax.axhline(limit, **LIMIT)
+    ax.axhline(-limit, **LIMIT)
+    ax.set_ylim(-1.25 * limit, 1.25 * limit)
+    ax.annotate("limit, read back", (until, limit), (-4, 4), textcoords="offset points",
+                fontsize="small", ha="right", color=LIMIT["color"])  # fmt: skip
+
+
+def _finish(ax: Axes, title: str, ylabel: str, until: float) -> Axes:
+    ax.set_title(title, loc="left")
+    ax.set(xlabel="time [s]", ylabel=ylabel, xlim=(-0.005, until))
+    return ax

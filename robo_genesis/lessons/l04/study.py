@@ -1,4 +1,4 @@
-"""What the studies around lesson L04 measured, for the stepped joint."""
+"""What lesson L04 measured beyond its lab, for the stepped joint."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,11 +11,12 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study_spec
-from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
-from robo_genesis.lessons.l04.theory import IdealJoint, step_share
+from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated, step_metrics
+from robo_genesis.lessons.l04.theory import IdealJoint, step_share, stepped_joint
 from robo_genesis.sim import dynamics, mujoco_joints
+from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import ControlCase, run_case
-from robo_genesis.sim.joints import JointMap
+from robo_genesis.sim.joints import JointMap, resolve_joints
 
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
 """Genesis, and MuJoCo by its integrator."""
@@ -26,16 +27,19 @@ COMPARED_KV = sorted({float(case.kv[spec.ENTRY]) for case in study_spec.COMPARED
 GROUP = "readings"
 """Group of a bundle's metrics: what the engines report of the stepped joint without a run."""
 
-UNITS = {
-    "passive_damping": "N·m·s/rad",
-    **dict.fromkeys(("inertia_Genesis", "inertia_MuJoCo"), "kg·m²"),
-    **dict.fromkeys(("gravity_at_start_Genesis", "gravity_at_start_MuJoCo"), "N·m"),
-    **{f"mass_KV_{kv:g}": "kg·m²" for kv in COMPARED_KV},
-    **{f"gravity_{case}": "N·m" for case in spec.CASES},
-}
-"""Unit of each. Inertia and `gravity_at_start` are those of the start pose. `mass` is the entry of
-the mass matrix there while a position is commanded with this KV. `gravity` is the effort that holds
-the end state of a case."""
+AT_START = {
+    "passive_damping": "N·m·s/rad", "inertia_Genesis": "kg·m²", "gravity_at_start_Genesis": "N·m",
+}  # fmt: skip
+"""What Genesis reports of the start pose, with units. Gravity is the effort that holds it."""
+
+IN_MUJOCO = {"inertia_MuJoCo": "kg·m²", "gravity_at_start_MuJoCo": "N·m"}
+"""The same in MuJoCo."""
+
+MASSES = {f"mass_KV_{kv:g}": "kg·m²" for kv in COMPARED_KV}
+"""Entry of the mass matrix at the start while a position is commanded with this KV."""
+
+GRAVITY = {f"gravity_{case}": "N·m" for case in spec.CASES}
+"""Effort that holds the end state of a case."""
 
 
 def measure(trace: Trace, case: ControlCase) -> StepMetrics:
@@ -43,13 +47,31 @@ def measure(trace: Trace, case: ControlCase) -> StepMetrics:
     return step_metrics(trace, spec.ENTRY)
 
 
+def describe(page: Any, robot: Any) -> JointMap:
+    """Give a page the counts, links and joints of the robot, and return its joints."""
+    names = ("links", "joints", "dofs", "qpos")
+    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
+    page.readings["model"] = dict(zip(names, counted, strict=True))
+    page.links = [link.name for link in robot.links]
+    page.joints = resolve_joints(robot, JOINT_NAMES)
+    return page.joints
+
+
 def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
-    """Read passive damping, inertia, gravity effort and the masses at the start, in Genesis."""
+    """Read passive damping, inertia and gravity effort at the start, in Genesis."""
     k, dofs = joints.entry(spec.STEPPED_JOINT), joints.dofs_idx_local.tolist()
-    q, found = spec.BASELINE.q_start, {}
-    found["passive_damping"] = float(dynamics.passive_damping(robot, dofs)[k])
-    found["inertia_Genesis"] = float(dynamics.effective_inertia(scene, robot, joints, q)[k])
-    found["gravity_at_start_Genesis"] = float(dynamics.gravity_effort(scene, robot, joints, q)[k])
+    q = spec.BASELINE.q_start
+    return {
+        "passive_damping": float(dynamics.passive_damping(robot, dofs)[k]),
+        "inertia_Genesis": float(dynamics.effective_inertia(scene, robot, joints, q)[k]),
+        "gravity_at_start_Genesis": float(dynamics.gravity_effort(scene, robot, joints, q)[k]),
+    }
+
+
+def read_masses(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
+    """Read the mass matrix at the start while a position is commanded, for each KV, in Genesis."""
+    k, dofs = joints.entry(spec.STEPPED_JOINT), joints.dofs_idx_local.tolist()
+    found = {}
     for kv in COMPARED_KV:
         case = next(of for of in study_spec.COMPARED.values() if of.kv[spec.ENTRY] == kv)
         run_case(scene, robot, joints, replace(case, q_target=case.q_start, steps=1))
@@ -119,6 +141,48 @@ def share(run: Experiment, case: str, kind: str = "") -> FloatArray:
     """Return a response as a share of its step: the lesson's, or with `kind` the small one."""
     step = run.traces[f"{case}_{kind}" if kind else case]
     return step_share(step, run.traces[f"{case}_hold"], spec.ENTRY)
+
+
+def stepped(run: Experiment, case: str, height: float) -> FloatArray:
+    """Return the distance of the stepped joint (n+1,) from the target [rad], sampled as the run.
+
+    A step of the lesson's height has the force limit and gravity: the mean of the efforts that hold
+    start and end of the case. A smaller step has neither.
+    """
+    gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
+    h, steps = gains.dt / gains.substeps, gains.steps * gains.substeps
+    clipped = height >= spec.STEP
+    gravity = (readings["gravity_at_start_Genesis"] + readings[f"gravity_{case}"]) / 2
+    path = stepped_joint(
+        ideal(run, case), readings["passive_damping"], height, h, steps,
+        limit=float(gains.effort_limit[spec.ENTRY]) if clipped else np.inf,
+        gravity=gravity if clipped else 0.0,
+    )  # fmt: skip
+    return np.asarray(path[:: gains.substeps])
+
+
+def stepped_overshoot(run: Experiment, case: str, height: float) -> float:
+    """Return the overshoot of the model of one joint [rad]."""
+    return float(max(0.0, stepped(run, case, height).max()))
+
+
+def unstable_joints(trace: Trace) -> list[str]:
+    """Name the joints with a clipped effort in so many samples that the run is called unstable."""
+    share = is_saturated(trace.control_force, trace.effort_limit).mean(axis=0)
+    return [JOINT_NAMES[k] for k in np.flatnonzero(share > study_spec.CHATTER_SHARE)]
+
+
+def unstable(run: Experiment, engine: str, substeps: int = spec.G2.substeps) -> bool:
+    """Return whether a run of an engine is unstable: of G1 to G3, or of G2 with other substeps."""
+    cases = study_spec.COMPARED if substeps == spec.G2.substeps else ("G2",)
+    return any(unstable_joints(run.traces[run_name(engine, case, substeps)]) for case in cases)
+
+
+def spread(run: Experiment, substeps: int) -> float:
+    """Return how far the stable engines' overshoots of G2 differ [rad]."""
+    engines = (engine for engine in ENGINES if not unstable(run, engine, substeps))
+    values = [overshoot_by_substeps(run, engine)[substeps] for engine in engines]
+    return max(values) - min(values)
 
 
 def overshoot_by_substeps(run: Experiment, engine: str) -> dict[int, float]:

@@ -1,19 +1,18 @@
 """Figures of L04's studies: functions of the experiment, and of axes; no numerics, no show()."""
 
-import io
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from IPython.display import Image
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from robo_genesis.core.plotting import TARGET, look
+from robo_genesis.core.plotting import look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study
 from robo_genesis.lessons.l04.engine_comparison import ENGINE_LABELS
-from robo_genesis.lessons.l04.explorer import cell_labels, overshoot_share
+from robo_genesis.lessons.l04.explorer import cell_labels
+from robo_genesis.lessons.l04.plots import LINE, solid
 from robo_genesis.lessons.l04.spec import CASE_MARKS
 from robo_genesis.lessons.l04.study_spec import (
     COMPARED,
@@ -25,19 +24,15 @@ from robo_genesis.lessons.l04.study_spec import (
     STEP_SIZES,
 )
 
-IDEAL = look("target", linestyle=(0, (1, 1.2)), linewidth=1.8)
+IDEAL = look("target", linestyle=(0, (4, 2)), linewidth=1.6)
+"""The one dashed line of a figure: theory. Measured data have solid lines."""
+
 ENGINE_STYLES = {
-    "Genesis": look(CASE_MARKS["G2"], linestyle="-", marker="o"),
-    "MuJoCo implicitfast": look("other", marker="s"),
-    "MuJoCo Euler": look("further", marker="^"),
+    "Genesis": solid(CASE_MARKS["G2"], marker="o"),
+    "MuJoCo implicitfast": solid("other", marker="s"),
+    "MuJoCo Euler": solid("further", marker="^"),
 }
 """All curves are G2's. Marker shapes distinguish the engines as well as colours."""
-
-JPEG_QUALITY = 70
-"""JPEG quality: high enough that no blocks are visible at the printed size."""
-
-FILM_VIEW = (slice(140, 420), slice(270, 550))
-"""Rows and columns of a frame that show the robot [pixel]."""
 
 
 def theory(run: Experiment) -> Figure:
@@ -75,18 +70,13 @@ def overshoot_by_step(run: Experiment) -> Figure:
     figure = Figure(figsize=(7, 3.8))
     curves = {
         ENGINE_LABELS[engine]: {
-            spec.G2.dt / n: value for n, value in study.overshoot_by_substeps(run, engine).items()
+            1000 * spec.G2.dt / n: (value, study.unstable(run, engine, n))
+            for n, value in study.overshoot_by_substeps(run, engine).items()
         }
         for engine in study.ENGINES
     }
-    convergence(figure.subplots(), curves, declared=spec.G2.dt / spec.G2.substeps)
+    convergence(figure.subplots(), curves, declared=1000 * spec.G2.dt / spec.G2.substeps)
     return figure
-
-
-def grid_overshoot(run: Experiment) -> Figure:
-    """Draw the overshoot of each run of the grid in percent of its step."""
-    percent = [100 * overshoot_share(point, run.metrics[point.name]) for point in POINTS]
-    return _grid(np.array(percent), [f"{value:.1f}" for value in percent])
 
 
 def grid_saturation(run: Experiment) -> Figure:
@@ -115,9 +105,9 @@ def beside_ideal(
     All arrays (n+1,) over `t` [s], shown up to `until` [s].
     """
     for ax, (name, q) in zip(axes, measured.items(), strict=True):
-        ax.axhline(target, label="target", **TARGET)
+        ax.axhline(target, **LINE)
         ax.plot(t, ideal[name], label="ideal joint", **IDEAL)
-        ax.plot(t, q, label="measured", **look(CASE_MARKS[name]))
+        ax.plot(t, q, label="measured", **solid(CASE_MARKS[name]))
         _finish_case(ax, name, "q of joint4 [rad]", until)
     return axes
 
@@ -133,8 +123,8 @@ def step_sizes(
     A curve called `ideal joint` is drawn as such. All arrays (n+1,) over `t` [s].
     """
     for ax, (name, curves) in zip(axes, shares.items(), strict=True):
-        ax.axhline(1.0, **TARGET)
-        measured = iter((look("other"), look(CASE_MARKS[name])))
+        ax.axhline(1.0, **LINE)
+        measured = iter((solid("other"), solid(CASE_MARKS[name])))
         for label, curve in curves.items():
             ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else next(measured)))
         _finish_case(ax, name, "share of the step", until)
@@ -148,16 +138,26 @@ def _finish_case(ax: Axes, title: str, ylabel: str, until: float) -> None:
     ax.label_outer()
 
 
-def convergence(ax: Axes, overshoot: Mapping[str, Mapping[float, float]], declared: float) -> Axes:
-    """Draw overshoot [rad] over the solver's step [s], one curve an engine, the finest at the left.
+def convergence(
+    ax: Axes, overshoot: Mapping[str, Mapping[float, tuple[float, bool]]], declared: float
+) -> Axes:
+    """Draw overshoot [rad] over the solver's step [ms], one curve for each engine.
 
-    `declared` [s] marks the step of the lesson's own runs.
+    Each value comes with whether its run is unstable: such a mark is hollow, and no line leads
+    there. `declared` [ms] marks the step of the lesson's own runs.
     """
     for name, values in overshoot.items():
-        drawn = ENGINE_STYLES[name] | {"label": name, "markersize": 6}
-        ax.plot(list(values), list(values.values()), **drawn)
-    ax.axvline(declared, label="the lesson's step", **TARGET)
-    ax.set(xscale="log", xlabel="solver step [s]", ylabel="overshoot of G2 [rad]")
+        style = ENGINE_STYLES[name] | {"markersize": 6}
+        stable = {h: v for h, (v, unstable) in values.items() if not unstable}
+        ax.plot(list(stable), list(stable.values()), label=name, **style)
+        hollow = {h: v for h, (v, unstable) in values.items() if unstable}
+        if hollow:
+            empty = style | {"linestyle": "", "markerfacecolor": "white"}
+            ax.plot(list(hollow), list(hollow.values()), label=f"{name}, unstable", **empty)
+    ax.axvline(declared, **LINE)
+    ax.annotate("the lesson's step", (declared, 0), (4, 4), textcoords="offset points",
+                fontsize="small")  # fmt: skip
+    ax.set(xscale="log", xlabel="solver step h [ms]", ylabel="overshoot of G2 [rad]")
     ax.set_ylim(bottom=0)
     ax.legend(fontsize="small", loc="upper left")
     return ax
@@ -198,26 +198,3 @@ def grid_maps(
         ax.set(xlabel="KV [N·m·s/rad]", ylabel="KP [N·m/rad]")
         ax.label_outer()
     return axes
-
-
-def film(frames: Mapping[int, np.ndarray], dt: float) -> Image:
-    """Show six frames by sample number as one photograph."""
-    figure = Figure(figsize=(7, 5.2))
-    film_strip(list(figure.subplots(2, 3).flat), frames, dt)
-    return Image(jpeg(figure), format="jpeg")
-
-
-def film_strip(axes: Sequence[Axes], frames: Mapping[int, np.ndarray], dt: float) -> Sequence[Axes]:
-    """Show frames by sample number, each below its time [s]."""
-    for ax, (sample, frame) in zip(axes, sorted(frames.items()), strict=True):
-        ax.imshow(frame[FILM_VIEW])
-        ax.set_axis_off()
-        ax.set_title(f"t = {sample * dt:.2f} s", fontsize="small")
-    return axes
-
-
-def jpeg(figure: Figure) -> bytes:
-    """Return a figure of photographs as JPEG: an SVG file would be ten times as large."""
-    stream = io.BytesIO()
-    figure.savefig(stream, format="jpeg", dpi=90, pil_kwargs={"quality": JPEG_QUALITY})
-    return stream.getvalue()

@@ -1,4 +1,4 @@
-"""Specification of L04's studies: cases beyond the lab, a grid of steps, and their tolerances."""
+"""Specification of L04's deeper pages: cases beyond the lab, a grid of steps, tolerances."""
 
 from dataclasses import asdict, dataclass, replace
 from itertools import product
@@ -17,9 +17,6 @@ from robo_genesis.lessons.l04.spec import (
     with_entry,
 )  # fmt: skip
 from robo_genesis.sim.joint_control import ControlCase
-
-PAGE = "lecture"
-"""The page of the lesson that runs the studies."""
 
 COMPARED = {"G1": G1, "G2": G2, "G3": G3}
 
@@ -88,8 +85,15 @@ ASSIGNED = "assigned"
 """Name of the run whose states are assigned, without control and steps."""
 
 SMALL_STEP_TOLERANCE = 0.03
-"""Largest difference in overshoot between theory and a small unsaturated step, as a share of the
-step."""
+"""Largest difference in overshoot between a model of one joint and a small unsaturated step, as a
+share of the step."""
+
+ONE_JOINT_TOLERANCE = 0.015
+"""Largest difference in overshoot between the stepped model of one joint and a large step [rad]."""
+
+CHATTER_SHARE = 0.5
+"""A run is called unstable if the effort of a joint is clipped in more than this share of its
+samples."""
 
 AT_REST = 0.01
 """Speed up to which a run ends nearly at rest [rad/s]. Only at rest can gravity alone explain the
@@ -168,12 +172,15 @@ AGREEMENT = {"rad": 1e-6, "rad/s": 1e-5, "s": 0.0, "N·m": 1e-3, "1": 0.0}
 counts must be equal. A CPU showed 0 rad, 2e-7 rad/s and 6e-5 N·m."""
 
 
-def parameters() -> dict[str, Any]:
-    """Return every configured input of the studies as JSON values, for the evidence key."""
-    return {
-        "studies": {
+def parameters(page: str) -> dict[str, Any]:
+    """Return every configured input of a page's own runs as JSON values, for the evidence key."""
+    own: dict[str, dict[str, Any]] = {
+        "lecture": {"cases": case_parameters(LONGER_CASES)},
+        "formula": {"cases": case_parameters(STEP_CASES)},
+        "integrator": {
+            "cases": case_parameters(SUBSTEP_CASES),
             "second_runs": {name: asdict(run) for name, run in SECOND_RUNS.items()},
-            "cases": case_parameters(STEP_CASES | SUBSTEP_CASES | LONGER_CASES),
-            "grid": {"step_rad": list(STEP_SIZES), "kp": list(KP), "kv": list(KV)},
-        }
+        },
+        "batch": {"grid": {"step_rad": list(STEP_SIZES), "kp": list(KP), "kv": list(KV)}},
     }
+    return {"studies": own[page]}

@@ -49,14 +49,19 @@ def metric_table(run: Experiment) -> str:
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the compared cases."""
-    changed = {
-        (one, other): differences(spec.CASES[one], spec.CASES[other], run.joints)
-        for one, other in spec.ONE_FACTOR
-    }
+    changed = changes(run)
     metrics = {name: run.metrics[name] for name in COMPARED}
     traces = {name: run.traces[name] for name in COMPARED}
     blocks = interpret(metrics, changed, spec.PREDICTIONS, spec.RESOLUTION, traces, spec.ENTRY)
     return "\n".join(block.markdown() for block in blocks)
+
+
+def changes(run: Experiment) -> dict[tuple[str, str], list[str]]:
+    """Return by compared pair the entries in which its configurations differ."""
+    return {
+        (one, other): differences(spec.CASES[one], spec.CASES[other], run.joints)
+        for one, other in spec.ONE_FACTOR
+    }
 
 
 def pair_sentences(
@@ -76,7 +81,9 @@ def pair_sentences(
         resolution: by unit, the difference that counts as none.
     """
     of_metric = {
-        metric: compare(metric, metrics[names[0]], metrics[names[1]], resolution)
+        metric: compare(
+            metric, metrics[names[0]], metrics[names[1]], resolution, spec.MARGINS.get(metric, 0.0)
+        )
         for metric in (*COMPARED_METRICS, *(metric for metric, _ in predictions))
     }
     return [

@@ -1,4 +1,4 @@
-"""The ideal second-order joint, and where a measured response leaves it."""
+"""Models of one joint, in closed form and in steps, and where a measured response leaves one."""
 
 from dataclasses import dataclass
 
@@ -70,6 +70,35 @@ class IdealJoint:
         root = np.sqrt(zeta**2 - 1)
         slow, fast = omega * (zeta - root), omega * (zeta + root)  # both decay
         return 1 - (fast * np.exp(-slow * t) - slow * np.exp(-fast * t)) / (fast - slow)
+
+
+def stepped_joint(
+    joint: IdealJoint, passive: float, step: float, h: float, steps: int,
+    limit: float = np.inf, gravity: float = 0.0,
+) -> FloatArray:  # fmt: skip
+    """Return the distance from the target (steps+1,) [rad] of one joint that a solver steps.
+
+    The integrator is semi-implicit: the damping acts at the velocity at the end of the step. The
+    damping of the controller stays in the equation while its effort is clipped, as in Genesis.
+
+    Args:
+        joint: inertia, whole damping and KP.
+        passive: the part of its damping that the model file declares [N·m·s/rad].
+        step: height of the commanded step [rad].
+        h: length of one solver step [s].
+        steps: number of solver steps.
+        limit: of the effort [N·m].
+        gravity: effort that holds the joint [N·m], constant.
+    """
+    kv = joint.damping - passive
+    q, qd = -step, 0.0
+    path = [q]
+    for _ in range(steps):
+        tau = min(max(-joint.kp * q - kv * qd, -limit), limit)
+        qd += h * (tau - passive * qd - gravity) / (joint.inertia + h * joint.damping)
+        q += h * qd
+        path.append(q)
+    return np.array(path)
 
 
 @dataclass(frozen=True, slots=True)

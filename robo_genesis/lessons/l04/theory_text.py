@@ -1,14 +1,12 @@
-"""Theory and gravity compared with the measurement of L04: tables and sentences."""
+"""Theory compared with the measurement of L04: tables and sentences."""
 
-from collections.abc import Iterator, Mapping
 from typing import Any
 
 from robo_genesis.core import tables
 from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import bullets, listed
+from robo_genesis.core.text import bullets
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study, study_spec
-from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.theory import IdealJoint, Parting, overshoot_share, parting
 from robo_genesis.sim.joint_control import differences
 
@@ -36,26 +34,6 @@ def mass_table(run: Experiment) -> str:
         rows.append({head: f"position commanded, KV = {kv:g}", unit: mass})
         rows.append({head: term, unit: study.without_term(run, kv)})
     return tables.markdown(rows)
-
-
-def gravity_table(run: Experiment) -> str:
-    """Return KP × final error beside gravity for each case."""
-    return tables.markdown(gravity_rows(*_balance(run)))
-
-
-def gravity_conclusions(run: Experiment) -> str:
-    """Return what the table of gravity supports."""
-    return bullets(gravity_sentences(*_balance(run)))
-
-
-def _balance(
-    run: Experiment,
-) -> tuple[dict[str, float], dict[str, StepMetrics], dict[str, float]]:
-    """Return KP, metrics and gravity effort by case."""
-    kp = {name: float(case.kp[spec.ENTRY]) for name, case in spec.CASES.items()}
-    metrics = {name: run.metrics[name] for name in spec.CASES}
-    gravity = {name: run.readings[study.GROUP][f"gravity_{name}"] for name in spec.CASES}
-    return kp, metrics, gravity
 
 
 def ideal_table(run: Experiment) -> str:
@@ -172,20 +150,21 @@ def step_size_rows(run: Experiment) -> list[dict[str, Any]]:
 def step_size_sentence(case: str, ideal: float, small: float, large: float) -> str:
     """Compare the overshoots [share of the step] of theory, a small step and the lesson's step."""
     tolerance = study_spec.SMALL_STEP_TOLERANCE
-    declared = f"the declared {share_text(tolerance)} of the step"
+    declared = f"{100 * tolerance:g} percentage points"
     lead = (
         f"{case}: the ideal joint overshoots by {share_text(ideal)} of its step, the small step by "
         f"{share_text(small)}, the large step by {share_text(large)}."
     )
     if abs(small - ideal) > tolerance:
-        return f"{lead} Even the small step differs from theory by more than {declared}."
-    lead += f" The small step agrees with theory within {declared}."
+        return f"{lead} Even the small step differs from the ideal one by more than {declared}."
+    times = f"{small / ideal:.1f} times the ideal overshoot" if ideal else "not zero"
+    lead += f" The small step agrees within {declared}, but it is {times}."
     if abs(large - ideal) <= tolerance:
         return (
-            f"{lead} The large step's overshoot agrees as well, but one number can agree by "
-            "accident: see how far its curve lies from the ideal one."
+            f"{lead} The overshoot of the large step agrees as well, but one number can agree by "
+            "accident: see how far its curve is from the ideal one."
         )
-    return f"{lead} The large step does not."
+    return f"{lead} The large step does not agree."
 
 
 def step_size_sentences(run: Experiment) -> list[str]:
@@ -201,66 +180,48 @@ def step_size_sentences(run: Experiment) -> list[str]:
     ]
 
 
-def disagreement(support: float, effort: float) -> float:
-    """Return the difference between support and gravity effort as a share of the effort."""
-    return abs(support - effort) / abs(effort)
+def stepped_table(run: Experiment) -> str:
+    """Return the overshoots of the ideal joint, of the stepped model and of the engine."""
+    rows = []
+    for height in (study_spec.SMALL_STEP, spec.STEP):
+        small = height == study_spec.SMALL_STEP
+        for case in study_spec.SMALL_STEPPED if small else study_spec.COMPARED:
+            model = study.stepped_overshoot(run, case, height)
+            ideal = study.ideal(run, case).overshoot
+            measured = overshoot_share(study.share(run, case, "small")) if small else None
+            rad = run.metrics[case].overshoot
+            rows.append(
+                {
+                    "run": f"{case}, +{height:g} rad",
+                    "ideal joint": share_text(ideal)
+                    if small
+                    else format_value(ideal * height, "rad"),
+                    "stepped model": share_text(model / height)
+                    if small
+                    else format_value(model, "rad"),
+                    "Genesis": share_text(measured)
+                    if measured is not None
+                    else format_value(rad, "rad"),
+                }
+            )
+    return tables.markdown(rows)
 
 
-def gravity_rows(
-    kp: Mapping[str, float], metrics: Mapping[str, StepMetrics], gravity: Mapping[str, float]
-) -> list[dict[str, Any]]:
-    """Return for each case its support at the last sample, the gravity effort, and how it ended.
-
-    Args:
-        kp: by case [N·m/rad].
-        metrics: by case.
-        gravity: by case, the effort that holds its end state [N·m].
-    """
-    return [
-        {
-            "case": name,
-            "KP × final error": format_value(support, "N·m"),
-            "gravity, engine": format_value(effort, "N·m"),
-            "apart": share_text(disagreement(support, effort)),
-            "final velocity": format_value(metrics[name].final_velocity, "rad/s"),
-            "settled from": format_value(metrics[name].settling_time, "s"),
-        }
-        for name, effort in gravity.items()
-        for support in [kp[name] * metrics[name].final_error]
-    ]
+def stepped_sentences(run: Experiment) -> str:
+    """Say for each run where the solver's step explains the distance from the ideal joint."""
+    return bullets(_stepped_sentence(run, case) for case in study_spec.SMALL_STEPPED)
 
 
-def gravity_sentences(
-    kp: Mapping[str, float], metrics: Mapping[str, StepMetrics], gravity: Mapping[str, float]
-) -> Iterator[str]:
-    """Say what the table of `gravity_rows` supports, and what it does not prove."""
-    moving = [name for name in gravity if abs(metrics[name].final_velocity) > study_spec.AT_REST]
-    agree = [
-        name
-        for name, effort in gravity.items()
-        if disagreement(kp[name] * metrics[name].final_error, effort)
-        <= study_spec.GRAVITY_AGREEMENT
-        and name not in moving
-    ]
-    differ = [name for name in gravity if name not in (*agree, *moving)]
-    limit = share_text(study_spec.GRAVITY_AGREEMENT)
-    if agree:
-        yield (
-            f"{listed(agree)} ended nearly at rest, with a support within {limit} of gravity. A "
-            "balance of the two would look like this, without an integral term in the controller."
-        )
-    if differ:
-        yield (
-            f"{listed(differ)} ended nearly at rest, with a support more than {limit} off gravity. "
-            "Gravity alone does not explain the error. Look at tail, saturation, contacts."
-        )
-    if moving:
-        yield (
-            f"{listed(moving)} still moved at the last sample. The error there belongs to the "
-            "transient and supports nothing about gravity."
-        )
-    if agree or differ:
-        yield (
-            "This does not prove that the error would remain beyond this window, that nothing else "
-            "contributes to it within the tolerance, or that another pose would leave the same one."
-        )
+def _stepped_sentence(run: Experiment, case: str) -> str:
+    model = study.stepped_overshoot(run, case, study_spec.SMALL_STEP) / study_spec.SMALL_STEP
+    ideal, small = (
+        study.ideal(run, case).overshoot,
+        overshoot_share(study.share(run, case, "small")),
+    )
+    words = (
+        f"{case}, small step: the stepped model is {100 * abs(model - small):.1f} percentage "
+        f"points from the engine, the ideal joint {100 * abs(ideal - small):.1f}."
+    )
+    if abs(model - small) < abs(ideal - small):
+        return f"{words} The solver's step explains most of the difference."
+    return f"{words} The solver's step alone does not explain the difference: neighbours also move."

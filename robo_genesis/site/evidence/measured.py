@@ -8,6 +8,7 @@ Roles and a directive, as pages write them:
 | {measured}`l04/lab engine` | the engine version that the page ran on |
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
+| {engine-package}`some words` | its page on PyPI |
 | {lesson-state}`l04` | a badge for each backend of a lesson: backend and state |
 | {lesson-status} l04 (directive) | one line with the states of a lesson's runs, details in a fold |
 """
@@ -41,6 +42,7 @@ REFERENCE = "amdgpu"
 READABLE = {"cpu": "CPU", "amdgpu": "AMD GPU", "cuda": "CUDA GPU"}
 """The names of backends in the line below a title."""
 REPOSITORY = "https://github.com/Genesis-Embodied-AI/genesis-world"
+PACKAGES = "https://pypi.org/project/genesis-world"
 
 
 def measured(lesson_page: str, name: str) -> tuple[str, str]:
@@ -183,11 +185,19 @@ class EngineSource(SphinxRole):
 
 
 class EngineRelease(SphinxRole):
-    """Link to the pinned release of the engine."""
+    """Link to a page about the pinned release of the engine.
+
+    Args:
+        address: of the page, with `{}` for the version.
+    """
+
+    def __init__(self, address: str) -> None:
+        super().__init__()
+        self.address = address
 
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
         """Return the link, its text as given."""
-        target = f"{REPOSITORY}/releases/tag/v{project.engine_pin()}"
+        target = self.address.format(project.engine_pin())
         return [nodes.reference(self.rawtext, self.text, refuri=target)], []
 
 
@@ -211,7 +221,8 @@ def setup(app: Sphinx) -> None:
     app.add_role("measured", Measured())
     app.add_role("lesson-state", LessonState())
     app.add_role("engine-source", EngineSource())
-    app.add_role("engine-release", EngineRelease())
+    app.add_role("engine-release", EngineRelease(f"{REPOSITORY}/releases/tag/v{{}}"))
+    app.add_role("engine-package", EngineRelease(f"{PACKAGES}/{{}}/"))
     app.add_directive("lesson-status", LessonStatus)
     app.add_node(status_fold, html=(visit_status, lambda self, _: self.body.append("</details>")))
     app.add_node(measured_value, html=(visit_measured, lambda self, _: self.body.append("</span>")))

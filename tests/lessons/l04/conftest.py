@@ -7,7 +7,7 @@ import pytest
 from robot_runs import assigned, driven
 
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l04 import LECTURE, study_spec
+from robo_genesis.lessons.l04 import LECTURE, LESSON, study_spec
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.lessons.l04 import study as studies
 from robo_genesis.sim import mujoco_joints
@@ -15,6 +15,29 @@ from robo_genesis.sim.franka import Q_START
 from robo_genesis.sim.joint_control import run_case
 
 LINKS = ("link0", "link4", "hand")
+
+
+PAGES = {name: page for name, page in LESSON.pages.items() if name not in ("lab", "mistakes")}
+"""The pages with runs beyond those of the lab."""
+
+
+def own_checks():
+    """Return each check of these pages that the lab does not have, once."""
+    found = dict.fromkeys(check for page in PAGES.values() for check in page.checks)
+    return tuple(check for check in found if check not in LESSON.pages["lab"].checks)
+
+
+def of_page(run: Experiment, name: str) -> Experiment:
+    """Return what one page measured of all studies."""
+    page, group = LESSON.pages[name], studies.GROUP
+    kept = page.readings(True).get(group)
+    readings = {"model": run.readings["model"]}
+    if kept:
+        readings[group] = {unit: run.readings[group][unit] for unit in kept.units}
+    frames = run.frames if page.camera else {}
+    traces = {n: run.traces[n] for n in page.runs}
+    return replace(run, page=page, traces=traces, readings=readings, frames=frames,
+                   rendered=page.camera)  # fmt: skip
 
 
 def raised(trace, overshoot):
@@ -26,8 +49,10 @@ def raised(trace, overshoot):
 
 @pytest.fixture(scope="session")
 def study_runs(joints, frames) -> Experiment:
-    """The lecture of L04 with studies that pass every check, without Genesis."""
-    cases = {n: run.case for n, run in LECTURE.runs.items() if n not in study_spec.SECOND_RUNS}
+    """All runs of L04's lecture and deeper pages, which pass every check, without Genesis."""
+    every = {n: run for page in PAGES.values() for n, run in page.runs.items()}
+    page = replace(LECTURE, runs=every, checks=(*LESSON.pages["lab"].checks, *own_checks()))
+    cases = {n: run.case for n, run in every.items() if n not in study_spec.SECOND_RUNS}
     traces = {name: driven(case, LINKS) for name, case in cases.items()}
     for name, run in study_spec.SECOND_RUNS.items():
         case = l04.CASES[run.case]
@@ -43,8 +68,8 @@ def study_runs(joints, frames) -> Experiment:
         _, effort = mujoco_joints.at_rest(case, traces[name].q[-1])
         of_joint[f"gravity_{name}"] = float(effort[l04.ENTRY])
     return Experiment(
-        page=LECTURE,
-        traces={name: traces[name] for name in LECTURE.runs},
+        page=page,
+        traces={name: traces[name] for name in every},
         links=LINKS,
         readings={"model": l04.EXPECTED_MODEL, studies.GROUP: of_joint},
         frames=frames,

@@ -12,4 +12,10 @@ CONFIGURED = {
     "settling band [rad]": metrics.SETTLING_BAND,
     "saturation threshold": metrics.SATURATION_THRESHOLD,
     "speed nearly at rest [rad/s]": study_spec.AT_REST,
+    "margin of a rise time [s]": spec.MARGINS["rise_time"],
+    "margin of a peak speed [rad/s]": spec.MARGINS["peak_speed"],
+    "margin of an overshoot [rad]": spec.MARGINS["overshoot"],
+    "margin of a count of samples": spec.MARGINS["saturation_samples"],
+    "end of the time axis of figures [s]": 0.4,
+    "armature of the model file [kg·m²]": 0.1,
 }

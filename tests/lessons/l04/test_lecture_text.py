@@ -76,17 +76,53 @@ def test_force_ranges_are_those_that_were_read_back(study_runs):
     assert lines[-1].endswith(" -99 … 99 N |")
 
 
-def test_the_first_demand_is_above_the_limit(study_runs):
-    lines = lecture_text.first_demand(study_runs).splitlines()
-    demand = spec.STEP * spec.BASELINE.kp[spec.ENTRY]
-    ends = [f"| {demand:.1f} |", "| 87.0 |", "| 87.0 |"]
-    assert [line[-len(end) :] for line, end in zip(lines[2:], ends, strict=True)] == ends
+def test_the_first_demand_is_compared_with_what_is_delivered(study_runs):
+    rows = [row.split("|")[1:-1] for row in lecture_text.first_demand(study_runs).splitlines()[2:]]
+    assert [[cell.strip() for cell in row[:3]] for row in rows] == [
+        ["G1", "875 N·m", "87 N·m"], ["G2", "1750 N·m", "87 N·m"], ["G3", "1750 N·m", "87 N·m"],
+    ]  # fmt: skip
 
 
-def test_every_prediction_is_listed(study_runs):
-    lines = lecture_text.predictions(study_runs).splitlines()
-    assert len(lines) == len(spec.RELATIONS)
-    assert lines[0] == "- G1 → G2: rise time no later"
+@pytest.mark.parametrize(
+    ("start", "force", "until"),
+    [
+        (87.0, (87.0, 87.0, 50.0, 87.0), 0.02),
+        (87.0, (87.0, -87.0, 87.0, 87.0), 0.01),
+        (87.0, (50.0, 87.0, 87.0, 87.0), 0.0),
+        (87.0, (87.0, 87.0, 87.0, 87.0), 0.04),
+        (50.0, (87.0, 87.0, 87.0, 87.0), None),
+    ],
+)
+def test_the_effort_is_clipped_until_it_leaves_its_first_limit(make_trace, start, force, until):
+    trace = make_trace(np.zeros(5), 1.0)
+    limit = trace.effort_limit[0]
+    run = replace(
+        trace,
+        control_force=np.array(force)[:, None] * limit / 87.0,
+        start_control_force=np.array([start * limit / 87.0]),
+    )
+    assert lecture_text.clipped_until(run, 0) == until
+
+
+def test_shared_starts_are_described_for_each_pair(study_runs):
+    lines = lecture_text.shared_starts(study_runs).splitlines()
+    assert lines[0].startswith("- G1 and G2: Up to ")
+    assert lines[1].startswith("- G2 and G3: Up to ")
+
+
+def test_the_outcome_of_each_prediction_is_given_with_its_margin(study_runs):
+    rows = lecture_text.outcomes_of_predictions(study_runs).splitlines()[2:]
+    assert len(rows) == len(spec.RELATIONS)
+    assert "| 0.015 s |" in rows[0]
+    assert "| 1.5 samples |" in rows[3]
+    early = replace(study_runs.metrics["G1"], rise_time=0.12)
+    late = replace(study_runs.metrics["G2"], rise_time=0.13)
+    run = replace(study_runs, accepted=dict(study_runs.metrics) | {"G1": early, "G2": late})
+    row = lecture_text.outcomes_of_predictions(run).splitlines()[2]
+    assert row.endswith("| 0.12 s → 0.13 s | 0.015 s | held (too close to call) |")
+    late = replace(late, rise_time=0.14)
+    run = replace(run, accepted=dict(run.metrics) | {"G2": late})
+    assert lecture_text.outcomes_of_predictions(run).splitlines()[2].endswith("**did not hold** |")
 
 
 def test_the_longer_window_is_that_of_the_recorded_run(study_runs):

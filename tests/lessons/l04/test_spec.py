@@ -61,8 +61,9 @@ def test_one_sample_exceeds_the_resolution():
 
 
 def test_parameters_are_json():
-    parameters = spec.parameters() | study_spec.parameters()
-    assert json.loads(json.dumps(parameters, allow_nan=False)) == parameters
+    for page in ("lecture", "formula", "integrator", "batch"):
+        parameters = spec.parameters() | study_spec.parameters(page)
+        assert json.loads(json.dumps(parameters, allow_nan=False)) == parameters
 
 
 OTHER = {
@@ -88,8 +89,6 @@ JUDGEMENTS = (
         *((spec, name, value, True) for name, value in OTHER.items()),
         *((spec, name, {}, False) for name in JUDGEMENTS),
         (spec, "EXPECTED_MODEL", {**spec.EXPECTED_MODEL, "links": 12}, False),
-        (study_spec, "AT_REST", 0.02, False),
-        (study_spec, "KP", (3500.0, 7000.0), True),
     ],
 )
 def test_what_decides_a_run_is_a_parameter_and_a_judgement_is_none(
@@ -98,6 +97,24 @@ def test_what_decides_a_run_is_a_parameter_and_a_judgement_is_none(
     before = module.parameters()
     monkeypatch.setattr(module, name, other)
     assert (module.parameters() != before) == counts
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "pages"),
+    [
+        ("AT_REST", 0.02, []),
+        ("ONE_JOINT_TOLERANCE", 1.0, []),
+        ("KP", (3500.0, 7000.0), ["batch"]),
+        ("SECOND_RUNS", {}, ["integrator"]),
+        ("STEP_CASES", {}, ["formula"]),
+        ("LONGER_CASES", {}, ["lecture"]),
+    ],
+)
+def test_an_input_of_a_page_is_a_parameter_of_that_page_alone(monkeypatch, name, other, pages):
+    every = ("lecture", "formula", "integrator", "batch")
+    before = {page: study_spec.parameters(page) for page in every}
+    monkeypatch.setattr(study_spec, name, other)
+    assert [page for page in every if study_spec.parameters(page) != before[page]] == pages
 
 
 @pytest.mark.parametrize("field", [field.name for field in fields(ControlCase)])

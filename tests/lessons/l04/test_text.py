@@ -12,7 +12,7 @@ from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block
 from robo_genesis.lessons.l04 import text as l04
 from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import ONE_FACTOR, PREDICTIONS, RESOLUTION
+from robo_genesis.lessons.l04.spec import MARGINS, ONE_FACTOR, PREDICTIONS, RESOLUTION
 from robo_genesis.lessons.l04.study_spec import AT_REST
 
 UNITS, LABELS = StepMetrics.about("unit"), StepMetrics.about("noun")
@@ -78,6 +78,21 @@ def test_a_difference_below_the_resolution_is_none(metric, share, order):
 def test_a_comparison_says_what_was_measured_or_not_observed(metric, values, says):
     sentence = comparison_sentence(NAMES, compared(metric, values))
     assert sentence == f"The {LABELS[metric]} {says}"
+
+
+@pytest.mark.parametrize(
+    ("values", "order", "says"),
+    [
+        ((0.12, 0.11), "equal",
+         "is too close to call: G1 0.12 s, G2 0.11 s, within the margin of 0.015 s."),
+        ((0.12, 0.12), "equal", "does not change measurably (G1 0.12 s, G2 0.12 s)."),
+        ((0.13, 0.11), "lower", "goes down (G1 0.13 s, G2 0.11 s)."),
+    ],
+)  # fmt: skip
+def test_a_difference_within_the_margin_is_too_close_to_call(values, order, says):
+    found = compare("rise_time", *pair("rise_time", values), RESOLUTION, MARGINS["rise_time"])
+    assert found.order == order
+    assert comparison_sentence(NAMES, found) == f"The rise time {says}"
 
 
 CONFIRMED = {
@@ -246,6 +261,7 @@ def test_any_outcome_gives_four_blocks_of_sentences_with_measured_numbers(
     assert [block.title[:2] for block in blocks] == ["1.", "2.", "3.", "4."]
     texts = [format_value(value, unit) for m in metrics.values() for _, value, unit in m.items()]
     texts += [format_value(limit, "N·m"), "0.01", "99", "90"]
+    texts += [f"{margin:g}" for margin in MARGINS.values()]
     rises = [metrics[name].rise_time for name in ("G2", "G3")]
     if None not in rises:
         texts.append(format_value(abs(rises[1] - rises[0]), "s"))

@@ -12,6 +12,7 @@ from robo_genesis.lessons.l04.theory import (
     overshoot_share,
     parting,
     step_share,
+    stepped_joint,
 )
 
 T = np.linspace(0, 1.2, 241)
@@ -72,6 +73,47 @@ def test_a_strongly_overdamped_joint_neither_overflows_nor_overshoots():
 def test_a_joint_that_cannot_be_is_refused(spoiled):
     with pytest.raises(ValueError, match="must be positive"):
         IdealJoint(**({"inertia": 1.0, "damping": 1.0, "kp": 1.0} | spoiled))
+
+
+GAINS = {"G1": (3500.0, 100.0), "G2": (7000.0, 100.0), "G3": (7000.0, 300.0)}
+H, STEPS = 0.005, 240
+
+
+def stepped(case, step, h=H, steps=STEPS, **forces):
+    kp, kv = GAINS[case]
+    return stepped_joint(IdealJoint(1.077, kv + 1.0, kp), 1.0, step, h, steps, **forces)
+
+
+@pytest.mark.parametrize(("case", "share"), [("G1", 0.031), ("G2", 0.145), ("G3", 0.0)])
+def test_the_stepped_joint_overshoots_a_small_step_by_known_shares(case, share):
+    assert max(0.0, stepped(case, 0.005).max() / 0.005) == pytest.approx(share, abs=5e-4)
+
+
+@pytest.mark.parametrize(("case", "overshoot"), [("G1", 0.0), ("G2", 0.054), ("G3", 0.0)])
+def test_the_clipped_stepped_joint_with_gravity_overshoots_in_g2_alone(case, overshoot):
+    path = stepped(case, 0.25, limit=87.0, gravity=(22.57 + 21.61) / 2)
+    assert max(0.0, path.max()) == pytest.approx(overshoot, abs=5e-4)
+
+
+@pytest.mark.parametrize("case", GAINS)
+def test_the_stepped_joint_approaches_the_ideal_one_as_its_step_shrinks(case):
+    kp, kv = GAINS[case]
+    t = np.linspace(0, 0.4, 9)
+    ideal = IdealJoint(1.077, kv + 1.0, kp).response(t)
+    off = []
+    for h in (1e-3, 1e-4):
+        path = 1 + stepped(case, 1.0, h, round(0.4 / h))
+        off.append(np.abs(path[:: round(0.05 / h)] - ideal).max())
+    assert off[1] < 0.2 * off[0] < 0.2
+
+
+def test_the_stepped_joint_rests_where_gravity_balances_its_gain():
+    assert stepped("G3", 0.25, limit=87.0, gravity=21.0)[-1] == pytest.approx(-21 / 7000, abs=1e-5)
+
+
+def test_a_clipped_first_step_does_not_depend_on_kp():
+    first = [stepped(case, 0.25, limit=87.0)[1] for case in ("G1", "G2")]
+    assert first[0] == first[1]
 
 
 IDEAL = np.array([0.0, 0.2, 0.5, 0.8, 1.0])

@@ -1,0 +1,135 @@
+"""Checks of the four functions that a student writes in L04's lab.
+
+Each takes the student's function and calls it, so it can be run again after every change. The
+result is a list with one `Check`, as `page.require` takes it.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.checks import Check, Finding, at_most, equal, evaluate
+from robo_genesis.core.mistakes import refused
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l04.metrics import StepMetrics
+from robo_genesis.lessons.l04.spec import CONTROL_LAW_TOLERANCE, ENTRY
+from robo_genesis.sim.joint_control import ControlCase
+from robo_genesis.sim.joints import JointMap
+
+CLAIM = "The function does what its docstring says."
+TINY = 1e-6
+"""Largest difference of a returned time or angle that rounding explains."""
+
+
+def resolver(resolve: Callable[..., Any], robot: Any, joints: JointMap) -> list[Check]:
+    """Check `resolve(robot, names)`: local DOFs in the order of the names, odd joints refused."""
+
+    def findings(_: None) -> Iterator[Finding]:
+        names = list(joints.names)
+        yield equal("dofs", list(resolve(robot, names)), joints.dofs_idx_local.tolist())
+        backwards = joints.dofs_idx_local.tolist()[::-1]
+        yield equal("dofs_in_reverse", list(resolve(robot, names[::-1])), backwards)
+        shifted = SimpleNamespace(get_joint=lambda name: _joint(5 + names.index(name)))
+        expected = [5 + n for n in range(len(names))]
+        yield equal("dofs_of_a_shifted_robot", list(resolve(shifted, names)), expected)
+        ball = SimpleNamespace(get_joint=lambda name: _joint(0, 1, 2))
+        error = refused(lambda: resolve(ball, ["ball"]))
+        yield equal("error_for_a_ball_joint_names_it", "ball" in str(error or ""), True)
+        twice = refused(lambda: resolve(robot, [names[3], names[3]]))
+        yield equal("error_for_one_joint_twice", twice is not None, True)
+
+    return _check("resolver", findings)
+
+
+def _joint(*dofs: int) -> SimpleNamespace:
+    """Return a joint with these local DOFs, and other solver-level ones."""
+    count = len(dofs)
+    return SimpleNamespace(
+        n_dofs=count, n_qs=count + (count > 1), dofs_idx_local=list(dofs),
+        dofs_idx=[dof + 7 for dof in dofs], qs_idx_local=list(dofs),
+    )  # fmt: skip
+
+
+def control_loop(
+    record: Callable[..., Any], scene: Any, robot: Any, joints: JointMap, case: ControlCase,
+    trace: Trace,
+) -> list[Check]:  # fmt: skip
+    """Check `record(scene, robot, dofs, q_target, steps)` against a run of the same case.
+
+    Call it after a reset to the case. The function returns t (n+1,), q (n+1, d), qd (n, d) and the
+    control force (n, d).
+    """
+
+    def findings(_: None) -> Iterator[Finding]:
+        dofs = joints.dofs_idx_local.tolist()
+        target = case.q_target.copy()
+        found = [np.asarray(part) for part in record(scene, robot, dofs, target, case.steps)]
+        expected = trace.t, trace.q, trace.qd, trace.control_force
+        yield equal("number_of_arrays", len(found), len(expected))
+        for name, values, right in zip(("t", "q", "qd", "force"), found, expected, strict=True):
+            yield equal(f"{name}.shape", list(values.shape), list(right.shape))
+            if values.shape == right.shape:
+                apart = float(np.abs(values.astype(float) - right).max())
+                yield at_most(f"{name}.distance_to_the_recorded_run", apart, TINY)
+
+    return _check("control_loop", findings)
+
+
+def pd_law(law: Callable[..., Any], traces: Iterable[tuple[Trace, ControlCase]]) -> list[Check]:
+    """Check `law(error, qd, kp, kv, limit)` with every recorded control force of joint4."""
+
+    def findings(_: None) -> Iterator[Finding]:
+        for number, (trace, case) in enumerate(traces):
+            k = ENTRY
+            error, limit = case.q_target[k] - trace.q[1:, k], float(trace.effort_limit[k])
+            gains = float(case.kp[k]), float(case.kv[k])
+            found = [law(e, v, *gains, limit) for e, v in zip(error, trace.qd[:, k], strict=True)]
+            apart = np.abs(np.array(found, dtype=float) - trace.control_force[:, k]).max()
+            yield at_most(f"run_{number}.distance_to_control_force", apart, CONTROL_LAW_TOLERANCE)
+        yield equal("demand_of_1000_with_limit_87", float(law(1.0, 0.0, 1e3, 0.0, 87.0)), 87.0)
+        yield equal("demand_of_-1000_with_limit_87", float(law(-1.0, 0.0, 1e3, 0.0, 87.0)), -87.0)
+
+    return _check("pd_law", findings)
+
+
+def step_response(
+    measure: Callable[..., Any], runs: Iterable[tuple[Trace, StepMetrics]]
+) -> list[Check]:
+    """Check `measure(t, q, q_target)`: rise time, overshoot, settling time; None if not observed.
+
+    The runs are measured ones; two invented responses never rise, and leave the band at the end.
+    """
+
+    def findings(_: None) -> Iterator[Finding]:
+        for number, (trace, of) in enumerate(runs):
+            q, target = trace.q[:, ENTRY].astype(float), float(trace.target[0, ENTRY])
+            expected = of.rise_time, of.overshoot, of.settling_time
+            yield from _compared(f"run_{number}", measure(trace.t, q, target), expected)
+        t = np.arange(6) * 0.01
+        slow = np.linspace(0.0, 0.1, 6)
+        yield from _compared("never_rises", measure(t, slow, 0.25), (None, 0.0, None))
+        late = np.array([0.0, 0.25, 0.25, 0.25, 0.25, 0.30])
+        yield from _compared("leaves_at_the_end", measure(t, late, 0.25), (0.01, 0.05, None))
+
+    return _check("step_response", findings)
+
+
+def _compared(run: str, found: Sequence[Any], expected: Sequence[Any]) -> Iterator[Finding]:
+    names = ("rise_time", "overshoot", "settling_time")
+    for name, value, right in zip(names, found, expected, strict=True):
+        label = f"{run}.{name}"
+        if value is None or right is None:
+            yield equal(label, value, right)
+        else:
+            yield at_most(f"{label}.error", abs(float(value) - float(right)), TINY)
+
+
+def _check(name: str, findings: Callable[[None], Iterable[Finding]]) -> list[Check]:
+    """Return the outcome; an exception of the student's function fails the check by its message."""
+    findings.__name__ = name
+    try:
+        return list(evaluate((findings,), None, {name: CLAIM}))
+    except Exception as error:  # whatever a student's function raises
+        return [Check(name, False, f"it raised {type(error).__name__}: {error}")]
