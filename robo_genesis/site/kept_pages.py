@@ -1,6 +1,6 @@
 """Makes an incremental render equal to one from nothing; `build.site.kept` keeps its folder.
 
-What decides a page beside its own source and what is the same for all pages:
+A page depends on its own source, on what is the same for all pages, and on:
 
 | while it is read | what happens |
 |---|---|

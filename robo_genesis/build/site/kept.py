@@ -70,7 +70,7 @@ def _runs(built: BuiltPages) -> dict[str, object]:
 def prepare(folder: Path, state: State) -> bool:
     """Empty the folder, or mark in it the pages that changed; return whether it was usable.
 
-    The mark of success is removed: `keep` puts it back.
+    The mark of success is removed: `keep` writes it again.
     """
     try:
         last = State(**json.loads((folder / STATE).read_text("utf8")))
