@@ -8,7 +8,6 @@ checkout; uncommitted changes are not measured. The two sides of a row run in tu
 should run on the machine. Exit status: 0 measured, 1 a command failed, 130 interrupted.
 """
 
-import atexit
 import os
 import re
 import shutil
@@ -18,6 +17,7 @@ import sys
 import time
 import urllib.request
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack
 from functools import partial
 from itertools import pairwise
 
@@ -59,6 +59,8 @@ class BenchError(project.ProjectError):
 
 output = ""
 """What the measured command printed last."""
+row_end = ExitStack()
+"""Gets what has to be done after the last run of a row."""
 
 
 def seconds(*command: str, says: str = "", **variables: str) -> float:
@@ -129,9 +131,9 @@ def live() -> Sides:
     server = subprocess.Popen(
         command, cwd=TREE, env=given | {"PORT": "0"}, stdout=subprocess.PIPE, text=True
     )
-    atexit.register(server.terminate)
-    assert server.stdout is not None
-    address = next(line.split()[0] for line in server.stdout if line.startswith("http"))
+    row_end.callback(server.wait)
+    row_end.callback(server.terminate)  # called first
+    address = served_at(server)
 
     def shown() -> float:
         sentence, begin = f"Sentence {time.time_ns()}.", time.monotonic()
@@ -144,6 +146,19 @@ def live() -> Sides:
         raise BenchError(f"make live did not show {sentence!r} within {LONGEST} s.")
 
     return shown, partial(bare, says="build succeeded")
+
+
+def served_at(server: subprocess.Popen[str]) -> str:
+    """Return the address that a server prints when it is ready.
+
+    Raises:
+        BenchError: the server ended before.
+    """
+    assert server.stdout is not None
+    line = next((line for line in server.stdout if line.startswith("http")), None)
+    if line is None:
+        raise BenchError(f"make live ended with status {server.wait()}, expected an address.")
+    return line.split()[0]
 
 
 def verify() -> Sides:
@@ -261,11 +276,12 @@ def measure() -> list[str]:
     with worktree(project.ROOT, TREE, project.CACHE):
         for name in names:
             print(f"{name}: preparation, then {runs} runs of each side", flush=True)
-            course, bare = ROWS[name][2]()
-            samples[name], said = [], ""
-            for _ in range(int(runs)):
-                elapsed, said = course(), output
-                samples[name].append((elapsed, bare()))
+            with row_end:
+                course, bare = ROWS[name][2]()
+                samples[name], said = [], ""
+                for _ in range(int(runs)):
+                    elapsed, said = course(), output
+                    samples[name].append((elapsed, bare()))
             notes += over_limit(name, samples[name], said)
     return [table(samples), *notes]
 

@@ -1,24 +1,25 @@
 """Show the book on localhost while it is written: `make live`.
 
-Environment: PORT (default 8000), and EXECUTE=0|1 (default 0; 1: a page whose code changed runs, as
-with `make execute`). The page in the browser reloads after each change. Nothing is published, and
-book/_build is not used. Exit status: 1 failed, 130 ended with Ctrl-C.
+Environment: PORT (default 8000; 0: a free one), and EXECUTE=0|1 (default 0; 1: a page whose code
+changed, or code that it imports, runs as with `make execute`). The page in the browser reloads
+after each change. Nothing is published, and book/_build is not used. Exit status: 1 failed, 130
+ended with Ctrl-C.
 """
 
 import asyncio
-import os
 import signal
 import sys
 
-from robo_genesis.build.command import choice, parser, set_contract
-from robo_genesis.build.site.live import Live, serve
+from robo_genesis.build.command import choice, parser, port, set_contract
+from robo_genesis.build.site.live import Live
+from robo_genesis.build.site.live_server import serve
 from robo_genesis.core.project import ProjectError
 
 
-async def until_signal(live: Live, port: int) -> None:
+async def until_signal(live: Live, wanted: int) -> None:
     """Serve until Ctrl-C or SIGTERM."""
     serving = asyncio.ensure_future(
-        serve(live, port, lambda at: live.say(f"http://localhost:{at}/ Ctrl-C ends it."))
+        serve(live, wanted, lambda at: live.say(f"http://localhost:{at}/ Ctrl-C ends it."))
     )
     for sent in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(sent, serving.cancel)
@@ -26,15 +27,13 @@ async def until_signal(live: Live, port: int) -> None:
 
 
 def main() -> int | str:
-    """Serve; return the exit status, or a message if the port is not valid."""
+    """Serve; return the exit status, or a message if that is impossible."""
     args = parser(__doc__).parse_args()
     set_contract()
     execute = choice("EXECUTE", "0", ("0", "1")) == "1"
-    port = os.environ.get("PORT") or "8000"
-    if not port.isdecimal() or not int(port) < 65536:
-        return f"PORT={port!r} is not valid. Choices: 1 to 65535."
+    live = Live(args.book, args.cache, execute=execute, timeout=args.timeout)
     try:
-        asyncio.run(until_signal(Live(args.book, args.cache, execute=execute), int(port)))
+        asyncio.run(until_signal(live, port()))
     except asyncio.CancelledError:
         return 130
     except ProjectError as error:

@@ -1,7 +1,8 @@
 """The executed pages of this build, as the build tells them to Sphinx's process."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from difflib import SequenceMatcher
 from pathlib import Path
 from typing import Self
 
@@ -55,13 +56,43 @@ def built_pages() -> BuiltPages:
     return BuiltPages.model_validate_json(Path(os.environ[EXECUTED_PAGES]).read_bytes())
 
 
-def executed_notebook(docname: str) -> NotebookNode:
+def executed_notebook(docname: str, page: NotebookNode) -> NotebookNode:
     """Return the code cells of a page with their outputs.
+
+    Args:
+        docname: the name of the page.
+        page: the page as a notebook. Its code cells differ from those of the run only if it is
+            shown with the outputs of its last run.
 
     Raises:
         KeyError: the page is not executed.
     """
-    return nbformat.read(built_pages().folders[docname] / NOTEBOOK, as_version=4)
+    executed = nbformat.read(built_pages().folders[docname] / NOTEBOOK, as_version=4)
+    if LAST_OUTPUTS in os.environ:
+        cells = [cell for cell in page.cells if cell.cell_type == "code"]
+        executed.cells = with_last_outputs(cells, executed.cells)
+    return executed
+
+
+def with_last_outputs(
+    cells: Sequence[NotebookNode], ran: Sequence[NotebookNode]
+) -> list[NotebookNode]:
+    """Return code cells with the outputs of a run of other cells.
+
+    A cell gets the outputs of the cell with equal source. Changed cells get the outputs of those in
+    their places, if there are as many. Others get none.
+
+    Args:
+        cells: of the page now.
+        ran: the cells of the run.
+    """
+    found = [NotebookNode(cell | {"outputs": [], "execution_count": None}) for cell in cells]
+    before, now = ([cell.source for cell in some] for some in (ran, cells))
+    for _, begin, end, at, to in SequenceMatcher(None, before, now, False).get_opcodes():
+        if end - begin == to - at:
+            for cell, old in zip(found[at:to], ran[begin:end], strict=True):
+                cell.outputs, cell.execution_count = old.outputs, old.execution_count
+    return found
 
 
 def page_record(docname: str) -> Record:

@@ -95,6 +95,14 @@ def choice(name: str, default: str, choices: tuple[str, ...], reason: str = "") 
     return value
 
 
+def port() -> int:
+    """Return PORT, by default 8000; exit with 1 if it is not the number of a port."""
+    value = os.environ.get("PORT") or "8000"
+    if not value.isdecimal() or int(value) > 65535:
+        sys.exit(f"PORT={value!r} is not valid. Choices: 1 to 65535, or 0 for a free port.")
+    return int(value)
+
+
 def path(name: str) -> Path | None:
     """Return an environment variable as an absolute path, None if it is unset or empty."""
     value = os.environ.get(name)

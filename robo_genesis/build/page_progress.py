@@ -45,7 +45,7 @@ class Underway:
         """Return the estimated seconds to the end of the last cell, None without an earlier run.
 
         Cells that wait are expected to take as long as last time. If the page has another number
-        of cells now, the whole page is.
+        of cells now, the estimate is for the whole page.
         """
         if self.last is None:
             return None

@@ -39,6 +39,7 @@ NOT_COMPUTING = {
     "spec", "plausibility",  # what a run is given (see `parameters`), and what is refused
     "channels", "comparison", "explorer", "mistake", "mistakes", "palette", "plots", "plotting",
     "tables", "text",  # what is shown
+    "exercises",  # what is checked of a reader's own code
     "project",  # where files are
 }  # fmt: skip
 """The last words of the names of modules that are in no evidence key: `study_spec`, `text` …"""

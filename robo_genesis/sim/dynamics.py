@@ -41,7 +41,8 @@ def effective_inertia(scene: Any, robot: Any, joints: JointMap, q: FloatArray) -
     integrator of the engine adds: substep · passive damping here, without a position command.
     """
     dofs = let_go(scene, robot, joints, q)
-    return mass_diagonal(robot, dofs) - substep(scene) * passive_damping(robot, dofs)
+    added = substep(scene) * passive_damping(robot, dofs)
+    return mass_diagonal(robot, dofs) - added
 
 
 def mass_diagonal(robot: Any, dofs: list[int]) -> FloatArray:

@@ -11,7 +11,7 @@ from nbformat import NotebookNode
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
-from robo_genesis.build.built_pages import LAST_OUTPUTS, executed_notebook
+from robo_genesis.build.built_pages import executed_notebook
 from robo_genesis.build.page_folder import code_and_kernel
 from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.site import mathml
@@ -35,10 +35,10 @@ class ExecutedPage(NotebookClientBase):
             ExtensionError: the execution stage has no outputs for the page's code cells.
         """
         try:
-            executed = executed_notebook(self.docname())
+            executed = executed_notebook(self.docname(), self.notebook)
         except KeyError:
             executed = None
-        if executed is None or not fits(executed, self.notebook):
+        if executed is None or code_and_kernel(executed) != code_and_kernel(self.notebook):
             raise ExtensionError(
                 f"{self.path} is not executed, and Sphinx executes nothing. "
                 "Build with `make book`; if you did, a code cell is nested in another directive."
@@ -57,17 +57,6 @@ class ExecutedPage(NotebookClientBase):
         """Return the name of the page."""
         page = Path(str(self.path)).with_suffix("")
         return page.relative_to(self.sources).as_posix() if self.path else ""
-
-
-def fits(executed: NotebookNode, page: NotebookNode) -> bool:
-    """Return whether a page can be shown with the outputs of a run.
-
-    `make live` requires only as many code cells as the run had.
-    """
-    if LAST_OUTPUTS in os.environ:
-        cells = [cell for cell in page.cells if cell.cell_type == "code"]
-        return len(executed.cells) == len(cells)
-    return code_and_kernel(executed) == code_and_kernel(page)
 
 
 def shorten_tracebacks(cell: NotebookNode) -> None:

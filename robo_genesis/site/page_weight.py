@@ -125,18 +125,14 @@ def wait_for_the_title(page: BeautifulSoup) -> None:
 
 
 def place_images(page: BeautifulSoup, folder: Path) -> None:
-    """Give images their size, so that nothing moves when they load, and load the lower ones late.
-
-    The first image of a page may be visible at once, so its loading is not delayed.
-    """
+    """Give images their size, so that nothing moves when they load, and load them when in sight."""
     images = [image for image in page.find_all("img", src=True) if image.find_parent("article")]
-    for number, image in enumerate(images):
+    for image in images:
         file = folder / unquote(urlsplit(str(image["src"])).path)
         if not image.has_attr("width") and file.is_file():
             width, height = image_size(file)
             image["width"], image["height"] = str(width), str(height)
-        if number:
-            image["loading"], image["decoding"] = "lazy", "async"
+        image["loading"], image["decoding"] = "lazy", "async"
 
 
 def image_size(file: Path) -> tuple[int, int]:

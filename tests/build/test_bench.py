@@ -1,6 +1,8 @@
 """The rows and the table of `make bench`; no test here looks at a clock."""
 
 import runpy
+import subprocess
+import sys
 from types import SimpleNamespace
 
 import pytest
@@ -62,3 +64,20 @@ def test_unknown_rows_and_numbers_that_are_not_positive_are_refused(monkeypatch,
     monkeypatch.setenv("RUNS", runs)
     with pytest.raises(bench.BenchError, match=said):
         bench.measure()
+
+
+def server(code: str) -> subprocess.Popen[str]:
+    return subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+
+
+def test_the_address_of_a_server_is_the_one_that_it_prints():
+    with server("print('Rendering.\\nhttp://localhost:1/ Ctrl-C ends it.')") as ready:
+        assert bench.served_at(ready) == "http://localhost:1/"
+
+
+def test_a_server_that_ends_before_it_serves_is_refused():
+    with (
+        server("print('Rendering.'); exit(3)") as ended,
+        pytest.raises(bench.BenchError, match="ended with status 3, expected an address"),
+    ):
+        bench.served_at(ended)

@@ -6,8 +6,7 @@ import pytest
 from nbformat.v4 import new_notebook
 from tiny_book import cell, make_book, notebook
 
-from robo_genesis.build.compiled_kernels import CompiledKernels
-from robo_genesis.build.execute import execute_pages, kernel_environment
+from robo_genesis.build.execute import CompiledKernels, execute_pages, kernel_environment
 from robo_genesis.build.page_progress import Lines
 from robo_genesis.build.page_store import places
 from robo_genesis.core.project import ROOT

@@ -20,6 +20,8 @@ folder = pathlib.Path(os.environ["ROBO_GENESIS_OUTPUTS_DIR"], "l04", "lab", actu
 folder.mkdir(parents=True)
 camera = os.environ["ROBO_GENESIS_RENDER"] == "1"
 facts = dict(
+    lesson="l04",
+    page="lab",
     run_id=os.environ["ROBO_GENESIS_RUN_ID"],
     command=os.environ["ROBO_GENESIS_COMMAND"],
     backend=dict(requested=asked, actual=actual, device_name="a device", torch_version="2.13.0"),

@@ -1,100 +1,48 @@
 """`make live`: shows a book while it is written, and publishes nothing.
 
 A process with Sphinx loaded renders each changed page; see `live_sphinx`. The browser gets the last
-state without warnings and errors, and reloads when there is a new one.
+state without warnings and errors, and reloads when there is a new one; see `live_server`.
 """
 
-import asyncio
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tornado.httpserver import HTTPServer
-from tornado.web import Application, RequestHandler, StaticFileHandler
-from tornado.websocket import WebSocketClosedError, WebSocketHandler
-
 from robo_genesis.build.built_pages import LAST_OUTPUTS, BuiltPages
-from robo_genesis.build.command import say
+from robo_genesis.build.command import TIMEOUT, say
 from robo_genesis.build.kernels import end_with_parent
 from robo_genesis.build.page_folder import OUTPUTS, PageRefused, read_record
-from robo_genesis.build.page_store import folders
+from robo_genesis.build.page_store import folders, places
 from robo_genesis.build.site import kept
 from robo_genesis.core import project
 from robo_genesis.lessons.book_pages import Page, code_digest, docnames, find_pages
 
 FOLDER = "live"
 """Below the cache folder: what is rendered and shown, apart from what `make book` makes."""
-INTERVAL = 0.1
-"""Seconds between two looks at the files; a look takes milliseconds."""
 UNWATCHED = ("_build", "__pycache__", ".")
 SHOWN_LINES = 2
-RELOAD = b"""<script>(() => {
-  const wait = () => new WebSocket(`ws://${location.host}/live-reload`);
-  const socket = wait();
-  socket.onmessage = () => location.reload();
-})()</script></body>"""
+"""Lines of warnings and errors of Sphinx that the terminal shows."""
 
 Seen = dict[Path, tuple[int, int]]
 
 
-class Reload(WebSocketHandler):
-    """A connection by which a page learns that there is a new state."""
-
-    connected: set["Reload"] = set()  # noqa: RUF012 - of all connections
-
-    def open(self, *args: str, **kwargs: str) -> None:
-        """Remember the connection."""
-        self.connected.add(self)
-
-    def on_close(self) -> None:
-        """Forget the connection."""
-        self.connected.discard(self)
-
-    @classmethod
-    def tell(cls) -> None:
-        """Make all pages reload."""
-        for one in list(cls.connected):
-            with suppress(WebSocketClosedError):
-                one.write_message("reload")
-
-
-class LiveFile(StaticFileHandler):
-    """Sends files of the shown site; a page gets the script that reloads it."""
-
-    @classmethod
-    def get_content(  # type: ignore[override] # tornado accepts bytes
-        cls, abspath: str, start: int | None = None, end: int | None = None
-    ) -> bytes:
-        """Return a file's content from `start` up to `end`."""
-        content = Path(abspath).read_bytes()
-        if abspath.endswith(".html"):
-            content = content.replace(b"</body>", RELOAD)
-        return content[start:end]
-
-    def get_content_size(self) -> int:
-        """Return the size of the content that is sent."""
-        assert self.absolute_path is not None
-        return len(self.get_content(self.absolute_path))
-
-    def set_extra_headers(self, path: str) -> None:
-        """Forbid caching and guessed types."""
-        self.set_header("Cache-Control", "no-store")
-        self.set_header("X-Content-Type-Options", "nosniff")
+class LiveEndedError(project.ProjectError):
+    """`stop` was called."""
 
 
 class Live:
     """A book that is rendered again after each change.
 
-    `say` prints a line. `execute` runs the pages whose code changed; otherwise they are shown with
-    the outputs of their last run.
+    One thread calls the methods; another may call `stop`. `say` prints a line. `execute` runs the
+    pages that changed, with `timeout` seconds for a cell; otherwise they are shown with the outputs
+    of their last run.
     """
 
     def __init__(
@@ -103,12 +51,19 @@ class Live:
         cache: Path,
         say: Callable[[str], None] = say,
         execute: bool = False,
+        timeout: int = TIMEOUT,
     ) -> None:
-        self.book, self.cache, self.say, self.execute = book, cache, say, execute
-        self.work, self.site = cache / FOLDER / "work", cache / FOLDER / "site"
+        self.book, self.cache, self.say = book, cache, say
+        self.execute, self.timeout = execute, timeout
+        self.folder = cache / FOLDER
+        self.work, self.site, self.log = (
+            self.folder / name for name in ("work", "site", "sphinx.log")
+        )
         self.sphinx: subprocess.Popen[str] | None = None
-        self.running: subprocess.Popen[Any] | None = None
+        self.started: list[subprocess.Popen[str]] = []
+        self.is_ended = False
         self.named: set[str] = set()
+        self.failed: set[Path] = set()
         self.seen = self.look()
 
     def look(self) -> Seen:
@@ -139,60 +94,100 @@ class Live:
             if self.sphinx is None or len(names) < len(paths) or self.runs_changed(built):
                 self.restart(built)
             complaints = self.render(names)
-        except (project.ProjectError, OSError) as error:
+            if not complaints:
+                self.show()
+                return True
+        except (project.ProjectError, OSError, ValueError) as error:
             complaints = str(error).splitlines()
-        if complaints:
+        if not self.is_ended:
             more = len(complaints) - SHOWN_LINES
             self.say("\n".join(complaints[:SHOWN_LINES]) + (f"  (+{more} lines)" * (more > 0)))
             self.say("The browser keeps the last good state.")
-            return False
-        self.show()
-        return True
+        return False
 
     def built(self, pages: Sequence[Page]) -> BuiltPages:
-        """Return the last run of each page; execute the pages whose code changed, or name them."""
-        store, found = self.cache / project.STORE, BuiltPages()
+        """Return the last run of each page; execute the pages that changed, or name them."""
+        found, into = BuiltPages(), places(pages, self.cache / project.STORE)
         for page in pages:
-            if self.is_stale(page) and self.execute:
-                self.run_page(page)
-            for folder in folders(store, page)[:1]:
+            place = into[page.docname]
+            if self.execute and not place.is_dir() and place not in self.failed:
+                self.run_page(page, place)
+            if folder := self.last_run(page, place):
                 found.folders[page.docname] = folder
                 if page.declares_bundle:
                     found.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
-            if not self.is_stale(page):
+            if place.is_dir():
                 self.named.discard(page.docname)
-            elif page.docname not in self.named:
+            elif page.docname not in self.named and not self.execute:
                 self.named.add(page.docname)
                 self.say(
-                    f"{page.docname}: its code changed after its last run, whose outputs are shown."
-                    " make live EXECUTE=1 runs it."
+                    f"{page.docname}: its code, or code that it imports, changed after its last "
+                    "run, whose outputs are shown. make live EXECUTE=1 runs it."
                 )
         return found
 
-    def is_stale(self, page: Page) -> bool:
-        """Return whether a page's code cells are not those of its last run."""
-        newest = folders(self.cache / project.STORE, page)[:1]
-        try:
-            return [read_record(folder).code for folder in newest] != [code_digest(page)]
-        except PageRefused:
-            return True
+    def last_run(self, page: Page, place: Path) -> Path | None:
+        """Return the folder of the run whose outputs are shown, None if there is none.
 
-    def run_page(self, page: Page) -> None:
-        """Execute a page as `make execute` does.
+        Args:
+            page: the page now.
+            place: where the store has it if nothing changed. Without that folder, the newest run of
+                the same code cells is shown, and without such a run, the newest.
+        """
+        stored, digest = folders(self.cache / project.STORE, page), code_digest(page)
 
-        Raises:
-            ProjectError: it failed; the message is the end of the command's report.
+        def has_its_code(folder: Path) -> bool:
+            with suppress(PageRefused):
+                return read_record(folder).code == digest
+            return False
+
+        if place.is_dir():
+            return place
+        return next(iter([*filter(has_its_code, stored)] or stored), None)
+
+    def run_page(self, page: Page, place: Path) -> None:
+        """Execute a page as `make execute` does; report a failure, and do not try it again.
+
+        Args:
+            page: the page.
+            place: where the store will have it. It is another after any change that may help.
         """
         self.say(f"{page.docname}: runs ...")
         command = [sys.executable, str(project.ROOT / "build_scripts" / "execute.py")]
         command += ["--book", str(self.book), "--cache", str(self.cache)]
-        given = os.environ | {"PAGE": page.docname, "TO": str(self.cache / FOLDER / "executed")}
-        self.running = subprocess.Popen(
-            command, env=given, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+        command += ["--timeout", str(self.timeout)]
+        running = self.start(
+            command,
+            env=os.environ | {"PAGE": page.docname, "TO": str(self.folder / "executed")},
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            preexec_fn=end_with_parent(signal.SIGTERM),
         )
-        _, report = self.running.communicate()
-        if self.running.returncode:
-            raise project.ProjectError(report.strip())
+        _, report = running.communicate()
+        if running.returncode and not self.is_ended:
+            self.failed.add(place)
+            self.say(report.partition("\n\nFAILED: ")[0].strip())
+            self.say(
+                f"{page.docname}: the outputs of its last run are shown. It runs again when its "
+                "code changes, or code that it imports."
+            )
+
+    def start(self, command: Sequence[str], **given: Any) -> subprocess.Popen[str]:
+        """Start a process that `stop` ends.
+
+        Args:
+            command: and its arguments.
+            **given: further arguments of Popen.
+
+        Raises:
+            LiveEndedError: `stop` was called meanwhile; the process was ended.
+        """
+        process = subprocess.Popen(command, text=True, **given)
+        self.started = [other for other in self.started if other.poll() is None] + [process]
+        if self.is_ended:  # set before `stop` reads the list, so one of the two finds the process
+            end(process)
+            raise LiveEndedError
+        return process
 
     def runs_changed(self, built: BuiltPages) -> bool:
         """Return whether other runs are shown than those that Sphinx was started with."""
@@ -201,16 +196,17 @@ class Live:
 
     def restart(self, built: BuiltPages) -> None:
         """Start Sphinx; what it kept is used if only pages changed since the last good state."""
-        self.stop()
+        self.end_sphinx()
         kept.prepare(self.work, kept.read_state(self.book, built))
         given = os.environ | built.write(self.work / "executed-pages.json")
         command = [sys.executable, "-m", "robo_genesis.build.site.live_sphinx"]
-        self.sphinx = subprocess.Popen(
-            [*command, str(self.book), str(self.work)],
-            env=given | {"PYTHONPATH": str(project.ROOT), LAST_OUTPUTS: "1"},
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-            preexec_fn=end_with_parent(),
-        )  # fmt: skip
+        with self.log.open("w") as log:
+            self.sphinx = self.start(
+                [*command, str(self.book), str(self.work)],
+                env=given | {"PYTHONPATH": str(project.ROOT), LAST_OUTPUTS: "1"},
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log,
+                preexec_fn=end_with_parent(),
+            )  # fmt: skip
 
     def render(self, names: Sequence[str]) -> list[str]:
         """Read some pages again and write what depends on them; return warnings and errors."""
@@ -219,11 +215,12 @@ class Live:
         assert self.sphinx.stdout is not None
         with suppress(BrokenPipeError):
             print(json.dumps(names), file=self.sphinx.stdin, flush=True)
-        line = self.sphinx.stdout.readline()
-        ended: dict[str, Any] = {"said": ["Sphinx was ended."], "ended": True}
-        answer = json.loads(line) if line else ended
+        try:
+            answer = json.loads(self.sphinx.stdout.readline())
+        except ValueError:  # no line, or none of `live_sphinx`
+            answer = {"said": [f"Sphinx stopped. Log: {self.log}"], "ended": True}
         if answer["ended"]:  # the next change starts it again
-            self.stop()
+            self.end_sphinx()
         return list(answer["said"])
 
     def show(self) -> None:
@@ -242,58 +239,35 @@ class Live:
             )
             if not is_same:
                 to.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy2(source, to)
+                beside = to.with_name(f".{to.name}.next")
+                shutil.copy2(source, beside)
+                os.replace(beside, to)  # a browser gets the old file or the new one
 
     def remember(self) -> None:
-        """Mark the last state as good, so that a restart of Sphinx need not read all pages."""
-        built = BuiltPages.model_validate_json((self.work / "executed-pages.json").read_bytes())
-        state = kept.read_state(self.book, built)
-        if self.look() == self.seen:
-            kept.keep(self.work, state, state)
+        """Mark the last state as good, so that a restart of Sphinx need not read all pages.
+
+        Nothing is marked if a file cannot be read, for example while an editor replaces it.
+        """
+        with suppress(project.ProjectError, OSError, ValueError):
+            built = BuiltPages.model_validate_json((self.work / "executed-pages.json").read_bytes())
+            state = kept.read_state(self.book, built)
+            if self.look() == self.seen:
+                kept.keep(self.work, state, state)
+
+    def end_sphinx(self) -> None:
+        """End Sphinx if it runs."""
+        if self.sphinx is not None:
+            end(self.sphinx)
+            self.sphinx = None
 
     def stop(self) -> None:
-        """End the processes that this one started."""
-        for process in (self.running, self.sphinx):
-            if process is not None:
-                process.terminate()
-                process.wait()
-        self.running = self.sphinx = None
+        """End the processes that this one started; later ones are ended when they start."""
+        self.is_ended = True
+        for process in self.started:
+            end(process)
 
 
-async def serve(live: Live, port: int, opened: Callable[[int], None] = lambda port: None) -> None:
-    """Serve a book until this task is cancelled, and render it after each change.
-
-    Args:
-        live: the book.
-        port: of localhost; 0 takes a free one.
-        opened: called with the port when there is something to show.
-
-    Raises:
-        ProjectError: the port cannot be used.
-    """
-    files = (r"/(.*)", LiveFile, {"path": str(live.site), "default_filename": "index.html"})
-    handlers: list[tuple[str, type[RequestHandler]] | Any] = [("/live-reload", Reload), files]
-    server = HTTPServer(Application(handlers, websocket_ping_interval=20))
-    try:
-        server.listen(port, "127.0.0.1")
-    except OSError as error:
-        raise project.ProjectError(f"PORT={port}: {error.strerror}. Choose a free one.") from error
-    (socket,) = server._sockets.values()
-    thread, loop = ThreadPoolExecutor(1), asyncio.get_running_loop()
-    try:
-        await loop.run_in_executor(thread, partial(live.update, set()))
-        opened(socket.getsockname()[1])
-        while True:
-            await asyncio.sleep(INTERVAL)
-            paths: set[Path] = await loop.run_in_executor(thread, partial(live.changed))
-            if not paths:
-                continue
-            is_new: bool = await loop.run_in_executor(thread, partial(live.update, paths))
-            if is_new:
-                Reload.tell()
-                await loop.run_in_executor(thread, partial(live.remember))
-                live.say(f"Shown: {', '.join(sorted(path.name for path in paths))}")
-    finally:
-        live.stop()
-        server.stop()
-        thread.shutdown(wait=False, cancel_futures=True)
+def end(process: subprocess.Popen[str]) -> None:
+    """End a process by SIGTERM, and wait for it."""
+    process.terminate()
+    process.wait()

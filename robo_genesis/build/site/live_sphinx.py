@@ -7,6 +7,7 @@ whether this process ends, because Sphinx cannot build again after an exception.
 import io
 import json
 import sys
+import traceback
 from pathlib import Path
 
 from jupyter_book.config import get_final_config
@@ -68,6 +69,7 @@ def main() -> None:
             read_again(folder, again)
             found = build(app, complaints)
         except Exception as error:  # the author's page may raise anything
+            traceback.print_exc()
             said = [f"{type(error).__name__}: {error}"]
             print(json.dumps({"said": said, "ended": True}), file=answers, flush=True)
             return

@@ -4,6 +4,7 @@ A plot of this build's lab, and the camera's last frame beside it where renderin
 """
 
 import io
+import os
 from pathlib import Path
 
 from docutils import nodes
@@ -11,10 +12,13 @@ from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+from robo_genesis.build.built_pages import LAST_OUTPUTS
 from robo_genesis.core import plotting
+from robo_genesis.evidence.bundle import Predicate, read_manifest
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons.declaration import Compared, Moving
 from robo_genesis.lessons.registry import COURSE_MARKS, compared_cases, filmed
+from robo_genesis.site.evidence.ledger_data import Run
 from robo_genesis.site.evidence.measured import page_run
 from robo_genesis.site.evidence.panel import Picture, figure, frames
 
@@ -36,16 +40,27 @@ class Glance(SphinxDirective):
                 f"glance: {lesson} compares no cases. Declare `compared` in its LESSON."
             )
         run = page_run(Path(self.env.srcdir), lesson)
-        if run.predicate is None:
+        predicate = shown_predicate(run)
+        if predicate is None:
             raise self.error(f"glance: {lesson} has no accepted run: {run.status.reason}")
         box = nodes.container(classes=["glance"], evidence_runs=(run.key,))
         camera = frames(run.folder, filmed(lesson), run.status.backend)
         last = (frame for frame in camera if frame.name == "final")
         for picture in (response(run.folder, compared), *last):
             box += figure(self, f"glance-{lesson}-{picture.name}", picture)
-        if run.predicate.render.mode != "camera":
+        if predicate.render.mode != "camera":
             box += nodes.paragraph("", "SKIP: rendering was off, so there is no camera frame.")
         return [box]
+
+
+def shown_predicate(run: Run) -> Predicate | None:
+    """Return what the manifest of a run that may be shown states, None for another run.
+
+    With the outputs of last runs, a stale run is shown. The lines of provenance give its state.
+    """
+    if run.status.code == "stale" and LAST_OUTPUTS in os.environ:
+        return read_manifest(run.folder).predicate
+    return run.predicate
 
 
 def response(folder: Path, compared: Compared | Moving) -> Picture:

@@ -80,7 +80,7 @@ def compared_cells(book: Path, docname: str) -> set[int] | None:
         return None
     page = next(page for page in find_pages(book) if page.docname == docname)
     places = [k for k, cell in enumerate(page.notebook.cells) if cell.cell_type == "code"]
-    ran = [cell for cell in executed_notebook(docname).cells if cell.cell_type == "code"]
+    ran = executed_notebook(docname, page.notebook).cells
     found = {}
     for place, cell in zip(places, ran, strict=True):
         shown = [output for output in cell.outputs if "data" in output]

@@ -38,7 +38,7 @@ class TakeawaysBox(SphinxDirective):
         self.env.note_dependency(self.env.doc2path(page.docname, base=False))
         try:
             found = write_takeaways(
-                page, executed_notebook(page.docname), run, files,
+                page, executed_notebook(page.docname, page.notebook), run, files,
                 lambda value: measured(*value.split(" ", 1))[0],
             )  # fmt: skip
         except (LookupError, ProseError, bundle.BundleRefused) as error:

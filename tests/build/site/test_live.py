@@ -1,7 +1,10 @@
 """`make live` on a tiny book: what the browser gets after good and bad edits."""
 
 import os
+import shutil
 import signal
+import subprocess
+import sys
 import time
 import urllib.error
 import urllib.request
@@ -10,7 +13,13 @@ from pathlib import Path
 
 import psutil
 import pytest
-from tiny_book import make_book, start
+from tiny_book import cell, fails, make_book, notebook, start
+
+from robo_genesis.build.page_folder import write_page
+from robo_genesis.build.page_store import places
+from robo_genesis.build.site.live import Live, LiveEndedError
+from robo_genesis.core.project import STORE
+from robo_genesis.lessons.book_pages import find_pages
 
 TEXT = "# Text\n\nFirst words.\n"
 
@@ -118,3 +127,96 @@ def test_invalid_settings_are_refused(tmp_path, settings, said):
     _, report = process.communicate(timeout=60)
     assert process.returncode == 1
     assert said in report
+
+
+def test_a_second_server_with_the_same_cache_is_refused_with_the_process(live):
+    report = fails("live.py", live.folder, PORT="0")
+    assert f"Another make live runs here:\nprocess {live.process.pid} since" in report
+
+
+def test_sphinx_is_started_again_after_it_was_killed_and_its_log_is_named(live):
+    begin = len(live.output())
+    for child in psutil.Process(live.process.pid).children():
+        child.kill()
+    (live.book / "text.md").write_text(TEXT + "\nWords without Sphinx.\n")
+    live.wait(lambda: "keeps the last good state" in live.output()[begin:])
+    assert f"Sphinx stopped. Log: {live.folder / 'cache/live/sphinx.log'}" in live.said[begin:]
+    (live.book / "text.md").write_text(TEXT + "\nWords with Sphinx.\n")
+    live.wait(lambda: "Words with Sphinx." in live.shown())
+
+
+def run_of(folder: Path, place: Path, code: str) -> None:
+    """Store a run of the page `page` with other code."""
+    [page] = find_pages(make_book(folder, page=notebook(cell(code))))
+    run = {"run_id": "0" * 32, "command": None, "seconds": 1.0, "cell_seconds": [1.0]}
+    write_page(place, page, page.notebook, folder, **run)
+
+
+@pytest.mark.parametrize(
+    ("stored", "shown"),
+    [({}, None), ({"a": "2"}, "a"), ({"a": "1", "b": "2"}, "a"), ({"a": "3", "b": "2"}, "b"),
+     ({"a": "1", "here": "1", "b": "1"}, "here")],
+    ids=["nothing", "other code", "its code, older", "the newest", "nothing changed"],
+)  # fmt: skip
+def test_the_run_of_the_same_code_is_shown_and_else_the_newest(tmp_path, stored, shown):
+    said: list[str] = []
+    book = make_book(tmp_path, page=notebook(cell("1")))
+    pages = find_pages(book)
+    place = places(pages, tmp_path / "cache" / STORE)["page"]
+    for second, (name, code) in enumerate(stored.items()):
+        folder = place if name == "here" else place.with_name(name)
+        run_of(tmp_path / "other", folder, code)
+        os.utime(folder, (second, second))
+    found = Live(book, tmp_path / "cache", said.append).built(pages).folders.get("page")
+    assert (found and ("here" if found == place else found.name)) == shown
+    assert ["EXECUTE=1 runs it" in line for line in said] == [True] * (shown != "here")
+
+
+def test_a_page_that_fails_is_reported_once_and_its_last_run_is_shown(tmp_path):
+    said: list[str] = []
+    book = make_book(tmp_path, page=notebook(cell("a = 1\nraise OSError('no robot')")))
+    pages = find_pages(book)
+    last = tmp_path / "cache" / STORE / "page" / "last"
+    run_of(tmp_path / "other", last, "2")
+    live = Live(book, tmp_path / "cache", said.append, execute=True)
+    assert [live.built(pages).folders for _ in range(2)] == [{"page": last}] * 2
+    begin, report, end = said
+    assert (begin, end.split(".")[0]) == (
+        "page: runs ...",
+        "page: the outputs of its last run are shown",
+    )
+    assert "page, code cell 1, line 11: raise OSError('no robot')" in report
+    assert "OSError: no robot" in report
+    assert "nothing was exported" not in report
+
+
+def test_what_starts_after_the_end_is_ended(tmp_path):
+    live = Live(make_book(tmp_path), tmp_path)
+    live.stop()
+    with pytest.raises(LiveEndedError):
+        live.start([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    assert live.started[0].returncode == -signal.SIGTERM
+
+
+def test_a_file_that_cannot_be_read_after_a_render_ends_nothing(tmp_path):
+    live = Live(make_book(tmp_path), tmp_path)
+    live.remember()
+    live.work.mkdir(parents=True)
+    (live.work / "executed-pages.json").write_text("{}")
+    (live.book / "_toc.yml").write_text("root: [")
+    live.remember()
+    shutil.rmtree(live.book)
+    live.remember()
+    assert not live.update(set())
+
+
+def test_shown_files_are_replaced_whole(tmp_path):
+    live = Live(make_book(tmp_path), tmp_path)
+    new, shown = (folder / "a.html" for folder in (live.work / "_build/html", live.site))
+    for path, text in ((new, "new"), (shown, "a longer old one")):
+        path.parent.mkdir(parents=True)
+        path.write_text(text)
+    with shown.open() as old:
+        live.show()
+        assert old.read() == "a longer old one"
+    assert [(path.name, path.read_text()) for path in live.site.iterdir()] == [("a.html", "new")]
