@@ -93,9 +93,10 @@ def stepped_joint(
     kv = joint.damping - passive
     q, qd = -step, 0.0
     path = [q]
+    inertia = joint.inertia + h * joint.damping
     for _ in range(steps):
         tau = min(max(-joint.kp * q - kv * qd, -limit), limit)
-        qd += h * (tau - passive * qd - gravity) / (joint.inertia + h * joint.damping)
+        qd += h * (tau - passive * qd - gravity) / inertia
         q += h * qd
         path.append(q)
     return np.array(path)
