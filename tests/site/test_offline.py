@@ -25,6 +25,7 @@ def test_search_finds_a_page_and_says_nothing_wrong(browser, base):
     problems = watch(page)
     page.goto(f"{base}/search.html?q=overshoot")
     page.wait_for_selector("#search-results li a")
+    page.wait_for_load_state("networkidle")  # leaving would stop the requests for summaries
     links = page.locator("#search-results li a").evaluate_all("links => links.map(a => a.href)")
     assert any("/lessons/l04-joint-control/lecture.html" in link for link in links)
     page.goto(next(link for link in links if "lecture.html" in link))
