@@ -22,14 +22,12 @@ LAST_OUTPUTS = "ROBO_GENESIS_LAST_OUTPUTS"
 class BuiltPages(Strict):
     """A file that the environment names.
 
-    `folders` has the folder in the store of each executed page by name, `outputs` the files that
-    the run of each measuring page left, by `lesson/page`, and `executed` the names of the pages
-    that this build ran.
+    `folders` has the folder in the store of each executed page by name, and `outputs` the files
+    that the run of each measuring page left, by `lesson/page`.
     """
 
     folders: dict[str, Path] = Field(default_factory=dict)
     outputs: dict[str, Path] = Field(default_factory=dict)
-    executed: list[str] = Field(default_factory=list)
 
     @classmethod
     def of(cls, results: Iterable[PageResult]) -> Self:
@@ -41,8 +39,6 @@ class BuiltPages(Strict):
             found.folders[page.docname] = folder
             if page.declares_bundle:
                 found.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
-            if result.status == "executed":
-                found.executed.append(page.docname)
         return found
 
     def write(self, path: Path) -> dict[str, str]:

@@ -33,6 +33,7 @@ from robo_genesis.build.site.archive import pack
 from robo_genesis.build.site.checks import check_site
 from robo_genesis.build.site.publish import publish
 from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sphinx_process import SphinxProcess
 from robo_genesis.build.site.sums import write_sums
 from robo_genesis.build.verification import verify_results
 from robo_genesis.core import project
@@ -40,7 +41,7 @@ from robo_genesis.core.files import locked, settle
 from robo_genesis.core.git import unclean
 from robo_genesis.evidence import bundle_store
 from robo_genesis.evidence.status import refused_records
-from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.evidence.verify import verify_bundle, verify_once
 from robo_genesis.lessons.book_pages import Page, find_pages
 
 
@@ -86,16 +87,21 @@ def run_build(build: Build) -> list[str]:
         StoreError: pages that were executed elsewhere are refused; nothing was published.
         ProjectError: the checkout or SITE_URL is not fit for a build.
     """
-    with build_lock(build.cache), staging_folder(build.cache) as staging:
+    with (
+        build_lock(build.cache),
+        staging_folder(build.cache) as staging,
+        SphinxProcess(build.book, build.cache / "render.log") as sphinx,
+    ):
         target = build.to or build.book
         settle(target / project.PUBLISHED)
         bundle_store.recover(build.book / "evidence")
         inputs = up_to_date.inputs_digest(build.root, build.book)
         progress = Progress(build.say)
-        site_address()  # refused here, because rendering would fail only after minutes
         npm.require_published()
         engine, pages, into = _prepare(build)
-        verify = build.verify or partial(verify_bundle, book=build.book)
+        from_nothing = build.release or build.executed or site_address()
+        recompute = verify_bundle if from_nothing else verify_once
+        verify = build.verify or partial(recompute, book=build.book)
         if build.release:
             _require_for_release(unclean(build.root))
         if build.executed:
@@ -111,9 +117,8 @@ def run_build(build: Build) -> list[str]:
             progress("release", "clean tree, current evidence")
         progress("render", "all pages")
         built = BuiltPages.of(results)
-        from_nothing = build.release or build.executed or site_address()
         kept = None if from_nothing else build.cache / project.KEPT
-        html = render(build.book, staging, built, build.cache / "render.log", kept)
+        html = render(sphinx, staging, built, kept)
         progress("pack", pack(html).name)
         progress("sums", write_sums(html).name)  # last of the site's files; the checks look for it
         checked = _check(html, progress)
@@ -126,7 +131,8 @@ def run_build(build: Build) -> list[str]:
 
         html = publish(target, html, results, finish)  # last: after it, nothing may fail
         progress("publish", str(html))
-        return [f"Site: {html / 'index.html'}", *summary(executed=len(built.executed))]
+        ran = sum(result.status == "executed" for result in results)
+        return [f"Site: {html / 'index.html'}", *summary(executed=ran)]
 
 
 @contextmanager

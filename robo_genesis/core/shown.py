@@ -9,11 +9,10 @@ import json
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from inspect import isfunction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from matplotlib.figure import Figure
-
-from robo_genesis.core import plotting
+if TYPE_CHECKING:  # a build without new runs draws nothing
+    from matplotlib.figure import Figure
 
 PLACES = ("robo_genesis.lessons.", "robo_genesis.core.")
 """The modules that may hold such functions."""
@@ -101,6 +100,10 @@ def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str,
     Raises:
         ShownError: the name is not valid, or the result is neither a text nor a figure.
     """
+    from matplotlib.figure import Figure
+
+    from robo_genesis.core import plotting
+
     function = find(name)
     with plotting.course_style():
         result = function(experiment, *arguments)
@@ -113,7 +116,7 @@ def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str,
     )
 
 
-def _svg(figure: Figure) -> str:
+def _svg(figure: "Figure") -> str:
     stream = io.StringIO()
     figure.savefig(
         stream, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None}

@@ -1,7 +1,7 @@
 """The state of evidence; only this module decides it."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -106,6 +106,7 @@ def bundle_status(
     *,
     root: Path = project.ROOT,
     cpu_runs: Sequence[Path] = (),
+    verify: Callable[..., Manifest] = verify_bundle,
 ) -> Status:
     """Return the state of the bundle in a folder that is named after its backend.
 
@@ -117,6 +118,7 @@ def bundle_status(
         book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
         cpu_runs: bundles of CPU runs, of which one of an accelerator must not be a copy.
+        verify: `verify_bundle`, or `verify_once`.
 
     Raises:
         ProjectError, PageError: the checkout itself cannot be read.
@@ -125,7 +127,7 @@ def bundle_status(
     if not os.path.lexists(folder):
         return Status("missing", backend, absent, None)
     try:
-        manifest = verify_bundle(folder, lesson=lesson, page=page, root=root, book=book)
+        manifest = verify(folder, lesson=lesson, page=page, root=root, book=book)
         copies.require_own_run(folder, cpu_runs)
     except BundleRefused as refusal:
         code = refusal.code

@@ -1,11 +1,13 @@
 """Accept or refuse a bundle: whatever can be recomputed from its arrays is recomputed."""
 
+import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from robo_genesis.core import project
 from robo_genesis.core.checks import Check, Value
+from robo_genesis.core.files import derived
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, shown
 from robo_genesis.evidence import bundle, bundle_files, evidence_key, manifest_rules
 from robo_genesis.evidence.bundle import Manifest, Metric
@@ -62,6 +64,55 @@ def verify_bundle(
     experiment = from_bundle(folder, manifest, metrics)
     check_metrics(metrics, experiment)
     check_outcomes(manifest, experiment.outcomes())
+    return as_judged_today(manifest)
+
+
+def verify_once(
+    folder: Path,
+    run_id: str | None = None,
+    *,
+    lesson: str | None = None,
+    page: str | None = None,
+    root: Path = project.ROOT,
+    book: Path = project.BOOK,
+) -> Manifest:
+    """Check one bundle as `verify_bundle` does, but recompute an accepted one only once.
+
+    The acceptance is kept for the content of all files of the bundle, the question that it answers
+    today, and the course's code. A refusal is not kept.
+
+    Args:
+        folder: see `verify_bundle`, as for the others.
+        run_id: the required run.
+        lesson: the required lesson.
+        page: the required page.
+        root: the checkout.
+        book: the folder of the pages.
+
+    Returns:
+        The accepted manifest; its checks have today's verdicts.
+
+    Raises:
+        BundleRefused, ProjectError, PageError: see `verify_bundle`.
+    """
+    present = bundle_files.scan(folder)
+    manifest = bundle.read_manifest(folder)
+    manifest_rules.check_identity(manifest, run_id, lesson, page)
+    predicate = manifest.predicate
+    question = evidence_key.question(predicate.lesson, predicate.page, root, book)
+    names = sorted(present)
+    code = sorted((project.ROOT / "robo_genesis").rglob("*.py"))
+    inputs = [
+        json.dumps([folder.name, str(root), names, question], sort_keys=True).encode(),
+        *((folder / name).read_bytes() for name in names),
+        *(path.read_bytes() for path in code),
+    ]
+
+    def verify() -> bytes:
+        verify_bundle(folder, root=root, book=book)
+        return b"accepted"
+
+    derived("accepted", inputs, verify)
     return as_judged_today(manifest)
 
 

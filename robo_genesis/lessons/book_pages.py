@@ -2,11 +2,13 @@
 
 import hashlib
 import json
+import pickle
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import cast
 
 import yaml
 from IPython.core.inputtransformer2 import TransformerManager
@@ -14,6 +16,7 @@ from myst_nb.core.read import is_myst_markdown_notebook, myst_nb_reader_plugin
 from nbformat import NotebookNode
 from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
+from robo_genesis.core.files import derived
 from robo_genesis.core.project import ProjectError
 from robo_genesis.lessons.sources import PACKAGE, cell_digest
 
@@ -115,8 +118,11 @@ def _notebook(name: str, path: Path) -> NotebookNode | None:
 
 @lru_cache(maxsize=64)
 def _parsed(path: Path, text: str) -> NotebookNode:
-    """Return a page as a notebook; a build needs each page several times."""
-    return myst_nb_reader_plugin(str(path))
+    """Return a page as a notebook; a build needs each page several times, in two processes."""
+    read = derived(
+        "parsed", [text.encode()], lambda: pickle.dumps(myst_nb_reader_plugin(str(path)))
+    )
+    return cast(NotebookNode, pickle.loads(read))
 
 
 def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None]:

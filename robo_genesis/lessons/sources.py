@@ -19,6 +19,7 @@ from itertools import accumulate
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from robo_genesis.core.files import derived
 from robo_genesis.core.project import (
     ROOT,
     environment_contract,
@@ -59,11 +60,15 @@ def syntax_digest(source: str) -> str:
     Args:
         source: Python. One that does not parse counts by its text.
     """
-    try:
-        tree = ast.parse(source)
-    except (SyntaxError, ValueError):
-        return _sha256(source)
-    return _sha256(_canonical(tree))
+
+    def make() -> bytes:
+        try:
+            tree = ast.parse(source)
+        except (SyntaxError, ValueError):
+            return _sha256(source).encode()
+        return _sha256(_canonical(tree)).encode()
+
+    return derived("syntax", [source.encode(), _own_source()], make).decode()
 
 
 @lru_cache(maxsize=1024)
@@ -149,17 +154,22 @@ def imported_names(source: str, package: str = "") -> tuple[str, ...]:
         source: Python. One that does not parse imports nothing: its page fails when it is executed.
         package: the package of the source, to which relative imports refer.
     """
-    names: list[str] = []
-    try:
-        for node in ast.walk(ast.parse(source)):
-            if isinstance(node, ast.Import):
-                names += [alias.name for alias in node.names]
-            elif isinstance(node, ast.ImportFrom):
-                base = resolve_name("." * node.level + (node.module or ""), package)
-                names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
-    except (SyntaxError, ValueError, ImportError):
-        return ()
-    return tuple(name for name in names if name.split(".")[0] == PACKAGE)
+
+    def make() -> bytes:
+        names: list[str] = []
+        try:
+            for node in ast.walk(ast.parse(source)):
+                if isinstance(node, ast.Import):
+                    names += [alias.name for alias in node.names]
+                elif isinstance(node, ast.ImportFrom):
+                    base = resolve_name("." * node.level + (node.module or ""), package)
+                    names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
+        except (SyntaxError, ValueError, ImportError):
+            return b""
+        return " ".join(name for name in names if name.split(".")[0] == PACKAGE).encode()
+
+    inputs = [source.encode(), package.encode(), _own_source()]
+    return tuple(derived("imports", inputs, make).decode().split())
 
 
 def imports_of(sources: Iterable[str]) -> list[str]:
@@ -284,6 +294,11 @@ def page_fingerprint(
         },
     }
     return _sha256(parts)[:20]
+
+
+@lru_cache(maxsize=1)
+def _own_source() -> bytes:
+    return Path(__file__).read_bytes()
 
 
 @lru_cache(maxsize=1)

@@ -1,6 +1,6 @@
 """The time that each page's code cells took: ```` ```{cell-times} ````.
 
-The store of executed pages holds the seconds of each cell. The build names the pages that it ran.
+The store of executed pages holds the seconds of each cell.
 """
 
 import os
@@ -10,7 +10,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.built_pages import LAST_OUTPUTS, built_pages, page_record
+from robo_genesis.build.built_pages import LAST_OUTPUTS, page_record
 from robo_genesis.core import tables
 from robo_genesis.lessons.book_pages import Page, find_pages
 
@@ -20,15 +20,13 @@ class CellTimes(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Return the table; a page without recorded times is an error of the build."""
-        self.env.note_reread()  # which pages a build runs decides the table
-        executed = built_pages().executed
         rows = []
         for page in find_pages(Path(self.env.srcdir)):
             try:
                 seconds = cell_seconds(page)
             except LookupError as error:
                 raise self.error(f"cell-times: {error}") from error
-            rows.append(row(page.docname, seconds, page.docname in executed))
+            rows.append(row(page.docname, seconds))
         return self.parse_text_to_nodes(tables.markdown(rows))
 
 
@@ -52,7 +50,7 @@ def cell_seconds(page: Page) -> list[float]:
     return seconds
 
 
-def row(docname: str, seconds: list[float], executed: bool) -> dict[str, str | int]:
+def row(docname: str, seconds: list[float]) -> dict[str, str | int]:
     """Return one row of the table; cells are counted from 1, times are in seconds."""
     slowest = max(range(len(seconds)), key=seconds.__getitem__)
     return {
@@ -61,7 +59,6 @@ def row(docname: str, seconds: list[float], executed: bool) -> dict[str, str | i
         "all cells [s]": f"{sum(seconds):.1f}",
         "slowest cell": slowest + 1,
         "its time [s]": f"{seconds[slowest]:.1f}",
-        "in this build": "executed" if executed else "from the store",
     }
 
 

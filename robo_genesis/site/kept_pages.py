@@ -5,7 +5,6 @@ A page depends on its own source, on what is the same for all pages, and on this
 | while it is read | what happens |
 |---|---|
 | another page's source, included or read by a directive (`note_dependency`) | it is read again |
-| whether this build ran a page (`cell-times`) | read again each time (`note_reread`) |
 
 | while it is written | what happens |
 |---|---|

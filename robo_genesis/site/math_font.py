@@ -7,7 +7,6 @@ comes with the first frame, so that nothing moves, and a page opened from disk m
 
 import base64
 import io
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,7 @@ from fontTools.ttLib import TTFont
 from sphinx.application import Sphinx
 
 from robo_genesis.build import npm
+from robo_genesis.core.files import derived
 
 PACKAGE = "@fontsource/stix-two-math"
 FILE = f"{PACKAGE}/files/stix-two-math-latin-400-normal.woff"
@@ -43,10 +43,15 @@ def missing(text: str) -> str:
     return "".join(sorted(set(text) - SHOWN - ITALIC - set("\n")))
 
 
-@cache
 def font() -> bytes:
     """Return the part of the font for `SHOWN` as WOFF; the same bytes each time."""
-    whole = TTFont(io.BytesIO(npm.published(FILE)), recalcTimestamp=False)
+    whole = npm.published(FILE)
+    return derived("font", [whole, Path(__file__).read_bytes()], lambda: cut(whole))
+
+
+def cut(font: bytes) -> bytes:
+    """Return the part of a font for `SHOWN` as WOFF."""
+    whole = TTFont(io.BytesIO(font), recalcTimestamp=False)
     options = subset.Options(
         layout_features=["ssty"],  # the forms for superscripts
         drop_tables=["GPOS", "GDEF", "gasp"],
@@ -55,9 +60,9 @@ def font() -> bytes:
         glyph_names=False,
         notdef_outline=True,
     )
-    cut = subset.Subsetter(options)
-    cut.populate(unicodes=map(ord, SHOWN | ITALIC))
-    cut.subset(whole)
+    subsetter = subset.Subsetter(options)
+    subsetter.populate(unicodes=map(ord, SHOWN | ITALIC))
+    subsetter.subset(whole)
     whole.flavor = "woff"
     stream = io.BytesIO()
     whole.save(stream)

@@ -1,13 +1,21 @@
 """Changes each written page last: it becomes accessible and loads only the files that it needs."""
 
+import re
+from html import unescape
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote, urlsplit
 
 from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
 
+from robo_genesis.core.files import derived
+from robo_genesis.site import accessibility, page_weight
 from robo_genesis.site.accessibility import make_accessible
 from robo_genesis.site.page_weight import drop_unused_files, reduce_weight
+
+IMAGE = re.compile(r"""<img\b[^>]*?\bsrc="([^"]+)\"""")
+"""A picture of a page; a finished page contains its size."""
 
 
 def note_page(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
@@ -38,10 +46,19 @@ def finish_page(html: str, folder: Path) -> str:
         html: the page as the theme wrote it.
         folder: the folder that the page's addresses are relative to.
     """
-    page = BeautifulSoup(html, "html.parser")
-    make_accessible(page)
-    reduce_weight(page, folder)
-    return str(page)
+
+    def make() -> bytes:
+        page = BeautifulSoup(html, "html.parser")
+        make_accessible(page)
+        reduce_weight(page, folder)
+        return str(page).encode()
+
+    images = [folder / unquote(urlsplit(unescape(src)).path) for src in IMAGE.findall(html)]
+    sources = (Path(module.__file__ or "") for module in (accessibility, page_weight))
+    files = [path for path in (*images, *sources, Path(__file__)) if path.is_file()]
+    return derived(
+        "finished", [html.encode(), *(path.read_bytes() for path in files)], make
+    ).decode()
 
 
 def setup(app: Sphinx) -> None:

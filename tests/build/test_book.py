@@ -277,7 +277,7 @@ def test_sphinx_ends_with_a_killed_build_and_the_next_build_removes_what_it_left
     marker, pipe, cache = published_marker(book), book / "pipe", tmp_path / "cache"
     os.mkfifo(pipe)
     process = start("book.py", tmp_path)
-    wait_for(process, cache / "render.log")
+    wait_for(process, cache / "render/executed-pages.json")
     (left,) = cache.glob("staging*")
     below = psutil.Process(process.pid).children(recursive=True)
     process.kill()

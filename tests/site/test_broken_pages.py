@@ -11,7 +11,8 @@ from robo_genesis.build.execute import execute_pages
 from robo_genesis.build.page_folder import write_page
 from robo_genesis.build.page_results import PageResult
 from robo_genesis.build.page_store import places
-from robo_genesis.build.site.render import RenderError, render
+from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sphinx_process import RenderError, SphinxProcess
 from robo_genesis.lessons.book_pages import find_pages
 from robo_genesis.site import course_map, glossary
 
@@ -105,7 +106,9 @@ def report(tmp_path_factory):
     write_page(folder / "store/timed", timed, timed.notebook, folder, **run)
     results.append(PageResult(timed, "reused", 0.0, "0" * 32, folder=folder / "store/timed"))
     with pytest.raises(RenderError) as caught:
-        render(book, folder / "staging", BuiltPages.of(results), folder / "render.log")
+        render(
+            SphinxProcess(book, folder / "render.log"), folder / "staging", BuiltPages.of(results)
+        )
     assert str(folder / "render.log") in str(caught.value)
     return str(caught.value)
 

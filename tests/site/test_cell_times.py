@@ -9,12 +9,13 @@ from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.page_folder import write_page
 from robo_genesis.build.page_results import PageResult
 from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sphinx_process import SphinxProcess
 from robo_genesis.lessons.book_pages import find_pages
 
 SECONDS = {"page": [0.26, 12.345, 3.0], "other": [2.0]}
 
 
-def test_a_row_shows_rounded_times_the_slowest_cell_and_whether_this_build_ran_the_page(tmp_path):
+def test_a_row_shows_rounded_times_and_the_slowest_cell(tmp_path):
     pages = {
         "page": notebook(cell("1"), cell("2"), cell(""), cell("3")),
         "other": notebook(cell("4"), title="Other"),
@@ -26,13 +27,12 @@ def test_a_row_shows_rounded_times_the_slowest_cell_and_whether_this_build_ran_t
         ran, place = deepcopy(found.notebook), tmp_path / "store" / found.docname
         ran.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
         write_page(place, found, ran, tmp_path, cell_seconds=SECONDS[found.docname], **run)
-        status = "executed" if found.docname == "other" else "reused"
-        results.append(PageResult(found, status, 0.0, "0" * 32, folder=place))
+        results.append(PageResult(found, "reused", 0.0, "0" * 32, folder=place))
     built = BuiltPages.of(results)
-    html = render(book, tmp_path / "staging", built, tmp_path / "render.log")
+    html = render(SphinxProcess(book, tmp_path / "render.log"), tmp_path / "staging", built)
     table = parsed(html, "times").select_one("tbody")
     assert [[c.get_text(strip=True) for c in row.select("td")] for row in table.select("tr")] == [
-        ["Page", "3", "15.6", "2", "12.3", "from the store"],
-        ["Other", "1", "2.0", "1", "2.0", "executed"],
+        ["Page", "3", "15.6", "2", "12.3"],
+        ["Other", "1", "2.0", "1", "2.0"],
     ]
     assert [a["href"] for a in table.select("a")] == ["page.html", "other.html"]

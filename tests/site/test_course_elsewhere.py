@@ -15,6 +15,7 @@ from spoilers import TORCH, edit, measured_elsewhere, own_run_id, part, predicat
 from robo_genesis.build.site.archive import pack
 from robo_genesis.build.site.checks import check_site
 from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sphinx_process import SphinxProcess
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence import bundle
 
@@ -90,7 +91,7 @@ def html(site, tmp_path_factory):
             on(backend, there)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SITE_URL", ADDRESS.rstrip("/"))
-        html = render(book, folder / "staging", built, folder / "render.log")
+        html = render(SphinxProcess(book, folder / "render.log"), folder / "staging", built)
     pack(html)
     return html
 

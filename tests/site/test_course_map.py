@@ -7,6 +7,7 @@ from tiny_book import make_book
 
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sphinx_process import SphinxProcess
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.site.course_map import FILE, CourseMapError, Lesson, read_map
@@ -83,7 +84,7 @@ def html(tmp_path_factory):
     pages |= {"featured": f"Map\n\n{FEATURED}"}
     book = make_book(folder, **{name: f"# {text}\n\nText.\n" for name, text in pages.items()})
     write(book, MAP)
-    return render(book, folder / "staging", BuiltPages(), folder / "render.log")
+    return render(SphinxProcess(book, folder / "render.log"), folder / "staging", BuiltPages())
 
 
 def test_a_card_a_lesson_with_prerequisites_and_state(html):

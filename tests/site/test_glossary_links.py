@@ -6,6 +6,7 @@ from tiny_book import make_book
 
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sphinx_process import SphinxProcess
 from robo_genesis.site import glossary
 
 GLOSSARY = """\
@@ -50,7 +51,7 @@ def html(tmp_path_factory):
     folder = tmp_path_factory.mktemp("terms")
     book = make_book(folder, glossary=GLOSSARY, page=PAGE)
     (book / glossary.FORMS).write_text(FORMS)
-    return render(book, folder / "staging", BuiltPages(), folder / "render.log")
+    return render(SphinxProcess(book, folder / "render.log"), folder / "staging", BuiltPages())
 
 
 def links(html, name):

@@ -9,6 +9,7 @@ from tiny_book import git, make_book
 
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sphinx_process import SphinxProcess
 from robo_genesis.site import page_facts as facts
 from robo_genesis.site.multiple_choice import choice
 
@@ -94,7 +95,7 @@ def test_an_unknown_history_has_its_reason(checkout, tmp_path):
 def test_a_page_has_all_three_and_the_home_page_no_time(tmp_path):
     text = "# Page\n\n- no paragraph\n\nA joint's *step* & more. " + "word " * 100
     book = make_book(tmp_path, page=text)
-    html = render(book, tmp_path / "staging", BuiltPages(), tmp_path / "render.log")
+    html = render(SphinxProcess(book, tmp_path / "render.log"), tmp_path / "staging", BuiltPages())
     page, home = parsed(html, "page"), parsed(html, "index")
     assert "About 1 min to read." in page.select_one("h1 + p.page-facts").get_text()
     assert not home.select(".page-facts")

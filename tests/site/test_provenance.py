@@ -11,6 +11,7 @@ from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.execute import execute_pages
 from robo_genesis.build.page_store import places
 from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sphinx_process import SphinxProcess
 from robo_genesis.evidence.status import Status
 from robo_genesis.lessons.book_pages import find_pages
 from robo_genesis.site.evidence.measured import badge_node
@@ -98,7 +99,9 @@ def html(tmp_path_factory):
     pages = find_pages(book)
     results = execute_pages(pages, places(pages, folder / "store"))
     assert [result.status for result in results] == ["executed"] * 2
-    return render(book, folder / "staging", BuiltPages.of(results), folder / "render.log")
+    return render(
+        SphinxProcess(book, folder / "render.log"), folder / "staging", BuiltPages.of(results)
+    )
 
 
 def lines_and_rows(html, name):

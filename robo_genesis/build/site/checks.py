@@ -1,14 +1,16 @@
 """Checks on the built site that need no browser: links, alt texts, scripts, leftovers."""
 
+import json
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urldefrag, urlsplit
 
 from bs4 import BeautifulSoup, Tag
 
 from robo_genesis.build.site import scripts
+from robo_genesis.core.files import derived
 
 ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
 # A link of these kinds names a page for readers or crawlers; the browser does not load it.
@@ -34,27 +36,73 @@ class SiteCheck:
     problems: tuple[str, ...]
 
 
+@dataclass(frozen=True, slots=True)
+class PageFacts:
+    """What the checks use of one page; a page is parsed again only when it or a check changed.
+
+    An address of `addresses` comes with whether the browser itself asks for it. The problems and
+    `leftovers` are whole lines without the name of the page.
+    """
+
+    anchors: list[str]
+    addresses: list[tuple[str, bool]]
+    styles: list[str]
+    inline_addresses: list[str]
+    images: int
+    alt_problems: list[str]
+    scripts: int
+    script_problems: list[str]
+    leftovers: list[str]
+
+
 class Site:
-    """The files of a built site, each page parsed and walked once."""
+    """The files of a built site, and the facts of each page."""
 
     def __init__(self, html: Path, base: str = "/"):
         self.root, self.base = html.resolve(), base
-        self.texts = {p: p.read_text("utf8") for p in sorted(self.root.rglob("*.html"))}
-        self.pages = {p: BeautifulSoup(text, "html.parser") for p, text in self.texts.items()}
-        self.anchors: dict[Path, set[str]] = {}
-        self.addresses: list[tuple[Path, Tag, str]] = []
-        self.styles = [(path, path.read_text("utf8")) for path in sorted(self.root.rglob("*.css"))]
-        for path, page in self.pages.items():
-            tags = page.find_all(True)
-            names = (tag.get(name) for tag in tags for name in ("id", "name"))
-            self.anchors[path] = {str(name) for name in names if name}
-            self.addresses += [(path, tag, url) for tag in tags for url in _addresses(tag)]
-            self.styles += [(path, tag.get_text()) for tag in tags if tag.name == "style"]
-            self.styles += [(path, str(tag["style"])) for tag in tags if tag.has_attr("style")]
+        self.pages = {path: self._facts(path) for path in sorted(self.root.rglob("*.html"))}
+        self.anchors = {path: set(page.anchors) for path, page in self.pages.items()}
+        self.style_addresses = [
+            (path, url) for path, page in self.pages.items() for url in page.styles
+        ]
+        for path in sorted(self.root.rglob("*.css")):
+            self.style_addresses += [(path, url) for url in _in_style(path.read_text("utf8"))]
+
+    def _facts(self, path: Path) -> PageFacts:
+        text = path.read_text("utf8")
+        place = json.dumps([self.name(path), self.base]).encode()
+        sources = (Path(module).read_bytes() for module in (__file__, scripts.__file__))
+
+        def make() -> bytes:
+            parsed = BeautifulSoup(text, "html.parser")
+            page = scripts.Page(self.root, self.base, path, parsed, text)
+            return json.dumps(asdict(page_facts(page))).encode()
+
+        return PageFacts(**json.loads(derived("checked", [text.encode(), place, *sources], make)))
 
     def name(self, path: Path) -> str:
         """Return a file's name for messages."""
         return path.relative_to(self.root).as_posix()
+
+
+def page_facts(page: scripts.Page) -> PageFacts:
+    """Return what the checks use of a page."""
+    tags = page.parsed.find_all(True)
+    names = (tag.get(name) for tag in tags for name in ("id", "name"))
+    style = [tag.get_text() for tag in tags if tag.name == "style"]
+    style += [str(tag["style"]) for tag in tags if tag.has_attr("style")]
+    inline = page.parsed.find_all("script", src=False)
+    return PageFacts(
+        anchors=sorted({str(name) for name in names if name}),
+        addresses=[(url, _is_loaded(tag)) for tag in tags for url in _addresses(tag)],
+        styles=[url for text in style for url in _in_style(text)],
+        inline_addresses=[url for tag in inline for url in SCRIPT_ADDRESS.findall(tag.get_text())],
+        images=len(page.parsed.find_all("img")),
+        alt_problems=list(_alt_problems(page.parsed)),
+        scripts=len(page.parsed.find_all("script")),
+        script_problems=sorted(set(scripts.page_problems(page))),
+        leftovers=list(_leftovers(page.parsed)),
+    )
 
 
 def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
@@ -71,7 +119,8 @@ def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
 
 def check_links(site: Site) -> SiteCheck:
     """Every address inside the site leads to a file, and every fragment to an element."""
-    found = [(path, url) for path, _, url in site.addresses] + _style_addresses(site)
+    found = [(path, url) for path, page in site.pages.items() for url, _ in page.addresses]
+    found += site.style_addresses
     inside = [(path, url) for path, url in found if not urlsplit(url).scheme and url[:2] != "//"]
     problems = {
         f"{site.name(path)}: {url!r} {reason}"
@@ -100,51 +149,56 @@ def _broken(site: Site, page: Path, url: str) -> str | None:
 
 def check_alt_texts(site: Site) -> SiteCheck:
     """Every image has an alternative text that is neither empty nor a file name nor a hash."""
-    images = [(path, image) for path, page in site.pages.items() for image in page.find_all("img")]
-    problems = []
-    for path, image in images:
-        text, source = (str(image.get(name) or "").strip() for name in ("alt", "src"))
-        if not text or FILE_NAME.match(text) or text == PurePosixPath(urlsplit(source).path).stem:
-            problems.append(f"{site.name(path)}: {source} has the alt text {image.get('alt')!r}.")
-    return SiteCheck("alt texts", len(images), tuple(problems))
+    problems = _lines(site, {path: page.alt_problems for path, page in site.pages.items()})
+    return SiteCheck("alt texts", sum(page.images for page in site.pages.values()), problems)
 
 
 def check_third_parties(site: Site) -> SiteCheck:
     """Nothing is loaded from another address; links that a reader may follow are allowed."""
-    found = [(path, url) for path, tag, url in site.addresses if _is_loaded(tag)]
-    found += _style_addresses(site) + _script_addresses(site)
+    found = [
+        (path, url)
+        for path, page in site.pages.items()
+        for url in [
+            *(url for url, is_loaded in page.addresses if is_loaded),
+            *page.inline_addresses,
+        ]
+    ]
+    found += site.style_addresses + _services(site)
     problems = sorted({f"{site.name(path)}: {url}" for path, url in found if ELSEWHERE.match(url)})
     return SiteCheck("third parties", len(found), tuple(problems))
 
 
 def check_scripts(site: Site) -> SiteCheck:
     """The site runs the scripts of the theme and of the course only; see `scripts`."""
-    pages = [
-        scripts.Page(site.root, site.base, path, page, site.texts[path])
-        for path, page in site.pages.items()
-    ]
-    problems = {
-        f"{site.name(page.path)}: {line}" for page in pages for line in scripts.page_problems(page)
-    }
-    number = sum(len(page.parsed.find_all("script")) for page in pages)
-    found = (*sorted(problems), *scripts.file_problems(site.root))
-    return SiteCheck("scripts", number, found)
+    problems = _lines(site, {path: page.script_problems for path, page in site.pages.items()})
+    number = sum(page.scripts for page in site.pages.values())
+    return SiteCheck("scripts", number, (*problems, *scripts.file_problems(site.root)))
 
 
 def check_leftovers(site: Site) -> SiteCheck:
     """No page shows unprocessed markup, or an error of the page generator."""
-    problems: list[str] = []
-    for path, page in site.pages.items():
-        found = [
-            tag.get_text(" ", strip=True) for tag in page.select(".system-message, .problematic")
-        ]
-        found += [
-            text.strip()
-            for text in (page.select_one("article") or page).find_all(string=LEFTOVERS)
-            if not text.find_parent(["pre", "code", "script", "style"])
-        ]
-        problems += [f"{site.name(path)}: {text[:80]!r}" for text in found]
-    return SiteCheck("leftovers", len(site.pages), tuple(problems))
+    problems = _lines(site, {path: page.leftovers for path, page in site.pages.items()})
+    return SiteCheck("leftovers", len(site.pages), problems)
+
+
+def _lines(site: Site, found: Mapping[Path, Sequence[str]]) -> tuple[str, ...]:
+    """Return problems with the names of their pages."""
+    return tuple(f"{site.name(path)}: {line}" for path in found for line in found[path])
+
+
+def _alt_problems(page: BeautifulSoup) -> Iterator[str]:
+    for image in page.find_all("img"):
+        text, source = (str(image.get(name) or "").strip() for name in ("alt", "src"))
+        if not text or FILE_NAME.match(text) or text == PurePosixPath(urlsplit(source).path).stem:
+            yield f"{source} has the alt text {image.get('alt')!r}."
+
+
+def _leftovers(page: BeautifulSoup) -> Iterator[str]:
+    for tag in page.select(".system-message, .problematic"):
+        yield repr(tag.get_text(" ", strip=True)[:80])
+    for text in (page.select_one("article") or page).find_all(string=LEFTOVERS):
+        if not text.find_parent(["pre", "code", "script", "style"]):
+            yield repr(text.strip()[:80])
 
 
 def _addresses(tag: Tag) -> Iterator[str]:
@@ -161,33 +215,21 @@ def _is_loaded(tag: Tag) -> bool:
     return tag.name not in ("a", "area") and not (tag.name == "link" and kinds & NOT_LOADED)
 
 
-def _style_addresses(site: Site) -> list[tuple[Path, str]]:
-    """Return the addresses in style sheets, style elements and style attributes."""
-    return [
-        (path, url)
-        for path, text in site.styles
-        for url in CSS_ADDRESS.findall(CSS_COMMENT.sub("", text))
-        if url[:1] != "#"
-    ]
+def _in_style(text: str) -> list[str]:
+    """Return the addresses in a style sheet, style element or style attribute."""
+    return [url for url in CSS_ADDRESS.findall(CSS_COMMENT.sub("", text)) if url[:1] != "#"]
 
 
-def _script_addresses(site: Site) -> list[tuple[Path, str]]:
-    """Return addresses of our pages' inline scripts, and those of known services in files.
+def _services(site: Site) -> list[tuple[Path, str]]:
+    """Return the addresses of known services in script files.
 
     Script files of the theme contain addresses in licence notes and messages, and their text does
     not show which ones they load; so files are searched for the usual services only.
     """
-    inline = [
-        (path, url)
-        for path, page in site.pages.items()
-        for tag in page.find_all("script", src=False)
-        for url in SCRIPT_ADDRESS.findall(tag.get_text())
-    ]
-    files = [
+    return [
         (path, url)
         for path in sorted(site.root.rglob("*.js"))
         if path.name != "searchindex.js"
         for url in SCRIPT_ADDRESS.findall(path.read_text("utf8", errors="replace"))
         if SERVICES.search(url)
     ]
-    return inline + files

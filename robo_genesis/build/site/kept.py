@@ -41,8 +41,8 @@ def read_state(book: Path, built: BuiltPages, root: Path = ROOT) -> State:
 
     Args:
         book: the folder of the pages.
-        built: the executed pages. Whether this build ran them is not in the state: the one
-            directive that shows it reads its page again each time.
+        built: the executed pages. Whether this build ran them is not in the state: no page shows
+            it.
         root: the checkout.
     """
     names = [name.removesuffix(".md") for name in docnames(book / "_toc.yml")]

@@ -14,7 +14,8 @@ from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.page_folder import NOTEBOOK, RECORD
 from robo_genesis.build.site import kept
 from robo_genesis.build.site.kept import State
-from robo_genesis.build.site.render import RenderError, render
+from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sphinx_process import RenderError, SphinxProcess
 from robo_genesis.lessons.book_pages import find_pages
 
 GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
@@ -30,7 +31,9 @@ SOME = State("a", {"one": "1", "two": "2"})
 def publish(folder: Path, built: BuiltPages, keep: bool = True) -> dict[str, bytes]:
     """Render a book and return its files."""
     kept_folder = folder / "kept" if keep else None
-    html = render(folder / "book", folder / "staging", built, folder / "log", kept_folder)
+    html = render(
+        SphinxProcess(folder / "book", folder / "log"), folder / "staging", built, kept_folder
+    )
     return {p.relative_to(html).as_posix(): p.read_bytes() for p in html.rglob("*") if p.is_file()}
 
 

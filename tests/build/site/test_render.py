@@ -7,7 +7,8 @@ from tiny_book import WRITE_BUNDLE, cell, make_book, notebook
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.execute import execute_pages
 from robo_genesis.build.page_store import places
-from robo_genesis.build.site.render import RenderError, render
+from robo_genesis.build.site.render import render
+from robo_genesis.build.site.sphinx_process import RenderError, SphinxProcess
 from robo_genesis.lessons.book_pages import find_pages
 
 CLAIMS = "status: amdgpu-verified\nbadge: cpu-verified\n"
@@ -29,7 +30,7 @@ See {{eq}}`law` and $x^2$ for the overshoot.
 
 def build(folder: Path, built: BuiltPages | None = None) -> Path:
     built = built or BuiltPages()
-    return render(folder / "book", folder / "staging", built, folder / "render.log")
+    return render(SphinxProcess(folder / "book", folder / "render.log"), folder / "staging", built)
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,107 @@
+"""A process that loads Sphinx while the pages are executed, and then renders a book once."""
+
+import importlib
+import json
+import os
+import re
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from robo_genesis.build.built_pages import BuiltPages
+from robo_genesis.build.command import collect_rarely
+from robo_genesis.build.kernels import end_with_parent
+from robo_genesis.build.page_results import ANSI
+from robo_genesis.core.project import ROOT, ProjectError
+
+COMPLAINT = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
+OPTIONS = ("-n", "-W", "--keep-going", "--builder", "html")
+
+
+class RenderError(ProjectError):
+    """Sphinx failed or warned; the message holds its complaints and the place of the log."""
+
+
+class SphinxProcess:
+    """The process; as a context manager, it is ended when the context is left."""
+
+    def __init__(self, book: Path, log: Path):
+        """Start it.
+
+        Args:
+            book: folder with `_config.yml`, `_toc.yml` and the pages.
+            log: file for the output of Sphinx.
+
+        Raises:
+            OSError: the log cannot be written.
+        """
+        self.book, self.log = book, log
+        log.parent.mkdir(parents=True, exist_ok=True)
+        with log.open("w", encoding="utf8") as stream:
+            self.process = subprocess.Popen(
+                [sys.executable, "-m", __name__, str(book)],
+                env={**os.environ, "PYTHONPATH": str(ROOT)},
+                stdin=subprocess.PIPE, stdout=stream, stderr=subprocess.STDOUT, text=True,
+                preexec_fn=end_with_parent(),
+            )  # fmt: skip
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.process.kill()
+        self.process.communicate()
+
+    def render(self, folder: Path, built: BuiltPages) -> Path:
+        """Render the book and return the folder with its pages; this can be done once.
+
+        Args:
+            folder: of Sphinx's output. What is there is taken for current, unless Sphinx finds it
+                outdated.
+            built: the executed pages.
+
+        Raises:
+            RenderError: Sphinx failed or gave a warning.
+        """
+        arguments = ["build", str(self.book), "--path-output", str(folder), *OPTIONS]
+        variables = built.write(folder / "executed-pages.json")
+        self.process.communicate(json.dumps([arguments, variables]))
+        html = folder / "_build" / "html"
+        if self.process.returncode != 0 or not (html / "index.html").is_file():
+            raise RenderError(f"{complaints(self.log)}\nThe complete log is in {self.log}")
+        return html
+
+
+def complaints(log: Path) -> str:
+    """Return the warnings and errors of a log, or its end where it names none."""
+    lines = ANSI.sub("", log.read_text("utf8", errors="replace")).splitlines()
+    found = list(dict.fromkeys(line for line in lines if COMPLAINT.search(line)))
+    return "\n".join(found or lines[-20:])
+
+
+def main() -> None:
+    """Load Jupyter Book and the book's extensions, then wait for arguments and variables."""
+    import yaml
+    from jupyter_book.cli.main import main as jupyter_book
+
+    collect_rarely()
+    with suppress(Exception):  # Jupyter Book reports it
+        config = yaml.safe_load(Path(sys.argv[1], "_config.yml").read_text("utf8"))
+        for extension in config["sphinx"]["config"]["extensions"]:
+            importlib.import_module(extension)
+    if order := sys.stdin.readline():
+        arguments, variables = json.loads(order)
+        os.environ.update(variables)
+        jupyter_book(arguments)
+
+
+if __name__ == "__main__":
+    main()
