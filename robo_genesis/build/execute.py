@@ -18,53 +18,8 @@ from robo_genesis.build.page_results import Failure, PageResult, find_bundle
 from robo_genesis.build.page_store import last_record, stored_result
 from robo_genesis.build.page_worker import PageRun, work
 from robo_genesis.core import project
-from robo_genesis.core.project import BACKEND, COMMAND, COMPILED_KERNELS
+from robo_genesis.core.project import COMMAND
 from robo_genesis.lessons.book_pages import Page, cell_sources
-
-
-class CompiledKernels:
-    """Keeps a book's pages from compiling the same kernels at the same time.
-
-    The engine saves what it compiled when the page's kernel process ends. Pages share most of it,
-    also those of different lessons: of the 46 kernels of the lab of L03, the lecture of L02 has 42.
-    So while no page that runs the engine has ended with this cache, the book's first one runs
-    without the others. Pages of no lesson, which do not run the engine, start in any case. The
-    pages of a book with one lesson run side by side.
-
-    An empty file beside the compiled kernels, one for each backend, says that a page has ended.
-    """
-
-    def __init__(self, pages: Sequence[Page], environment: Mapping[str, str]) -> None:
-        """Read nothing yet.
-
-        Args:
-            pages: the pages to execute, in the order of the book.
-            environment: the variables of their kernels. Unless they name the engine's cache, it is
-                not known, and no page waits.
-        """
-        self.pages, kernels = pages, environment.get(COMPILED_KERNELS)
-        ended = f"executed-{environment.get(BACKEND, 'any')}"
-        self.ended = Path(kernels).with_name(ended) if kernels else None
-        self.several = len({page.lesson for page in pages} - {None}) > 1
-
-    def next_page(self, waiting: Sequence[Page], running: Sequence[Page]) -> Page | None:
-        """Return the page that may start, None if all must wait for a running one.
-
-        Args:
-            waiting: the pages that wait, in the order in which they should start.
-            running: the pages that run.
-        """
-        if self.several and self.ended and not self.ended.exists():
-            compiling = any(page.lesson for page in running)
-            first = [page for page in self.pages if page.lesson and page in waiting][:1]
-            alone = [] if compiling else first
-            waiting = [*alone, *(page for page in waiting if not page.lesson)]
-        return waiting[0] if waiting else None
-
-    def add(self, page: Page) -> None:
-        """Note that a page was executed, so that the cache has its kernels."""
-        if self.ended and page.lesson:
-            self.ended.touch()
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +47,6 @@ def execute_pages(
     report: Lines | None = None,
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them, the longest first.
-
-    With an empty cache, one page compiles the kernels that all share; see `CompiledKernels`.
 
     A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
     behind on Ctrl-C.
@@ -123,13 +76,13 @@ def execute_pages(
     waiting = longest_first((page for page in pages if page.docname not in results), last)
     for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
         folder.mkdir(parents=True, exist_ok=True)  # fails before any run
-    compiled = CompiledKernels(pages, environment)
     running: Running = {}
     with tempfile.TemporaryDirectory(prefix="robo-") as scratch:
         own = Path(scratch)
         try:
             while waiting or running:
-                while page := _take(waiting, running, jobs, compiled):
+                while waiting and len(running) < jobs:
+                    page = waiting.pop(0)
                     place, cells = places[page.docname], len(cell_sources(page))
                     log = (logs or own) / f"{place.parent.name}.log"
                     run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
@@ -143,8 +96,6 @@ def execute_pages(
                         continue
                     del running[connection]
                     results[result.page.docname] = result
-                    if result.status == "executed":
-                        compiled.add(result.page)
                     report.say(result.page.docname, f"{result.status} in {result.seconds:.0f} s")
                 report.show([worker.underway for worker in running.values()])
         finally:
@@ -200,18 +151,6 @@ def _reused(
             results[page.docname] = result
             report.say(page.docname, result.status)
     return results
-
-
-def _take(
-    waiting: list[Page], running: Running, jobs: int, compiled: CompiledKernels
-) -> Page | None:
-    """Remove the page that starts now from those that wait; return None if none may start."""
-    if len(running) >= jobs:
-        return None
-    page = compiled.next_page(waiting, [worker.run.page for worker in running.values()])
-    if page:
-        waiting.remove(page)
-    return page
 
 
 def _start(run: PageRun, underway: Underway, running: Running) -> None:
