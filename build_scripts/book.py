@@ -23,6 +23,7 @@ from robo_genesis.build.command import (
     run_status,
     set_contract,
 )
+from robo_genesis.build.site.sphinx_process import LOG, SphinxProcess
 from robo_genesis.build.up_to_date import nothing_changed
 from robo_genesis.core.project import BOOK, PUBLISHED, RENDER, ROOT
 
@@ -54,12 +55,13 @@ def main() -> int:
     if not (release or executed) and (lines := nothing_changed(ROOT, args.book, published)):
         print("\n".join(lines))
         return 0
-    # Sphinx's and Jupyter's packages are loaded only now.
+    sphinx = SphinxProcess(args.book, args.cache / LOG)
+    # Jupyter's packages are loaded only now, beside those of Sphinx.
     from robo_genesis.build.stages import Build, run_build
 
     collect_rarely()
-    parallel = int(jobs) if jobs else None
-    build = Build(**vars(args), jobs=parallel, release=release, executed=executed)
+    settings = {"jobs": int(jobs) if jobs else None, "release": release, "executed": executed}
+    build = Build(**vars(args), **settings, sphinx=sphinx)
     return run(lambda: run_build(build), "published")
 
 

@@ -4,7 +4,7 @@ import json
 import subprocess
 import sys
 
-from robo_genesis.build.kernels import end_with_parent
+from robo_genesis.build.command import end_with_parent
 from robo_genesis.core.project import ProjectError
 
 PROBE = """

@@ -1,8 +1,10 @@
 """What the commands share: arguments, settings from the environment, and exit statuses."""
 
 import argparse
+import ctypes
 import gc
 import os
+import re
 import signal
 import sys
 import time
@@ -15,6 +17,11 @@ from robo_genesis.core.refusals import BundleRefused
 
 TIMEOUT = 1500
 """Seconds for one cell; a page's front matter may set another."""
+
+PR_SET_PDEATHSIG = 1
+"""The request of <linux/prctl.h> for a signal at the end of the parent."""
+ANSI = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
+"""A colour, or another code of a terminal."""
 
 say = partial(print, flush=True)
 
@@ -78,6 +85,25 @@ def run_status(task: Callable[[], int], done: str) -> int:
         report = f"A file cannot be used: {error}. Give it free space or write access."
     print(f"\n{report}\n\nFAILED: nothing was {done}.", file=sys.stderr)
     return 1
+
+
+def end_with_parent(sent: signal.Signals = signal.SIGKILL) -> Callable[[], None]:
+    """Return a `preexec_fn` of subprocess: Linux signals the child when its parent ends.
+
+    This also holds for a parent that is killed by SIGKILL, as by the kernel when memory is short.
+    The parent is the thread that starts the child.
+
+    Args:
+        sent: the signal for the child. SIGTERM is for children that pass it on, as `make` does.
+    """
+    parent, prctl = os.getpid(), ctypes.CDLL(None).prctl  # loaded before the fork
+
+    def ask() -> None:
+        prctl(PR_SET_PDEATHSIG, sent)
+        if os.getppid() != parent:  # it ended before the request
+            os.kill(os.getpid(), sent)
+
+    return ask
 
 
 def choice(name: str, default: str, choices: tuple[str, ...], reason: str = "") -> str:

@@ -13,10 +13,10 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from robo_genesis.build.command import end_with_parent
 from robo_genesis.build.kernels import (
     ALLOWED,
     MACHINE,
-    end_with_parent,
     interrupts_blocked,
     kill_with_descendants,
 )

@@ -1,13 +1,12 @@
 """Kernels that no configuration of the user reaches, and that never outlive the build."""
 
-import ctypes
 import multiprocessing
 import os
 import shlex
 import shutil
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from datetime import datetime
 from pathlib import Path
@@ -34,9 +33,6 @@ SPARE_SEARCHES = (
     "__import__('robo_genesis.sim.session', fromlist=['spare_searches']).spare_searches()"
 )
 ARGUMENTS = [f"--IPKernelApp.exec_lines={line}" for line in (END_BEFORE_IPYKERNEL, SPARE_SEARCHES)]
-
-PR_SET_PDEATHSIG = 1
-"""The request of <linux/prctl.h> for a signal at the end of the parent."""
 
 
 class CleanKernelManager(AsyncKernelManager):
@@ -154,25 +150,6 @@ def described(pid: str) -> str:
     except (ValueError, psutil.Error):  # no number, gone, or another user's
         return f"process {pid}"
     return f"process {pid} since {datetime.fromtimestamp(begin):%Y-%m-%d %H:%M:%S}: {command}"
-
-
-def end_with_parent(sent: signal.Signals = signal.SIGKILL) -> Callable[[], None]:
-    """Return a `preexec_fn` of subprocess: Linux signals the child when its parent ends.
-
-    This also holds for a parent that is killed by SIGKILL, as by the kernel when memory is short.
-    The parent is the thread that starts the child.
-
-    Args:
-        sent: the signal for the child. SIGTERM is for children that pass it on, as `make` does.
-    """
-    parent, prctl = os.getpid(), ctypes.CDLL(None).prctl  # loaded before the fork
-
-    def ask() -> None:
-        prctl(PR_SET_PDEATHSIG, sent)
-        if os.getppid() != parent:  # it ended before the request
-            os.kill(os.getpid(), sent)
-
-    return ask
 
 
 def die_with_parent(scratch: Path) -> None:

@@ -11,7 +11,7 @@ import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 
-from robo_genesis.build.kernels import end_with_parent
+from robo_genesis.build.command import end_with_parent
 from robo_genesis.core.project import CACHE, ROOT, ProjectError
 
 LOCK = ("package.json", "package-lock.json")

@@ -10,13 +10,13 @@ from typing import Literal
 
 from nbformat import NotebookNode
 
+from robo_genesis.build.command import ANSI
 from robo_genesis.core.project import OUTPUTS_DIR, RUN_ID
 from robo_genesis.lessons.book_pages import Page
 
 LOG_LINES = 15
 Status = Literal["executed", "reused", "failed"]
 PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
-ANSI = re.compile(r"\x1b\[[0-9;]*[A-Za-z]")
 
 
 @dataclass(frozen=True, slots=True)

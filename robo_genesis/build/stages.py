@@ -33,7 +33,7 @@ from robo_genesis.build.site.archive import pack
 from robo_genesis.build.site.checks import check_site
 from robo_genesis.build.site.publish import publish
 from robo_genesis.build.site.render import render
-from robo_genesis.build.site.sphinx_process import SphinxProcess
+from robo_genesis.build.site.sphinx_process import LOG, SphinxProcess
 from robo_genesis.build.site.sums import write_sums
 from robo_genesis.build.verification import verify_results
 from robo_genesis.core import project
@@ -57,7 +57,8 @@ class Build:
     demands a clean tree and every lesson's required evidence, and reuses no executed page of the
     cache; `fresh_checkout` calls it so. `executed` holds all pages as another machine executed
     them; then none is executed here. `to` is the book that gets the site, by default `book`.
-    `command` is the command that bundles name.
+    `command` is the command that bundles name. `sphinx` loads Sphinx, by default a process that the
+    build starts.
     """
 
     root: Path = project.ROOT
@@ -70,6 +71,7 @@ class Build:
     executed: Path | None = None
     to: Path | None = None
     command: str = "make book"
+    sphinx: SphinxProcess | None = None
     say: Callable[[str], None] = say
 
 
@@ -88,9 +90,9 @@ def run_build(build: Build) -> list[str]:
         ProjectError: the checkout or SITE_URL is not fit for a build.
     """
     with (
+        build.sphinx or SphinxProcess(build.book, build.cache / LOG) as sphinx,
         build_lock(build.cache),
         staging_folder(build.cache) as staging,
-        SphinxProcess(build.book, build.cache / "render.log") as sphinx,
     ):
         target = build.to or build.book
         settle(target / project.PUBLISHED)

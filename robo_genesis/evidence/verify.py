@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 from robo_genesis.core import project
@@ -101,11 +102,10 @@ def verify_once(
     predicate = manifest.predicate
     question = evidence_key.question(predicate.lesson, predicate.page, root, book)
     names = sorted(present)
-    code = sorted((project.ROOT / "robo_genesis").rglob("*.py"))
     inputs = [
         json.dumps([folder.name, str(root), names, question], sort_keys=True).encode(),
         *((folder / name).read_bytes() for name in names),
-        *(path.read_bytes() for path in code),
+        _code(),
     ]
 
     def verify() -> bytes:
@@ -114,6 +114,13 @@ def verify_once(
 
     derived("accepted", inputs, verify)
     return as_judged_today(manifest)
+
+
+@lru_cache(maxsize=1)
+def _code() -> bytes:
+    """Return the whole code of the course."""
+    files = sorted((project.ROOT / "robo_genesis").rglob("*.py"))
+    return b"\0".join(path.read_bytes() for path in files)
 
 
 def check_metrics(recorded: Mapping[str, Mapping[str, Metric]], experiment: Experiment) -> None:

@@ -10,8 +10,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from robo_genesis.build.command import Progress, say
-from robo_genesis.build.kernels import end_with_parent, kill_with_descendants
+from robo_genesis.build.command import Progress, end_with_parent, say
+from robo_genesis.build.kernels import kill_with_descendants
 from robo_genesis.build.worktree import environment, worktree
 from robo_genesis.core import project
 from robo_genesis.core.files import locked

@@ -11,8 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from docutils import nodes
-from fontTools import subset
-from fontTools.ttLib import TTFont
 from sphinx.application import Sphinx
 
 from robo_genesis.build import npm
@@ -51,6 +49,9 @@ def font() -> bytes:
 
 def cut(font: bytes) -> bytes:
     """Return the part of a font for `SHOWN` as WOFF."""
+    from fontTools import subset  # most builds find the part in the cache
+    from fontTools.ttLib import TTFont
+
     whole = TTFont(io.BytesIO(font), recalcTimestamp=False)
     options = subset.Options(
         layout_features=["ssty"],  # the forms for superscripts

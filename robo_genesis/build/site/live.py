@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.build.built_pages import LAST_OUTPUTS, BuiltPages
-from robo_genesis.build.command import TIMEOUT, say
-from robo_genesis.build.kernels import end_with_parent
+from robo_genesis.build.command import TIMEOUT, end_with_parent, say
 from robo_genesis.build.page_folder import OUTPUTS, PageRefused, read_record
 from robo_genesis.build.page_store import folders, places
 from robo_genesis.build.site import kept

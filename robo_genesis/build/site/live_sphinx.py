@@ -13,8 +13,7 @@ from pathlib import Path
 from jupyter_book.config import get_final_config
 from sphinx.application import Sphinx
 
-from robo_genesis.build.command import collect_rarely
-from robo_genesis.build.page_results import ANSI
+from robo_genesis.build.command import ANSI, collect_rarely
 from robo_genesis.build.site.kept import read_again
 
 

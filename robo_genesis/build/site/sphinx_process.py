@@ -9,15 +9,17 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
-from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.command import collect_rarely
-from robo_genesis.build.kernels import end_with_parent
-from robo_genesis.build.page_results import ANSI
+from robo_genesis.build.command import ANSI, collect_rarely, end_with_parent
 from robo_genesis.core.project import ROOT, ProjectError
 
+if TYPE_CHECKING:  # the process is started before the packages of Jupyter are loaded
+    from robo_genesis.build.built_pages import BuiltPages
+
 COMPLAINT = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
+LOG = "render.log"
+"""Its name in the folder of the caches."""
 OPTIONS = ("-n", "-W", "--keep-going", "--builder", "html")
 
 
@@ -33,20 +35,16 @@ class SphinxProcess:
 
         Args:
             book: folder with `_config.yml`, `_toc.yml` and the pages.
-            log: file for the output of Sphinx.
-
-        Raises:
-            OSError: the log cannot be written.
+            log: file for the output of Sphinx; it is written only during the render, so that a
+                process which waits for nothing does not disturb another build.
         """
         self.book, self.log = book, log
-        log.parent.mkdir(parents=True, exist_ok=True)
-        with log.open("w", encoding="utf8") as stream:
-            self.process = subprocess.Popen(
-                [sys.executable, "-m", __name__, str(book)],
-                env={**os.environ, "PYTHONPATH": str(ROOT)},
-                stdin=subprocess.PIPE, stdout=stream, stderr=subprocess.STDOUT, text=True,
-                preexec_fn=end_with_parent(),
-            )  # fmt: skip
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", __name__, str(book)],
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True,
+            preexec_fn=end_with_parent(),
+        )  # fmt: skip
 
     def __enter__(self) -> Self:
         return self
@@ -60,7 +58,7 @@ class SphinxProcess:
         self.process.kill()
         self.process.communicate()
 
-    def render(self, folder: Path, built: BuiltPages) -> Path:
+    def render(self, folder: Path, built: "BuiltPages") -> Path:
         """Render the book and return the folder with its pages; this can be done once.
 
         Args:
@@ -73,7 +71,9 @@ class SphinxProcess:
         """
         arguments = ["build", str(self.book), "--path-output", str(folder), *OPTIONS]
         variables = built.write(folder / "executed-pages.json")
-        self.process.communicate(json.dumps([arguments, variables]))
+        self.log.parent.mkdir(parents=True, exist_ok=True)
+        self.log.write_text("Sphinx ended before it began.\n", "utf8")
+        self.process.communicate(json.dumps([str(self.log), arguments, variables]))
         html = folder / "_build" / "html"
         if self.process.returncode != 0 or not (html / "index.html").is_file():
             raise RenderError(f"{complaints(self.log)}\nThe complete log is in {self.log}")
@@ -98,7 +98,10 @@ def main() -> None:
         for extension in config["sphinx"]["config"]["extensions"]:
             importlib.import_module(extension)
     if order := sys.stdin.readline():
-        arguments, variables = json.loads(order)
+        log, arguments, variables = json.loads(order)
+        with open(log, "w") as stream:
+            for output in (1, 2):
+                os.dup2(stream.fileno(), output)
         os.environ.update(variables)
         jupyter_book(arguments)
 

@@ -8,12 +8,10 @@ import os
 from pathlib import Path
 
 from docutils import nodes
-from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.build.built_pages import LAST_OUTPUTS
-from robo_genesis.core import plotting
 from robo_genesis.evidence.bundle import Predicate, read_manifest
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons.declaration import Compared, Moving
@@ -67,6 +65,10 @@ def response(folder: Path, compared: Compared | Moving) -> Picture:
     """Return the first channel of the compared cases, drawn from a bundle's arrays."""
     runs = read_runs(folder, compared)
     stream = io.BytesIO()
+    from matplotlib.figure import Figure  # most builds draw nothing anew
+
+    from robo_genesis.core import plotting
+
     with plotting.course_style():
         drawing = Figure(figsize=(4.8, 3.6))
         ax = drawing.subplots()

@@ -14,11 +14,10 @@ from pathlib import Path
 
 from docutils import nodes
 from docutils.parsers.rst.directives import flag
-from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.core import plotting, project
+from robo_genesis.core import project
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import listed
 from robo_genesis.evidence import bundle
@@ -136,6 +135,10 @@ def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture
     """Return every channel of the compared cases, drawn from the bundle's arrays."""
     runs = read_runs(folder, compared)
     stream, count = io.BytesIO(), len(runs.channels)
+    from matplotlib.figure import Figure  # most builds draw nothing anew
+
+    from robo_genesis.core import plotting
+
     with plotting.course_style():
         figure = Figure(figsize=(7, 1 + 2.5 * count))
         axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]

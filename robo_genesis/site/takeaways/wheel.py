@@ -8,7 +8,7 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from robo_genesis.build.kernels import end_with_parent
+from robo_genesis.build.command import end_with_parent
 from robo_genesis.core.files import derived
 from robo_genesis.core.project import ROOT, ProjectError
 
