@@ -10,7 +10,7 @@ from spoilers import SPOILED, moved, on, part, seal
 
 import robo_genesis
 from robo_genesis.core import project
-from robo_genesis.evidence import bundle
+from robo_genesis.evidence import bundle, verify
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.verify import verify_bundle
 
@@ -42,6 +42,29 @@ def test_a_sound_bundle_is_accepted_also_when_sealed_again(folder):
     assert verify_bundle(folder) == bundle.read_manifest(folder)
     seal(folder)
     verify_bundle(folder)
+
+
+def test_an_accepted_bundle_is_recomputed_only_when_something_changed(folder, monkeypatch):
+    recomputed = []
+
+    def counted(*args, **kwargs):
+        recomputed.append(args)
+        return verify_bundle(*args, **kwargs)
+
+    monkeypatch.setattr(verify, "verify_bundle", counted)
+    accepted = verify.verify_once(folder)
+    assert accepted == bundle.read_manifest(folder)
+    recomputed.clear()  # another test may have had the same bundle accepted
+    assert verify.verify_once(folder) == accepted
+    assert recomputed == []
+    with pytest.raises(BundleRefused, match="run_id"):
+        verify.verify_once(folder, "0" * 32)
+    array = next(folder.rglob("*.npy"), None) or next(folder.rglob("*.npz"))
+    array.write_bytes(array.read_bytes()[:-1])
+    for _ in range(2):  # a refusal is not kept
+        with pytest.raises(BundleRefused):
+            verify.verify_once(folder)
+    assert len(recomputed) == 2
 
 
 @pytest.mark.parametrize("accelerator", ["amdgpu", "cuda"])
