@@ -120,7 +120,6 @@ document.addEventListener("DOMContentLoaded", () => {
         element.remove();
         throw error;
       }
-      stage.querySelector(".still").hidden = true;
       stage.classList.add("loaded");
       this.viewer = element;
     }

@@ -98,15 +98,16 @@ def test_an_arm_gets_floor_axis_and_target_and_the_view_of_what_moves():
     assert found.camera.distance < 2.0
 
 
-def test_a_single_body_is_followed_horizontally():
-    trace = falling(1.0, drift=3.0)
+@pytest.mark.parametrize(("drift", "followed"), [(3.0, 0), (0.1, None)])
+def test_a_single_body_that_moves_away_is_followed_horizontally(drift, followed):
+    trace = falling(1.0, drift=drift)
     one = replace(
         trace, **{name: getattr(trace, name)[:, 1:] for name in ("link_pos", "link_quat")},
         **{name: getattr(trace, name)[:, 1:] for name in ("link_vel", "link_ang")},
     )  # fmt: skip
     runs = body_channels.runs({"run": one}, ["box"], "box", "box")
     found = scenery.scenery([Part("box", (9, 9, 9), BOX.vertices, BOX.faces)], runs)
-    assert (found.followed, found.axis, found.target) == (0, False, {})
+    assert (found.followed, found.axis, found.target) == (followed, False, {})
     lowest, highest = one.link_pos[:, 0, 2].min() - 0.1, one.link_pos[:, 0, 2].max() + 0.1
     middle = [0, (lowest + highest) / 2, 0]
     assert found.camera.centre == pytest.approx(middle, abs=0.02)

@@ -32,7 +32,7 @@ DARKEST, BRIGHTEST = 0.3, 0.75
 
 def picture(model: bytes, camera: Camera) -> bytes:
     """Return the start of a model's replay as JPEG."""
-    scene = trimesh.load(BytesIO(model), file_type="glb")
+    scene = trimesh.load_scene(BytesIO(model), file_type="glb")
     back = camera.axes[2]
     edge = camera.centre + back * (camera.distance - NEAREST)
     triangles, colours = [], []

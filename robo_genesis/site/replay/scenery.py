@@ -102,7 +102,7 @@ def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
         ValueError: a part belongs to a link that is not in the record, or two links have one name.
     """
     check_links(shape, runs.links)
-    hinge, followed = find_hinge(runs), 0 if len(runs.links) == 1 else None
+    hinge, followed = find_hinge(runs), find_followed(runs)
     moved = hinge.moved if hinge else range(len(runs.links))
     camera = fitted(swept(shape, runs, moved, followed))
     parts = [*shape, *floor_of(shape)]
@@ -110,6 +110,12 @@ def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
         return Scenery(parts, camera, followed=followed)
     parts.append(rod(runs.links[hinge.parent], hinge))
     return Scenery(parts, camera, axis=True, target=target_poses(runs, hinge))
+
+
+def find_followed(runs: Runs) -> int | None:
+    """Return the number of the only link if it leaves its tile of the floor, else None."""
+    places = np.concatenate([trace.link_pos[:, 0, :2] for trace in runs.traces.values()])
+    return 0 if len(runs.links) == 1 and np.ptp(places, axis=0).max() > TILE else None
 
 
 def find_hinge(runs: Runs) -> Hinge | None:
