@@ -184,7 +184,6 @@ def test_the_box_falls_in_3d_in_the_place_of_its_picture(page):
     place = stage.bounding_box()
     page.locator(".play").click()
     page.get_by_text("Turn the view").wait_for(timeout=120_000)
-    page.locator(".play").click()
     assert not picture.is_visible()
     assert stage.bounding_box() == place
     model = page.locator("model-viewer")

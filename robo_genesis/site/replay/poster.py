@@ -26,7 +26,7 @@ LIGHT = np.array([0.35, 0.8, 0.5])
 NEAREST = 0.05
 """Distance to the camera from which on parts are drawn [m]."""
 
-DARKEST, BRIGHTEST = 0.3, 0.75
+DARKEST, BRIGHTEST = 0.35, 1.0
 """Share of a surface's colour that is seen where it faces away from the light, and towards it."""
 
 
