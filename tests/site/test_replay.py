@@ -394,7 +394,8 @@ def test_reduced_motion_goes_by_steps(browser, address):
 
 def of_replay(urls) -> list[str]:
     """Return the names of the files in the replay's folder."""
-    return sorted(url.rpartition("/")[2] for url in urls if f"/{sphinx_replay.FOLDER}/" in url)
+    found = (re.search(rf"/{sphinx_replay.FOLDER}/([^/]+)$", url) for url in urls)
+    return sorted(match[1] for match in found if match)
 
 
 def test_viewer_and_model_are_asked_for_on_request_alone(shown):
