@@ -180,7 +180,7 @@ def test_keys_read_the_record_out_and_the_plots_draw_it(page):
 @pytest.mark.browser
 def test_the_box_falls_in_3d_in_the_place_of_its_picture(page):
     stage, picture = page.locator(".stage"), page.locator(".still")
-    assert picture.evaluate("image => image.naturalWidth") > 0
+    page.wait_for_function("document.querySelector('.still').naturalWidth > 0")
     place = stage.bounding_box()
     page.locator(".play").click()
     page.get_by_text("Turn the view").wait_for(timeout=120_000)

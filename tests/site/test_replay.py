@@ -242,7 +242,8 @@ def test_one_click_plays_in_the_place_of_the_picture(browser, address):
     stage, below = page.locator(f"{REPLAY} .stage"), page.locator(f"{REPLAY} .controls")
     places = stage.bounding_box(), below.bounding_box()
     picture = page.locator(f"{REPLAY} .still")
-    assert picture.evaluate("image => image.naturalWidth") > 0
+    loaded = "([selector]) => document.querySelector(selector).naturalWidth > 0"
+    page.wait_for_function(loaded, arg=[f"{REPLAY} .still"])
     page.locator(f"{REPLAY} .play").click()
     page.wait_for_function(TURNED, timeout=3000)  # the lesson promises this
     assert page.locator(f"{REPLAY} .play").inner_text() == "Pause"
