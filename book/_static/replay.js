@@ -87,6 +87,19 @@ document.addEventListener("DOMContentLoaded", () => {
   /* The viewer needs WebGL 2: without it, the viewer would report success and show nothing. */
   const draws3D = () => document.createElement("canvas").getContext("webgl2") !== null;
 
+  /* Light from above, as a small picture. Without a graphics card, the viewer's own surroundings
+     would take seconds before the first frame. */
+  function light() {
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [128, 64];
+    const brush = canvas.getContext("2d");
+    brush.fillStyle = brush.createLinearGradient(0, 0, 0, canvas.height);
+    brush.fillStyle.addColorStop(0, "#fff");
+    brush.fillStyle.addColorStop(1, "#888");
+    brush.fillRect(0, 0, canvas.width, canvas.height);
+    return canvas.toDataURL();
+  }
+
   /* The 3D model, in step with the replay. A classic script and a data: address work from disk. */
   class Scene {
     constructor(root) {
@@ -105,7 +118,7 @@ document.addEventListener("DOMContentLoaded", () => {
         "disable-pan": "", "interaction-prompt": "none", "touch-action": "pan-y",
         "camera-orbit": orbit, "camera-target": target,
         "min-camera-orbit": distance, "max-camera-orbit": distance,
-        exposure: "0.7", "animation-crossfade-duration": "0",
+        "environment-image": light(), exposure: "0.9", "animation-crossfade-duration": "0",
         src: `data:model/gltf-binary;base64,${globalThis.replayModels[name]}`,
       };
       for (const [key, value] of Object.entries(settings)) element.setAttribute(key, value);
