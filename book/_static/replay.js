@@ -1,6 +1,6 @@
-/* Replays recorded runs: curves, readout and, on request, a 3D model. The samples are those of the
-   table in the same block, and attributes of the markup describe them: this script handles channels,
-   neither joints nor bodies. */
+/* Replays recorded runs: a 3D model, which loads with the first Play, curves and a readout. The
+   samples are those of the table in the same block, and attributes of the markup describe them:
+   this script handles channels, neither joints nor bodies. */
 "use strict";
 
 /* plot.js has loaded by then, in whatever order the page lists the scripts. */
@@ -87,6 +87,19 @@ document.addEventListener("DOMContentLoaded", () => {
   /* The viewer needs WebGL 2: without it, the viewer would report success and show nothing. */
   const draws3D = () => document.createElement("canvas").getContext("webgl2") !== null;
 
+  /* Light from above, as a small picture. Without a graphics card, the viewer's own surroundings
+     would take seconds before the first frame. */
+  function light() {
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [128, 64];
+    const brush = canvas.getContext("2d");
+    brush.fillStyle = brush.createLinearGradient(0, 0, 0, canvas.height);
+    brush.fillStyle.addColorStop(0, "#fff");
+    brush.fillStyle.addColorStop(1, "#888");
+    brush.fillRect(0, 0, canvas.width, canvas.height);
+    return canvas.toDataURL();
+  }
+
   /* The 3D model, in step with the replay. A classic script and a data: address work from disk. */
   class Scene {
     constructor(root) {
@@ -97,23 +110,30 @@ document.addEventListener("DOMContentLoaded", () => {
     async load() {
       const { viewer, model, name, alt, orbit, target } = this.root.dataset;
       await Promise.all([script(viewer), script(model)]);
+      const stage = this.root.querySelector(".stage");
       const element = document.createElement("model-viewer");
+      const distance = `auto auto ${orbit.split(" ").at(-1)}`; // the viewer's own limits are farther
       const settings = {
         alt, loading: "eager", "camera-controls": "", "disable-zoom": "", "disable-tap": "",
-        "interaction-prompt": "none", "touch-action": "pan-y", "shadow-intensity": "0.8",
-        exposure: "0.7",
-        "animation-crossfade-duration": "0",
+        "disable-pan": "", "interaction-prompt": "none", "touch-action": "pan-y",
+        "camera-orbit": orbit, "camera-target": target,
+        "min-camera-orbit": distance, "max-camera-orbit": distance,
+        "environment-image": light(), exposure: "0.9", "animation-crossfade-duration": "0",
         src: `data:model/gltf-binary;base64,${globalThis.replayModels[name]}`,
       };
-      if (orbit) settings["camera-orbit"] = orbit;
-      if (target) settings["camera-target"] = target;
       for (const [key, value] of Object.entries(settings)) element.setAttribute(key, value);
       const loaded = new Promise((resolve, reject) => {
         element.addEventListener("load", resolve, { once: true });
         element.addEventListener("error", (event) => reject(event.detail), { once: true });
       });
-      this.root.querySelector(".stage").append(element);
-      await loaded;
+      stage.append(element);
+      try {
+        await loaded;
+      } catch (error) {
+        element.remove();
+        throw error;
+      }
+      stage.classList.add("loaded");
       this.viewer = element;
     }
 
@@ -136,7 +156,8 @@ document.addEventListener("DOMContentLoaded", () => {
     const radios = [...root.querySelectorAll("input[type=radio]")];
     const runs = read(root, radios, channels);
     const [slider, speed] = ["input[type=range]", "select"].map((name) => root.querySelector(name));
-    const [play, show] = [".play", ".show"].map((name) => root.querySelector(name));
+    const [play, status, shown] = [".play", "[role=status]", ".shown"]
+      .map((name) => root.querySelector(name));
     const scene = new Scene(root);
     const [terms, texts, places] = ["dt", "dd", ".plot"].map((name) => root.querySelectorAll(name));
     const svgs = [...places].map((place) => add(place, "svg", { role: "img" }));
@@ -144,6 +165,7 @@ document.addEventListener("DOMContentLoaded", () => {
     let cursors = [];
     let began = null; // {clock, time}: when playing started [ms], and at which time of the run [s]
     let frame = 0; // the request for the next frame while playing
+    let loading = false;
 
     const chosen = () => radios.find((radio) => radio.checked).value;
     const run = () => runs[chosen()];
@@ -172,9 +194,9 @@ document.addEventListener("DOMContentLoaded", () => {
       scene.pose(chosen(), time);
     }
 
-    /* Shows the case at the 3D model: the picker may be out of sight. */
+    /* Shows the case at the 3D model: the picker may be out of sight. Its picture is of the start. */
     function nameCase() {
-      const shown = root.querySelector(".shown");
+      if (!scene.viewer) return;
       shown.textContent = chosen();
       shown.className = `shown case-mark ${run().mark}`;
     }
@@ -218,7 +240,28 @@ document.addEventListener("DOMContentLoaded", () => {
       frame = requestAnimationFrame(advance);
     }
 
-    play.addEventListener("click", () => {
+    /* Loads the model. Where that fails, the plots play alone. */
+    async function load() {
+      if (!draws3D()) {
+        status.textContent = "This browser draws no 3D: its WebGL 2 is missing or turned off. The plots show the same runs.";
+        return;
+      }
+      loading = true;
+      play.textContent = status.textContent = "Loading …";
+      try {
+        await scene.load();
+        nameCase();
+        status.textContent = "Turn the view with the mouse, a finger or the arrow keys.";
+      } catch {
+        status.textContent = `The ${thing} cannot be shown: a file is missing or cannot be read. The plots show the same runs.`;
+      }
+      loading = false;
+      label();
+    }
+
+    play.addEventListener("click", async () => {
+      if (loading) return;
+      if (!scene.viewer && !began) await load();
       if (sample() === last) slider.value = 0;
       else if (calm.matches) slider.value = sample() + STRIDE;
       if (calm.matches) return showSample();
@@ -243,37 +286,7 @@ document.addEventListener("DOMContentLoaded", () => {
     for (const radio of radios) radio.addEventListener("change", drawPlots);
     calm.addEventListener("change", () => (began ? stop() : label()));
 
-    show.addEventListener("click", async () => {
-      const stage = root.querySelector(".stage");
-      const status = root.querySelector("[role=status]");
-      if (!scene.viewer) {
-        if (!draws3D()) {
-          status.textContent = "This browser draws no 3D: its WebGL 2 is missing or turned off. The plots show the same runs.";
-          return;
-        }
-        show.disabled = true;
-        status.textContent = "Loading …";
-        try {
-          await scene.load();
-        } catch (error) {
-          status.textContent = `The ${thing} cannot be shown: a file is missing or cannot be read.`;
-          stage.querySelector("model-viewer")?.remove();
-          return;
-        } finally {
-          show.disabled = false;
-        }
-        root.querySelector(".weight").remove();
-        root.querySelector(".shown").hidden = false;
-        status.textContent = "Loaded. Turn it with the mouse, a finger or the arrow keys.";
-        showSample();
-      } else {
-        stage.hidden = !stage.hidden;
-      }
-      show.setAttribute("aria-expanded", String(!stage.hidden));
-      show.textContent = stage.hidden ? `Show the ${thing} in 3D` : `Hide the ${thing}`;
-    });
-
-    root.hidden = false;
+    for (const part of [play, root.querySelector(".panel")]) part.hidden = false;
     label();
     new ResizeObserver(drawPlots).observe(root.querySelector(".plots"));
     drawPlots();

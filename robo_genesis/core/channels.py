@@ -48,16 +48,13 @@ class Level:
 class View:
     """The 3D view of runs.
 
-    `thing` is the name of what moves: "robot". `alt` describes the view. `orbit` and `target` set
-    the camera of the viewer in its notation and frame (y up); the viewer chooses empty ones.
-    `credit` names the authors of the shape, None for a shape of the scene itself.
+    `thing` is the name of what moves: "robot". `alt` describes the view. `credit` names the authors
+    of the shape, None for a shape of the scene itself.
     """
 
     thing: str
     alt: str
     credit: str | None = None
-    orbit: str = ""
-    target: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -72,7 +72,6 @@ def runs(
         view=View(
             thing=thing,
             alt=f"{subject.capitalize()} in 3D, where it is at the sample that is shown.",
-            orbit="30deg 72deg auto",
         ),
         alt=f"{first} of {subject} over time{f': {cases}' if len(traces) > 1 else ''}.",
         caption=f"{first} of {subject}, from get_links_pos.",

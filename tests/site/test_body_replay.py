@@ -133,6 +133,8 @@ def page(block, tmp_path, browser) -> Iterator[Page]:
     document += block.deepcopy()
     for box in list(document.findall(scroll_box)):  # whose writer is Sphinx's
         box.replace_self(nodes.container("", *box.children))
+    for image in document.findall(nodes.image):  # which Sphinx copies
+        image["uri"] = (tmp_path / "book" / image["uri"][1:]).resolve().as_uri()
     html = publish_from_doctree(document, writer_name="html5").decode()
     site = tmp_path / "book" / "_build" / "html"
     (site / "lessons").mkdir(exist_ok=True)
@@ -176,12 +178,14 @@ def test_keys_read_the_record_out_and_the_plots_draw_it(page):
 
 
 @pytest.mark.browser
-def test_the_box_falls_in_3d_and_hides_again(page):
-    button = page.locator("button.show")
-    assert button.inner_text() == "Show the box in 3D"
-    button.click()
-    page.get_by_text("Loaded.").wait_for(timeout=120_000)
-    assert button.inner_text() == "Hide the box"
+def test_the_box_falls_in_3d_in_the_place_of_its_picture(page):
+    stage, picture = page.locator(".stage"), page.locator(".still")
+    page.wait_for_function("document.querySelector('.still').naturalWidth > 0")
+    place = stage.bounding_box()
+    page.locator(".play").click()
+    page.get_by_text("Turn the view").wait_for(timeout=120_000)
+    assert not picture.is_visible()
+    assert stage.bounding_box() == place
     model = page.locator("model-viewer")
     assert model.get_attribute("alt").startswith("The box in 3D, where it is")
     page.locator("input[value=high]").check()

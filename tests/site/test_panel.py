@@ -300,10 +300,10 @@ def test_the_comparison_names_both_runs_and_all_else_the_recorded_one(
     alone, compared = f"Measured {theirs} · ledger", f"Measured {ours} and {theirs} · ledger"
     assert ours.startswith("on cpu · ")
     assert theirs.startswith(f"on {accelerator} · ")
-    assert lines == [alone] * 5 + [compared] * 2
+    assert lines == [alone] * 6 + [compared] * 2
     items = app.env.robo_genesis_items["page"]
     both = ("l04/lab/cpu", f"l04/lab/{accelerator}/recorded")
-    assert [item.runs for item in items] == [both[1:]] * 5 + [both] * 2
+    assert [item.runs for item in items] == [both[1:]] * 6 + [both] * 2
     run, badge, *_ = sphinx_ledger._of_runs(runs)
     anchors = ["#run-l04-lab-cpu", f"#run-l04-lab-{accelerator}-recorded"]
     assert [link["refuri"] for link in run] == anchors

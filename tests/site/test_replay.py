@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from functools import partial
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from browsers import SOFTWARE, chromium, launched
 from built_site import PAGES, parsed
 from gltf import report
+from PIL import Image
 from playwright.sync_api import Browser, Page
 from watching import errors, violations
 
@@ -17,6 +19,7 @@ from robo_genesis.core.project import BOOK
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import read_joints, read_trace
 from robo_genesis.lessons.l04.spec import STEPPED_JOINT
+from robo_genesis.lessons.l04.study_spec import ASSIGNED
 from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.site.replay import directive as sphinx_replay
 from robo_genesis.site.replay.model import rotations
@@ -36,7 +39,8 @@ POSES = """() => {
   let world;
   scene.traverse(node => { if (node.name === "world") world = node; });
   const back = world.matrixWorld.clone().invert();
-  return Object.fromEntries(world.children.map(link => {
+  const ghost = world.children.find(node => node.name === "target");
+  return Object.fromEntries([...world.children, ...ghost.children].map(link => {
     const inRecord = back.clone().multiply(link.matrixWorld);
     return [link.name, {
       position: [...link.position.clone().setFromMatrixPosition(inRecord)],
@@ -46,6 +50,17 @@ POSES = """() => {
 }"""
 """How the links stand in the running viewer, in the frame of the record: [m] and (x, y, z, w)."""
 
+TURNED = """() => {
+  const viewer = document.querySelector("model-viewer");
+  const key = viewer && Object.getOwnPropertySymbols(viewer).find(s => s.description === "scene");
+  let hand;
+  if (key) viewer[key].traverse(node => { if (node.name === "hand") hand ??= node; });
+  if (!hand) return false;
+  globalThis.first ??= hand.position.z;
+  return Math.abs(hand.position.z - globalThis.first) > 1e-4;
+}"""
+"""Whether the hand has moved since it was first seen."""
+
 POSED = """([name, time]) => {
   const viewer = document.querySelector("model-viewer");
   return viewer.animationName === name && Math.abs(viewer.currentTime - time) < 1e-5;
@@ -54,12 +69,43 @@ POSED = """([name, time]) => {
 FRAMES_ASKED = """async () => {
   const request = requestAnimationFrame.bind(window);
   let asked = 0;
-  window.requestAnimationFrame = (todo) => { asked += 1; return request(todo); };
+  window.requestAnimationFrame = (todo) => {
+    asked += todo.name === "advance"; // the viewer also draws
+    return request(todo);
+  };
   for (let frame = 0; frame < 10; frame += 1) await new Promise(request);
   window.requestAnimationFrame = request;
   return asked;
 }"""
-"""How often the page's scripts ask to draw while ten frames pass."""
+"""How often the replay asks to draw while ten frames pass."""
+
+
+PLAYING = [name for name in PAGES if "{replay}" in (BOOK / f"{name}.md").read_text()]
+
+BELOW = ("link4", "link5", "link6", "link7", "hand", "left_finger", "right_finger")
+"""The links that joint4 turns."""
+
+TOO_WIDE = """() => [...document.querySelectorAll(".replay")].flatMap(root => {
+  const edge = root.getBoundingClientRect().right, slider = root.querySelector("input[type=range]");
+  const parts = "input, button, select, svg, svg text, dl div, .shown, figcaption, .legend";
+  const cut = [...root.querySelectorAll(parts)]
+    .filter(e => e.getBoundingClientRect().right > edge).map(e => e.outerHTML);
+  for (const run of root.querySelectorAll("input[type=radio]")) {
+    run.click();
+    for (slider.value = 0; ; slider.stepUp(7)) {
+      slider.dispatchEvent(new Event("input"));
+      for (const line of root.querySelectorAll("dl div")) {
+        const text = document.createRange();
+        text.selectNodeContents(line);
+        const beyond = text.getBoundingClientRect().right - line.getBoundingClientRect().right;
+        if (beyond > 0) cut.push(`${run.value} ${slider.value} ${line.innerText} ${beyond}`);
+      }
+      if (slider.value === slider.max) break;
+    }
+  }
+  return cut;
+})"""
+"""What of the replays is cut off, or reaches into the place beside it."""
 
 
 @pytest.fixture(scope="module")
@@ -112,14 +158,14 @@ def page(browser, address) -> Iterator[Page]:
 
 @pytest.fixture(scope="module", params=["served", "from disk"])
 def shown(request, browser, address, site) -> Iterator[Page]:
-    """The lecture with the robot shown: served in the light, from disk in the dark."""
+    """The lecture with the robot loaded: served in the light, from disk in the dark."""
     base, scheme = {"served": (address, "light"), "from disk": (site.as_uri(), "dark")}[
         request.param
     ]
     asked: list[str] = []
     page = open_lecture(browser, base, asked, color_scheme=scheme)
     assert readout(page)["time"] == "0.00 s, before the first step"  # nothing plays by itself
-    assert not page.locator(f"{REPLAY} .shown").is_visible()
+    assert page.locator(f"{REPLAY} .shown").inner_text() == "at the start"
     page.locator(REPLAY).scroll_into_view_if_needed()
     choose(page, "G2", 30)
     page.wait_for_load_state("networkidle")
@@ -147,9 +193,13 @@ def number(text):
     return float(re.match(r"−?[\d.]+", text).group().replace("−", "-"))
 
 
-def show_robot(page):
-    page.locator(f"{REPLAY} button.show").click()
-    page.locator(REPLAY).get_by_text("Loaded.").wait_for(timeout=120_000)
+def show_robot(page, replay=REPLAY):
+    """Load the robot with the first Play, and pause if it still plays."""
+    play = page.locator(f"{replay} .play")
+    play.click()
+    page.locator(replay).get_by_text("Turn the view").wait_for(timeout=120_000)
+    play.evaluate("play => { if (play.textContent === 'Pause') play.click(); }")
+    assert play.inner_text() == "Play"
 
 
 def test_links_stand_where_the_record_says(shown, record):
@@ -160,7 +210,8 @@ def test_links_stand_where_the_record_says(shown, record):
             choose(page, case, sample)
             page.wait_for_function(POSED, arg=[case, float(trace.t[sample])])
             found = page.evaluate(POSES)
-            assert sorted(found) == sorted(links)
+            added = [f"target_{link}" for link in BELOW]
+            assert sorted(found) == sorted([*links, *added, "still", "target"])
             places, turns = (
                 np.array([found[link][part] for link in links]) for part in ("position", "rotation")
             )
@@ -170,6 +221,69 @@ def test_links_stand_where_the_record_says(shown, record):
             assert turns == pytest.approx(recorded, abs=1e-6), (case, sample)
     for moved in (traces["G2"].link_pos, traces["G2"].link_quat):
         assert np.abs(moved[9] - moved[0]).max() > 1e-2
+
+
+def test_the_copy_stands_where_the_engine_puts_the_links_at_the_target(shown, site):
+    """The lecture also assigns the states of a straight line that ends at the target."""
+    folder = site.parent / "pages" / "l04" / "lecture" / "cpu"
+    arrays = bundle.read_arrays(folder)
+    assigned, links = read_trace(folder, arrays, ASSIGNED), arrays.coords["link"]
+    found = shown.evaluate(POSES)
+    for link in BELOW:
+        copy, k = found[f"target_{link}"], links.index(link)
+        assert copy["position"] == pytest.approx(assigned.link_pos[-1, k], abs=2e-6), link
+        turned = abs(np.dot(copy["rotation"], rotations(assigned.link_quat[-1:, k])[0]))
+        assert turned == pytest.approx(1, abs=1e-6), link
+        assert np.abs(assigned.link_quat[-1, k] - assigned.link_quat[0, k]).max() > 0.01
+
+
+def test_one_click_plays_in_the_place_of_the_picture(browser, address):
+    page = open_lecture(browser, address, viewport={"width": 1280, "height": 900})
+    stage, below = page.locator(f"{REPLAY} .stage"), page.locator(f"{REPLAY} .controls")
+    places = stage.bounding_box(), below.bounding_box()
+    picture = page.locator(f"{REPLAY} .still")
+    loaded = "([selector]) => document.querySelector(selector).naturalWidth > 0"
+    page.wait_for_function(loaded, arg=[f"{REPLAY} .still"])
+    page.locator(f"{REPLAY} .play").click()
+    page.wait_for_function(TURNED, timeout=3000)  # the lesson promises this
+    assert page.locator(f"{REPLAY} .play").inner_text() == "Pause"
+    assert not picture.is_visible()
+    assert (stage.bounding_box(), below.bounding_box()) == places
+    assert page.problems == []
+    page.close()
+
+
+@pytest.mark.parametrize("size", [(1280, 900), (390, 844)])
+def test_play_is_on_the_first_screen(browser, address, size):
+    page = open_lecture(
+        browser, address, viewport=dict(zip(("width", "height"), size, strict=True))
+    )
+    play = page.locator(f"{REPLAY} .play").bounding_box()
+    assert play["y"] + play["height"] < size[1]
+    page.close()
+
+
+def test_the_picture_is_that_of_the_model(shown):
+    """Both show the robot in one place: most points of one are in the other."""
+    choose(shown, "G1", 0)
+    shown.wait_for_function(POSED, arg=["G1", 0.0])
+    stage = shown.locator(f"{REPLAY} .stage")
+    model = lightness(shown, stage, "model-viewer")
+    picture = lightness(shown, stage, ".still")
+    above = np.s_[: int(0.7 * len(model))]  # the floor is below; its light differs
+    robot, drawn = (np.abs(image - image[20, -20])[above] > 30 for image in (model, picture))
+    assert 0.15 < robot.mean() < 0.5
+    assert (robot & drawn).sum() / (robot | drawn).sum() > 0.8
+
+
+def lightness(page, stage, part) -> np.ndarray:
+    """Return a screenshot of one part of the stage alone, 0 to 255."""
+    only = f".stage > :not({part}) {{ visibility: hidden; }} .stage > {part} {{ display: block; }}"
+    style = page.add_style_tag(content=only.replace("}", " }").replace(";", " !important;"))
+    with Image.open(BytesIO(stage.screenshot())) as image:
+        found = np.asarray(image.convert("L")).astype(int)
+    style.evaluate("style => style.remove()")
+    return found
 
 
 def test_sample_0_is_the_state_before_the_first_step(page, record):
@@ -238,6 +352,7 @@ def test_the_curve_is_drawn_to_scale(page, record):
 
 
 def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
+    show_robot(page)
     choose(page, "G2", 0)
     speed = page.locator(f"{REPLAY} select")
     speed.select_option("0.1")  # slow enough to be paused before the end
@@ -270,6 +385,7 @@ def test_reduced_motion_goes_by_steps(browser, address):
     play = page.locator(f"{REPLAY} .play")
     assert play.inner_text() == "Next 0.05 s"
     play.click()
+    page.locator(REPLAY).get_by_text("Turn the view").wait_for(timeout=120_000)
     assert readout(page)["time"] == "0.05 s"
     assert page.evaluate(FRAMES_ASKED) == 0  # it stands still
     assert readout(page)["time"] == "0.05 s"
@@ -279,7 +395,8 @@ def test_reduced_motion_goes_by_steps(browser, address):
 
 def of_replay(urls) -> list[str]:
     """Return the names of the files in the replay's folder."""
-    return sorted(url.rpartition("/")[2] for url in urls if f"/{sphinx_replay.FOLDER}/" in url)
+    found = (re.search(rf"/{sphinx_replay.FOLDER}/([^/]+)$", url) for url in urls)
+    return sorted(match[1] for match in found if match)
 
 
 def test_viewer_and_model_are_asked_for_on_request_alone(shown):
@@ -308,26 +425,18 @@ def test_the_case_is_named_beside_the_robot(shown):
     assert list(lines.values()) == list(LESSONS["l04"].compared.cases)
 
 
-def test_the_robot_can_be_hidden_again(shown):
-    button = shown.locator(f"{REPLAY} button.show")
-    assert button.get_attribute("aria-expanded") == "true"
-    assert shown.locator("model-viewer").get_attribute("alt").startswith("The robot in 3D")
-    button.click()
-    assert not shown.locator("model-viewer").is_visible()
-    assert button.get_attribute("aria-expanded") == "false"
-
-
 def test_a_browser_without_3d_says_so_and_loads_nothing(browser, address):
     arguments = ["--no-sandbox", "--disable-3d-apis"]
     blind = browser.browser_type.launch(executable_path=chromium(), args=arguments)
     asked: list[str] = []
     page = open_lecture(blind, address, asked)
-    page.locator(f"{REPLAY} button.show").click()
+    page.locator(f"{REPLAY} .play").click()
     page.locator(REPLAY).get_by_text("This browser draws no 3D").wait_for()
+    page.wait_for_function(f"document.querySelector('{REPLAY} input[type=range]').value > 0")
     page.wait_for_load_state("networkidle")
     assert of_replay(asked) == []
     assert page.locator("model-viewer").count() == 0
-    assert not page.locator(f"{REPLAY} .shown").is_visible()
+    assert page.locator(f"{REPLAY} .still").is_visible()
     assert page.problems == []
     blind.close()
 
@@ -335,17 +444,19 @@ def test_a_browser_without_3d_says_so_and_loads_nothing(browser, address):
 def test_a_file_that_is_missing_is_said(browser, address):
     page = open_lecture(browser, address)
     page.route(f"**/{MODEL}.js", lambda route: route.abort())
-    page.locator(f"{REPLAY} button.show").click()
+    page.locator(f"{REPLAY} .play").click()
     page.locator(f"{REPLAY} [role=status]").get_by_text("cannot be shown").wait_for()
     assert page.locator("model-viewer").count() == 0
+    assert page.locator(f"{REPLAY} .play").inner_text() == "Pause"  # the plots play
     page.close()
 
 
 def test_two_replays_of_a_page_are_two(browser, address, site, files):
     """A recorded run brings its own: other names, another model, the same viewer."""
     other, html = "replay-l04-lab-other-recorded", (site / f"{LECTURE}.html").read_text()
-    block = str(parsed(site, LECTURE).select_one(BLOCK))
-    html = html.replace("</article>", block.replace(MODEL, other) + "</article>", 1)
+    block = str(parsed(site, LECTURE).select_one(BLOCK)).replace(MODEL, other)
+    block = block.replace(f"{other}.jpg", f"{MODEL}.jpg")
+    html = html.replace("</article>", f"{block}</article>", 1)
     script = sphinx_replay.script_of(other, (files / f"{MODEL}.glb").read_bytes())
     served = {f"**/{LECTURE}.html": html, f"**/{other}.js": script}
     page = open_lecture(browser, address, served=served)
@@ -354,21 +465,21 @@ def test_two_replays_of_a_page_are_two(browser, address, site, files):
     second.locator("input[type=range]").fill("7")
     assert first.locator("input:checked").input_value() == "G1"
     assert first.locator("input[type=range]").input_value() == "0"
-    for replay in (first, second):
-        replay.locator("button.show").click()
-        replay.get_by_text("Loaded.").wait_for(timeout=120_000)
+    for replay in (REPLAY, f".replay[data-name={other}]"):
+        show_robot(page, replay)
     assert page.locator("model-viewer").count() == 2
     assert page.problems == []
     page.close()
 
 
-def test_nothing_is_cut_off_on_a_phone(page):
-    overflow = page.locator(REPLAY).evaluate("""root => {
-      const edge = root.getBoundingClientRect().right;
-      return [...root.querySelectorAll("input, button, select, svg, svg text, dl div")]
-        .filter(e => e.getBoundingClientRect().right > edge).map(e => e.outerHTML);
-    }""")
-    assert overflow == []
+@pytest.mark.parametrize("width", [320, 390, 1280])
+@pytest.mark.parametrize("name", PLAYING)
+def test_nothing_is_cut_off_or_collides(browser, address, name, width):
+    """At each sample of each run of each replay of a page."""
+    page = browser.new_page(viewport={"width": width, "height": 800})
+    page.goto(f"{address}/{name}.html")
+    assert page.evaluate(TOO_WIDE) == []
+    page.close()
 
 
 def test_the_validator_finds_nothing_in_the_site_s_model(files, tmp_path):
@@ -389,4 +500,4 @@ def test_the_script_is_deferred_and_on_no_other_page(site):
     assert script.has_attr("defer")
     found = [path for path in site.rglob("*.html") if "_static/replay.js" in path.read_text()]
     playing = {path.relative_to(site).with_suffix("").as_posix() for path in found}
-    assert playing == {name for name in PAGES if "{replay}" in (BOOK / f"{name}.md").read_text()}
+    assert playing == set(PLAYING)

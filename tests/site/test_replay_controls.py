@@ -15,6 +15,7 @@ from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.sim import body_channels
 from robo_genesis.site.replay import controls
+from robo_genesis.site.replay.scenery import Camera, Scenery
 
 
 @pytest.fixture(scope="module")
@@ -28,17 +29,28 @@ def box() -> Runs:
     return body_channels.runs(traces, LINKS, "box", "box")
 
 
+CAMERA = Camera(np.array([0.2, 0.5, 0.0]), 1.5)
+AROUND = {
+    "robot": Scenery([], CAMERA, axis=True, target={"hand": np.eye(4)}),
+    "box": Scenery([], CAMERA, followed=0),
+}
+FILES = controls.Files("replay/a.js", "replay/viewer.js")
+
+
 def parsed(runs: Runs) -> BeautifulSoup:
-    text = controls.markup("replay-x", runs, "replay/a.js", "replay/viewer.js", 560)
+    camera = AROUND[runs.view.thing].camera
+    text = controls.opening("replay-x", runs, camera, FILES) + controls.panel("replay-x", runs, 560)
     return BeautifulSoup(text, "html.parser").div
 
 
 SHOWN = {
     "joint": {
         "legend": "Run of joint4",
-        "button": "Show the robot in 3D",
+        "weight": "Play loads the robot in 3D: 560 kB.",
+        "picture": "The robot at the start of G1, drawn from the recorded poses.",
+        "caption": "Recorded poses of the robot. Yellow rod: the axis of joint4. "
+        "Dark and translucent: joint4 at its target, other joints at rest.",
         "alt": "The robot in 3D, in the posture of the sample that is shown. joint4 moves.",
-        "view": ("45deg 72deg 90%", "0.2m 0.52m 0m"),
         "channels": [("position", "rad", 4), ("velocity", "rad/s", 4), ("control force", "N·m", 2)],
         "time digits": "2",
         "last sample": "120",
@@ -47,9 +59,10 @@ SHOWN = {
     },
     "box": {
         "legend": "Run of the box",
-        "button": "Show the box in 3D",
+        "weight": "Play loads the box in 3D: 560 kB.",
+        "picture": "The box at the start of high, drawn from the recorded poses.",
+        "caption": "Recorded poses of the box. The view follows the box horizontally.",
         "alt": "The box in 3D, where it is at the sample that is shown.",
-        "view": ("30deg 72deg auto", ""),
         "channels": [("height", "m", 4), ("vertical velocity", "m/s", 4)],
         "time digits": "4",
         "last sample": "30",
@@ -77,13 +90,15 @@ def test_the_table_has_every_sample_of_each_channel(request, kind):
 
 @pytest.mark.parametrize("kind", SHOWN)
 def test_the_controls_name_their_parts_and_have_the_script_s_data(request, kind):
-    root = parsed(request.getfixturevalue(kind))
+    runs = request.getfixturevalue(kind)
+    root = parsed(runs)
     slider = root.select_one("input[type=range]")
     assert {
         "legend": root.legend.get_text(),
-        "button": root.select_one(".show").get_text(),
+        "weight": root.select_one("[role=status]").get_text(),
+        "picture": controls.alt(runs),
+        "caption": controls.caption(runs, AROUND[runs.view.thing]),
         "alt": root["data-alt"],
-        "view": (root["data-orbit"], root["data-target"]),
         "channels": [
             (c["name"], c["unit"], c["digits"]) for c in json.loads(root["data-channels"])
         ],
@@ -93,7 +108,8 @@ def test_the_controls_name_their_parts_and_have_the_script_s_data(request, kind)
         "runs": {one["value"]: one["data-mark"] for one in root.select("input[type=radio]")},
     } == SHOWN[kind]
     assert root["class"] == ["replay"]
-    assert root.has_attr("hidden")
+    assert (root["data-orbit"], root["data-target"]) == (CAMERA.orbit, CAMERA.target)
+    assert (root["data-model"], root["data-viewer"]) == (FILES.model, FILES.viewer)
     assert root.select_one(f"label[for={slider['id']}]").get_text() == "Time"
     assert len(root.select(".plots > .plot")) == len(SHOWN[kind]["channels"])
 
@@ -115,6 +131,14 @@ def test_bodies_have_no_levels_and_no_words_of_a_robot(box):
     assert not re.search("robot|joint", str(root))
 
 
+def test_the_controls_are_hidden_until_the_script_shows_them(joint):
+    (panel,) = parsed(joint).select("[hidden]")
+    assert panel["class"] == ["panel"]
+    over = BeautifulSoup(controls.OVER_THE_PICTURE, "html.parser")
+    assert over.button.has_attr("hidden")
+    assert over.get_text() == "at the startPlay"
+
+
 def test_a_joint_s_motion_ends_with_its_quality(joint, traces):
     hand = traces["G2"].link_pos[:, 2]
     far = 100 * np.linalg.norm(hand - hand[0], axis=1).max()
@@ -128,6 +152,7 @@ def test_a_joint_s_motion_ends_with_its_quality(joint, traces):
 
 
 def test_words_are_escaped(joint):
-    text = controls.markup("x", replace(joint, subject='a"<b'), "a.js", "b.js", 1)
+    runs = replace(joint, subject='a"<b')
+    text = controls.opening("x", runs, CAMERA, FILES) + controls.panel("x", runs, 560)
     assert 'a"<b' not in text
     assert html.unescape(re.search('data-subject="([^"]*)"', text)[1]) == 'a"<b'

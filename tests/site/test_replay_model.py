@@ -9,11 +9,13 @@ import pygltflib
 import pytest
 import trimesh
 from gltf import report
+from trimesh.transformations import rotation_matrix, translation_matrix
 
 from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.sim import visual_shape
 from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.replay import model as replay_model
+from robo_genesis.site.replay.scenery import Camera, Scenery
 
 LINKS = ("link0", "link4", "hand")  # of the synthetic traces
 
@@ -43,9 +45,14 @@ def turning(traces):
     }  # fmt: skip
 
 
+def drawn(parts, traces, credit=None, **around) -> bytes:
+    scenery = Scenery(parts, Camera(np.zeros(3), 1.0), **around)
+    return replay_model.glb(scenery, LINKS, traces, credit)
+
+
 @pytest.fixture(scope="module")
 def glb(shape, turning) -> bytes:
-    return replay_model.glb(shape, LINKS, turning, LESSONS["l04"].compared.view.credit)
+    return drawn(shape, turning, LESSONS["l04"].compared.view.credit)
 
 
 @pytest.fixture(scope="module")
@@ -133,13 +140,13 @@ def test_colours_are_those_of_the_model_in_linear_light(model):
 def test_the_model_names_its_origin_unless_it_has_the_scene_s_own_shapes(model, shape, turning):
     assert "© Franka Robotics GmbH" in model.asset.copyright
     assert "decimated and converted" in model.asset.copyright
-    content = replay_model.glb(shape, LINKS, turning)
+    content = drawn(shape, turning)
     assert pygltflib.GLTF2.load_from_bytes(content).asset.copyright is None
 
 
-def test_a_shape_of_another_robot_is_refused(shape, turning):
+def test_a_shape_of_another_robot_is_refused(shape):
     with pytest.raises(ValueError, match="parts of hand; the record knows link0, link4"):
-        replay_model.glb(shape, LINKS[:2], {"G1": turning["G1"]})
+        visual_shape.check_links(shape, LINKS[:2])
 
 
 def test_a_shape_comes_back_from_its_file(shape, tmp_path):
@@ -185,7 +192,7 @@ def test_links_of_a_body_can_have_other_names():
 
 
 def test_what_belongs_to_no_link_stands_still(shape, turning, tmp_path):
-    content = replay_model.glb([*shape, visual_shape.floor(2.0)], LINKS, turning)
+    content = drawn([*shape, visual_shape.floor(2.0)], turning)
     assert report(content, tmp_path)["issues"]["messages"] == []
     still = pygltflib.GLTF2.load_from_bytes(content)
     number = next(k for k, node in enumerate(still.nodes) if node.name == replay_model.STILL)
@@ -199,7 +206,41 @@ def test_what_belongs_to_no_link_stands_still(shape, turning, tmp_path):
     assert up == pytest.approx(np.tile([0, 0, 1], (len(corners), 1)))
 
 
+def test_copies_of_links_stand_translucent_at_their_target(shape, turning, tmp_path):
+    target = translation_matrix([1, 2, 3]) @ rotation_matrix(0.5, [1, 0, 0])
+    content = drawn(shape, turning, target={"hand": target})
+    assert report(content, tmp_path)["issues"]["messages"] == []
+    model = pygltflib.GLTF2.load_from_bytes(content)
+    node = {node.name: node for node in model.nodes}
+    matrix = np.reshape(node["target_hand"].matrix, (4, 4)).T
+    assert matrix == pytest.approx(target)
+    assert [model.nodes[k].name for k in node["target"].children] == ["target_hand"]
+    assert model.nodes.index(node["target"]) in model.nodes[0].children
+    own, copy = (model.meshes[node[name].mesh].primitives[0] for name in ("hand", "target_hand"))
+    assert vars(copy.attributes) == vars(own.attributes)  # the same vertices, stored once
+    opaque, clear = (model.materials[one.material] for one in (own, copy))
+    assert (opaque.alphaMode, clear.alphaMode) == ("OPAQUE", "BLEND")
+    assert clear.pbrMetallicRoughness.baseColorFactor[3] == replay_model.GHOST[3] < 1
+    moved = {channel.target.node for one in model.animations for channel in one.channels}
+    assert moved == {1, 2, 3}
+
+
+def test_the_world_moves_against_a_followed_link(shape, turning, tmp_path):
+    content = drawn(shape, turning, followed=2)
+    assert report(content, tmp_path)["issues"]["messages"] == []
+    model = pygltflib.GLTF2.load_from_bytes(content)
+    for case, trace in turning.items():
+        times, places = keys(model, case, visual_shape.WORLD, "translation")
+        assert np.array_equal(times, trace.t.astype(np.float32))
+        x, y, _ = trace.link_pos[:, 2].T
+        assert np.array_equal(places, np.column_stack([-x, 0 * x, y]))
+    assert (
+        np.float32(model.nodes[0].translation).tolist()
+        == keys(model, "G1", visual_shape.WORLD, "translation")[1][0].tolist()
+    )
+
+
 @pytest.mark.parametrize("links", [("box", "box"), ("box", "world")])
-def test_two_links_of_one_name_are_refused(links, turning):
+def test_two_links_of_one_name_are_refused(links):
     with pytest.raises(ValueError, match=rf"of the world: {links[1]}\. Give each a name"):
-        replay_model.glb([], links, {"G1": turning["G1"]})
+        visual_shape.check_links([], links)

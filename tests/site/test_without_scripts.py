@@ -24,8 +24,11 @@ def test_the_page_has_its_colours(page):
     expect(page.locator("article h2").first).to_have_css("border-top-width", "1px")
 
 
-def test_of_the_replay_figures_and_table_remain(page):
-    assert not page.locator(REPLAY).is_visible()
+def test_of_the_replay_picture_figures_and_table_remain(page):
+    assert page.locator(f"{REPLAY} .still").is_visible()
+    assert page.locator(f"{REPLAY} .shown").inner_text() == "at the start"
+    assert not page.locator(f"{REPLAY} button").is_visible()
+    assert not page.locator(f"{REPLAY} .panel").is_visible()
     assert page.locator("#fig-l04-gains img").is_visible()
     assert page.locator("#fig-l04-posture img").is_visible()
     assert page.get_by_text("moves farthest").first.is_visible()

@@ -165,8 +165,6 @@ LESSON = Lesson(
             f"{spec.STEPPED_JOINT} moves.",
             credit="Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from "
             "franka_description, © Franka Robotics GmbH; decimated and converted",
-            orbit="45deg 72deg 90%",
-            target="0.2m 0.52m 0m",
         ),
         alt=f"Position of {spec.STEPPED_JOINT} over time with the gains of "
         f"{listed(tuple(study_spec.COMPARED))}, its target and the settling band around it.",

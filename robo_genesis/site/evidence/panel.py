@@ -6,7 +6,6 @@ gives the state, the reason and the command that records a new one.
 """
 
 import io
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -30,7 +29,7 @@ from robo_genesis.lessons.registry import COURSE_MARKS, compared_cases, filmed, 
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import Run
 from robo_genesis.site.evidence.measured import BACKEND
-from robo_genesis.site.evidence.plain_nodes import marked, text_table
+from robo_genesis.site.evidence.plain_nodes import image, marked, text_table
 from robo_genesis.site.replay.directive import replay_block
 
 
@@ -87,12 +86,10 @@ class Evidence(SphinxDirective):
 
 
 def figure(directive: SphinxDirective, anchor: str, picture: Picture) -> nodes.Node:
-    """Return a figure; its file is written outside the site until Sphinx copies it."""
-    file = Path(directive.env.app.outdir).parent / "panel" / f"{anchor}{picture.suffix}"
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_bytes(picture.content)
-    image = nodes.image(uri=f"/{os.path.relpath(file, directive.env.srcdir)}", alt=picture.alt)
-    return nodes.figure("", image, nodes.caption("", picture.caption), ids=[anchor])
+    """Return a figure."""
+    name = f"{anchor}{picture.suffix}"
+    shown = image(directive.env, name, picture.content, picture.alt)
+    return nodes.figure("", shown, nodes.caption("", picture.caption), ids=[anchor])
 
 
 def withheld(run: Run) -> list[nodes.Node]:

@@ -1,11 +1,14 @@
 """Nodes from text of a bundle, which no parser of markup may see: it could contain a script."""
 
+import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from itertools import cycle
+from pathlib import Path
 
 from docutils import nodes
+from sphinx.environment import BuildEnvironment
 
 MARKED = re.compile(r"\*\*([^*]+)\*\*|`([^`]+)`")
 KINDS = (nodes.Text, partial(nodes.strong, ""), partial(nodes.literal, ""))
@@ -15,6 +18,21 @@ def marked(text: str) -> list[nodes.Node]:
     """Return text with `**strong**` parts and code in backticks; nothing else is markup."""
     parts = zip(cycle(KINDS), MARKED.split(text))  # plain, strong, code, plain, …
     return [make(part) for make, part in parts if part]
+
+
+def image(env: BuildEnvironment, name: str, content: bytes, alt: str) -> nodes.image:
+    """Return a picture; its file is written outside the site until Sphinx copies it.
+
+    Args:
+        env: of the build.
+        name: of the file, unique on the site.
+        content: of the file.
+        alt: its alternative text.
+    """
+    file = Path(env.app.outdir).parent / "panel" / name
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_bytes(content)
+    return nodes.image(uri=f"/{os.path.relpath(file, env.srcdir)}", alt=alt)
 
 
 def table(

@@ -128,7 +128,8 @@ def describe(
     else:
         caption, path = holder.next_node(nodes.caption), book / node["uri"]
         title = caption.astext() if caption is not None else str(node.get("alt", anchor))
-        kind = "illustration" if keys is None else ledger_data.picture_kind(path)
+        drawn = node.get("kind") or ledger_data.picture_kind(path)
+        kind = "illustration" if keys is None else drawn
         data, file = path.read_bytes(), node["uri"]
     digest = ledger_data.sha256(data)
     return Item(

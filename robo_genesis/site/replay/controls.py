@@ -1,8 +1,9 @@
 """The replay of recorded runs as text and markup: a table of all samples, and the controls."""
 
 import json
+from dataclasses import dataclass
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from robo_genesis.core import tables
 from robo_genesis.core.channels import Runs
@@ -10,9 +11,21 @@ from robo_genesis.core.palette import css_name, marks_of
 from robo_genesis.core.text import time_digits
 from robo_genesis.lessons.registry import COURSE_MARKS
 
+if TYPE_CHECKING:
+    from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
+
 SPEEDS = {"1": "real time", "0.25": "1/4", "0.1": "1/10"}
 SLOW = "0.1"
 """The initial speed: most of the motion happens in a small part of the window."""
+
+
+@dataclass(frozen=True, slots=True)
+class Files:
+    """Addresses of the scripts that hold the model and the viewer of a replay."""
+
+    model: str
+    viewer: str
+
 
 PLOT = '<div class="plot"></div>'
 """The script draws a channel here; a page may have no picture that is not in the ledger."""
@@ -32,42 +45,71 @@ def samples(runs: Runs) -> str:
     return tables.markdown([dict(zip(columns, row, strict=True)) for row in rows])
 
 
-def markup(name: str, runs: Runs, script: str, viewer: str, weight: int) -> str:
-    """Return the controls as HTML, hidden until `_static/replay.js` fills and shows them.
+def opening(name: str, runs: Runs, camera: "Camera", files: Files) -> str:
+    """Return the start of a replay as HTML, with what `_static/replay.js` needs to know.
 
     Args:
         name: of the replay, unique on the site.
         runs: the runs to play.
-        script: address of the script that holds the model.
-        viewer: address of the viewer's script.
-        weight: of both, compressed [kB].
+        camera: of the model.
+        files: what loads with the first Play.
     """
-    name, thing = escape(name), escape(runs.view.thing)
+    model, viewer = f'data-model="{escape(files.model)}"', f'data-viewer="{escape(files.viewer)}"'
+    return f'<div class="replay" {_data(name, runs, camera)} {model} {viewer}>'
+
+
+OVER_THE_PICTURE = (
+    '<p class="shown">at the start</p><button type="button" class="play" hidden>Play</button>'
+)
+
+
+def alt(runs: Runs) -> str:
+    """Return the alternative text of the picture of the model."""
+    case = next(iter(runs.traces))
+    return f"The {runs.view.thing} at the start of {case}, drawn from the recorded poses."
+
+
+def caption(runs: Runs, around: "Scenery") -> str:
+    """Return the caption of the model, with the meaning of what it shows besides the bodies."""
+    parts = [f"Recorded poses of the {runs.view.thing}."]
+    if around.axis:
+        parts.append(f"Yellow rod: the axis of {runs.subject}.")
+    if around.target:
+        parts.append(f"Dark and translucent: {runs.subject} at its target, other joints at rest.")
+    if around.followed is not None:
+        parts.append(f"The view follows the {runs.view.thing} horizontally.")
+    return " ".join(parts)
+
+
+def panel(name: str, runs: Runs, weight: int) -> str:
+    """Return the controls and the end of a replay as HTML; the script fills and shows them.
+
+    Args:
+        name: of the replay.
+        runs: the runs to play.
+        weight: of what loads with the first Play, compressed [kB].
+    """
+    name = escape(name)
     speeds = "".join(
         f'<option value="{value}"{" selected" * (value == SLOW)}>{text}</option>'
         for value, text in SPEEDS.items()
     )
     terms = ["time", *(c.name for c in runs.channels), *(level.name for level in runs.levels)]
     return (
-        f'<div class="replay" hidden {_data(name, runs)} data-model="{escape(script)}" '
-        f'data-viewer="{escape(viewer)}">'
+        '<div class="panel" hidden><p role="status">'
+        f"Play loads the {escape(runs.view.thing)} in 3D: {weight} kB.</p>"
         f"<fieldset><legend>Run of {escape(runs.subject)}</legend>{_cases(name, runs)}</fieldset>"
-        '<div class="stage"><p class="shown" hidden></p></div>'
-        '<p class="in-space"><button type="button" class="show" aria-expanded="false">'
-        f'Show the {thing} in 3D</button> <span class="weight">{weight} kB, loaded only if you ask '
-        "for it</span>"
-        ' <span role="status"></span></p>'
-        f'<div class="controls"><button type="button" class="play">Play</button>'
+        f'<div class="controls">'
         f'<p><label for="{name}-time">Time</label><input type="range" id="{name}-time" min="0" '
         f'max="{len(runs.t) - 1}" step="1" value="0"></p>'
         f'<p><label for="{name}-speed">Speed</label><select id="{name}-speed">{speeds}</select></p>'
         f"</div><dl>{''.join(map(_term, terms))}</dl>"
         f'<div class="plots">{PLOT * len(runs.channels)}</div>'
-        f'<p class="legend">{escape(_legend(runs))}</p></div>'
+        f'<p class="legend">{escape(_legend(runs))}</p></div></div>'
     )
 
 
-def _data(name: str, runs: Runs) -> str:
+def _data(name: str, runs: Runs, camera: "Camera") -> str:
     """Return the data of all cases for the script as attributes, the channels as JSON."""
     view = runs.view
     channels = [{"name": c.name, "unit": c.unit, "digits": c.digits} for c in runs.channels]
@@ -78,8 +120,8 @@ def _data(name: str, runs: Runs) -> str:
         "time-digits": str(time_digits(next(iter(runs.traces.values())).dt)),
         "thing": view.thing,
         "alt": view.alt,
-        "orbit": view.orbit,
-        "target": view.target,
+        "orbit": camera.orbit,
+        "target": camera.target,
     }
     return " ".join(f'data-{key}="{escape(text)}"' for key, text in words.items())
 

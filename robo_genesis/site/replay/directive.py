@@ -25,7 +25,7 @@ from robo_genesis.lessons.registry import drawn_cases
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
-from robo_genesis.site.evidence.plain_nodes import marked
+from robo_genesis.site.evidence.plain_nodes import image, marked
 from robo_genesis.site.page_files import note_files
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
@@ -66,26 +66,40 @@ def replay_block(
         DirectiveError: the lesson has no such cases, its runs cannot be played together, or no page
             of this build wrote the shape of these links.
     """
+    from robo_genesis.site.replay import model as replay_model  # these load slowly
+    from robo_genesis.site.replay.poster import picture
+    from robo_genesis.site.replay.scenery import scenery
+
     env, lesson = directive.env, key.split("/")[0]
     name = "-".join(("replay", *key.split("/"), *filter(None, [further])))
     try:
         runs = read_runs(folder, drawn_cases(lesson, further))
         shape = shape_file(lesson, runs.view.thing)
-        inputs = model_inputs(shape, folder, runs)
-        model = derived("replay", inputs, lambda: make_model(shape, runs))
+        around = scenery(visual_shape.load_shape(shape), runs)
+        inputs = [*model_inputs(shape, folder, runs)]
+        what = around, runs.links, runs.traces, runs.view.credit
+        model = derived("replay", inputs, lambda: replay_model.glb(*what))
+        still = derived("poster", inputs, lambda: picture(model, around.camera))
         files_of = Path(env.app.outdir) / FOLDER
         written = write_model(files_of, name, model)
         note_files(env, files_of / f"{name}.glb", files_of / f"{name}.js")
-        weight = written + len(gzip.compress(viewer.viewer()))
+        weight = round((written + len(gzip.compress(viewer.viewer()))) / 1000)
         up = "../" * env.docname.count("/") + FOLDER
-        files = f"{up}/{name}.js", f"{up}/{VIEWER}"
-        html = controls.markup(name, runs, *files, round(weight / 1000))
+        files = controls.Files(f"{up}/{name}.js", f"{up}/{VIEWER}")
+        opening = controls.opening(name, runs, around.camera, files)
     except (LookupError, ValueError) as error:
         raise directive.error(f"replay: {key}: {error}") from error
     summary = f"All samples of {', '.join(runs.traces)} as a table"
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
-    block += nodes.raw("", html, format="html")
+    block += nodes.raw("", opening, format="html")
+    poster = image(env, f"{name}.jpg", still, controls.alt(runs))
+    poster["kind"], poster["classes"] = "model", ["still"]
+    over = nodes.raw("", controls.OVER_THE_PICTURE, format="html")
+    stage = nodes.container("", poster, over, classes=["stage"])
+    caption = nodes.caption("", controls.caption(runs, around))
+    block += nodes.figure("", stage, caption, ids=[f"{name}-model"])
+    block += nodes.raw("", controls.panel(name, runs, weight), format="html")
     lines = (nodes.paragraph("", "", *marked(text)) for text in runs.moves.values())
     block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
@@ -111,16 +125,8 @@ def shape_file(lesson: str, thing: str) -> Path:
     return shape
 
 
-def make_model(shape: Path, runs: Runs) -> bytes:
-    """Return the GLB of a replay."""
-    from robo_genesis.site.replay import model as replay_model  # loads slowly
-
-    parts = visual_shape.load_shape(shape)
-    return replay_model.glb(parts, runs.links, runs.traces, runs.view.credit)
-
-
 def model_inputs(shape: Path, folder: Path, runs: Runs) -> Iterator[bytes]:
-    """Yield everything that determines the GLB of a replay."""
+    """Yield everything that determines the GLB of a replay and its picture."""
     yield repr((list(runs.traces), list(runs.links), runs.view.credit)).encode()
     sources = (project.ROOT / "robo_genesis").rglob("*.py")
     for path in (shape, folder / "arrays.json", *sorted(folder.glob("arrays/*")), *sorted(sources)):

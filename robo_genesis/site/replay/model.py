@@ -1,8 +1,9 @@
 """Recorded runs as a GLB: the shape of the links, moved by the recorded link poses.
 
 Each link is a node, placed in the world and moved by one animation per case, whose keys are the
-samples of the record. One more node holds the parts that do not move. Nothing is compressed: the
-page would have to load a decoder.
+samples of the record. One more node holds the parts that do not move, another one translucent
+copies of links at their target. If the view follows a link, the world moves against it. Nothing is
+compressed: the page would have to load a decoder.
 """
 
 import json
@@ -14,8 +15,10 @@ import pygltflib as gltf
 import trimesh
 
 from robo_genesis.core.channels import Run
+from robo_genesis.core.palette import MARKS
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.visual_shape import WORLD, Part, check_links
+from robo_genesis.sim.visual_shape import WORLD, Part
+from robo_genesis.site.replay.scenery import Scenery
 
 KEPT = 0.05
 """Share of the triangles of a large part that is kept: with the small parts, about 10,000 of the
@@ -27,8 +30,11 @@ SMALLEST = 400
 CREASE = np.radians(40)
 """Angle between triangles above which an edge is drawn sharp [rad]."""
 
-STILL = "still"
-"""The node of the parts that belong to no link."""
+STILL, TARGET = "still", "target"
+"""The nodes of the parts that belong to no link, and of the copies at the target."""
+
+GHOST = (*bytes.fromhex(MARKS["target"].light[1:]), 0.35)
+"""Colour of the copies: red, green, blue 0 to 255, and opacity."""
 
 Z_UP_TO_Y_UP = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]
 """Rotation of the root node, `WORLD`, from the record's frame into glTF's; links are below it."""
@@ -73,7 +79,7 @@ class Binary:
 
 
 def glb(
-    shape: Sequence[Part],
+    scenery: Scenery,
     links: Sequence[str],
     traces: Mapping[str, Run],
     credit: str | None = None,
@@ -81,40 +87,54 @@ def glb(
     """Return the model with one animation a case.
 
     Args:
-        shape: the parts of the links; parts of `WORLD` do not move.
+        scenery: what to draw; parts of `WORLD` do not move.
         links: names of the links, in the order of the record.
         traces: the record by case.
         credit: copyright of the shape, None where it needs no notice.
-
-    Raises:
-        ValueError: a part belongs to a link that is not in the record, or two links have one name.
     """
-    check_links(shape, links)
     model = gltf.GLTF2(asset=gltf.Asset(version="2.0", generator="RoboGenesis", copyright=credit))
     binary = Binary(model)
     model.nodes = [gltf.Node(name=WORLD, rotation=Z_UP_TO_Y_UP, children=[])]
     first = next(iter(traces.values()))
+    simple = [(part, simplified(part)) for part in scenery.parts]
     for k, link in enumerate(links):
         place = first.link_pos[0, k].astype(float).tolist()
         turn = rotations(first.link_quat[:1, k])[0].astype(float).tolist()
-        mesh = _mesh(binary, link, shape)
+        mesh = _mesh(binary, link, simple)
         model.nodes.append(gltf.Node(name=link, translation=place, rotation=turn, mesh=mesh))
-    still = _mesh(binary, WORLD, shape)
+    still = _mesh(binary, WORLD, simple)
     if still is not None:
         model.nodes.append(gltf.Node(name=STILL, mesh=still))
     model.nodes[0].children = list(range(1, len(model.nodes)))
-    model.animations = [_animation(binary, name, trace) for name, trace in traces.items()]
+    if scenery.target:
+        model.nodes[0].children.append(len(model.nodes))
+        below = range(len(model.nodes) + 1, len(model.nodes) + 1 + len(scenery.target))
+        model.nodes.append(gltf.Node(name=TARGET, children=list(below)))
+    for link, pose in scenery.target.items():
+        mesh, matrix = _mesh(binary, link, simple, GHOST), pose.T.ravel().tolist()
+        model.nodes.append(gltf.Node(name=f"{TARGET}_{link}", matrix=matrix, mesh=mesh))
+    followed = scenery.followed
+    if followed is not None:
+        model.nodes[0].translation = opposite(first, followed)[0].astype(float).tolist()
+    model.animations = [_animation(binary, *run, followed) for run in traces.items()]
     model.scene, model.scenes = 0, [gltf.Scene(nodes=[0])]
     model.buffers = [gltf.Buffer(byteLength=len(binary.data))]
     model.set_binary_blob(bytes(binary.data))
     return b"".join(model.save_to_bytes())
 
 
-def _mesh(binary: Binary, link: str, shape: Sequence[Part]) -> int | None:
-    """Add a link's mesh and return its number, None where the link has no parts."""
+def _mesh(
+    binary: Binary,
+    link: str,
+    shape: Sequence[tuple[Part, trimesh.Trimesh]],
+    colour: Sequence[float] | None = None,
+) -> int | None:
+    """Add a link's mesh and return its number, None where the link has no parts.
+
+    `shape` has each part with its simplified mesh; `colour` replaces those of the parts.
+    """
     model, primitives = binary.model, []
-    for part in (part for part in shape if part.link == link):
-        mesh = simplified(part)
+    for part, mesh in (pair for pair in shape if pair[0].link == link):
         attributes = gltf.Attributes(
             POSITION=binary.add(_float32(mesh.vertices), "VEC3", gltf.ARRAY_BUFFER, bounds=True),
             NORMAL=binary.add(_float32(mesh.vertex_normals), "VEC3", gltf.ARRAY_BUFFER),
@@ -123,7 +143,11 @@ def _mesh(binary: Binary, link: str, shape: Sequence[Part]) -> int | None:
         small = np.uint16 if len(mesh.vertices) < 2**16 else np.uint32
         indices = binary.add(faces.astype(small), "SCALAR", gltf.ELEMENT_ARRAY_BUFFER)
         primitives.append(
-            gltf.Primitive(attributes=attributes, indices=indices, material=_material(model, part))
+            gltf.Primitive(
+                attributes=attributes,
+                indices=indices,
+                material=_material(model, colour or part.rgb),
+            )
         )
     if not primitives:
         return None
@@ -145,14 +169,16 @@ def simplified(part: Part) -> trimesh.Trimesh:
     return trimesh.graph.smooth_shade(mesh, angle=CREASE)
 
 
-def _material(model: gltf.GLTF2, part: Part) -> int:
-    """Return the number of the material of a part's colour."""
-    name = json.dumps(part.rgb)
-    colour = [*linear(np.array(part.rgb) / 255).tolist(), 1.0]
+def _material(model: gltf.GLTF2, colour: Sequence[float]) -> int:
+    """Return the number of the material of a colour: red, green, blue 0 to 255, and opacity."""
+    name, opacity = json.dumps(colour), next(iter(colour[3:]), 1.0)
+    factor = [*linear(np.array(colour[:3]) / 255).tolist(), opacity]
     look = gltf.PbrMetallicRoughness(
-        baseColorFactor=colour, metallicFactor=0.0, roughnessFactor=0.6
+        baseColorFactor=factor, metallicFactor=0.0, roughnessFactor=0.6
     )
     material = gltf.Material(name=name, pbrMetallicRoughness=look, alphaCutoff=None)
+    if opacity < 1:
+        material.alphaMode = "BLEND"
     if material not in model.materials:
         model.materials.append(material)
     return model.materials.index(material)
@@ -163,22 +189,30 @@ def linear(srgb: FloatArray) -> FloatArray:
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
-def _animation(binary: Binary, name: str, trace: Run) -> gltf.Animation:
+def _animation(binary: Binary, name: str, trace: Run, followed: int | None) -> gltf.Animation:
     """Return the animation of a case: every link's position and orientation at every sample."""
     animation = gltf.Animation(name=name, channels=[], samplers=[])
     times = binary.add(_float32(trace.t), "SCALAR", bounds=True)
+    tracks = []
     for k in range(trace.link_pos.shape[1]):
-        for path, values, kind in (
-            ("translation", _float32(trace.link_pos[:, k]), "VEC3"),
-            ("rotation", rotations(trace.link_quat[:, k]), "VEC4"),
-        ):
-            target = gltf.AnimationChannelTarget(node=k + 1, path=path)
-            channel = gltf.AnimationChannel(sampler=len(animation.samplers), target=target)
-            output = binary.add(values, kind)
-            sampler = gltf.AnimationSampler(input=times, output=output, interpolation="LINEAR")
-            animation.channels.append(channel)
-            animation.samplers.append(sampler)
+        tracks.append((k + 1, "translation", _float32(trace.link_pos[:, k]), "VEC3"))
+        tracks.append((k + 1, "rotation", rotations(trace.link_quat[:, k]), "VEC4"))
+    if followed is not None:
+        tracks.append((0, "translation", opposite(trace, followed), "VEC3"))
+    for node, path, values, kind in tracks:
+        target = gltf.AnimationChannelTarget(node=node, path=path)
+        channel = gltf.AnimationChannel(sampler=len(animation.samplers), target=target)
+        output = binary.add(values, kind)
+        sampler = gltf.AnimationSampler(input=times, output=output, interpolation="LINEAR")
+        animation.channels.append(channel)
+        animation.samplers.append(sampler)
     return animation
+
+
+def opposite(trace: Run, link: int) -> FloatArray:
+    """Return the places (n, 3) of the world that keep a link horizontally in the view's centre."""
+    x, y = trace.link_pos[:, link, :2].T
+    return _float32(np.column_stack([-x, np.zeros_like(x), y]))
 
 
 def rotations(wxyz: FloatArray) -> FloatArray:

@@ -1,0 +1,238 @@
+"""What a replay shows around the recorded links: a floor, the axis, the target, and its camera.
+
+All of it follows from the record and the shape; nothing here needs the engine.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+
+import numpy as np
+import trimesh
+from trimesh.transformations import quaternion_matrix, rotation_matrix
+
+from robo_genesis.core.channels import Run, Runs
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.visual_shape import WORLD, Part, check_links, floor
+
+TILE = 0.1
+"""Width of the tiles of the floor [m]; they show its distance and the motion above it."""
+
+TILE_RGB = (190, 190, 190)
+RAISED = 5e-4
+"""Height of the tiles above the floor that they are drawn on [m]."""
+
+AXIS_RGB, AXIS_RADIUS, AXIS_LENGTH = (240, 190, 0), 0.006, 0.4
+"""Colour, radius and length of the rod along a joint's axis [m]."""
+
+SAME_ANGLE = 1e-3
+"""Tolerance of the angle between two links against the recorded position of their joint [rad]."""
+
+THETA, PHI = np.radians(30), np.radians(78)
+"""Direction from the view's centre to the camera: about the vertical and from it [rad]."""
+
+FIELD = np.radians(30)
+"""Vertical angle of view [rad]: the viewer's own for pictures that are wider than high."""
+
+ASPECT = 4 / 3
+"""Width of the picture by its height, as in `replay.css`."""
+
+ROOM = 1.2
+"""Size of the picture by that of the motion in it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """Centre of the view (3,) and distance to it [m], in the frame of the viewer, y up."""
+
+    centre: FloatArray
+    distance: float
+
+    @property
+    def orbit(self) -> str:
+        """The direction and the distance in the viewer's notation."""
+        theta, phi = np.degrees([THETA, PHI])
+        return f"{theta:.0f}deg {phi:.0f}deg {self.distance:.4f}m"
+
+    @property
+    def target(self) -> str:
+        """The centre in the viewer's notation."""
+        return " ".join(f"{value:.4f}m" for value in self.centre)
+
+    @property
+    def axes(self) -> FloatArray:
+        """The camera's right, up and back (3, 3), unit vectors in its rows."""
+        back = [np.sin(PHI) * np.sin(THETA), np.cos(PHI), np.sin(PHI) * np.cos(THETA)]
+        right = [np.cos(THETA), 0.0, -np.sin(THETA)]
+        return np.array([right, np.cross(back, right), back])
+
+
+@dataclass(frozen=True, slots=True)
+class Hinge:
+    """A joint that turns links: `parent` is the number of the link above it, `moved` those below.
+
+    `axis` (3,) and `point` (3,) [m] are a line in the parent's frame.
+    """
+
+    parent: int
+    moved: tuple[int, ...]
+    axis: FloatArray
+    point: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Scenery:
+    """The parts to draw with the camera; `axis` says whether one of them is the axis of a joint.
+
+    `target` is by link its pose (4, 4) where the joint is at its target and the others at their
+    start. The view follows the link number `followed` horizontally; None if it does not move.
+    """
+
+    parts: Sequence[Part]
+    camera: Camera
+    axis: bool = False
+    target: Mapping[str, FloatArray] = field(default_factory=dict)
+    followed: int | None = None
+
+
+def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
+    """Return what the replay of some runs shows.
+
+    Raises:
+        ValueError: a part belongs to a link that is not in the record, or two links have one name.
+    """
+    check_links(shape, runs.links)
+    hinge, followed = find_hinge(runs), find_followed(runs)
+    moved = hinge.moved if hinge else range(len(runs.links))
+    camera = fitted(swept(shape, runs, moved, followed))
+    parts = [*shape, *floor_of(shape)]
+    if hinge is None:
+        return Scenery(parts, camera, followed=followed)
+    parts.append(rod(runs.links[hinge.parent], hinge))
+    return Scenery(parts, camera, axis=True, target=target_poses(runs, hinge))
+
+
+def find_followed(runs: Runs) -> int | None:
+    """Return the number of the only link if it leaves its tile of the floor, else None."""
+    places = np.concatenate([trace.link_pos[:, 0, :2] for trace in runs.traces.values()])
+    return 0 if len(runs.links) == 1 and np.ptp(places, axis=0).max() > TILE else None
+
+
+def find_hinge(runs: Runs) -> Hinge | None:
+    """Return the joint of the first channel, None if no link turns about an axis by its angle.
+
+    The links are in the order of their chain. The turn of the first link that moves against the
+    one before it, in the frame of that one, contains no motion of other joints.
+    """
+    angle = next(iter(runs.channels[0].values.values())).astype(float)
+    trace, last = first_of(runs), int(np.abs(angle - angle[0]).argmax())
+    turned = angle[last] - angle[0]
+    links = [poses(trace, k)[[0, last]] for k in range(len(runs.links))]
+    moved = [k for k, (start, end) in enumerate(links) if turn(start, end)[0] > abs(turned) / 2]
+    if runs.channels[0].unit != "rad" or abs(turned) < SAME_ANGLE or not moved or moved[0] == 0:
+        return None
+    parent, first = links[moved[0] - 1], links[moved[0]]
+    start, end = (np.linalg.solve(above, below) for above, below in zip(parent, first, strict=True))
+    size, axis = turn(start, end)
+    if abs(size - abs(turned)) > SAME_ANGLE:
+        return None
+    motion, origin = end @ np.linalg.inv(start), start[:3, 3]
+    # Of the axis, the point nearest to the link's origin: motion keeps it in place.
+    shift = end[:3, 3] - origin
+    point = origin + np.linalg.lstsq(np.eye(3) - motion[:3, :3], shift, rcond=1e-6)[0]
+    return Hinge(moved[0] - 1, tuple(moved), np.sign(turned) * axis, point)
+
+
+def target_poses(runs: Runs, hinge: Hinge) -> dict[str, FloatArray]:
+    """Return the poses of the moved links at the target, empty if the runs have several targets.
+
+    A rigid link below the joint turns about the axis, so its pose at the start decides the result.
+    """
+    position = runs.channels[0]
+    targets = {v for level in runs.levels_of(position) for v in level.values.values()}
+    starts = {float(values[0]) for values in position.values.values()}
+    if len(targets) != 1 or len(starts) != 1:
+        return {}
+    ((target,),), (start,) = targets, starts
+    trace = first_of(runs)
+    parent = poses(trace, hinge.parent)[0]
+    axis, point = parent[:3, :3] @ hinge.axis, (parent @ [*hinge.point, 1.0])[:3]
+    turned = rotation_matrix(target - start, axis, point)
+    return {runs.links[k]: turned @ poses(trace, k)[0] for k in hinge.moved}
+
+
+def rod(link: str, hinge: Hinge) -> Part:
+    """Return a rod along the axis, as a part of the link above the joint."""
+    half = hinge.axis * AXIS_LENGTH / 2
+    mesh = trimesh.creation.cylinder(
+        AXIS_RADIUS, segment=[hinge.point - half, hinge.point + half], sections=16
+    )
+    return Part(link, AXIS_RGB, mesh.vertices, mesh.faces)
+
+
+def floor_of(shape: Sequence[Part]) -> list[Part]:
+    """Return the tiles on the still parts of a shape, with a floor at z = 0 if it has none."""
+    added = [] if any(part.link == WORLD for part in shape) else [floor(2.0)]
+    still = np.concatenate([p.vertices for p in (*shape, *added) if p.link == WORLD])
+    low, high = still.min(axis=0), still.max(axis=0)
+    columns, rows = (np.arange(low[k], high[k] - TILE / 2, TILE) for k in (0, 1))
+    dark = [
+        (x, y) for (i, x), (j, y) in product(enumerate(columns), enumerate(rows)) if (i + j) % 2
+    ]
+    square = np.array([[0, 0], [TILE, 0], [TILE, TILE], [0, TILE]])
+    corners = (np.array(dark)[:, None] + square).reshape(-1, 2)
+    vertices = np.column_stack([corners, np.full(len(corners), high[2] + RAISED)])
+    halves = np.array([[0, 1, 2], [0, 2, 3]]) + 4 * np.arange(len(dark))[:, None, None]
+    return [*added, Part(WORLD, TILE_RGB, vertices, halves.reshape(-1, 3))]
+
+
+def swept(
+    shape: Sequence[Part], runs: Runs, moved: Sequence[int], followed: int | None
+) -> FloatArray:
+    """Return the corners (n, 3) of the boxes around links at all samples of all runs [m].
+
+    Positions are horizontally relative to the followed link.
+    """
+    found = []
+    for trace, k in product(runs.traces.values(), moved):
+        own = [part.vertices for part in shape if part.link == runs.links[k]]
+        if own:
+            ends = np.concatenate(own).min(axis=0), np.concatenate(own).max(axis=0)
+            corners = np.array(list(product(*np.transpose(ends))))
+            pose = poses(trace, k)
+            places = corners @ pose[:, :3, :3].transpose(0, 2, 1) + pose[:, None, :3, 3]
+            if followed is not None:
+                places[..., :2] -= trace.link_pos[:, None, followed, :2]
+            found.append(places.reshape(-1, 3))
+    return np.concatenate(found)
+
+
+def fitted(points: FloatArray) -> Camera:
+    """Return the camera with points (n, 3) of the record in its picture."""
+    axes = Camera(np.zeros(3), 1.0).axes
+    seen = points[:, [0, 2, 1]] * [1, 1, -1] @ axes.T  # right, up, back
+    middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
+    right, up, back = (seen - middle).T
+    reach = ROOM * np.maximum(np.abs(right) / ASPECT, np.abs(up)) / np.tan(FIELD / 2)
+    return Camera(middle @ axes, float((back + reach).max()))
+
+
+def first_of(runs: Runs) -> Run:
+    """Return the run of the first case."""
+    return next(iter(runs.traces.values()))
+
+
+def poses(trace: Run, link: int) -> FloatArray:
+    """Return the poses (n+1, 4, 4) of a link."""
+    found: FloatArray = quaternion_matrix(trace.link_quat[:, link])
+    found[:, :3, 3] = trace.link_pos[:, link]
+    return found
+
+
+def turn(start: FloatArray, end: FloatArray) -> tuple[float, FloatArray]:
+    """Return angle [rad] and axis (3,) of the rotation between two poses (4, 4)."""
+    rotation = end[:3, :3] @ start[:3, :3].T
+    twice = np.array([rotation[k - 1, k - 2] - rotation[k - 2, k - 1] for k in range(3)])
+    sine = float(np.linalg.norm(twice)) / 2
+    angle = float(np.arctan2(sine, (np.trace(rotation) - 1) / 2))
+    return angle, twice / (2 * sine) if sine else np.array([0.0, 0.0, 1.0])
