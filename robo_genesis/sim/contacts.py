@@ -51,9 +51,10 @@ class ContactCase:
     After `settle` seconds it gets `speed` along x [m/s], and `duration` seconds are recorded.
     `cone` is the shape of the friction cone, `resolution` the engine's scheme for normal force and
     friction, `impratio` the ratio of frictional to normal impedance; for None the engine chooses
-    the last two by the cone. `time_constant` is that of all contacts of the scene [s]; the engine uses
-    at least two solver steps. `spring` are time constant [s] and damping ratio of the contacts of this
-    body and the surface. None for both means the engine's defaults. `gravity` is a magnitude [m/s²].
+    the last two by the cone. `time_constant` is that of all contacts of the scene [s]; the engine
+    uses at least two solver steps. `spring` are time constant [s] and damping ratio of the contacts
+    of this body and the surface. None for both means the engine's defaults. `gravity` is a magnitude
+    [m/s²].
     """
 
     start: tuple[float, float, float]
@@ -242,7 +243,8 @@ def run_world(world: World) -> dict[str, ContactTrace]:
     for name, case in world.cases.items():
         if case.speed:
             world.bodies[name].set_dofs_velocity(np.array([case.speed, 0, 0, 0, 0, 0]))
-    states = record_states(world.scene.step, common.steps, lambda: read_world(world))
+    steps = common.steps
+    states = record_states(world.scene.step, steps, lambda: read_world(world))
     return {
         name: ContactTrace(times(case), *stacked([state[name] for state in states]))
         for name, case in world.cases.items()

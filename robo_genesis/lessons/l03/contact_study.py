@@ -68,7 +68,7 @@ def stops_do_not_converge(run: Experiment) -> Iterator[Finding]:
     fine = [distance for name, distance in found.items() if distance is not None]
     case = run.cases[LANES["high"]]
     expected = friction.coulomb_distance(case.speed, case.friction, case.gravity)
-    last = fine[-study_spec.FINEST:]
+    last = fine[-study_spec.FINEST :]
     yield above("spread_of_the_finest_share", float(np.ptp(last)) / expected, study_spec.UNSETTLED)
 
 

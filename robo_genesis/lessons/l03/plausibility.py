@@ -18,7 +18,8 @@ AGAIN = dict.fromkeys(MOTION, 1e-5)
 float64, the runs change by up to 9e-7. Genesis with equal settings is at least 1.8e-5 apart."""
 
 AGAIN_BY_DEFAULTS = dict.fromkeys(MOTION, 2e-5) | {"link_ang": 4e-3}
-"""Those of `study_spec.OWN_DEFAULTS`, whose angular velocity is only rounding: it changes by 4e-4."""
+"""Those of `study_spec.OWN_DEFAULTS`, whose angular velocity is only rounding: it changes by
+4e-4."""
 
 
 def require_possible_runs(run: Experiment) -> None:

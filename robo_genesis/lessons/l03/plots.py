@@ -119,7 +119,13 @@ def heights(
     """
     for name, mark in marks.items():
         clear = 1000 * clearance(traces[name], cases[name])
-        ax.plot(traces[name].t, clear, marker=".", label=f"{name}, h = {1000 * cases[name].h:g} ms", **look(mark))
+        ax.plot(
+            traces[name].t,
+            clear,
+            marker=".",
+            label=f"{name}, h = {1000 * cases[name].h:g} ms",
+            **look(mark),
+        )
     ax.axhline(0, **look("limit"))
     ax.set(xlim=window, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]")
     ax.set_title("Below zero, the cube is in the surface", loc="left")

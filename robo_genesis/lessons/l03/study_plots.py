@@ -160,7 +160,7 @@ def releases(run: Experiment) -> Figure:
         ax.plot(1000 * ideal, -1000 * depth, color=colour, linestyle=":", linewidth=1.4)
         ax.plot(2000 * seconds, -1000 * depth[-1], "o", color=colour, markersize=5)
     ax.axhline(0, **look("limit"))
-    ax.set(xlim=(-5, 70), ylim=(-9, 4), xlabel="time after touchdown [ms]")
+    ax.set(xlim=(-5, 55), ylim=(-9, 4), xlabel="time after touchdown [ms]")
     ax.set_ylabel("clearance [mm]")
     ax.set_title("Dotted: linear contact", loc="left")
     legend_above(ax)

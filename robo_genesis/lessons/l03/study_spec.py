@@ -18,6 +18,7 @@ STEPS_STUDIED = {
     "h_20000us": (0.02, 1),
     "h_10000us": (0.01, 1),
     "h_5000us": (0.005, 1),
+    "h_4000us": (0.004, 1),
     "h_2500us": (0.0025, 1),
     "h_1000us": (0.001, 1),
     "h_500us": (0.001, 2),
@@ -29,11 +30,11 @@ HEIGHTS_STUDIED = tuple(round(1.0 + 0.0066 * k, 4) for k in range(-4, 5))
 """Initial heights [m]: with them the cubes meet the surface at many phases of a step."""
 
 
-def side_by_side(name: str, **settings: Any) -> dict[str, ContactCase]:
+def side_by_side(name: str, duration: float = 0.4, **settings: Any) -> dict[str, ContactCase]:
     """Return a landing from each studied height, in one row, named by the height in 0.1 mm."""
     return {
         f"{name}_{round(1e4 * z)}": replace(
-            BASELINE, start=(round(0.2 * k - 0.8, 1), 0.0, z), duration=0.4, **settings
+            BASELINE, start=(round(0.2 * k - 0.8, 1), 0.0, z), duration=duration, **settings
         )
         for k, z in enumerate(HEIGHTS_STUDIED)
     }
@@ -48,18 +49,19 @@ AS_BASELINE = "h_5000us_10000"
 """The landing with the baseline's height and solver step, with each solver step recorded."""
 
 STIFF = "T_2ms"
-STIFF_CASES = {STIFF: side_by_side(STIFF, time_constant=0.002, dt=0.001, substeps=4)}
-"""The landings with a time constant of 2 ms at an eighth of it as solver step."""
+STIFF_CASES = {STIFF: side_by_side(STIFF, time_constant=0.002, dt=0.0005, substeps=5)}
+"""The landings with a time constant of 2 ms, with a twentieth of it as solver step."""
 
 RELEASE_CASES = {
-    name: side_by_side(name, time_constant=seconds, dt=0.001, substeps=n)
-    for name, seconds, n in (
-        ("release_10ms", 0.010, 4),
-        ("release_5ms", 0.005, 8),
-        ("release_2ms", 0.002, 20),
+    name: side_by_side(name, duration=0.275, time_constant=seconds, dt=dt, substeps=n)
+    for name, seconds, dt, n in (
+        ("release_10ms", 0.010, 0.001, 4),
+        ("release_5ms", 0.005, 0.001, 8),
+        ("release_2ms", 0.002, 0.0005, 10),
     )
 }
-"""The landings by time constant, each with a fortieth of it as solver step."""
+"""The landings by time constant, each with a fortieth of it as solver step. All cubes are at the
+top of their rebound before the end."""
 
 # Slides with the elliptic cone
 
@@ -117,7 +119,7 @@ STOP_STEPS = {
     "stop_1000us": (0.001, 1),
     "stop_500us": (0.001, 2),
     "stop_250us": (0.001, 4),
-    "stop_100us": (0.001, 10),
+    "stop_125us": (0.001, 8),
 }
 """Outer step [s] and substeps of the pushes that are recorded until they stop."""
 
@@ -148,10 +150,7 @@ IN_MUJOCO = {ENGINE_PAIRS[name]: case for name, case in BY_BOTH.items()} | {OWN_
 def flat(*groups: dict[str, dict[str, ContactCase]]) -> dict[str, ContactCase]:
     """Return the cases of grouped scenes by name."""
     return {
-        name: case
-        for group in groups
-        for scene in group.values()
-        for name, case in scene.items()
+        name: case for group in groups for scene in group.values() for name, case in scene.items()
     }
 
 
@@ -171,6 +170,9 @@ DEPTH_SHARE = 0.1
 
 STIFF_SHARE = 0.2
 """The same for a time constant of 2 ms: at depths of a millimetre the contact is softer."""
+
+ADVISED = (0.25, 0.1)
+"""Shares of the time constant that the lesson advises as solver step: at most, and better."""
 
 SCATTER_COARSE, SCATTER_FINE = 0.5, 0.05
 """Scatter of depth / (v T / e) over the heights: at least this at h = T / 2, at most this at the

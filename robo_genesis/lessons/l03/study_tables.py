@@ -24,7 +24,7 @@ def milliseconds(seconds: float) -> str:
 def millimetres(length: float) -> str:
     """Write a length in millimetres with three significant digits: `7.54 mm`."""
     value = 1000 * length
-    return f"{value:.3g} mm" if abs(value) >= 0.01 else "0 mm"
+    return f"{value:#.3g} mm" if abs(value) >= 0.01 else "0 mm"
 
 
 def span(values: Sequence[float], digits: int = 2) -> str:

@@ -23,10 +23,11 @@ def step_sentences(run: Experiment) -> Iterator[str]:
     coarse = [name for name in names if study.share_of_step(name) >= 0.5]
     shares = [share for name in coarse for share in study.depth_shares(run.metrics, name)]
     yield f"At h / T = 0.5 the depth is {span(shares)} times v T / e."
-    for name in (names[len(names) - len(coarse) - 1], names[0]):
+    for name in (of for of in reversed(names) if of not in coarse):
         ratio = study.share_of_step(name)
-        found = span(study.depth_shares(run.metrics, name))
-        yield f"At h / T = {ratio:.3g} it is {found} times v T / e."
+        if name == names[0] or any(abs(ratio - of) < 1e-9 for of in study_spec.ADVISED):
+            found = span(study.depth_shares(run.metrics, name))
+            yield f"At h / T = {ratio:.3g} it is {found} times v T / e."
     rebounding = [
         name
         for name in names
@@ -75,9 +76,7 @@ def friction_conclusion(run: Experiment) -> str:
 def hop_conclusions(run: Experiment) -> str:
     """Say how the hop depends on step and speed."""
     found = {
-        lane: [
-            slide(run.metrics, f"{step}_{lane}").hop for step in study_spec.HOP_STEP_CASES
-        ]
+        lane: [slide(run.metrics, f"{step}_{lane}").hop for step in study_spec.HOP_STEP_CASES]
         for lane in ("low", "high")
     }
     slow = [
@@ -85,15 +84,16 @@ def hop_conclusions(run: Experiment) -> str:
         for name, case in study_spec.HOP_SPEED_CASES.items()
         if case.speed <= study_spec.SLOW
     ]
-    finest = max(found[lane][-1] for lane in found)
-    h = min(case.h for of in study_spec.HOP_STEP_CASES.values() for case in of.values())
+    fine = [step for step in study_spec.HOP_STEPS if step not in study_spec.HOP_APPLIES]
+    left = [slide(run.metrics, f"{step}_{lane}").hop for step in fine for lane in found]
     sentences = [
         f"At 2 m/s and solver steps of 10 ms and 5 ms the cubes hop by {millimetres(min(of))} to "
         f"{millimetres(max(of))}: the step is T / 2 in both."
         for of in [[*found["low"][:2], *found["high"][:2]]]
     ]
     sentences.append(
-        f"At {milliseconds(h)} the highest hop is {millimetres(finest)}."
+        f"At 1 ms and below, hops of {millimetres(min(left))} to {millimetres(max(left))} are "
+        "left. They do not follow the formula."
     )
     sentences.append(
         f"At {study_spec.SLOW:g} m/s or less, with a step of 5 ms, the highest hop is "
@@ -118,7 +118,7 @@ def stop_conclusions(run: Experiment) -> str:
         verdict = "does not converge" if spread > 100 * study_spec.UNSETTLED else "varies little"
         sentences.append(
             f"With μ = {mu:g} the {len(fine)} smallest steps give {metres(min(fine))} to "
-            f"{metres(max(fine))}, a spread of {spread:.0f} % of v² / (2 μ g) = {metres(formula)}: "
+            f"{metres(max(fine))}, a spread of {spread:.2g} % of v² / (2 μ g) = {metres(formula)}: "
             f"the distance {verdict} over these steps."
         )
     return bullets(sentences)

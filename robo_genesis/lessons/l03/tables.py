@@ -32,6 +32,8 @@ def readable(value: float | None, unit: str) -> str:
     small, limit = SHORT.get(unit, ("", 0.0))
     if value is None:
         return NOT_OBSERVED
+    if value == 0 and small:
+        return f"0 {small}"
     if not small or abs(value) >= limit:
         return format_value(value, unit).replace("-", "−")
     text = f"{1000 * value:.3f}" if abs(value) < 1e-3 else f"{1000 * value:.2f}"

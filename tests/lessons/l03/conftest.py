@@ -30,7 +30,9 @@ def readings_of(page: str) -> dict[str, Mapping[str, float]]:
     declared = LESSON.pages[page].readings(True)
     cases = {n: c for n, c in LESSON.pages[page].cases.items() if n not in study_spec.IN_MUJOCO}
     known = {"model": spec.EXPECTED_MODEL, "mass": MASSES, study.GROUP: SECONDS, **settings(cases)}
-    return {group: {name: known[group][name] for name in of.units} for group, of in declared.items()}
+    return {
+        group: {name: known[group][name] for name in of.units} for group, of in declared.items()
+    }
 
 
 READINGS = {page: readings_of(page) for page in LESSON.pages}

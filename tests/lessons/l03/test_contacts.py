@@ -384,7 +384,8 @@ def test_sentences_of_what_did_not_happen(experiment):
 
 def test_figures_are_drawn_with_labelled_axes(experiment):
     ax = plots.heights(Figure().subplots(), experiment.traces, experiment.cases, (0.1, 0.5))
-    assert ax.get_xlabel() and ax.get_ylabel()
+    assert ax.get_xlabel()
+    assert ax.get_ylabel()
     four = Figure().subplots(4, 1)
     plots.counted(four, experiment.traces, (0.1, 0.5))
     assert [ax.get_title(loc="left") for ax in four] == list(spec.LANDINGS)
