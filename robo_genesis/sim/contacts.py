@@ -53,8 +53,8 @@ class ContactCase:
     friction, `impratio` the ratio of frictional to normal impedance; for None the engine chooses
     the last two by the cone. `time_constant` is that of all contacts of the scene [s]; the engine
     uses at least two solver steps. `spring` are time constant [s] and damping ratio of the contacts
-    of this body and the surface. None for both means the engine's defaults. `gravity` is a magnitude
-    [m/s²].
+    of this body and the surface. None for both means the engine's defaults. `gravity` is a
+    magnitude [m/s²].
     """
 
     start: tuple[float, float, float]

@@ -18,13 +18,13 @@ from robo_genesis.lessons.experiment import (
 from robo_genesis.lessons.l03 import (
     checks,
     claims_text,
-    contact_study,
-    energy_study,
     exercises,
     mistakes,
     plausibility,
     spec,
     study,
+    study_contact,
+    study_energy,
     study_spec,
     study_tables,
     study_text,
@@ -114,14 +114,14 @@ LECTURE = further(
     study_spec.STEP_CASES.keys() | study_spec.STIFF_CASES.keys(),
 )
 LECTURE = replace(LECTURE, checks=(*LECTURE.checks, checks.posture), camera=True)
-CONTACT = further("contact", study_spec.OF_CONTACT, contact_study.CHECKS)
+CONTACT = further("contact", study_spec.OF_CONTACT, study_contact.CHECKS)
 IN_MUJOCO = {
     name: Run(case, note="run in MuJoCo, not in Genesis")
     for name, case in study_spec.IN_MUJOCO.items()
 }
 CONTACT = replace(CONTACT, runs={**CONTACT.runs, **IN_MUJOCO})
 ENERGY = further(
-    "energy", study_spec.OF_ENERGY, energy_study.CHECKS, study_spec.RELEASE_CASES.keys()
+    "energy", study_spec.OF_ENERGY, study_energy.CHECKS, study_spec.RELEASE_CASES.keys()
 )
 MISTAKES = further("mistakes", study_spec.OF_MISTAKES, ())
 

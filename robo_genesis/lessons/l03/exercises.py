@@ -38,7 +38,7 @@ def scene(make: Callable[..., Any], gs: Any, case: ContactCase) -> list[Check]:
         height = float(to_numpy(cube.get_pos())[2])
         yield within("start_height_m", height, case.start[2], TINY)
         before = to_numpy(table.get_pos())
-        for _ in range(case.steps):
+        for _step in range(case.steps):
             built.step()
         moved = float(np.abs(to_numpy(table.get_pos()) - before).max())
         yield at_most("the_table_moved_by_m", moved, TINY)

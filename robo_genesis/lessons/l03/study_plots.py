@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core.plotting import legend_above, look
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l03 import contact_study, friction, plots, study, study_spec, theory
+from robo_genesis.lessons.l03 import friction, plots, study, study_contact, study_spec, theory
 from robo_genesis.lessons.l03.energy import clearance
 from robo_genesis.lessons.l03.metrics import CLEAR
 from robo_genesis.lessons.l03.plots import WIDTH
@@ -125,17 +125,17 @@ def stops(run: Experiment) -> Figure:
     figure = Figure(figsize=(WIDTH, 3.4))
     ax = figure.subplots()
     for lane, mark in LANE_MARKS.items():
-        cases = contact_study.runs_of_lane(lane)
-        found = contact_study.stops_of_lane(run, lane)
+        cases = study_contact.runs_of_lane(lane)
+        found = study_contact.stops_of_lane(run, lane)
         drawn = [(1000 * cases[name].h, d) for name, d in found.items() if d is not None]
-        colour, case = look(mark)["color"], run.cases[contact_study.LANES[lane]]
+        colour, case = look(mark)["color"], run.cases[study_contact.LANES[lane]]
         if drawn:
             h, distance = zip(*drawn, strict=True)
             ax.semilogx(h, distance, "o-", color=colour, label=LABELS[lane])
         mu = friction.pair_friction(case)
         formula = friction.coulomb_distance(case.speed, mu, case.gravity)
         ax.axhline(formula, color=colour, linestyle=":", linewidth=1.4)
-    ticks = [1000 * case.h for case in contact_study.runs_of_lane("low").values()]
+    ticks = [1000 * case.h for case in study_contact.runs_of_lane("low").values()]
     ax.set_xticks(ticks, [f"{step:g}" for step in ticks])
     ax.minorticks_off()
     ax.set(xlabel="solver step h [ms]", ylabel="stopping distance [m]", ylim=(0.15, 0.5))

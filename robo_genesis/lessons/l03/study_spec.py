@@ -120,6 +120,8 @@ STOP_STEPS = {
     "stop_500us": (0.001, 2),
     "stop_250us": (0.001, 4),
     "stop_125us": (0.001, 8),
+    "stop_100us": (0.02, 200),
+    "stop_83us": (0.001, 12),
 }
 """Outer step [s] and substeps of the pushes that are recorded until they stop."""
 
@@ -222,6 +224,9 @@ ENGINES_APART = 5e-5
 
 FINEST = 4
 """Number of the smallest steps that are compared for convergence."""
+
+CLOSE = 0.01
+"""Share of Coulomb's distance within which a stopping distance is close to it."""
 
 UNSETTLED = 0.05
 """Spread of the stopping distances over the steps from which they do not converge, as a share of

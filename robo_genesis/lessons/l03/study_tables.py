@@ -8,7 +8,7 @@ from robo_genesis.core import tables
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l03 import contact_study, friction, spec, study, study_spec, theory
+from robo_genesis.lessons.l03 import friction, spec, study, study_contact, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics
 from robo_genesis.lessons.l03.study import slide
 
@@ -18,7 +18,7 @@ Metrics = Mapping[str, CaseMetrics]
 
 def milliseconds(seconds: float) -> str:
     """Write a time in milliseconds: `0.125 ms`."""
-    return f"{1000 * seconds:g} ms"
+    return f"{1000 * seconds:.3g} ms"
 
 
 def millimetres(length: float) -> str:
@@ -199,7 +199,7 @@ def first_impulses(run: Experiment) -> str:
 
 def stops_by_step(run: Experiment) -> str:
     """Return the stopping distances of both pushed cubes by solver step."""
-    low, high = (contact_study.runs_of_lane(lane) for lane in ("low", "high"))
+    low, high = (study_contact.runs_of_lane(lane) for lane in ("low", "high"))
     return tables.markdown(
         [
             {
@@ -227,7 +227,7 @@ def engine_rows(traces: Mapping[str, ContactTrace], metrics: Metrics) -> Rows:
     """Return one row per pair of runs: the distance between the engines, and its first excess."""
     rows = []
     for pair in (*study_spec.ENGINE_PAIRS.items(), ("baseline", study_spec.OWN_DEFAULTS)):
-        distance = contact_study.distance_between(traces, *pair)
+        distance = study_contact.distance_between(traces, *pair)
         excess = np.flatnonzero(distance > study_spec.ENGINES_APART)
         since, counts = "never", ["–", "–"]
         if len(excess):

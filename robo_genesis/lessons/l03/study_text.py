@@ -6,7 +6,7 @@ import numpy as np
 
 from robo_genesis.core.text import bullets, listed
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l03 import contact_study, friction, study, study_spec, theory
+from robo_genesis.lessons.l03 import friction, study, study_contact, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR
 from robo_genesis.lessons.l03.study import slide
 from robo_genesis.lessons.l03.study_tables import metres, millimetres, milliseconds, span
@@ -106,8 +106,8 @@ def stop_conclusions(run: Experiment) -> str:
     """Say whether the stopping distances of both cubes converge with the step."""
     sentences = []
     for lane in ("low", "high"):
-        found = contact_study.stops_of_lane(run, lane)
-        case = run.cases[contact_study.LANES[lane]]
+        found = study_contact.stops_of_lane(run, lane)
+        case = run.cases[study_contact.LANES[lane]]
         mu = friction.pair_friction(case)
         formula = friction.coulomb_distance(case.speed, mu, case.gravity)
         fine = [of for of in list(found.values())[-study_spec.FINEST :] if of is not None]
@@ -115,11 +115,13 @@ def stop_conclusions(run: Experiment) -> str:
             sentences.append(f"With μ = {mu:g} too few runs stop in the window.")
             continue
         spread = 100 * float(np.ptp(fine)) / formula
+        near = sum(abs(of - formula) <= study_spec.CLOSE * formula for of in fine)
         verdict = "does not converge" if spread > 100 * study_spec.UNSETTLED else "varies little"
         sentences.append(
             f"With μ = {mu:g} the {len(fine)} smallest steps give {metres(min(fine))} to "
             f"{metres(max(fine))}, a spread of {spread:.2g} % of v² / (2 μ g) = {metres(formula)}: "
-            f"the distance {verdict} over these steps."
+            f"the distance {verdict} over these steps. {near} of them are within "
+            f"{100 * study_spec.CLOSE:g} % of the formula."
         )
     return bullets(sentences)
 

@@ -9,10 +9,10 @@ from lessons.l03.conftest import SECONDS
 from lessons.l03.test_contacts import changed, failing, shift, with_reading, with_trace
 
 from robo_genesis.lessons.l03 import (
-    contact_study,
     friction,
     spec,
     study,
+    study_contact,
     study_plots,
     study_spec,
     study_tables,
@@ -220,7 +220,7 @@ def test_rows_of_a_study_name_both_engines(experiments):
 
 def test_a_distance_between_runs_takes_shared_times_and_no_lanes(experiments):
     traces = experiments["contact"].traces
-    fine = contact_study.distance_between(traces, "dt10_sub1", "mujoco_dt20_sub1")
+    fine = study_contact.distance_between(traces, "dt10_sub1", "mujoco_dt20_sub1")
     assert len(fine) == 76  # every second state of the finer one
     assert fine[0] == 0
 
