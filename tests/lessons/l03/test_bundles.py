@@ -137,8 +137,6 @@ LECTURE = {
     "another time constant": ("checks", metric("time_constant", "h_20000us", 0.01)),
     "a time constant that is left out": (
         "metrics", pop("metrics.json", "time_constant", "h_20000us")),
-    "the landing of a stiff contact with the default one": (
-        "motion", copied("T_2ms_10000", "h_1000us_10000")),
     "a cube that was laid down": ("contact", changed(
         "low_on_050", "link_pos_m", lambda a: a[:, 0, 2].fill(0.765))),
 }  # fmt: skip
@@ -150,10 +148,15 @@ CONTACT = {
         "mujoco_low_on_050", "link_vel_m_s", lambda a: a[40:, 0, 0].__iadd__(1e-2))),
     "a run of the other engine is missing": (
         "cases", pop("arrays.json", "cases", "mujoco_baseline")),
-    "a finer push that is the coarser one": ("motion", copied("stop_500us_low", "stop_250us_low")),
+    "a coarser push that is the finer one": ("contact", copied("stop_500us_low", "stop_250us_low")),
 }  # fmt: skip
 
-SPOILED = {"lab": LAB, "lecture": LECTURE, "contact": CONTACT}
+ENERGY = {
+    "the landing on a softer contact": (
+        "contact", copied("release_5ms_10000", "release_10ms_10000")),
+}  # fmt: skip
+
+SPOILED = {"lab": LAB, "lecture": LECTURE, "contact": CONTACT, "energy": ENERGY}
 
 
 @pytest.mark.parametrize(("page", "name"), [(p, name) for p, of in SPOILED.items() for name in of])
