@@ -242,7 +242,8 @@ def run_world(world: World) -> dict[str, ContactTrace]:
         world.scene.step()
     for name, case in world.cases.items():
         if case.speed:
-            world.bodies[name].set_dofs_velocity(np.array([case.speed, 0, 0, 0, 0, 0]))
+            velocity = np.array([case.speed, 0, 0, 0, 0, 0])
+            world.bodies[name].set_dofs_velocity(velocity)
     steps = common.steps
     states = record_states(world.scene.step, steps, lambda: read_world(world))
     return {

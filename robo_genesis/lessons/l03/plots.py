@@ -142,7 +142,13 @@ def counted(axes: Sequence[Axes], traces: Traces, window: tuple[float, float]) -
     axes[-1].set_xlabel("time [s]")
 
 
-def slides(axes: Sequence[Axes], traces: Traces, cases: Cases, marks: Mapping[str, str]) -> None:
+def slides(
+    axes: Sequence[Axes],
+    traces: Traces,
+    cases: Cases,
+    marks: Mapping[str, str],
+    labels: Mapping[str, str] | None = None,
+) -> None:
     """Draw speed along x, clearance and angular speed of each pushed cube.
 
     Args:
@@ -150,15 +156,17 @@ def slides(axes: Sequence[Axes], traces: Traces, cases: Cases, marks: Mapping[st
         traces: by case.
         cases: the cases to draw.
         marks: of the palette, by case.
+        labels: in the legend, by case; None for the names.
     """
     for name, case in cases.items():
         trace, style = traces[name], look(marks[name])
-        axes[0].plot(trace.t, trace.link_vel[:, 0, 0], label=name, **style)
+        label = labels[name] if labels else name
+        axes[0].plot(trace.t, trace.link_vel[:, 0, 0], label=label, **style)
         axes[1].plot(trace.t, 1000 * clearance(trace, case), label=name, **style)
         axes[2].plot(trace.t, trace.link_ang[:, 0, 1], label=name, **style)
-    labels = ("speed along x [m/s]", "clearance [mm]", "turning about y [rad/s]")
-    for ax, label in zip(axes, labels, strict=True):
-        ax.set_ylabel(label)
+    heads = ("speed along x [m/s]", "clearance [mm]", "turning about y [rad/s]")
+    for ax, head in zip(axes, heads, strict=True):
+        ax.set_ylabel(head)
         ax.axhline(0, color="#7a7a7a", linewidth=0.8)
         ax.set_xlim(0, 0.9)
     axes[0].legend(fontsize="small", loc="upper right")

@@ -90,8 +90,8 @@ SETTLED_START = 2e-3
 START_SPEED = 1e-6
 """Tolerance of the first speed against that of the case [m/s]."""
 
-VIEW = CAMERA | {"pos": (1.3, -1.5, 1.25), "lookat": (0.0, 0.0, 0.82), "fov": 34}
-"""The lesson's camera, with the surface and the whole path of the cube in the picture."""
+VIEW = CAMERA | {"pos": (1.3, -1.5, 1.25), "lookat": (0.0, 0.0, 0.87), "fov": 16}
+"""The lesson's camera, close enough to show the cube large and its whole path."""
 
 RESOLUTION = {
     "m": 1e-5, "m/s": 1e-3, "rad/s": 0.05, "s": 0.005, "kg": 1e-6, "1": 0.5, "J": 1e-6, "%": 0.1,

@@ -24,6 +24,12 @@ CONE_MARKS = {
     "low_on_050_elliptic": "third",
     "high_on_050_elliptic": "other",
 }
+CONE_LABELS = {
+    "low_on_050": "pyramid, μ = 0.5",
+    "high_on_050": "pyramid, μ = 0.8",
+    "low_on_050_elliptic": "elliptic, μ = 0.5",
+    "high_on_050_elliptic": "elliptic, μ = 0.8",
+}
 LANE_MARKS = {"low": "first", "high": "second"}
 RELEASE_MARKS = {"release_10ms": "baseline", "release_5ms": "first", "release_2ms": "second"}
 LABELS = {"low": "μ = 0.5", "high": "μ = 0.8"}
@@ -43,7 +49,7 @@ def landings_by_step(run: Experiment) -> Figure:
     ax.axhline(0, **look("limit"))
     ax.set(xlim=(0.2, 0.34), ylim=(-26, 14), xlabel="time [s]", ylabel="clearance [mm]")
     ax.set_title("Below zero: overlap", loc="left")
-    legend_above(ax)
+    ax.legend(fontsize="small", loc="lower right")
     return figure
 
 
@@ -96,6 +102,8 @@ def hops(run: Experiment) -> Figure:
         by_step.loglog(h, found, "o", color=colour, label=LABELS[lane])
         by_step.loglog(h, formula, color=colour, linestyle=":", linewidth=1.4)
     by_step.set(xlabel="solver step h [ms]", ylabel="hop [mm]", ylim=(0.01, 100))
+    ticks = sorted({1000 * of[f"{s}_low"].h for s, of in study_spec.HOP_STEP_CASES.items()} - {2})
+    by_step.set_xticks(ticks, [f"{step:g}" for step in ticks])
     by_step.set_title("Push at 2 m/s", loc="left")
     by_step.legend(fontsize="small", loc="lower right")
     slow = study_spec.HOP_SPEED_CASES
@@ -108,7 +116,9 @@ def hops(run: Experiment) -> Figure:
     by_speed.set(xlabel="speed of the push [m/s]", ylim=(0.01, 100))
     by_speed.set_title("h = 5 ms, μ = 0.5", loc="left")
     by_speed.set_xticks(speeds, [f"{speed:g}" for speed in speeds])
-    by_speed.minorticks_off()
+    for ax in (by_step, by_speed):
+        ax.set_yticks([0.01, 0.1, 1, 10, 100], ["0.01", "0.1", "1", "10", "100"])
+        ax.minorticks_off()
     return figure
 
 
@@ -116,7 +126,8 @@ def cones(run: Experiment) -> Figure:
     """Draw speed, clearance and angular speed with both friction models."""
     figure = Figure(figsize=(WIDTH, 6.4))
     cases = {name: run.cases[name] for name in CONE_MARKS}
-    plots.slides(figure.subplots(3, 1, sharex=True), run.traces, cases, CONE_MARKS)
+    axes = figure.subplots(3, 1, sharex=True)
+    plots.slides(axes, run.traces, cases, CONE_MARKS, CONE_LABELS)
     return figure
 
 
@@ -135,7 +146,7 @@ def stops(run: Experiment) -> Figure:
         mu = friction.pair_friction(case)
         formula = friction.coulomb_distance(case.speed, mu, case.gravity)
         ax.axhline(formula, color=colour, linestyle=":", linewidth=1.4)
-    ticks = [1000 * case.h for case in study_contact.runs_of_lane("low").values()]
+    ticks = (0.1, 0.25, 0.5, 1, 2.5, 5)
     ax.set_xticks(ticks, [f"{step:g}" for step in ticks])
     ax.minorticks_off()
     ax.set(xlabel="solver step h [ms]", ylabel="stopping distance [m]", ylim=(0.15, 0.5))

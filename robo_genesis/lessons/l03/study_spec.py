@@ -222,8 +222,8 @@ RULE_TOLERANCE = 0.02
 ENGINES_APART = 5e-5
 """Tolerance of landings between two engines with equal settings [m]."""
 
-FINEST = 4
-"""Number of the smallest steps that are compared for convergence."""
+FINEST = 6
+"""Number of the smallest steps that are compared for convergence, all at most T / 10."""
 
 CLOSE = 0.01
 """Share of Coulomb's distance within which a stopping distance is close to it."""

@@ -234,18 +234,25 @@ def engine_rows(traces: Mapping[str, ContactTrace], metrics: Metrics) -> Rows:
             since = f"{traces[pair[1]].t[excess[0]]:.2f} s"
             counts = [str(traces[name].contacts[excess[0], 0]) for name in pair]
         heights = [f"{1000 * rise(metrics[name]):.2f}" for name in pair]
-        mm = 1000 * float(distance.max())
         rows.append(
             {
                 "Genesis": pair[0],
                 "MuJoCo": pair[1],
                 "rebound or hop [mm]": " and ".join(heights),
-                "farthest apart": f"{1000 * mm:.2g} µm" if mm < 1 else f"{mm:.2f} mm",
+                "farthest apart": apart(float(distance.max())),
                 "over 0.05 mm from": since,
                 "contacts there": " and ".join(counts),
             }
         )
     return rows
+
+
+def apart(distance: float) -> str:
+    """Write a distance between two runs [m]."""
+    micrometres = 1e6 * distance
+    if micrometres < 0.01:
+        return "below 0.01 µm"
+    return f"{micrometres:.2g} µm" if micrometres < 1000 else f"{1000 * distance:.2f} mm"
 
 
 def rise(found: CaseMetrics) -> float:

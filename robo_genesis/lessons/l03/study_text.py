@@ -118,7 +118,7 @@ def stop_conclusions(run: Experiment) -> str:
         near = sum(abs(of - formula) <= study_spec.CLOSE * formula for of in fine)
         verdict = "does not converge" if spread > 100 * study_spec.UNSETTLED else "varies little"
         sentences.append(
-            f"With μ = {mu:g} the {len(fine)} smallest steps give {metres(min(fine))} to "
+            f"With μ = {mu:g} the {len(fine)} steps of at most T / 10 give {metres(min(fine))} to "
             f"{metres(max(fine))}, a spread of {spread:.2g} % of v² / (2 μ g) = {metres(formula)}: "
             f"the distance {verdict} over these steps. {near} of them are within "
             f"{100 * study_spec.CLOSE:g} % of the formula."
