@@ -30,13 +30,18 @@ HEIGHTS_STUDIED = tuple(round(1.0 + 0.0066 * k, 4) for k in range(-4, 5))
 """Initial heights [m]: with them the cubes meet the surface at many phases of a step."""
 
 
-def side_by_side(name: str, duration: float = 0.4, **settings: Any) -> dict[str, ContactCase]:
-    """Return a landing from each studied height, in one row, named by the height in 0.1 mm."""
+def side_by_side(
+    name: str,
+    heights: tuple[float, ...] = HEIGHTS_STUDIED,
+    duration: float = 0.4,
+    **settings: Any,
+) -> dict[str, ContactCase]:
+    """Return a landing from each height, in one row, named by the height in 0.1 mm."""
     return {
         f"{name}_{round(1e4 * z)}": replace(
             BASELINE, start=(round(0.2 * k - 0.8, 1), 0.0, z), duration=duration, **settings
         )
-        for k, z in enumerate(HEIGHTS_STUDIED)
+        for k, z in enumerate(heights)
     }
 
 
@@ -53,7 +58,7 @@ STIFF_CASES = {STIFF: side_by_side(STIFF, time_constant=0.002, dt=0.0005, subste
 """The landings with a time constant of 2 ms, with a twentieth of it as solver step."""
 
 RELEASE_CASES = {
-    name: side_by_side(name, duration=0.275, time_constant=seconds, dt=dt, substeps=n)
+    name: side_by_side(name, HEIGHTS_STUDIED[::4], 0.275, time_constant=seconds, dt=dt, substeps=n)
     for name, seconds, dt, n in (
         ("release_10ms", 0.010, 0.001, 4),
         ("release_5ms", 0.005, 0.001, 8),
