@@ -273,11 +273,18 @@ def releases(run: Experiment) -> str:
                 "T": milliseconds(theory.contact_seconds(case)),
                 "h": milliseconds(case.h),
                 "upward speed / impact speed": span(shares, 3),
-                "rebound": f"{span([1000 * of.rebound for of in found])} mm",
-                "linear contact": f"{span([1000 * theory.rebound(c) for c in cases])} mm",
+                "rebound": heights([of.rebound for of in found]),
+                "linear contact": heights([theory.rebound(case) for case in cases]),
             }
         )
     return tables.markdown(rows)
+
+
+def heights(rebounds: Sequence[float]) -> str:
+    """Write the smallest and the largest rebound."""
+    if max(rebounds) <= CLEAR:
+        return "none"
+    return f"{span([1000 * rebound for rebound in rebounds])} mm"
 
 
 def kept_by_step(run: Experiment) -> str:
