@@ -26,7 +26,7 @@ VALID: Mapping[str, tuple[str | None, ...]] = {
 
 SHARED = (
     "surface_friction", "duration", "settle", "dt", "substeps", "cone", "resolution", "impratio",
-    "gravity",
+    "gravity", "time_constant",
 )  # fmt: skip
 """Settings that cases in one scene have in common."""
 
@@ -51,8 +51,10 @@ class ContactCase:
     After `settle` seconds it gets `speed` along x [m/s], and `duration` seconds are recorded.
     `cone` is the shape of the friction cone, `resolution` the engine's scheme for normal force and
     friction, `impratio` the ratio of frictional to normal impedance; for None the engine chooses
-    the last two by the cone. `spring` are time constant [s] and damping ratio of the contact, None
-    for the engine's defaults. `gravity` is a magnitude [m/s²].
+    the last two by the cone. `time_constant` is that of all contacts of the scene [s]; the engine
+    uses at least two solver steps. `spring` are time constant [s] and damping ratio of the contacts
+    of this body and the surface. None for both means the engine's defaults. `gravity` is a
+    magnitude [m/s²].
     """
 
     start: tuple[float, float, float]
@@ -69,6 +71,7 @@ class ContactCase:
     cone: str = "pyramidal"
     resolution: str | None = None
     impratio: float | None = None
+    time_constant: float | None = None
     spring: tuple[float, float] | None = None
     gravity: float = GRAVITY
 
@@ -147,7 +150,7 @@ def build_world(
         sim_options=gs.options.SimOptions(
             dt=common.dt, substeps=common.substeps, gravity=(0.0, 0.0, -common.gravity)
         ),
-        rigid_options=gs.options.RigidOptions(**friction_options(gs, common)),
+        rigid_options=gs.options.RigidOptions(**rigid_options(gs, common)),
         profiling_options=gs.options.ProfilingOptions(show_FPS=False),  # no speed in the log
         show_viewer=False,
     )
@@ -180,13 +183,15 @@ def build_world(
     return World(scene, surface, bodies, dict(cases), camera)
 
 
-def friction_options(gs: Any, case: ContactCase) -> dict[str, Any]:
-    """Return the friction model of a case as options of the engine; None is its default."""
+def rigid_options(gs: Any, case: ContactCase) -> dict[str, Any]:
+    """Return friction model and time constant of a case as options; None is the default."""
     resolution = gs.contact_resolution[case.resolution] if case.resolution else None
+    seconds = {"constraint_timeconst": case.time_constant} if case.time_constant else {}
     return {
         "friction_cone": gs.friction_cone[case.cone],
         "contact_resolution": resolution,
         "impratio": case.impratio,
+        **seconds,
     }
 
 
@@ -237,8 +242,10 @@ def run_world(world: World) -> dict[str, ContactTrace]:
         world.scene.step()
     for name, case in world.cases.items():
         if case.speed:
-            world.bodies[name].set_dofs_velocity(np.array([case.speed, 0, 0, 0, 0, 0]))
-    states = record_states(world.scene.step, common.steps, lambda: read_world(world))
+            velocity = np.array([case.speed, 0, 0, 0, 0, 0])
+            world.bodies[name].set_dofs_velocity(velocity)
+    steps = common.steps
+    states = record_states(world.scene.step, steps, lambda: read_world(world))
     return {
         name: ContactTrace(times(case), *stacked([state[name] for state in states]))
         for name, case in world.cases.items()

@@ -20,9 +20,14 @@ IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
 """Impedance of a contact as a function of depth, the default of both engines."""
 
 
-def time_constant(h: float) -> float:
-    """Return the time constant of a contact in Genesis at solver step `h` [s]."""
-    return max(DEFAULT_TIME_CONSTANT, 2 * h)
+def time_constant(h: float, requested: float | None = None) -> float:
+    """Return the time constant of a contact in Genesis at solver step `h` [s].
+
+    Args:
+        h: the solver step [s].
+        requested: `constraint_timeconst` [s], None for the default.
+    """
+    return max(DEFAULT_TIME_CONSTANT if requested is None else requested, 2 * h)
 
 
 def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
@@ -42,7 +47,7 @@ def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
     spec.option.cone = cones[case.cone]
     spec.option.impratio = case.impratio or 1.0
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
-    seconds = OWN_TIME_CONSTANT if own_defaults else time_constant(case.h)
+    seconds = OWN_TIME_CONSTANT if own_defaults else time_constant(case.h, case.time_constant)
     contact = {"solref": case.spring or (seconds, 1.0), "solimp": IMPEDANCE}
     box, ball = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_SPHERE
     spec.worldbody.add_geom(

@@ -40,7 +40,6 @@ LIMITS = {
 
 EXEMPT = {
     "lessons/l02-life-cycle/lecture", "lessons/l02-life-cycle/lab",
-    "lessons/l03-rigid-bodies/lecture", "lessons/l03-rigid-bodies/lab",
 }  # fmt: skip
 """Pages that have their old form: `make lint` does not refuse their size, nor do tests their tab
 stops. An entry that is not needed any more is an error."""

@@ -34,7 +34,8 @@ ACCEPTED = {
     **{("l03", "link_ang", how): f"{NOISE} {SCHEME}" for how in ("× 1.02", "× 0.98", "sample")},
     ("l03", "link_pos", "sample"): ON_EDGE,
     ("l03", "link_vel", "sample"): ON_EDGE,
-    ("l03", "penetration", "sample"): ROUNDING,
+    ("l03", "contacts", "sample"): ON_EDGE,
+    **{("l03", "penetration", how): ROUNDING for how in ("× 1.02", "× 0.98", "sample")},
     **{("l04", "internal_force", how): EARLIER for how in ("× 1.02", "× 0.98", "zero")},
 }
 """By lesson, array and alteration, why a try may be accepted. No other may."""

@@ -1,28 +1,43 @@
 """L03: rigid-body physics and stable simulation."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from robo_genesis.core.checks import Finding
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.declaration import Filmed, Lesson, Moving, on_demand
-from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
+from robo_genesis.lessons.experiment import (
+    Experiment,
+    MeasuringPage,
+    Readings,
+    Run,
+    counts,
+    runs_of,
+)
 from robo_genesis.lessons.l03 import (
     checks,
     claims_text,
+    exercises,
     mistakes,
     plausibility,
     spec,
     study,
+    study_contact,
+    study_energy,
+    study_spec,
+    study_tables,
+    study_text,
     tables,
     text,
-)  # fmt: skip
+)
 from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
 from robo_genesis.sim import mujoco_contacts
 from robo_genesis.sim.contacts import (
     SETTINGS,
     SURFACE_SIZE,
     TOP,
+    ContactCase,
     build_world,
     record_world,
     time_constant,
@@ -31,56 +46,98 @@ from robo_genesis.sim.rigid_bodies import read_model
 from robo_genesis.sim.visual_shape import read_shape, slab
 
 if TYPE_CHECKING:
-    from robo_genesis.lessons.l03 import plots
+    from robo_genesis.lessons.l03 import plots, study_plots
 
 __all__ = [
-    "LAB", "LECTURE", "LESSON", "SURFACE_SIZE", "TOP", "build_world", "mistakes",
-    "mujoco_contacts", "plots", "read_model", "read_shape", "record_world", "slab", "spec",
-    "study", "tables", "text", "time_constant",
+    "CONTACT", "ENERGY", "LAB", "LECTURE", "LESSON", "MISTAKES", "SURFACE_SIZE", "TOP",
+    "build_world", "exercises", "mistakes", "mujoco_contacts", "plots", "read_model", "read_shape",
+    "record_world", "slab", "spec", "study", "study_plots", "study_spec", "study_tables",
+    "study_text", "tables", "text", "time_constant",
 ]  # fmt: skip
 
-__getattr__ = on_demand(__name__, "plots")
+__getattr__ = on_demand(__name__, "plots", "study_plots")
 
 
-def readings(shapes: Collection[str], cases: Collection[str]) -> dict[str, Readings]:
-    """Return the engine's counts of the cube's scene, its masses, and the settings of cases."""
-    return {
+def readings(
+    cases: Mapping[str, ContactCase], scenes: Collection[str] = ()
+) -> Callable[[bool], dict[str, Readings]]:
+    """Return a function for the engine's values of a page.
+
+    They are the counts of the cube's scene, the masses, the settings of the cases, and the time
+    constants of some scenes.
+    """
+    shapes = dict.fromkeys(case.shape for case in cases.values())
+    found = {
         "model": counts(spec.EXPECTED_MODEL),
         "mass": Readings(dict.fromkeys(shapes, "kg")),
         **{name: Readings(dict.fromkeys(cases, "1")) for name in SETTINGS},
     }
-
-
-def study_readings(rendered: bool) -> Mapping[str, Readings]:
-    """Return those of the lecture, with the time constants but none of the runs in MuJoCo."""
-    seconds = Readings(dict.fromkeys(spec.STEPS_STUDIED, "s"))
-    return readings(["cube"], spec.BY_GENESIS) | {study.GROUP: seconds}
+    if scenes:
+        found[study.GROUP] = Readings(dict.fromkeys(scenes, "s"))
+    return lambda rendered: found
 
 
 LAB = MeasuringPage(
     runs=runs_of(spec.CASES),
     kind=ContactTrace,
     links=(spec.LINK,),
-    readings=lambda rendered: readings(["cube", "ball"], spec.CASES),
+    readings=readings(spec.CASES),
     measure=case_metrics,
     checks=checks.CHECKS,
     claims=claims_text.CLAIMS,
     parameters=spec.parameters,
     validate=plausibility.require_possible_runs,
 )
-LECTURE = replace(
-    LAB,
-    runs=runs_of(spec.STUDY_CASES),
-    readings=study_readings,
-    checks=(*checks.STUDY_CHECKS, *study.CHECKS),
-    parameters=spec.study_parameters,
+
+
+def further(
+    name: str,
+    cases: Mapping[str, ContactCase],
+    own: Sequence[Callable[[Experiment], Iterable[Finding]]],
+    scenes: Collection[str] = (),
+) -> MeasuringPage:
+    """Return a page without a camera, with runs and checks of its own."""
+    return replace(
+        LAB,
+        runs=runs_of(cases),
+        readings=readings(cases, scenes),
+        checks=(*checks.OF_ALL_PAGES, *own),
+        parameters=lambda: spec.parameters() | study_spec.parameters(name),
+        camera=False,
+    )
+
+
+LECTURE = further(
+    "lecture",
+    study_spec.OF_LECTURE,
+    study.CHECKS,
+    study_spec.STEP_CASES.keys() | study_spec.STIFF_CASES.keys(),
 )
+LECTURE = replace(LECTURE, checks=(*LECTURE.checks, checks.posture), camera=True)
+CONTACT = further("contact", study_spec.OF_CONTACT, study_contact.CHECKS)
+IN_MUJOCO = {
+    name: Run(case, note="run in MuJoCo, not in Genesis")
+    for name, case in study_spec.IN_MUJOCO.items()
+}
+CONTACT = replace(CONTACT, runs={**CONTACT.runs, **IN_MUJOCO})
+ENERGY = further(
+    "energy", study_spec.OF_ENERGY, study_energy.CHECKS, study_spec.RELEASE_CASES.keys()
+)
+MISTAKES = further("mistakes", study_spec.OF_MISTAKES, ())
 
 LESSON = Lesson(
     spec=spec,
     metrics={name: metrics_class(case) for name, case in spec.CASES.items()},
-    pages={"lab": LAB, spec.STUDY_PAGE: LECTURE},
+    pages={
+        "lab": LAB,
+        "lecture": LECTURE,
+        "mistakes": MISTAKES,
+        "contact": CONTACT,
+        "energy": ENERGY,
+    },
     filmed=Filmed("the cube"),
-    compared=Moving(("baseline", "dt10_sub1"), link=spec.LINK, thing="cube", until=0.5),
-    further={"slides": Moving(tuple(spec.SLIDES), link=spec.LINK, thing="cube", axes=("x", "z"))},
+    compared=Moving(tuple(study_spec.DROPPED), link=spec.LINK, thing="cube", until=0.5),
+    further={
+        "slides": Moving(tuple(study_spec.HOPPED), link=spec.LINK, thing="cube", axes=("x", "z"))
+    },
 )

@@ -4,13 +4,13 @@ from collections.abc import Iterator, Mapping
 
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l03 import spec
+from robo_genesis.lessons.l03 import study_spec
 from robo_genesis.sim import mujoco_contacts
 from robo_genesis.sim.contacts import ContactCase
 from robo_genesis.sim.plausibility.bodies import body_on_surface, never_still, reported_contacts
 from robo_genesis.sim.plausibility.rules import Breach, computed_again, copied, refuse, times
 
-BY_MUJOCO = {*spec.OTHER_ENGINE, spec.OWN_DEFAULTS}
+BY_MUJOCO = {*study_spec.IN_MUJOCO}
 
 MOTION = ("link_pos", "link_quat", "link_vel", "link_ang", "penetration")
 AGAIN = dict.fromkeys(MOTION, 1e-5)
@@ -18,7 +18,8 @@ AGAIN = dict.fromkeys(MOTION, 1e-5)
 float64, the runs change by up to 9e-7. Genesis with equal settings is at least 1.8e-5 apart."""
 
 AGAIN_BY_DEFAULTS = dict.fromkeys(MOTION, 2e-5) | {"link_ang": 4e-3}
-"""Those of `spec.OWN_DEFAULTS`, whose angular velocity is only rounding: it changes by 4e-4."""
+"""Those of `study_spec.OWN_DEFAULTS`, whose angular velocity is only rounding: it changes by
+4e-4."""
 
 
 def require_possible_runs(run: Experiment) -> None:
@@ -31,7 +32,7 @@ def require_possible_runs(run: Experiment) -> None:
     for name, case in run.cases.items():
         trace = run.traces[name]
         if name in BY_MUJOCO:
-            breaches = in_mujoco(trace, case, name == spec.OWN_DEFAULTS, by_genesis)
+            breaches = in_mujoco(trace, case, name == study_spec.OWN_DEFAULTS, by_genesis)
         else:
             breaches = body_on_surface(trace, case)
         refuse(f"arrays/{name}.npz", breaches)

@@ -7,7 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
-from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.plotting import look
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.experiment import Experiment
@@ -18,9 +17,6 @@ from robo_genesis.lessons.l03.energy import (
     kept_at_bounces,
     total_energy,
 )
-from robo_genesis.lessons.l03.metrics import CLEAR
-from robo_genesis.lessons.l03.study import landings_at, solver_step
-from robo_genesis.sim import mujoco_contacts
 from robo_genesis.sim.contacts import TOP, ContactCase
 
 LANDING_MARKS = {
@@ -34,19 +30,6 @@ SLIDE_MARKS = {
     "high_on_050": "second",
     "low_on_030": "third",
     "high_on_030": "other",
-}
-
-STEP_MARKS = {
-    "h_20000us_10000": "second",
-    "h_10000us_10000": "third",
-    "h_5000us_10000": "baseline",
-    "h_125us_10000": "first",
-}
-CONE_MARKS = {
-    "low_on_050": "first",
-    "high_on_050": "second",
-    "low_on_050_elliptic": "third",
-    "high_on_050_elliptic": "other",
 }
 BOUNCES_SHOWN = ("bounce_sub1", "bounce_sub2", "bounce_sub100")
 WINDOW = (0.18, 0.44)
@@ -75,24 +58,10 @@ def landings(run: Experiment) -> Figure:
     return figure
 
 
-def landings_by_step(run: Experiment) -> Figure:
-    """Draw the clearance below the cube from the lab's height with four solver steps."""
-    figure = Figure(figsize=(WIDTH, 3.6))
-    heights(figure.subplots(), run.traces, spec.LANDED_AGAIN, (0.18, 0.36), STEP_MARKS)
-    return figure
-
-
 def contact_counts(run: Experiment) -> Figure:
     """Draw the number of contact points of the lab's cubes around their landing."""
-    figure = Figure(figsize=(WIDTH, 2.6))
-    counted(figure.subplots(), run.traces, WINDOW)
-    return figure
-
-
-def depths_by_step(run: Experiment) -> Figure:
-    """Draw how deep all cubes sink in by solver step."""
-    figure = Figure(figsize=(WIDTH, 3.8))
-    depths(figure.subplots(), run.metrics)
+    figure = Figure(figsize=(WIDTH, 4))
+    counted(figure.subplots(4, 1, sharex=True, sharey=True), run.traces, WINDOW)
     return figure
 
 
@@ -100,14 +69,6 @@ def pushed(run: Experiment) -> Figure:
     """Draw speed, clearance and angular speed of the lab's pushed cubes."""
     figure = Figure(figsize=(WIDTH, 6.4))
     slides(figure.subplots(3, 1, sharex=True), run.traces, spec.SLIDES, SLIDE_MARKS)
-    return figure
-
-
-def cones(run: Experiment) -> Figure:
-    """Draw speed, clearance and angular speed with both friction models."""
-    figure = Figure(figsize=(WIDTH, 6.4))
-    cases = {name: spec.STUDY_CASES[name] for name in CONE_MARKS}
-    slides(figure.subplots(3, 1, sharex=True), run.traces, cases, CONE_MARKS)
     return figure
 
 
@@ -158,7 +119,13 @@ def heights(
     """
     for name, mark in marks.items():
         clear = 1000 * clearance(traces[name], cases[name])
-        ax.plot(traces[name].t, clear, marker=".", label=name, **look(mark))
+        ax.plot(
+            traces[name].t,
+            clear,
+            marker=".",
+            label=f"{name}, h = {1000 * cases[name].h:g} ms",
+            **look(mark),
+        )
     ax.axhline(0, **look("limit"))
     ax.set(xlim=window, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]")
     ax.set_title("Below zero, the cube is in the surface", loc="left")
@@ -166,38 +133,22 @@ def heights(
     return ax
 
 
-def counted(ax: Axes, traces: Traces, window: tuple[float, float]) -> Axes:
-    """Draw the number of reported contact points at each sample of each dropped cube."""
-    for place, (name, mark) in enumerate(LANDING_MARKS.items()):
-        count = traces[name].contacts[:, 0] + 0.12 * place
-        ax.step(traces[name].t, count, where="post", label=name, **look(mark))
-    ax.set(xlim=window, yticks=[0, 4], xlabel="time [s]", ylabel="contact points")
-    ax.set_title("Reported contacts (curves lie beside each other)", loc="left")
-    return ax
+def counted(axes: Sequence[Axes], traces: Traces, window: tuple[float, float]) -> None:
+    """Draw the number of reported contact points at each sample, one dropped cube in each axes."""
+    for ax, (name, mark) in zip(axes, LANDING_MARKS.items(), strict=True):
+        ax.step(traces[name].t, traces[name].contacts[:, 0], where="post", **look(mark))
+        ax.set(xlim=window, yticks=[0, 4], ylim=(-0.5, 4.8))
+        ax.set_title(name, loc="left", fontsize="small")
+    axes[-1].set_xlabel("time [s]")
 
 
-def depths(ax: Axes, metrics: Mapping[str, CaseMetrics]) -> Axes:
-    """Draw the penetration of the cubes by solver step, with a mark for those that rebound."""
-    h = {name: 1000 * solver_step(name) for name in spec.STEPS_STUDIED}
-    points = [(h[name], found) for name in h for found in landings_at(metrics, name)]
-    for label, rebounds, marker, size, mark in (
-        ("stays on the surface", False, "o", 4.5, "first"),
-        ("leaves it again", True, "^", 6, "second"),
-    ):
-        drawn = [(x, 1000 * f.penetration) for x, f in points if (f.rebound > CLEAR) == rebounds]
-        x, depth = zip(*drawn, strict=True) if drawn else ((), ())
-        ax.semilogx(x, depth, marker, markersize=size, color=look(mark)["color"], label=label)
-    ax.axvline(1000 * mujoco_contacts.DEFAULT_TIME_CONSTANT / 2, **look("target"))
-    ax.set_xticks(list(h.values()), [f"{step:g}" for step in h.values()])
-    ax.minorticks_off()
-    ax.set_ylim(bottom=0)
-    ax.set(xlabel="solver step h [ms]", ylabel="penetration proxy [mm]")
-    ax.set_title("One landing from nine heights, 7 mm apart", loc="left")
-    ax.legend(fontsize="small", loc="upper left")
-    return ax
-
-
-def slides(axes: Sequence[Axes], traces: Traces, cases: Cases, marks: Mapping[str, str]) -> None:
+def slides(
+    axes: Sequence[Axes],
+    traces: Traces,
+    cases: Cases,
+    marks: Mapping[str, str],
+    labels: Mapping[str, str] | None = None,
+) -> None:
     """Draw speed along x, clearance and angular speed of each pushed cube.
 
     Args:
@@ -205,15 +156,17 @@ def slides(axes: Sequence[Axes], traces: Traces, cases: Cases, marks: Mapping[st
         traces: by case.
         cases: the cases to draw.
         marks: of the palette, by case.
+        labels: in the legend, by case; None for the names.
     """
     for name, case in cases.items():
         trace, style = traces[name], look(marks[name])
-        axes[0].plot(trace.t, trace.link_vel[:, 0, 0], label=name, **style)
+        label = labels[name] if labels else name
+        axes[0].plot(trace.t, trace.link_vel[:, 0, 0], label=label, **style)
         axes[1].plot(trace.t, 1000 * clearance(trace, case), label=name, **style)
         axes[2].plot(trace.t, trace.link_ang[:, 0, 1], label=name, **style)
-    labels = ("speed along x [m/s]", "clearance [mm]", "turning about y [rad/s]")
-    for ax, label in zip(axes, labels, strict=True):
-        ax.set_ylabel(label)
+    heads = ("speed along x [m/s]", "clearance [mm]", "turning about y [rad/s]")
+    for ax, head in zip(axes, heads, strict=True):
+        ax.set_ylabel(head)
         ax.axhline(0, color="#7a7a7a", linewidth=0.8)
         ax.set_xlim(0, 0.9)
     axes[0].legend(fontsize="small", loc="upper right")

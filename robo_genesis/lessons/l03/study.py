@@ -1,29 +1,27 @@
-"""Effects of the solver step, the friction model and the engine on landings and slides."""
+"""Studies of the lecture: landings by step and time constant, clean slides, hops."""
 
 from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, noted, within
+from robo_genesis.core.checks import Finding, above, at_most, equal, noted, within
 from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l03 import friction, spec
+from robo_genesis.lessons.l03 import friction, spec, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics, SlideMetrics
-from robo_genesis.sim import mujoco_contacts
 from robo_genesis.sim.contacts import ContactCase
 
 GROUP = "time_constant"
-"""Group of a bundle's metrics: the engine's time constant of a contact by solver step [s]."""
+"""Group of a bundle's metrics: the engine's time constant of a contact by scene [s]."""
 
-PUSHED = ("low_on_050", "high_on_050")
-"""The slides with the engine's default friction model."""
+ROWS = study_spec.STEP_CASES | study_spec.STIFF_CASES | study_spec.RELEASE_CASES
+"""Scenes with the landings from all heights side by side."""
 
 
-def landings_at(metrics: Mapping[str, CaseMetrics], step: str) -> list[LandingMetrics]:
-    """Return the metrics of the landings at one solver step, in the order of their heights."""
-    found = [metrics[name] for name in spec.STEP_CASES[step]]
+def landings_of(metrics: Mapping[str, CaseMetrics], scene: str) -> list[LandingMetrics]:
+    """Return the metrics of the landings of a scene, in the order of their heights."""
+    found = [metrics[name] for name in ROWS[scene]]
     return [of for of in found if isinstance(of, LandingMetrics)]
 
 
@@ -39,10 +37,26 @@ def slide(metrics: Mapping[str, CaseMetrics], name: str) -> SlideMetrics:
     return found
 
 
-def solver_step(name: str) -> float:
-    """Return the length of a studied solver step by its name [s]."""
-    dt, substeps = spec.STEPS_STUDIED[name]
-    return dt / substeps
+def case_of(scene: str) -> ContactCase:
+    """Return the first case of a scene; its steps and its time constant are those of all."""
+    return next(iter(ROWS[scene].values()))
+
+
+def share_of_step(scene: str) -> float:
+    """Return h / T, the solver step as a share of the time constant that is in force."""
+    case = case_of(scene)
+    return case.h / theory.contact_seconds(case)
+
+
+def depth_shares(metrics: Mapping[str, CaseMetrics], scene: str) -> list[float]:
+    """Return each depth as a share of v T / e, in the order of the heights."""
+    pairs = zip(landings_of(metrics, scene), ROWS[scene].values(), strict=True)
+    return [found.penetration / theory.depth(case) for found, case in pairs]
+
+
+def clean(run: Experiment) -> list[str]:
+    """Return the slides with the elliptic cone and the resolution that comes with it."""
+    return [n for n, c in run.cases.items() if c.cone == "elliptic" and c.resolution is None]
 
 
 def first_impulses(trace: ContactTrace, case: ContactCase) -> tuple[float, float]:
@@ -54,36 +68,24 @@ def first_impulses(trace: ContactTrace, case: ContactCase) -> tuple[float, float
     return float(before[0] - after[0]), float(after[2] - before[2] + case.gravity * case.dt)
 
 
-def distance_between(traces: Mapping[str, ContactTrace], first: str, second: str) -> FloatArray:
-    """Return the distance between the centres of two runs at each shared state, (n+1,) [m].
-
-    The distance of their starts is subtracted: some cubes lie side by side in one scene.
-    """
-    one, other = (traces[n].link_pos[:, 0].astype(np.float64) for n in (first, second))
-    every = round(traces[second].dt / traces[first].dt)
-    shared = min(len(one[::every]), len(other))
-    difference = one[::every][:shared] - other[:shared]
-    return np.asarray(np.linalg.norm(difference - difference[0], axis=1))
-
-
 def time_constants(run: Experiment) -> Iterator[Finding]:
-    for name in spec.STEPS_STUDIED:
-        found = run.readings[GROUP][name]
-        expected = mujoco_contacts.time_constant(solver_step(name))
-        yield within(f"{name}.time_constant_s", found, expected, spec.TIME_CONSTANT)
+    for name, found in run.readings[GROUP].items():
+        expected = theory.contact_seconds(case_of(name))
+        yield within(f"{name}.time_constant_s", found, expected, study_spec.TIME_CONSTANT)
 
 
 def records_each_step(run: Experiment) -> Iterator[Finding]:
-    fine, coarse = run.traces[spec.AS_BASELINE].link_pos, run.traces["baseline"].link_pos
+    name = study_spec.AS_BASELINE
+    fine, coarse = run.traces[name].link_pos, run.traces["baseline"].link_pos
     shared = fine[:: spec.BASELINE.substeps, 0, 2]
     difference = float(np.abs(shared - coarse[: len(shared), 0, 2]).max())
-    yield at_most(f"{spec.AS_BASELINE}.distance_to_baseline_m", difference, spec.SAME_STATE)
+    yield at_most(f"{name}.distance_to_baseline_m", difference, spec.SAME_STATE)
 
 
 def rebound_goes(run: Experiment) -> Iterator[Finding]:
-    for name in spec.STEPS_STUDIED:
-        highest = max(found.rebound for found in landings_at(run.metrics, name))
-        label, step = f"{name}.highest_rebound_m", solver_step(name)
+    for name in study_spec.STEP_CASES:
+        highest = max(found.rebound for found in landings_of(run.metrics, name))
+        label, step = f"{name}.highest_rebound_m", case_of(name).h
         if step > spec.BASELINE.h:
             yield noted(label, highest)
         elif step == spec.BASELINE.h:
@@ -93,42 +95,69 @@ def rebound_goes(run: Experiment) -> Iterator[Finding]:
 
 
 def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
-    limit, finest = np.inf, min(spec.STEPS_STUDIED, key=solver_step)
-    for name in sorted(spec.STEPS_STUDIED, key=solver_step, reverse=True):
-        scatter = float(np.ptp([of.penetration for of in landings_at(run.metrics, name)]))
-        yield below(f"{name}.scatter_m", scatter, limit)
-        limit = scatter
-    yield at_most(f"{finest}.scatter_left_m", limit, spec.SCATTER_LEFT)
+    limit = np.inf
+    for name in sorted(study_spec.STEP_CASES, key=share_of_step, reverse=True):
+        scatter = float(np.ptp(depth_shares(run.metrics, name)))
+        label = f"{name}.scatter_of_depth_share"
+        if share_of_step(name) >= 0.5:
+            yield above(label, scatter, study_spec.SCATTER_COARSE)
+        else:
+            yield Finding(label, scatter, scatter < limit, f"less than {limit:g}")
+            limit = scatter
+    yield at_most("scatter_left", limit, study_spec.SCATTER_FINE)
+
+
+def depth_by_hand(run: Experiment) -> Iterator[Finding]:
+    finest = min(study_spec.STEP_CASES, key=share_of_step)
+    allowed = {finest: study_spec.DEPTH_SHARE, study_spec.STIFF: study_spec.STIFF_SHARE}
+    for scene, share in allowed.items():
+        names = ROWS[scene]
+        for name, found in zip(names, depth_shares(run.metrics, scene), strict=True):
+            yield within(f"{name}.depth_share", found, 1.0, share)
 
 
 def hops(run: Experiment, names: Iterable[str]) -> Iterator[Finding]:
     """Require slides that leave the surface."""
     for name in names:
-        yield above(f"{name}.hop_m", slide(run.metrics, name).hop, spec.HOP)
+        yield above(f"{name}.hop_m", slide(run.metrics, name).hop, study_spec.HOP)
 
 
 def default_cone_hops(run: Experiment) -> Iterator[Finding]:
-    return hops(run, PUSHED)
+    return hops(run, study_spec.HOPPED)
 
 
-def stops_nearly_right(run: Experiment) -> Iterator[Finding]:
-    name = PUSHED[0]
-    case, found = spec.REPEATED[name], slide(run.metrics, name).stop_distance
-    expected = friction.coulomb_distance(case.speed, case.surface_friction, case.gravity)
-    yield within(f"{name}.stop_distance_m", found, expected, spec.NEARLY * expected)
+def hop_follows_step(run: Experiment) -> Iterator[Finding]:
+    for step, cases in study_spec.HOP_STEP_CASES.items():
+        for name, case in cases.items():
+            found, label = slide(run.metrics, name).hop, f"{name}.hop_m"
+            if step in study_spec.HOP_APPLIES:
+                expected = theory.hop(case)
+                yield within(label, found, expected, study_spec.HOP_SHARE * expected)
+            else:
+                yield below_coarsest(run, label, found, name)
 
 
-def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
-    for name in PUSHED:
-        case = spec.REPEATED[name]
-        lost, gained = first_impulses(run.traces[name], case)
-        mu = friction.pair_friction(case)
-        yield above(f"{name}.lost_m_s", lost, spec.BLOW * mu * case.gravity * case.dt)
-        yield within(f"{name}.mu_times_gained_m_s", mu * gained, lost, spec.RATIO_TOLERANCE * lost)
+def below_coarsest(run: Experiment, label: str, found: float, name: str) -> Finding:
+    """Require a hop that is smaller than that of the same cube at a solver step of 5 ms."""
+    coarse = slide(run.metrics, f"hop_5000us_{name.rpartition('_')[2]}").hop
+    return at_most(label, found, study_spec.HOP_LEFT * coarse)
+
+
+def hop_follows_speed(run: Experiment) -> Iterator[Finding]:
+    previous = 0.0
+    for name, case in study_spec.HOP_SPEED_CASES.items():
+        found, label = slide(run.metrics, name).hop, f"{name}.hop_m"
+        if case.speed <= study_spec.SLOW:
+            yield at_most(label, found, study_spec.INVISIBLE)
+        else:
+            expected = theory.hop(case)
+            yield within(label, found, expected, study_spec.HOP_SHARE * expected)
+        yield above(f"{name}.higher_than_slower_m", found - previous, 0.0)
+        previous = found
 
 
 def clean_slides_stay_down(run: Experiment) -> Iterator[Finding]:
-    for name in spec.CLEAN_SLIDES:
+    for name in clean(run):
         yield at_most(f"{name}.hop_m", slide(run.metrics, name).hop, CLEAR)
         contacts = run.traces[name].contacts[:, 0]
         yield equal(f"{name}.fewest_contacts", contacts.min(), 4)
@@ -136,16 +165,18 @@ def clean_slides_stay_down(run: Experiment) -> Iterator[Finding]:
 
 
 def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[Finding]:
-    for name, case in spec.CLEAN_SLIDES.items():
+    for name in clean(run):
+        case = run.cases[name]
         mu = friction.pair_friction(case)
         expected = friction.stepped_distance(case.speed, mu, case.h, case.gravity)
         found = slide(run.metrics, name).stop_distance
-        yield within(f"{name}.stop_distance_m", found, expected, spec.STEPPED_TOLERANCE)
+        yield within(f"{name}.stop_distance_m", found, expected, study_spec.STEPPED_TOLERANCE)
 
 
 def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
-    for name, case in spec.CLEAN_SLIDES.items():
-        label, distance = f"{name}.friction", slide(run.metrics, name).stop_distance
+    for name in clean(run):
+        case, distance = run.cases[name], slide(run.metrics, name).stop_distance
+        label = f"{name}.friction"
         if distance is None:
             yield Finding(label, None, False, "a coefficient")
             continue
@@ -154,37 +185,15 @@ def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
         fits = [
             rule
             for rule, of in friction.RULES.items()
-            if abs(of(case.friction, case.surface_friction) - apparent) <= spec.RULE_TOLERANCE
+            if abs(of(case.friction, case.surface_friction) - apparent) <= study_spec.RULE_TOLERANCE
         ]
         expected = f"the larger of {case.friction:g} and {case.surface_friction:g}"
         expected += f" and no other rule; it fits {' and '.join(fits) or 'none'}"
         yield Finding(label, apparent, fits == ["the larger"], expected)
 
 
-def the_cone_alone_hops(run: Experiment) -> Iterator[Finding]:
-    return hops(run, spec.CONVEX_SLIDES)
-
-
-def engines_land_alike(run: Experiment) -> Iterator[Finding]:
-    for name, other in spec.ENGINE_PAIRS.items():
-        if isinstance(run.metrics[other], LandingMetrics):
-            pair = [run.traces[n].link_pos[:, 0, 2] for n in (name, other)]
-            shared = min(map(len, pair))
-            difference = float(np.abs(pair[0][:shared] - pair[1][:shared]).max())
-            yield at_most(f"{name}.distance_to_{other}_m", difference, spec.ENGINES_APART)
-
-
-def engines_hop_alike(run: Experiment) -> Iterator[Finding]:
-    for name, other in spec.ENGINE_PAIRS.items():
-        if isinstance(run.metrics[other], SlideMetrics):
-            first, second = slide(run.metrics, name).hop, slide(run.metrics, other).hop
-            yield within(f"{name}.hop_m", first, second, spec.SAME_HOP)
-            yield noted(f"{other}.hop_m", second)
-
-
 CHECKS = (
-    time_constants, records_each_step, rebound_goes, scatter_shrinks, default_cone_hops,
-    stops_nearly_right, hop_is_paid_by_friction, clean_slides_stay_down,
-    clean_slides_are_coulomb_s, larger_friction_rules, the_cone_alone_hops, engines_land_alike,
-    engines_hop_alike,
+    time_constants, records_each_step, rebound_goes, scatter_shrinks, depth_by_hand,
+    clean_slides_stay_down, clean_slides_are_coulomb_s, larger_friction_rules, default_cone_hops,
+    hop_follows_step, hop_follows_speed,
 )  # fmt: skip

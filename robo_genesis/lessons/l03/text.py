@@ -1,13 +1,13 @@
 """Sentences about landings, slides and bounces, chosen and filled by their metrics."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from robo_genesis.core.text import Block, listed, signed
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l03 import checks, friction, spec, study
+from robo_genesis.lessons.l03 import checks, friction, spec
 from robo_genesis.lessons.l03.energy import kept_at_bounces
 from robo_genesis.lessons.l03.metrics import (
     CLEAR,
@@ -26,14 +26,6 @@ INSPECT = (
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the lab's runs."""
     return "\n".join(block.markdown() for block in interpretation(run))
-
-
-def step_conclusions(run: Experiment) -> str:
-    """Return the sentences about all solver steps."""
-    found = {
-        study.solver_step(name): study.landings_at(run.metrics, name) for name in spec.STEPS_STUDIED
-    }
-    return "\n".join(f"- {sentence}" for sentence in step_study(found))
 
 
 def interpretation(run: Experiment) -> tuple[Block, ...]:
@@ -195,29 +187,6 @@ def energy_sentences(
             f"and by {min(bounded):.2f} mJ at another. This error is bounded: without m g h v / 2 "
             f"the energy changes by at most {1e6 * max(drift):.1f} millionths of the start."
         )
-
-
-def step_study(found: Mapping[float, Sequence[LandingMetrics]]) -> Iterator[str]:
-    """Say how penetration and rebound depend on the solver step.
-
-    Args:
-        found: by solver step [s], the metrics of landings from several heights.
-    """
-    for h in (max(found), min(found)):
-        depths = [of.penetration for of in found[h]]
-        yield (
-            f"With a solver step of {1000 * h:g} ms the cubes sink in by {mm(min(depths))} to "
-            f"{mm(max(depths))}."
-        )
-    rebounding = sorted(h for h, of in found.items() if any(one.rebound > CLEAR for one in of))
-    if not rebounding:
-        yield "No cube rebounds at any step."
-        return
-    steps = listed([f"{1000 * h:g} ms" for h in rebounding])
-    conclusion = "and at no smaller step: coarse steps cause the rebound, not the cube"
-    if min(rebounding) == min(found):
-        conclusion = "the smallest step included"
-    yield f"Cubes rebound at {steps}, {conclusion}."
 
 
 def mm(value: float) -> str:

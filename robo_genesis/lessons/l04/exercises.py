@@ -1,16 +1,16 @@
 """Checks of the four functions that a student writes in L04's lab.
 
-Each takes the student's function and calls it, so it can be run again after every change. The
-result is a list with one `Check`, as `page.require` takes it.
+See `core/exercises.py`.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, Finding, at_most, equal, evaluate
+from robo_genesis.core.checks import Check, Finding, at_most, equal
+from robo_genesis.core.exercises import compared, outcome
 from robo_genesis.core.mistakes import refused
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import StepMetrics
@@ -18,9 +18,10 @@ from robo_genesis.lessons.l04.spec import CONTROL_LAW_TOLERANCE, ENTRY
 from robo_genesis.sim.joint_control import ControlCase
 from robo_genesis.sim.joints import JointMap
 
-CLAIM = "The function does what its docstring says."
 TINY = 1e-6
 """Largest difference of a returned time or angle that rounding explains."""
+
+RESPONSE = ("rise_time", "overshoot", "settling_time")
 
 
 def resolver(resolve: Callable[..., Any], robot: Any, joints: JointMap) -> list[Check]:
@@ -40,7 +41,7 @@ def resolver(resolve: Callable[..., Any], robot: Any, joints: JointMap) -> list[
         twice = refused(lambda: resolve(robot, [names[3], names[3]]))
         yield equal("error_for_one_joint_twice", twice is not None, True)
 
-    return _check("resolver", findings)
+    return outcome("resolver", findings)
 
 
 def _joint(*dofs: int) -> SimpleNamespace:
@@ -74,7 +75,7 @@ def control_loop(
                 apart = float(np.abs(values.astype(float) - right).max())
                 yield at_most(f"{name}.distance_to_the_recorded_run", apart, TINY)
 
-    return _check("control_loop", findings)
+    return outcome("control_loop", findings)
 
 
 def pd_law(law: Callable[..., Any], traces: Iterable[tuple[Trace, ControlCase]]) -> list[Check]:
@@ -91,7 +92,7 @@ def pd_law(law: Callable[..., Any], traces: Iterable[tuple[Trace, ControlCase]])
         yield equal("demand_of_1000_with_limit_87", float(law(1.0, 0.0, 1e3, 0.0, 87.0)), 87.0)
         yield equal("demand_of_-1000_with_limit_87", float(law(-1.0, 0.0, 1e3, 0.0, 87.0)), -87.0)
 
-    return _check("pd_law", findings)
+    return outcome("pd_law", findings)
 
 
 def step_response(
@@ -106,30 +107,17 @@ def step_response(
         for number, (trace, of) in enumerate(runs):
             q, target = trace.q[:, ENTRY].astype(float), float(trace.target[0, ENTRY])
             expected = of.rise_time, of.overshoot, of.settling_time
-            yield from _compared(f"run_{number}", measure(trace.t, q, target), expected)
+            yield from compared(
+                f"run_{number}", RESPONSE, measure(trace.t, q, target), expected, TINY
+            )
         t = np.arange(6) * 0.01
         slow = np.linspace(0.0, 0.1, 6)
-        yield from _compared("never_rises", measure(t, slow, 0.25), (None, 0.0, None))
+        yield from compared(
+            "never_rises", RESPONSE, measure(t, slow, 0.25), (None, 0.0, None), TINY
+        )
         late = np.array([0.0, 0.25, 0.25, 0.25, 0.25, 0.30])
-        yield from _compared("leaves_at_the_end", measure(t, late, 0.25), (0.01, 0.05, None))
+        yield from compared(
+            "leaves_at_the_end", RESPONSE, measure(t, late, 0.25), (0.01, 0.05, None), TINY
+        )
 
-    return _check("step_response", findings)
-
-
-def _compared(run: str, found: Sequence[Any], expected: Sequence[Any]) -> Iterator[Finding]:
-    names = ("rise_time", "overshoot", "settling_time")
-    for name, value, right in zip(names, found, expected, strict=True):
-        label = f"{run}.{name}"
-        if value is None or right is None:
-            yield equal(label, value, right)
-        else:
-            yield at_most(f"{label}.error", abs(float(value) - float(right)), TINY)
-
-
-def _check(name: str, findings: Callable[[None], Iterable[Finding]]) -> list[Check]:
-    """Return the outcome; an exception of the student's function fails the check by its message."""
-    findings.__name__ = name
-    try:
-        return list(evaluate((findings,), None, {name: CLAIM}))
-    except Exception as error:  # whatever a student's function raises
-        return [Check(name, False, f"it raised {type(error).__name__}: {error}")]
+    return outcome("step_response", findings)

@@ -53,7 +53,8 @@ def up_and_down(begin: Mapping[str, FloatArray], case: ContactCase) -> dict[str,
     """
     height, speed = begin["link_pos"][:, 2].copy(), begin["link_vel"][:, 2].copy()
     low, high, width, middle, _ = mujoco_contacts.IMPEDANCE
-    seconds, damping_ratio = case.spring or (mujoco_contacts.time_constant(case.h), 1.0)
+    default = mujoco_contacts.time_constant(case.h, case.time_constant)
+    seconds, damping_ratio = case.spring or (default, 1.0)
     seconds = max(seconds, 2 * case.h)
     stiffness, damping = (high * seconds * damping_ratio) ** -2, 2 / (high * seconds)
     friction = max(case.friction, case.surface_friction) ** 2

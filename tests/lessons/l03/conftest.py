@@ -8,14 +8,14 @@ import pytest
 from lessons.body_runs import slide_on_corners
 
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import spec, study
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l03 import LESSON, spec, study, study_spec, theory
 from robo_genesis.sim import contacts, mujoco_contacts
 from robo_genesis.sim.contacts import ContactCase
 
 MASSES = {"cube": spec.BASELINE.mass, "ball": spec.DROPPED_BALL.mass}
-SECONDS = {
-    name: mujoco_contacts.time_constant(study.solver_step(name)) for name in spec.STEPS_STUDIED
-}
+SECONDS = {name: theory.contact_seconds(study.case_of(name)) for name in study.ROWS}
+CLEAN = study_spec.ELLIPTIC | study_spec.FINER_SLIDES
 
 
 def settings(cases: Mapping[str, ContactCase]) -> dict[str, dict[str, float]]:
@@ -25,29 +25,49 @@ def settings(cases: Mapping[str, ContactCase]) -> dict[str, dict[str, float]]:
     }
 
 
-READINGS = {
-    "lab": {"model": spec.EXPECTED_MODEL, "mass": MASSES, **settings(spec.CASES)},
-    "lecture": {
-        "model": spec.EXPECTED_MODEL,
-        "mass": {"cube": MASSES["cube"]},
-        study.GROUP: SECONDS,
-        **settings(spec.BY_GENESIS),
-    },
-}
+def readings_of(page: str) -> dict[str, Mapping[str, float]]:
+    """Return the engine's values of sound runs of a page."""
+    declared = LESSON.pages[page].readings(True)
+    cases = {n: c for n, c in LESSON.pages[page].cases.items() if n not in study_spec.IN_MUJOCO}
+    known = {"model": spec.EXPECTED_MODEL, "mass": MASSES, study.GROUP: SECONDS, **settings(cases)}
+    return {
+        group: {name: known[group][name] for name in of.units} for group, of in declared.items()
+    }
+
+
+READINGS = {page: readings_of(page) for page in LESSON.pages}
 """The engine's values of sound runs, by page."""
 
 
 @pytest.fixture(scope="session")
 def contact_traces() -> dict[str, ContactTrace]:
-    """The runs of the lab and the lecture of L03, all computed by MuJoCo."""
+    """The runs of all pages of L03, computed by MuJoCo."""
+    every = {n: case for page in LESSON.pages.values() for n, case in page.cases.items()}
     traces = {
-        name: mujoco_contacts.run_case(case, own_defaults=name == spec.OWN_DEFAULTS)
-        for name, case in (spec.CASES | spec.STUDY_CASES).items()
+        name: slide_on_corners(case)
+        if name in CLEAN
+        else mujoco_contacts.run_case(case, own_defaults=name == study_spec.OWN_DEFAULTS)
+        for name, case in every.items()
     }
-    for name, case in spec.CLEAN_SLIDES.items():
-        clean = slide_on_corners(case)
-        rounding = np.full_like(clean.link_ang, 1e-6)  # of the forces at the corners
-        traces[name] = replace(clean, link_ang=rounding)
-    for name in spec.ENGINE_PAIRS:  # two engines never agree to the last bit
+    for name in CLEAN:
+        rounding = np.full_like(traces[name].link_ang, 1e-6)  # of the forces at the corners
+        traces[name] = replace(traces[name], link_ang=rounding)
+    for name in study_spec.ENGINE_PAIRS:  # two engines never agree to the last bit
         traces[name] = replace(traces[name], link_pos=traces[name].link_pos + np.float32(1e-7))
     return traces
+
+
+@pytest.fixture(scope="session")
+def experiments(contact_traces, frames) -> dict[str, Experiment]:
+    """A sound experiment of each page."""
+    return {
+        name: Experiment(
+            page,
+            {run: contact_traces[run] for run in page.runs},
+            [spec.LINK],
+            READINGS[name],
+            frames if page.camera else {},
+            page.camera,
+        )
+        for name, page in LESSON.pages.items()
+    }

@@ -1,16 +1,37 @@
-"""The decimal numbers that prose of L03 may hold: configured inputs."""
+"""The decimal numbers that prose of L03 may hold: configured inputs, and calculations by hand."""
 
-from robo_genesis.lessons.l03 import spec
-from robo_genesis.lessons.l03.metrics import STOP_SPEED
+import numpy as np
+
+from robo_genesis.lessons.l03 import spec, study_spec
+from robo_genesis.lessons.l03.metrics import CLEAR, STOP_HOLD, STOP_SPEED
 from robo_genesis.sim import contacts
 
+LOW, HIGH = spec.PUSHED.friction, spec.PUSHED.surface_friction
 CONFIGURED = {
     "edge of the cube [m]": spec.BASELINE.size,
     "height of the surface [m]": contacts.TOP,
+    "thickness of the surface [m]": contacts.SURFACE_SIZE[2],
+    "centre of a cube at rest [m]": spec.BASELINE.rest_height,
+    "fall of the cube [m]": spec.BASELINE.start[2] - spec.BASELINE.rest_height,
+    "lowest height studied [m]": study_spec.HEIGHTS_STUDIED[0],
+    "highest height studied [m]": study_spec.HEIGHTS_STUDIED[-1],
+    "finest step studied [ms]": 0.125,
+    "length of the surface [m]": contacts.SURFACE_SIZE[0],
     "window of a landing [s]": spec.BASELINE.duration,
-    "friction of the first cubes": spec.PUSHED.friction,
+    "friction of the first cubes, and the hold of a stop [s]": spec.PUSHED.friction,
     "friction of the other cubes": spec.BESIDE.friction,
     "friction of the surface": spec.PUSHED.surface_friction,
+    "mean of both coefficients": round((LOW + HIGH) / 2, 2),
     "friction of the other surface, and the time to settle [s]": spec.PUSHED.settle,
     "speed of a stopped body [m/s], and a damping ratio": STOP_SPEED,
+    "hold of a stop [s]": STOP_HOLD,
+    "clearance of a separated body [mm]": 1000 * CLEAR,
+    "speed of a gentle push [m/s]": study_spec.SLOW,
+    "step of T / 4 [ms]": 2.5,
+    "height of the fixed step [m]": 0.02,
+    "fall in the first calculation [m]": 0.05,
+    "e, to one digit": round(float(np.e), 1),
+    "1 + μ² in the third calculation": 1 + HIGH**2,
+    "T / 10 in the second calculation [ms], speed in the third [m/s]": 0.4,
+    "difference of a depth and v T / e that counts as small [mm]": 0.05,
 }

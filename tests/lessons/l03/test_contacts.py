@@ -5,16 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.body_runs import body_at, slide_on_corners
-from lessons.l03.conftest import MASSES, READINGS, SECONDS
+from lessons.l03.conftest import MASSES, READINGS
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.checks import require
 from robo_genesis.core.trace import ContactTrace, TraceError
 from robo_genesis.lessons.experiment import Experiment, Run
-from robo_genesis.lessons.l03 import LAB, LECTURE, energy, friction, plots, spec, text
-from robo_genesis.lessons.l03 import study as l03_study
-from robo_genesis.lessons.l03 import tables as l03_tables
+from robo_genesis.lessons.l03 import LAB, energy, friction, plots, spec, study_spec, tables, text
 from robo_genesis.lessons.l03.metrics import (
     bounce_metrics,
     case_metrics,
@@ -22,7 +20,7 @@ from robo_genesis.lessons.l03.metrics import (
     slide_metrics,
     stopped_at,
 )
-from robo_genesis.sim import contacts, mujoco_contacts
+from robo_genesis.sim import contacts
 from robo_genesis.sim.contacts import TOP, ContactError
 
 THREE = ("bounce_sub1", "bounce_sub2", "bounce_sub100")
@@ -194,7 +192,7 @@ def test_a_stop_takes_a_hold():
 
 
 def test_metrics_of_a_slide_on_corners():
-    case = spec.CLEAN_SLIDES["low_on_050_elliptic"]
+    case = study_spec.ELLIPTIC["low_on_050_elliptic"]
     found = slide_metrics(slide_on_corners(case), case)
     expected = friction.stepped_distance(2.0, 0.5, case.h)
     assert found.stop_distance == pytest.approx(expected, abs=1e-4)
@@ -224,9 +222,8 @@ def test_contacts_of_another_length_form_no_run():
 
 
 @pytest.fixture(scope="module")
-def experiment(contact_traces, frames) -> Experiment:
-    traces = {name: contact_traces[name] for name in LAB.runs}
-    return Experiment(LAB, traces, [spec.LINK], READINGS["lab"], frames, True)
+def experiment(experiments) -> Experiment:
+    return experiments["lab"]
 
 
 def failing(run) -> list[str]:
@@ -385,22 +382,13 @@ def test_sentences_of_what_did_not_happen(experiment):
     assert "does not bounce" in text.bounce_sentence(lost, spec.BOUNCES["bounce_sub1"])
 
 
-def test_a_study_without_a_rebound_says_so(contact_traces):
-    name = "h_1250us_10000"
-    found = landing_metrics(contact_traces[name], spec.LANDED_AGAIN[name])
-    *_, none = text.step_study({0.01: [found], 0.001: [found]})
-    assert none == "No cube rebounds at any step."
-    *_, finest = text.step_study({0.01: [found], 0.001: [replace(found, rebound=0.01)]})
-    assert "the smallest step included" in finest
-
-
-def test_figures_are_drawn_with_labelled_axes(experiment, study):
-    figure = Figure()
-    axes = figure.subplots(3, 1)
-    plots.heights(axes[0], experiment.traces, experiment.cases, (0.1, 0.5))
-    plots.counted(axes[1], experiment.traces, (0.1, 0.5))
-    plots.depths(axes[2], study.metrics)
-    assert all(ax.get_xlabel() and ax.get_ylabel() for ax in axes)
+def test_figures_are_drawn_with_labelled_axes(experiment):
+    ax = plots.heights(Figure().subplots(), experiment.traces, experiment.cases, (0.1, 0.5))
+    assert ax.get_xlabel()
+    assert ax.get_ylabel()
+    four = Figure().subplots(4, 1)
+    plots.counted(four, experiment.traces, (0.1, 0.5))
+    assert [ax.get_title(loc="left") for ax in four] == list(spec.LANDINGS)
     three = Figure().subplots(3, 1)
     plots.slides(three, experiment.traces, spec.SLIDES, plots.SLIDE_MARKS)
     assert len(three[0].lines) == 5  # four cubes and the zero
@@ -414,135 +402,17 @@ def test_figures_are_drawn_with_labelled_axes(experiment, study):
     plotting.body_schematic(Figure().subplots(), experiment.traces["baseline"], 0.08, contacts.TOP)
 
 
-# Studies
-
-
-@pytest.fixture(scope="module")
-def study(contact_traces, frames) -> Experiment:
-    traces = {name: contact_traces[name] for name in LECTURE.runs}
-    return Experiment(LECTURE, traces, [spec.LINK], READINGS["lecture"], frames, True)
-
-
-def test_a_sound_study_passes_every_check(study):
-    assert failing(study) == []
-
-
-def with_time_constant(value):
-    return with_reading(l03_study.GROUP, SECONDS | {"h_20000us": value})
-
-
-def rebounding(run):
-    name = "h_625us_10000"
-    up = spec.BASELINE.rest_height + 0.002 - run.traces[name].link_pos[-20, 0, 2]
-    return shift(name, up, first=-20, end=-19)(run)
-
-
-def deeper(run):
-    name = "h_125us_10000"
-    deepest = int(run.traces[name].link_pos[:, 0, 2].argmin())
-    return shift(name, -0.003, first=deepest, end=deepest + 1)(run)
-
-
-def one_corner_less(contacts):
-    contacts[5] -= 1
-    return contacts
-
-
-def as_other(name, other):
-    return lambda run: with_trace(run, name, run.traces[other])
-
-
-def staying_down(position):
-    landed = np.maximum.accumulate(position[:, 0, 2] < spec.BASELINE.rest_height)
-    position[landed, 0, 2] = np.minimum(position[landed, 0, 2], spec.BASELINE.rest_height)
-    return position
-
-
-def never_rebounding(run):
-    for name in spec.STEP_CASES["h_5000us"]:
-        run = changed(name, "link_pos", staying_down)(run)
-    return run
-
-
-FAILING_STUDY = {
-    "another time constant": (with_time_constant(0.01), ["time_constants"]),
-    "a time constant that is no number": (with_time_constant(np.nan), ["time_constants"]),
-    "a record of each step that moves otherwise": (
-        shift(spec.AS_BASELINE, 1e-5, first=20, end=40), ["records_each_step"]),
-    "a rebound that stays with smaller steps": (rebounding, ["rebound_goes"]),
-    "a depth that depends on the start at fine steps": (deeper, ["scatter_shrinks"]),
-    "a blow that friction does not explain": (
-        shift("low_on_050", -0.1, "link_vel", 0, first=1, end=2), ["hop_is_paid_by_friction"]),
-    "a stop far from Coulomb's": (
-        shift("low_on_050", 0.05, axis=0, first=10), ["stops_nearly_right"]),
-    "a clean slide that hops": (
-        shift("low_on_030_elliptic", 0.001, first=10, end=12), ["clean_slides_stay_down"]),
-    "a clean slide on three corners": (
-        changed("low_on_030_elliptic", "contacts", one_corner_less), ["clean_slides_stay_down"]),
-    "a clean slide that stops elsewhere": (shift("low_on_050_elliptic", 0.001, axis=0, first=10),
-        ["clean_slides_are_coulomb_s"]),
-    "a round cone that stays down": (as_other("low_on_050_convex", "low_on_050_elliptic"),
-        ["the_cone_alone_hops", "engines_hop_alike"]),
-    "engines that land apart": (
-        as_other("mujoco_baseline", spec.OWN_DEFAULTS), ["engines_land_alike"]),
-    "no rebound at all": (never_rebounding, ["records_each_step", "rebound_goes"]),
-    "pushed cubes that stay down": (as_slide("high_on_050", spec.BESIDE),
-        ["default_cone_hops", "hop_is_paid_by_friction", "engines_hop_alike"]),
-    "another rule of friction": (
-        as_slide("low_on_050_elliptic", spec.PUSHED, friction=0.3, surface_friction=0.3,
-                 cone="elliptic"),
-        ["clean_slides_are_coulomb_s", "larger_friction_rules"]),
-    "engines that hop apart, from another lane": (as_other("mujoco_low_on_050", "high_on_050"),
-        ["start", "engines_hop_alike"]),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize("name", FAILING_STUDY)
-def test_a_wrong_study_fails_its_checks(study, name):
-    spoil, names = FAILING_STUDY[name]
-    assert failing(spoil(study)) == names
-
-
-def test_rows_of_a_study_name_both_engines(study):
-    rows = l03_tables.engine_rows(study.traces, study.metrics)
-    assert [row["MuJoCo"] for row in rows] == [*spec.ENGINE_PAIRS.values(), spec.OWN_DEFAULTS]
-    assert (rows[0]["over 0.05 mm from"], rows[0]["contacts there"]) == ("never", "– and –")
-    assert rows[-1]["over 0.05 mm from"] != "never"
-    assert len(l03_tables.step_rows(study.metrics, SECONDS)) == len(spec.STEPS_STUDIED)
-    slides = l03_tables.slide_rows(study.metrics, ["low_on_050"], stepped=True)
-    assert slides[0]["v² / (2 μ g) − v h / 2 [m]"] == "0.40275"
-    assert l03_tables.slide_rows(study.metrics, ["low_on_050"])[0]["v² / (2 μ g) [m]"] == "0.40775"
-    with pytest.raises(KeyError, match="baseline is not a slide"):
-        l03_study.slide(study.metrics, "baseline")
-
-
-def test_a_distance_between_runs_takes_shared_times_and_no_lanes(study):
-    fine = l03_study.distance_between(study.traces, "h_10000us_10000", "mujoco_dt20_sub1")
-    assert len(fine) == 21  # every second state of the finer one
-    assert fine[0] == 0
-
-
-def test_the_cases_of_the_lesson_are_chosen_and_rows_say_how_many_steps():
-    rows = l03_tables.landing_rows(spec.LANDINGS)
+def test_rows_say_how_many_steps():
+    rows = tables.landing_rows(spec.LANDINGS)
     assert [row["solver steps"] for row in rows] == ["300", "150", "150", "75"]
 
 
-# The second engine
-
-
-def test_mujoco_turns_in_the_world_s_axes(contact_traces):
-    trace = contact_traces["mujoco_high_on_050"]
-    k = int(np.abs(trace.link_ang[:, 0, 1]).argmax())
-    w, x, y, z = trace.link_quat[k - 1 : k + 2, 0].T.astype(float)
-    pitch = np.unwrap(2 * np.arctan2(y, w))
-    rate = (pitch[2] - pitch[0]) / (2 * trace.dt)
-    assert np.abs([x, z]).max() < 1e-3  # it turns about y alone
-    assert trace.link_ang[k, 0, 1] == pytest.approx(rate, rel=0.3)
-
-
-def test_the_shortest_time_constant_is_two_steps():
-    assert mujoco_contacts.time_constant(0.02) == 0.04
-    assert mujoco_contacts.time_constant(0.001) == 0.01
-    assert mujoco_contacts.load(spec.LANDINGS["dt20_sub1"]).geom_solref[0].tolist() == [0.04, 1]
-    own = mujoco_contacts.load(spec.BASELINE, own_defaults=True)
-    assert own.geom_solref[0].tolist() == [0.02, 1]
+@pytest.mark.parametrize(
+    ("value", "unit", "text_of"),
+    [
+        (0.006431, "m", "6.43 mm"), (-2.5e-5, "m", "−0.025 mm"), (0.41040, "m", "0.4104 m"),
+        (0.00123, "J", "1.23 mJ"), (0.22, "s", "0.22 s"), (None, "m", "not observed"),
+    ],
+)  # fmt: skip
+def test_a_value_has_a_unit_of_its_size(value, unit, text_of):
+    assert tables.readable(value, unit) == text_of

@@ -1,20 +1,14 @@
 """The tests of the student's functions: our solutions pass, and typical wrong ones fail."""
 
-import re
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from lessons.exercise_cells import require_exercise, solutions
 
-from robo_genesis.core.project import BOOK
-from robo_genesis.lessons.book_pages import find_pages
 from robo_genesis.lessons.l04 import exercises, spec
 
-(LAB,) = (page for page in find_pages(BOOK) if (page.lesson, page.page) == ("l04", "lab"))
-SOLVED: dict = {"np": np}
-for cell in LAB.notebook.cells:
-    if "solution" in cell.metadata.get("tags", []):
-        exec(cell.source, SOLVED)
+SOLVED = solutions("l04")
 
 
 class Tensor:
@@ -176,11 +170,4 @@ def test_each_function_has_at_least_three_wrong_solutions():
 
 @pytest.mark.parametrize("name", OURS.values())
 def test_the_student_writes_at_most_fifteen_lines_below_a_docstring(name):
-    cells = [c for c in LAB.notebook.cells if c.source.startswith(f"def {name}(")]
-    stub, solution = cells
-    assert '"""' in stub.source
-    assert "NotImplementedError" in stub.source
-    assert "solution" not in stub.metadata.get("tags", [])
-    assert "solution" in solution.metadata["tags"]
-    assert len(solution.source.splitlines()) - 1 <= 15
-    assert re.search(rf"exercises\.\w+\({name}, ", "\n".join(c.source for c in LAB.notebook.cells))
+    require_exercise("l04", name)

@@ -1,0 +1,48 @@
+"""Outcome of the test of a function that a student writes.
+
+A lesson's `exercises` module has one test for each function. It takes the function and calls it, so
+it can be run again after every change, and returns a list with one `Check`, as `page.require` takes
+it.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
+
+from robo_genesis.core.checks import Check, Finding, at_most, equal, evaluate
+
+CLAIM = "The function does what its docstring says."
+
+
+def outcome(name: str, findings: Callable[[None], Iterable[Finding]]) -> list[Check]:
+    """Return the outcome of the findings; an exception of the student's function fails the check.
+
+    Args:
+        name: of the check.
+        findings: calls the student's function.
+    """
+    findings.__name__ = name
+    try:
+        return list(evaluate((findings,), None, {name: CLAIM}))
+    except Exception as error:  # whatever a student's function raises
+        return [Check(name, False, f"it raised {type(error).__name__}: {error}")]
+
+
+def compared(
+    run: str, names: Sequence[str], found: Sequence[Any], expected: Sequence[Any], tiny: float
+) -> Iterator[Finding]:
+    """Require returned values that are None, or differ by rounding, as the expected ones.
+
+    Args:
+        run: the beginning of the labels.
+        names: of the values.
+        found: what the student's function returned.
+        expected: of the same length as `names`.
+        tiny: largest difference that rounding explains.
+    """
+    yield equal(f"{run}.number_of_values", len(found), len(expected))
+    for name, value, right in zip(names, found, expected, strict=False):
+        label = f"{run}.{name}"
+        if value is None or right is None:
+            yield equal(label, value, right)
+        else:
+            yield at_most(f"{label}.error", abs(float(value) - float(right)), tiny)

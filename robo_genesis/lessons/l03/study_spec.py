@@ -1,0 +1,277 @@
+"""Specification of L03's lecture, deeper pages and mistakes: cases beyond the lab, tolerances."""
+
+from dataclasses import asdict, replace
+from typing import Any
+
+from robo_genesis.lessons.l03.spec import BASELINE, BESIDE, BOUNCES, LANDINGS, PUSHED, SLIDES
+from robo_genesis.sim.contacts import ContactCase
+
+DROPPED = {name: LANDINGS[name] for name in ("baseline", "dt10_sub1")}
+"""The landings of the lecture's first replay."""
+
+HOPPED = {name: SLIDES[name] for name in ("low_on_050", "high_on_050")}
+"""The slides of the lecture's second replay, with the engine's default friction model."""
+
+# Landings by solver step and by time constant
+
+STEPS_STUDIED = {
+    "h_20000us": (0.02, 1),
+    "h_10000us": (0.01, 1),
+    "h_5000us": (0.005, 1),
+    "h_4000us": (0.004, 1),
+    "h_2500us": (0.0025, 1),
+    "h_1000us": (0.001, 1),
+    "h_500us": (0.001, 2),
+    "h_125us": (0.001, 8),
+}
+"""Outer step [s] and substeps, named by the solver step in microseconds."""
+
+HEIGHTS_STUDIED = tuple(round(1.0 + 0.0066 * k, 4) for k in range(-4, 5))
+"""Initial heights [m]: with them the cubes meet the surface at many phases of a step."""
+
+
+def side_by_side(
+    name: str,
+    heights: tuple[float, ...] = HEIGHTS_STUDIED,
+    duration: float = 0.4,
+    **settings: Any,
+) -> dict[str, ContactCase]:
+    """Return a landing from each height, in one row, named by the height in 0.1 mm."""
+    return {
+        f"{name}_{round(1e4 * z)}": replace(
+            BASELINE, start=(round(0.2 * k - 0.8, 1), 0.0, z), duration=duration, **settings
+        )
+        for k, z in enumerate(heights)
+    }
+
+
+STEP_CASES = {
+    name: side_by_side(name, dt=dt, substeps=n) for name, (dt, n) in STEPS_STUDIED.items()
+}
+"""By solver step, the landing from each height with the default time constant."""
+
+AS_BASELINE = "h_5000us_10000"
+"""The landing with the baseline's height and solver step, with each solver step recorded."""
+
+STIFF = "T_2ms"
+STIFF_CASES = {STIFF: side_by_side(STIFF, time_constant=0.002, dt=0.0005, substeps=5)}
+"""The landings with a time constant of 2 ms, with a twentieth of it as solver step."""
+
+RELEASE_CASES = {
+    name: side_by_side(name, HEIGHTS_STUDIED[::4], 0.275, time_constant=seconds, dt=dt, substeps=n)
+    for name, seconds, dt, n in (
+        ("release_10ms", 0.010, 0.001, 4),
+        ("release_5ms", 0.005, 0.001, 8),
+        ("release_2ms", 0.002, 0.0005, 10),
+    )
+}
+"""The landings by time constant, each with a fortieth of it as solver step. All cubes are at the
+top of their rebound before the end."""
+
+# Slides with the elliptic cone
+
+ELLIPTIC = {f"{name}_elliptic": replace(case, cone="elliptic") for name, case in SLIDES.items()}
+"""The lab's slides with the engine's other friction model."""
+
+FINER_SLIDES = {
+    f"{name}_sub10": replace(ELLIPTIC[name], substeps=10)
+    for name in ("low_on_050_elliptic", "high_on_050_elliptic")
+}
+
+CONVEX_SLIDES = {
+    f"{name}_convex": replace(SLIDES[name], cone="elliptic", resolution="convex", impratio=1.0)
+    for name in HOPPED
+}
+"""The elliptic cone alone; all other settings are the defaults of the pyramid."""
+
+# Hops with the default cone
+
+HOP_STEPS = {
+    "hop_10000us": (0.01, 1),
+    "hop_5000us": (0.005, 1),
+    "hop_2500us": (0.0025, 1),
+    "hop_2000us": (0.002, 1),
+    "hop_1000us": (0.001, 1),
+    "hop_500us": (0.001, 2),
+    "hop_100us": (0.001, 10),
+}
+"""Outer step [s] and substeps of the pushes at 2 m/s, named by the solver step."""
+
+HOP_STEP_CASES = {
+    name: {
+        f"{name}_low": replace(PUSHED, dt=dt, substeps=n, duration=0.4),
+        f"{name}_high": replace(BESIDE, dt=dt, substeps=n, duration=0.4),
+    }
+    for name, (dt, n) in HOP_STEPS.items()
+}
+
+HOP_SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0)
+"""Speeds of the push [m/s]."""
+
+HOP_SPEED_CASES = {
+    f"hop_{round(1000 * speed)}mm_s": replace(
+        PUSHED, start=(-0.6, round(0.16 * k - 0.32, 2), 0.765), speed=speed, dt=0.005, substeps=1,
+        duration=0.4,
+    )
+    for k, speed in enumerate(HOP_SPEEDS)
+}  # fmt: skip
+"""The cube with the low coefficient, pushed at each speed with a solver step of 5 ms."""
+
+# Stopping distances by step
+
+STOP_STEPS = {
+    "stop_2500us": (0.0025, 1),
+    "stop_1000us": (0.001, 1),
+    "stop_500us": (0.001, 2),
+    "stop_250us": (0.001, 4),
+    "stop_125us": (0.001, 8),
+    "stop_100us": (0.02, 200),
+    "stop_83us": (0.001, 12),
+}
+"""Outer step [s] and substeps of the pushes that are recorded until they stop."""
+
+STOP_CASES = {
+    name: {
+        f"{name}_low": replace(PUSHED, dt=dt, substeps=n, duration=1.2),
+        f"{name}_high": replace(BESIDE, dt=dt, substeps=n, duration=1.2),
+    }
+    for name, (dt, n) in STOP_STEPS.items()
+}
+"""By solver step; `HOPPED` continues them at 5 ms."""
+
+# The second engine
+
+COMPARED = ("baseline", "dt10_sub1", "dt20_sub1")
+"""Landings that also run in MuJoCo."""
+
+BY_BOTH = {name: LANDINGS[name] for name in COMPARED} | HOPPED | CONVEX_SLIDES
+ENGINE_PAIRS = {name: f"mujoco_{name}" for name in BY_BOTH}
+"""Runs in Genesis and in MuJoCo with equal settings."""
+
+OWN_DEFAULTS = "mujoco_own_baseline"
+"""The baseline in MuJoCo with MuJoCo's default contact."""
+
+IN_MUJOCO = {ENGINE_PAIRS[name]: case for name, case in BY_BOTH.items()} | {OWN_DEFAULTS: BASELINE}
+
+
+def flat(*groups: dict[str, dict[str, ContactCase]]) -> dict[str, ContactCase]:
+    """Return the cases of grouped scenes by name."""
+    return {
+        name: case for group in groups for scene in group.values() for name, case in scene.items()
+    }
+
+
+OF_LECTURE = (
+    DROPPED | flat(STEP_CASES, STIFF_CASES) | ELLIPTIC | HOPPED | flat(HOP_STEP_CASES)
+    | HOP_SPEED_CASES
+)  # fmt: skip
+OF_CONTACT = BY_BOTH | ELLIPTIC | FINER_SLIDES | flat(STOP_CASES)
+OF_ENERGY = BOUNCES | flat(RELEASE_CASES)
+OF_MISTAKES = LANDINGS | HOPPED
+"""The runs in Genesis of each page."""
+
+# What only judges
+
+DEPTH_SHARE = 0.1
+"""Tolerance of a depth at the finest step against v T / e, as a share."""
+
+STIFF_SHARE = 0.2
+"""The same for a time constant of 2 ms: at depths of a millimetre the contact is softer."""
+
+ADVISED = (0.25, 0.1)
+"""Shares of the time constant that the lesson advises as solver step: at most, and better."""
+
+SCATTER_COARSE, SCATTER_FINE = 0.5, 0.05
+"""Scatter of depth / (v T / e) over the heights: at least this at h = T / 2, at most this at the
+finest step."""
+
+TIME_CONSTANT = 1e-8
+"""Tolerance of the engine's time constant of a contact [s]."""
+
+HOP = 0.01
+"""Clearance from which a slide counts as a hop [m]."""
+
+HOP_SHARE = 0.25
+"""Tolerance of a hop against the formula of one step, as a share, where it applies."""
+
+HOP_APPLIES = ("hop_10000us", "hop_5000us", "hop_2500us", "hop_2000us")
+"""The steps at which the formula of one step is compared: the first step throws the cube off."""
+
+HOP_LEFT = 0.15
+"""Largest share of the hop at 5 ms that is left at the smaller steps studied."""
+
+SLOW = 0.2
+"""Speed up to which a hop is below `INVISIBLE` at a solver step of 5 ms [m/s]."""
+
+INVISIBLE = 1e-3
+"""Height of a hop that nobody sees in a film of the scene [m]."""
+
+SAME_HOP = 1e-4
+"""Tolerance of a hop between two engines with equal settings [m]."""
+
+STEPPED_TOLERANCE = 2e-4
+"""Tolerance of a slide on four corners against the stepped formula [m]."""
+
+NEARLY = 0.05
+"""Relative tolerance of a stopping distance that counts as nearly Coulomb's."""
+
+BLOW = 5.0
+"""Loss of speed, in multiples of μ g dt, above which it is more than friction under the weight."""
+
+RATIO_TOLERANCE = 0.02
+"""Relative tolerance of the ratio of two impulses against the coefficient of friction."""
+
+RULE_TOLERANCE = 0.02
+"""Tolerance of the coefficient that a clean slide shows against that of a rule."""
+
+ENGINES_APART = 5e-5
+"""Tolerance of landings between two engines with equal settings [m]."""
+
+FINEST = 6
+"""Number of the smallest steps that are compared for convergence, all at most T / 10."""
+
+CLOSE = 0.01
+"""Share of Coulomb's distance within which a stopping distance is close to it."""
+
+UNSETTLED = 0.05
+"""Spread of the stopping distances over the steps from which they do not converge, as a share of
+Coulomb's distance."""
+
+RELEASE_SHARE = 0.1
+"""Tolerance of the speed of release against e⁻² of the impact speed, as a share."""
+
+REBOUND_SHARE = 0.25
+"""Tolerance of a rebound against that of a linear contact, as a share."""
+
+
+def cases_of(cases: dict[str, ContactCase]) -> dict[str, Any]:
+    """Return cases as JSON values."""
+    return {name: asdict(case) for name, case in cases.items()}
+
+
+OWN: dict[str, dict[str, Any]] = {
+    "lecture": {
+        "cases": cases_of(OF_LECTURE),
+        "scenes": {name: list(of) for name, of in (STEP_CASES | STIFF_CASES).items()},
+        "as_baseline": AS_BASELINE,
+        "hops": {name: list(of) for name, of in HOP_STEP_CASES.items()},
+        "hop_speeds": list(HOP_SPEED_CASES),
+    },
+    "contact": {
+        "cases": cases_of(OF_CONTACT),
+        "in_mujoco": sorted(IN_MUJOCO),
+        "with_its_own_contact": OWN_DEFAULTS,
+        "engine_pairs": ENGINE_PAIRS,
+        "stops": {name: list(of) for name, of in STOP_CASES.items()},
+    },
+    "energy": {
+        "cases": cases_of(OF_ENERGY),
+        "releases": {name: list(of) for name, of in RELEASE_CASES.items()},
+    },
+    "mistakes": {"cases": cases_of(OF_MISTAKES)},
+}
+
+
+def parameters(page: str) -> dict[str, Any]:
+    """Return every configured input of a page's own runs as JSON values, for the evidence key."""
+    return {"studies": OWN[page]}

@@ -1,0 +1,39 @@
+"""The functions that a lab leaves to the student: their cells, our solutions, what both must be."""
+
+import re
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.project import BOOK
+from robo_genesis.lessons.book_pages import Page, find_pages
+
+LONGEST = 15
+"""Most lines of a solution below its first one."""
+
+
+def lab_of(lesson: str) -> Page:
+    """Return the lab of a lesson."""
+    (lab,) = (page for page in find_pages(BOOK) if (page.lesson, page.page) == (lesson, "lab"))
+    return lab
+
+
+def solutions(lesson: str) -> dict[str, Any]:
+    """Return our solutions by the name of the function."""
+    solved: dict[str, Any] = {"np": np}
+    for cell in lab_of(lesson).notebook.cells:
+        if "solution" in cell.metadata.get("tags", []):
+            exec(cell.source, solved)
+    return solved
+
+
+def require_exercise(lesson: str, name: str) -> None:
+    """Require a stub with a docstring, a short solution that only the site shows, and a test."""
+    all_cells = lab_of(lesson).notebook.cells
+    stub, solution = [c for c in all_cells if c.source.startswith(f"def {name}(")]
+    assert '"""' in stub.source
+    assert "NotImplementedError" in stub.source
+    assert "solution" not in stub.metadata.get("tags", [])
+    assert "solution" in solution.metadata["tags"]
+    assert len(solution.source.splitlines()) - 1 <= LONGEST
+    assert re.search(rf"exercises\.\w+\({name}[,)]", "\n".join(c.source for c in all_cells))
