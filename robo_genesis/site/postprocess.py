@@ -7,7 +7,9 @@ from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
 
 from robo_genesis.site.accessibility import make_accessible
+from robo_genesis.site.drawings import inline_drawings
 from robo_genesis.site.page_weight import drop_unused_files, reduce_weight
+from robo_genesis.site.stacked_tables import stack_tables
 
 
 def note_page(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
@@ -40,6 +42,8 @@ def finish_page(html: str, folder: Path) -> str:
     """
     page = BeautifulSoup(html, "html.parser")
     make_accessible(page)
+    stack_tables(page)
+    inline_drawings(page, folder)
     reduce_weight(page, folder)
     return str(page)
 

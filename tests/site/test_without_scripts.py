@@ -26,7 +26,7 @@ def test_the_page_has_its_colours(page):
 
 def test_of_the_replay_figures_and_table_remain(page):
     assert not page.locator(REPLAY).is_visible()
-    assert page.locator("#fig-l04-gains img").is_visible()
+    assert page.locator("#fig-l04-gains svg").is_visible()
     assert page.locator("#fig-l04-posture img").is_visible()
     assert page.get_by_text("moves farthest").first.is_visible()
     page.locator(f"{BLOCK} summary").click()

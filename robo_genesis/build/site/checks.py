@@ -100,12 +100,17 @@ def _broken(site: Site, page: Path, url: str) -> str | None:
 
 def check_alt_texts(site: Site) -> SiteCheck:
     """Every image has an alternative text that is neither empty nor a file name nor a hash."""
-    images = [(path, image) for path, page in site.pages.items() for image in page.find_all("img")]
+    images = [
+        (path, image)
+        for path, page in site.pages.items()
+        for image in page.select("img, svg.drawing")
+    ]
     problems = []
     for path, image in images:
-        text, source = (str(image.get(name) or "").strip() for name in ("alt", "src"))
+        names = ("alt", "src") if image.name == "img" else ("aria-label", "data-file")
+        text, source = (str(image.get(name) or "").strip() for name in names)
         if not text or FILE_NAME.match(text) or text == PurePosixPath(urlsplit(source).path).stem:
-            problems.append(f"{site.name(path)}: {source} has the alt text {image.get('alt')!r}.")
+            problems.append(f"{site.name(path)}: {source} has the alt text {text!r}.")
     return SiteCheck("alt texts", len(images), tuple(problems))
 
 

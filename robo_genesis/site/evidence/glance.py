@@ -8,7 +8,6 @@ import os
 from pathlib import Path
 
 from docutils import nodes
-from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -68,13 +67,13 @@ def response(folder: Path, compared: Compared | Moving) -> Picture:
     runs = read_runs(folder, compared)
     stream = io.BytesIO()
     with plotting.course_style():
-        drawing = Figure(figsize=(4.8, 3.6))
+        drawing = plotting.figure(3.2)
         ax = drawing.subplots()
         plotting.first_channel(ax, runs, COURSE_MARKS)
         ax.set_xlim(0, compared.until)
         ends = [(values[0], values[-1]) for values in runs.channels[0].values.values()]
         fall = sum(last < first for first, last in ends) > len(ends) / 2
-        ax.legend(loc="upper right" if fall else "lower right", fontsize="medium")
+        ax.legend(loc="upper right" if fall else "lower right")
         drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return Picture("response", ".svg", stream.getvalue(), runs.alt, runs.caption)
 

@@ -14,7 +14,6 @@ from pathlib import Path
 
 from docutils import nodes
 from docutils.parsers.rst.directives import flag
-from matplotlib.figure import Figure
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -137,13 +136,13 @@ def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture
     runs = read_runs(folder, compared)
     stream, count = io.BytesIO(), len(runs.channels)
     with plotting.course_style():
-        figure = Figure(figsize=(7, 1 + 2.5 * count))
-        axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+        drawing = plotting.figure(0.5 + 3 * count)
+        axes = drawing.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
         for ax, drawn in zip(axes, runs.channels, strict=True):
             levels = runs.levels_of(drawn)
             plotting.channel(ax, runs.t, drawn, runs.subject, COURSE_MARKS, levels)
             ax.label_outer()
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+        drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     names = listed([channel.name for channel in runs.channels])
     what = f"{names.capitalize()} of {runs.subject}"
     several = f", with the cases {compared.names} drawn over each other"
