@@ -38,7 +38,7 @@ def inline_drawings(page: BeautifulSoup, folder: Path) -> None:
     """Replace the drawings of an article by elements, in place.
 
     Drawings that contain a picture of a camera stay files: they are large, and have no colours of
-    the palette.
+    the palette. A drawing is no link to its own file.
 
     Args:
         page: the complete page.
@@ -61,7 +61,10 @@ def inline_drawings(page: BeautifulSoup, folder: Path) -> None:
             }
             if image.has_attr("id"):  # the anchor of a figure without caption
                 attributes["id"] = str(image["id"])
-            image.replace_with(PreformattedString(element(text, f"drawing-{number}-", attributes)))
+            link = image.find_parent("a", class_="image-reference")
+            (link or image).replace_with(
+                PreformattedString(element(text, f"drawing-{number}-", attributes))
+            )
 
 
 def element(drawing: str, prefix: str, attributes: dict[str, str]) -> str:

@@ -8,8 +8,8 @@ from bs4 import BeautifulSoup, Tag
 
 PHONE = 358
 """Width of a page's column on a phone that is 390 pixels wide [CSS px]."""
-LETTER, PADDING = 7.5, 22.4
-"""Width of a letter, and of a cell's padding on both sides [CSS px]."""
+LETTER, PADDING = 9, 22.4
+"""Width of a wide letter, and of a cell's padding on both sides [CSS px]."""
 MOST_ROWS = 40
 """Longer tables are lists of samples, and scroll."""
 
@@ -25,8 +25,9 @@ def stack_tables(page: BeautifulSoup) -> None:
         even = all(len(row) == len(heads) for row in rows)
         if table.find_parent(class_="scroll-box") or not even or not 0 < len(rows) <= MOST_ROWS:
             continue
+        whole = table.select_one("thead .case-mark") is not None
         columns = zip(table.select("thead th"), *rows, strict=True)
-        if sum(max(map(narrowest, column)) for column in columns) <= PHONE:
+        if sum(max(narrowest(cell, whole) for cell in column) for column in columns) <= PHONE:
             continue
         table["class"] = [*table.get_attribute_list("class", []), "stacks"]
         table["role"] = "table"
@@ -37,8 +38,14 @@ def stack_tables(page: BeautifulSoup) -> None:
                 cell["data-head"] = head
 
 
-def narrowest(cell: Tag) -> float:
-    """Return the least width of a cell [CSS px]: that of its longest part that does not break."""
+def narrowest(cell: Tag, whole: bool) -> float:
+    """Return the least width of a cell [CSS px].
+
+    Args:
+        cell: its longest part that does not break decides.
+        whole: no cell of its table breaks, as where the columns are cases.
+    """
     text = cell.get_text(" ", strip=True)
-    code = [part.get_text() for part in cell.select("code, .case-mark")]
-    return PADDING + LETTER * max(map(len, [*text.split(), *code]), default=0)
+    code = [part.get_text() for part in cell.select("code")]
+    parts = [text] if whole else [*text.split(), *code]
+    return PADDING + LETTER * max(map(len, parts), default=0)

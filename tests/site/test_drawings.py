@@ -41,6 +41,14 @@ def test_a_drawing_is_an_element_with_variables_and_names_of_its_own(tmp_path):
     assert "note" not in str(first)
 
 
+def test_a_drawing_is_not_a_link_to_its_file(tmp_path):
+    (tmp_path / "a.svg").write_text(SVG)
+    link = '<a class="reference image-reference" href="a.svg"><img src="a.svg" alt="A"/></a>'
+    page = BeautifulSoup(f"<article>{link}</article>", "html.parser")
+    inline_drawings(page, tmp_path)
+    assert [tag.name for tag in BeautifulSoup(str(page), "html.parser").article] == ["svg"]
+
+
 def test_camera_frames_and_missing_files_stay_images(tmp_path):
     (tmp_path / "a.svg").write_text(SVG.replace("<use", "<image/><use"))
     page = inlined(tmp_path, "a.svg", "gone.svg")
@@ -87,6 +95,7 @@ WORD, LONG = "twelve chars", "unbreakable_" * 3
         (["<code>a b c d e f g h i j k l m n o p q r s t u v w x</code>", LONG], 1, True),
         (["a"] * 13, 3, True),
         (["a"] * 13, 41, False),  # a list of samples
+        (['<p class="case-mark">G1</p>', WORD * 2, WORD], 2, False),
     ],
 )
 def test_a_table_that_a_phone_cannot_show_is_stacked(cells, rows, stacks):
@@ -99,3 +108,13 @@ def test_a_table_that_a_phone_cannot_show_is_stacked(cells, rows, stacks):
     named = [cell.get("data-head") for cell in page.select("tbody tr")[0].select("td")]
     assert named == [f"{k} [m]" if stacks else None for k in range(len(cells))]
     assert len(page.select("[role=cell]")) == (rows * len(cells) if stacks else 0)
+
+
+def test_a_table_whose_columns_are_cases_does_not_break(tmp_path):
+    head = '<th>metric</th><th><p class="case-mark">G1</p></th><th>G2</th>'
+    row = f"<td>a metric</td><td>{WORD}</td><td>{WORD}</td>"
+    table = f"<table><thead><tr>{head}</tr></thead><tbody><tr>{row}</tr></tbody></table>"
+    page = BeautifulSoup(f"<article>{table}</article>", "html.parser")
+    stack_tables(page)
+    assert page.select("table.stacks")
+    assert page.select("tbody td")[1]["data-head"] == "G1"
