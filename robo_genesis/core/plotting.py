@@ -149,7 +149,8 @@ def both_ends(pictures: Mapping[str, np.ndarray]) -> Figure:
     """Show the camera frames `initial` and `final` of a run, one below the other."""
     shown = {name: pictures[name] for name in ("initial", "final")}
     height = 1.02 * sum(picture.shape[0] / picture.shape[1] for picture in shown.values())
-    drawn = Figure(figsize=(WIDTH, height * WIDTH), facecolor="none", layout="none")
+    drawn = Figure(figsize=(WIDTH, height * WIDTH), facecolor="none")
+    drawn.set_layout_engine("none")
     places = {"left": 0, "right": 1, "bottom": 0, "top": 1, "hspace": 0.04}
     frames(drawn.subplots(len(shown), 1, gridspec_kw=places), shown)
     return drawn

@@ -38,7 +38,7 @@ def inline_drawings(page: BeautifulSoup, folder: Path) -> None:
     """Replace the drawings of an article by elements, in place.
 
     Drawings that contain a picture of a camera stay files: they are large, and have no colours of
-    the palette. A drawing is no link to its own file.
+    the palette. A link around a drawing to its own file is removed.
 
     Args:
         page: the complete page.

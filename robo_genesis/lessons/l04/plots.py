@@ -225,7 +225,7 @@ def _target(ax: Axes, value: float, band: float | None = None) -> None:
         ax.axhspan(value - band, value + band, color=BAND, zorder=0)
     ax.axhline(value, **LINE)
     name = "target" if band is None else f"target ±{band:g} rad"
-    end = {"xycoords": ax.get_yaxis_transform(), "textcoords": "offset points"}
+    end: dict[str, Any] = {"xycoords": ax.get_yaxis_transform(), "textcoords": "offset points"}
     if band is None:
         ax.annotate(name, (0, value), (4, -4), va="top", **end)
     else:
