@@ -175,7 +175,8 @@ LAYOUT = """() => {
   };
   const out = [...document.querySelectorAll("article *")].filter((node) => {
     const { right, width: own } = node.getBoundingClientRect();
-    return own > 1 && right > width + 1 && !boxed(node);
+    const hidden = node.ownerSVGElement; // a drawing hides what is outside of it
+    return own > 1 && right > width + 1 && !hidden && !boxed(node);
   });
   const long = [...document.querySelectorAll("article p:not(.admonition-title), article li")]
     .filter((node) => !node.closest("table, figure") && node.offsetParent)
