@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 from IPython.display import Markdown, display
-from matplotlib.figure import Figure
 
 from robo_genesis.core import checks, plotting, shown, tables
 from robo_genesis.core.checks import Check
@@ -158,7 +157,7 @@ class LessonPage:
         for failure in failures:
             glue(f"evidence_{failure.name}", Markdown(failure.evidence), display=False)
             if failure.curves:
-                figure = Figure(figsize=(7, 2.9))
+                figure = plotting.figure(2.9)
                 ax = plotting.failure(figure.subplots(), failure.curves, "", failure.unit)
                 ax.set_xlabel(failure.axis)
                 glue(f"curves_{failure.name}", figure, display=False)

@@ -134,8 +134,8 @@ def sentences(article: Tag) -> list[str]:
         "script, style, .headerlink, .page-history li, #time-of-each-page table"
     ):
         unread.decompose()
-    for picture in article.select("img[alt]"):
-        picture.replace_with(f" [{picture['alt']}] ")
+    for picture in article.select("img[alt], svg[aria-label]"):
+        picture.replace_with(f" [{picture.get('alt') or picture['aria-label']}] ")
     for lines in article.select("pre"):
         lines.string = lines.get_text().replace("\n", "\0")
     for cell in article.select("td, th"):

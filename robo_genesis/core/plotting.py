@@ -1,4 +1,9 @@
-"""Figures of the course. Functions draw on axes and return them; none computes or shows."""
+"""Figures of the course. Functions draw on axes and return them; none computes or shows.
+
+Each figure has the width `WIDTH` and letters of one size, so that it can be read on a phone. Panels
+lie one below another. Colours are those of the light theme; pages replace them by the reader's
+theme, so a figure has no colours but the palette's.
+"""
 
 import sys
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,9 +16,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core.channels import Channel, Level, Runs
-from robo_genesis.core.palette import MARKS, marks_of
+from robo_genesis.core.palette import MARKS, PARTS, marks_of
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, Trace
+
+WIDTH = 4.25
+"""Of each figure [inch]: about the width of a phone's page."""
+
+LINE: dict[str, Any] = {"color": PARTS["line"].light, "linewidth": 0.9, "zorder": 1}
+"""A thin solid line for a target or for zero."""
+
+BAND = PARTS["band"].light
+
+
+def figure(height: float) -> Figure:
+    """Return an empty figure of the course's width; `height` [inch]."""
+    return Figure(figsize=(WIDTH, height))
 
 
 def look(name: str, **more: Any) -> dict[str, Any]:
@@ -28,20 +46,30 @@ LIMIT = look("limit", linewidth=1.4)
 
 def use_course_style() -> None:
     """Set fonts, grid and sizes; notebooks embed figures as SVG, the same bytes each run."""
+    text, line = PARTS["text"].light, PARTS["line"].light
     mpl.rcParams.update(
         {
+            "axes.edgecolor": line,
             "axes.grid": True,
+            "axes.labelcolor": text,
             "axes.spines.right": False,
             "axes.spines.top": False,
             "axes.titlesize": "medium",
             "figure.constrained_layout.use": True,
-            "figure.facecolor": "white",
-            "font.size": 11,
-            "grid.color": "#d9d9d9",
+            "figure.facecolor": PARTS["ground"].light,
+            "font.size": 10.5,
+            "grid.color": PARTS["grid"].light,
+            "image.interpolation": "none",
+            "legend.fontsize": "medium",
             "legend.frameon": False,
-            "lines.linewidth": 1.9,
+            "lines.linewidth": 1.7,
             "svg.fonttype": "path",
             "svg.hashsalt": "robo-genesis",
+            "text.color": text,
+            "xtick.color": line,
+            "xtick.labelcolor": text,
+            "ytick.color": line,
+            "ytick.labelcolor": text,
         }
     )
     interactive = sys.modules.get("IPython")
@@ -85,7 +113,7 @@ def channel(
             if level.band:
                 label = "" if number else f"band ±{level.band:g} {drawn.unit}"
                 edges = value - level.band, value + level.band
-                ax.axhspan(*edges, color="#e9e4d4", zorder=0, label=label)
+                ax.axhspan(*edges, color=BAND, zorder=0, label=label)
             name = "" if number else level.name
             ax.axhline(value, **look(level.mark, label=name, linewidth=1.4))
     for case, mark in marks_of(list(drawn.values), marks).items():
@@ -107,19 +135,25 @@ def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], title: str, unit: s
 
 
 def frames(axes: Sequence[Axes], pictures: Mapping[str, np.ndarray]) -> Sequence[Axes]:
-    """Show camera frames side by side."""
+    """Show camera frames, each with its name on a ground of its own, in any theme."""
+    plate = {"facecolor": "black", "alpha": 0.7, "linewidth": 0}
     for ax, (name, picture) in zip(axes, pictures.items(), strict=True):
         ax.imshow(picture)
         ax.set_axis_off()
-        ax.set_title(f"Camera frame, {name}")
+        ax.text(0.03, 0.94, f"Camera frame, {name}", transform=ax.transAxes, va="top",
+                color="white", bbox=plate)  # fmt: skip
     return axes
 
 
 def both_ends(pictures: Mapping[str, np.ndarray]) -> Figure:
-    """Show the camera frames `initial` and `final` of a run side by side."""
-    figure = Figure(figsize=(7, 2.8))
-    frames(figure.subplots(1, 2), {name: pictures[name] for name in ("initial", "final")})
-    return figure
+    """Show the camera frames `initial` and `final` of a run, one below the other."""
+    shown = {name: pictures[name] for name in ("initial", "final")}
+    height = 1.02 * sum(picture.shape[0] / picture.shape[1] for picture in shown.values())
+    drawn = Figure(figsize=(WIDTH, height * WIDTH), facecolor="none")
+    drawn.set_layout_engine("none")
+    places = {"left": 0, "right": 1, "bottom": 0, "top": 1, "hspace": 0.04}
+    frames(drawn.subplots(len(shown), 1, gridspec_kw=places), shown)
+    return drawn
 
 
 def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
@@ -140,7 +174,7 @@ def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
     ax.set_aspect("equal")
     ax.set_xlabel("x [m]")
     ax.set_ylabel("z [m]")
-    ax.set_title("Schematic of measured link origins: this is not a camera frame")
+    ax.set_title("Schematic of measured link origins:\nthis is not a camera frame")
     ax.legend()
     return ax
 
@@ -159,30 +193,30 @@ def body_schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) 
         left, right, low, top = (x - size / 2, x + size / 2, z - size / 2, z + size / 2)
         ax.plot([left, right, right, left, left], [low, low, top, top, low], label=label,
                 **look(name))  # fmt: skip
-    ax.axhline(floor, color="#7a7a7a")
+    ax.axhline(floor, **LINE)
     ax.set_aspect("equal")
     ax.set(xlabel="x [m]", ylabel="z [m]")
-    ax.set_title("Schematic of measured positions: this is not a camera frame")
+    ax.set_title("Schematic of measured positions:\nthis is not a camera frame")
     ax.legend()
     return ax
 
 
 def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
     """Label a plot over time; the legend is `above` it or at a place that Matplotlib names."""
-    ax.set_title(title, loc="left")
     ax.set_xlabel("time [s]")
     ax.set_ylabel(ylabel)
     ax.margins(x=0.01)
     if legend == "above":
-        legend_above(ax)
+        legend_above(ax, title)
     else:
-        ax.legend(fontsize="small", loc=legend)  # type: ignore[call-overload]
+        ax.set_title(title, loc="left")
+        ax.legend(loc=legend)  # type: ignore[call-overload]
     return ax
 
 
-def legend_above(ax: Axes) -> None:
-    """Put the legend on the line of the title, outside the axes."""
-    ax.legend(
-        fontsize="small", columnspacing=1.0, borderaxespad=0.2, loc="lower right",
-        bbox_to_anchor=(1.01, 0.99), ncols=len(ax.get_legend_handles_labels()[1]),
-    )  # fmt: skip
+def legend_above(ax: Axes, title: str) -> None:
+    """Put the legend above the axes, in two columns, and the title above it."""
+    rows = -(-len(ax.get_legend_handles_labels()[1]) // 2)
+    ax.set_title(title, loc="left", pad=8 + 15.5 * rows)
+    ax.legend(loc="lower left", bbox_to_anchor=(-0.02, 0.99), borderaxespad=0, labelspacing=0.2,
+              columnspacing=1.2, ncols=2)  # fmt: skip

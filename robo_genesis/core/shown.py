@@ -118,7 +118,5 @@ def mime_data(name: str, experiment: Any, arguments: Sequence[Any]) -> dict[str,
 
 def _svg(figure: "Figure") -> str:
     stream = io.StringIO()
-    figure.savefig(
-        stream, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None}
-    )
+    figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return stream.getvalue()

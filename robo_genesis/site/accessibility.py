@@ -18,6 +18,9 @@ def make_accessible(page: BeautifulSoup) -> None:
     # A fold of code shows an icon; its text is for screen readers and, as a title, for the mouse.
     for fold in page.select("details.hide.above-input > summary"):
         fold["title"] = "Show or hide source"
+    # The link beside a heading or caption is for the mouse: it repeats the contents list.
+    for anchor in page.select("a.headerlink"):
+        anchor["tabindex"] = "-1"
     # A label would replace the visible text, by which speech input finds a control.
     for element in page.select(NAMED_BY_TEXT):
         del element["aria-label"]

@@ -1,8 +1,9 @@
 """The font of formulas: the part of STIX Two Math that the course uses, in a style sheet.
 
 Few systems have a font with the tables that a browser needs to place accents, bars and brackets.
-Without one the dot of a velocity is smaller than a pixel. The font is inside the style sheet: it
-comes with the first frame, so that nothing moves, and a page opened from disk may use it.
+Without one the dot of a velocity is smaller than a pixel. The font is inside the style sheet, so a
+page opened from disk may use it. A script in the head asks for it before the first formula does: it
+is ready for the first frame, and nothing moves.
 """
 
 import base64
@@ -18,6 +19,7 @@ from robo_genesis.core.files import derived
 
 PACKAGE = "@fontsource/stix-two-math"
 FILE = f"{PACKAGE}/files/stix-two-math-latin-400-normal.woff"
+LOAD = """document.fonts.load('1em "Course Math"')"""
 STYLE, LICENCE = "math.css", "math-font-LICENSE.txt"
 
 SHOWN = {
@@ -95,9 +97,10 @@ def write_css(app: Sphinx) -> None:
 
 
 def add_css(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
-    """Load the style sheet on a page with a formula."""
+    """Load the style sheet and its font on a page with a formula."""
     if doctree is not None and next(doctree.findall(_is_math), None) is not None:
         app.add_css_file(STYLE)
+        app.add_js_file(None, body=LOAD)
 
 
 def _is_math(node: nodes.Node) -> bool:

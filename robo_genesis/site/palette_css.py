@@ -1,7 +1,8 @@
 """The palette in style sheets, and a mark of its line beside a case's name in a table.
 
 `_static/palette.css` is written by each build. It declares, for both themes, each mark's colour
-(`--case-g1`, `--target`) and its dashes for an SVG line two units wide (`--case-g1-dash`).
+(`--case-g1`, `--target`) and its dashes for an SVG line two units wide (`--case-g1-dash`), and the
+colours of a figure's other parts (`--figure-text`).
 """
 
 import re
@@ -12,10 +13,11 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
-from robo_genesis.core.palette import CASE_CLASSES, MARKS, Mark, css_name
+from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, Mark, css_name
 from robo_genesis.lessons.registry import COURSE_MARKS
 
 THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
+"""Paper has the light theme."""
 STROKE = 2
 """Width of the SVG lines that the dashes are meant for, in their own units."""
 LINE, LENGTH = 0.12, 1.9
@@ -29,8 +31,9 @@ OTHER_TEXT = (nodes.literal, nodes.literal_block, nodes.math, nodes.raw, nodes.r
 def css() -> str:
     """Return the style sheet of the palette."""
     names = {css_name(name): mark for name, mark in MARKS.items()}
+    colours = names | {f"figure-{name}": part for name, part in PARTS.items()}
     rules = [
-        (selector, {f"--{name}": getattr(mark, theme) for name, mark in names.items()})
+        (selector, {f"--{name}": getattr(mark, theme) for name, mark in colours.items()})
         for theme, selector in THEMES.items()
     ]
     rules.insert(1, (":root", {f"--{name}-dash": _svg_dashes(m) for name, m in names.items()}))
@@ -41,8 +44,9 @@ def css() -> str:
     rules += [(f".case-mark.{name}::before", _stripe(m)) for m, name in CASE_CLASSES.items()]
     lines = ["/* Written from robo_genesis/core/palette.py. */"]
     for selector, properties in rules:
-        declared = (f"  {name}: {value};" for name, value in properties.items())
-        lines += [f"{selector} {{", *declared, "}"]
+        declared = [f"  {name}: {value};" for name, value in properties.items()]
+        rule = [f"{selector} {{", *declared, "}"]
+        lines += ["@media screen {", *rule, "}"] if selector == THEMES["dark"] else rule
     return "\n".join([*lines, ""])
 
 

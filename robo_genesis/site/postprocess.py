@@ -9,11 +9,16 @@ from urllib.parse import unquote, urlsplit
 from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
 
+from robo_genesis.core import palette
 from robo_genesis.core.files import derived
-from robo_genesis.site import accessibility, page_weight
+from robo_genesis.site import accessibility, drawings, page_weight, stacked_tables
 from robo_genesis.site.accessibility import make_accessible
+from robo_genesis.site.drawings import inline_drawings
 from robo_genesis.site.page_weight import drop_unused_files, reduce_weight
+from robo_genesis.site.stacked_tables import stack_tables
 
+CHANGES = (accessibility, stacked_tables, drawings, page_weight, palette)
+"""The modules that change a page, and the colours that they use."""
 IMAGE = re.compile(r"""<img\b[^>]*?\bsrc="([^"]+)\"""")
 """A picture of a page; a finished page contains its size."""
 
@@ -50,11 +55,13 @@ def finish_page(html: str, folder: Path) -> str:
     def make() -> bytes:
         page = BeautifulSoup(html, "html.parser")
         make_accessible(page)
+        stack_tables(page)
+        inline_drawings(page, folder)
         reduce_weight(page, folder)
         return str(page).encode()
 
     images = [folder / unquote(urlsplit(unescape(src)).path) for src in IMAGE.findall(html)]
-    sources = (Path(module.__file__ or "") for module in (accessibility, page_weight))
+    sources = (Path(module.__file__ or "") for module in CHANGES)
     files = [path for path in (*images, *sources, Path(__file__)) if path.is_file()]
     return derived(
         "finished", [html.encode(), *(path.read_bytes() for path in files)], make

@@ -3,10 +3,10 @@
 import pytest
 
 from robo_genesis.core import plotting
-from robo_genesis.core.palette import GROUNDS, MARKS, contrast, marks_of
+from robo_genesis.core.palette import GROUNDS, MARKS, PARTS, contrast, marks_of
 
-TEXT = 4.5
-"""Least contrast of text, WCAG 2.2, 1.4.3; graphics ask for 3."""
+TEXT, GRAPHICS = 4.5, 3
+"""Least contrast of text and of graphics, WCAG 2.2, 1.4.3 and 1.4.11."""
 
 
 @pytest.mark.parametrize(
@@ -22,6 +22,20 @@ def test_contrast_is_that_of_wcag(one, other, ratio):
 def test_each_mark_reads_as_text_on_each_ground(name, theme):
     colour = getattr(MARKS[name], theme)
     assert min(contrast(colour, ground) for ground in GROUNDS[theme]) >= TEXT
+
+
+@pytest.mark.parametrize("theme", GROUNDS)
+def test_the_parts_of_a_figure_can_be_seen_on_each_ground_and_its_marks_on_the_band(theme):
+    text, line, band = (getattr(PARTS[name], theme) for name in ("text", "line", "band"))
+    assert getattr(PARTS["ground"], theme) in GROUNDS[theme]
+    assert min(contrast(text, ground) for ground in (*GROUNDS[theme], band)) >= TEXT
+    assert min(contrast(line, ground) for ground in (*GROUNDS[theme], band)) >= GRAPHICS
+    assert min(contrast(getattr(mark, theme), band) for mark in MARKS.values()) >= GRAPHICS
+
+
+def test_a_colour_of_a_drawing_tells_what_it_is():
+    colours = [mark.light for mark in (*MARKS.values(), *PARTS.values())]
+    assert len({*colours}) == len(colours)
 
 
 @pytest.mark.parametrize("field", ["light", "dark", "dashes"])

@@ -22,8 +22,16 @@ def test_frames_are_shown_as_they_are(frames):
     axes = Figure().subplots(1, 2)
     plotting.frames(axes, frames)
     for ax, (name, picture) in zip(axes, frames.items(), strict=True):
-        assert ax.get_title() == f"Camera frame, {name}"
+        assert [text.get_text() for text in ax.texts] == [f"Camera frame, {name}"]
         assert (ax.get_images()[0].get_array() == picture).all()
+
+
+def test_both_ends_fill_a_figure_of_the_course_s_width(frames):
+    drawn = plotting.both_ends(frames)
+    assert drawn.get_figwidth() == plotting.WIDTH
+    above, below = (ax.get_position() for ax in drawn.axes)
+    assert (above.x0, above.x1, above.y1, below.y0) == pytest.approx((0, 1, 1, 0))
+    assert above.y0 > below.y1
 
 
 def test_a_schematic_draws_the_measured_links_at_both_ends(ax, traces):

@@ -18,8 +18,8 @@ from robo_genesis.site.evidence.ledger_data import UNMEASURED
 pytestmark = pytest.mark.engine
 LEDGER = "evidence/ledger.html"
 SHOWN = (
-    "article img, .cell_output table, .glued table, figure table, .evidence-panel table, "
-    ".replay-block table"
+    "article :is(img, svg.drawing), .cell_output table, .glued table, figure table, "
+    ".evidence-panel table, .replay-block table"
 )
 TEXTS = [(BOOK / f"{name}.md").read_text() for name in PAGES]
 
@@ -85,7 +85,7 @@ def test_each_line_of_provenance_leads_to_the_row_that_leads_back(pages):
 
 def test_illustrations_say_so_and_nothing_else_does(pages):
     sources = sorted(
-        line.find_parent("figure").img["src"].rpartition("/")[2]
+        line.find_parent("figure").svg["data-file"].rpartition("/")[2]
         for page in pages.values()
         for line in page.select(".provenance")
         if "Illustration, not measured." in line.text

@@ -94,5 +94,6 @@ def test_figures_are_those_of_the_page(site, page):
     assert drawn.keys() == figures
     assert all("<svg" in text for text in drawn.values())
     for name, text in drawn.items():
-        image = (site / LAB).parent.joinpath(page.select_one(f"#{name} img")["src"])
+        shown = page.select_one(f"#{name} :is(img, svg)")
+        image = (site / LAB).parent.joinpath(shown.get("src") or shown["data-file"])
         assert image.read_text() == text

@@ -119,7 +119,7 @@ def test_the_lecture_shows_the_metrics_of_a_verified_run_alone(html):
     panel = panels(html, "l04", "lecture")[0]
     assert "amdgpu, recorded" in panel.get_text()
     assert DEVICE not in panel.get_text()
-    assert not panel.select("figure, img, .replay-block")
+    assert not panel.select("figure, img, svg, .replay-block")
 
 
 @pytest.mark.parametrize("page", ["lab", "lecture"])
@@ -129,7 +129,7 @@ def test_another_run_shows_its_state_and_nothing_else(html, lesson, backend, pag
     found = [p for p in panels(html, lesson, page) if f"{backend}-{state}" in p.get_text()]
     assert len(found) == 1
     assert found[0].get_text().strip().startswith(f"No figures from {backend}")
-    assert not found[0].select("figure, img, table, details, .replay-block")
+    assert not found[0].select("figure, img, svg, table, details, .replay-block")
     (path,) = (html / "lessons").glob(f"{lesson}-*/{page}.html")
     assert (DEVICE in path.read_text("utf8")) == (lesson == "l04" and page == "lab")
 

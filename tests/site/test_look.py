@@ -4,10 +4,12 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 
+import matplotlib as mpl
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page
 
-from robo_genesis.core.palette import GROUNDS, MARKS, contrast, css_name
+from robo_genesis.core import plotting
+from robo_genesis.core.palette import GROUNDS, MARKS, PARTS, contrast, css_name
 from robo_genesis.lessons.registry import LESSONS
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
@@ -16,7 +18,7 @@ CASES = {"baseline": "baseline"} | dict(LESSONS["l04"].marks)
 """The mark of each case on the lecture."""
 
 LECTURE = "lessons/l04-joint-control/lecture.html"
-TEXT, GRAPHICS = 4.5, 3
+TEXT = 4.5
 READ = {
     "running text": "article p:not([class])",
     "link": "article p > a.reference.external",
@@ -133,12 +135,41 @@ def test_a_case_s_name_in_running_text_has_its_colour(page, theme):
         assert weight == "600"
 
 
-def test_in_the_dark_plots_lie_on_a_soft_card_and_keep_their_colours(page, theme):
-    plot = page.locator("article figure img[src$='.svg']").nth(1)
-    plot.scroll_into_view_if_needed()
-    expect(plot).to_have_css("filter", "brightness(0.9)" if theme == "dark" else "none")
-    card = "#e6e6e6" if theme == "dark" else "#ffffff"
-    assert all(contrast(mark.light, card) >= GRAPHICS for mark in MARKS.values())
+def test_a_figure_has_the_colours_of_the_theme(page, theme):
+    drawn = page.locator("#fig-l04-gains svg.drawing")
+    found = drawn.evaluate(
+        """svg => [...svg.querySelectorAll("*")].flatMap(part => {
+          const { fill, stroke } = getComputedStyle(part);
+          return [part.style.fill && fill, part.style.stroke && stroke];
+        })"""
+    )
+    colours = {hexadecimal(colour) for colour in found if colour and colour != "none"}
+    marks = [MARKS[CASES[name]] for name in ("G1", "G2", "G3")] + [MARKS["limit"]]
+    assert {getattr(mark, theme) for mark in (*marks, *PARTS.values())} <= colours
+    other = "dark" if theme == "light" else "light"
+    assert not {getattr(mark, other) for mark in (*marks, PARTS["text"])} & colours
+
+
+def test_on_a_phone_no_figure_is_cut_off_and_its_letters_can_be_read(browser, address):
+    page = browser.new_page(viewport={"width": 390, "height": 800})
+    page.goto(f"{address}/{LECTURE}")
+    sizes = page.eval_on_selector_all(
+        "article svg.drawing:not(.wide)",
+        """drawings => drawings.filter(one => one.checkVisibility()).map(one => {
+          const { left, right, width } = one.getBoundingClientRect();
+          const texts = [...one.querySelectorAll("text")];
+          const letters = texts.map(text => parseFloat(getComputedStyle(text).fontSize));
+          return [left, right, width / one.getAttribute("width"), letters];
+        })""",
+    )
+    assert len(sizes) >= 4
+    with plotting.course_style():  # it draws letters as paths
+        drawn = mpl.rcParams["font.size"] * 96 / 72
+    for left, right, scale, letters in sizes:
+        assert left >= 0
+        assert right <= 390
+        assert scale * min(letters or [drawn]) >= 11
+    page.close()
 
 
 def lines(page: Page, selector: str) -> list[list]:

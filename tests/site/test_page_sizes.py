@@ -59,7 +59,7 @@ def test_each_limit_is_kept_exactly(kind, name, limit):
 
 def test_a_wide_excerpt_is_refused_on_every_page():
     assert excess(page_of(widest=81, words=9999), "index") == [
-        "81 characters in its widest excerpt (at most 80)"
+        "81 characters in its widest line of code (at most 80)"
     ]
 
 

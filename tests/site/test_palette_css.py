@@ -6,7 +6,7 @@ import pytest
 from docutils import nodes
 from docutils.utils import new_document
 
-from robo_genesis.core.palette import MARKS, css_name
+from robo_genesis.core.palette import MARKS, PARTS, css_name
 from robo_genesis.site import palette_css
 
 
@@ -22,13 +22,17 @@ def rules() -> dict[str, list[dict[str, str]]]:
 
 def test_the_style_sheet_declares_each_colour_for_both_themes():
     light, dashes = rules()[":root"]
-    (dark,) = rules()['html[data-theme="dark"]']
-    assert light == {f"--{css_name(name)}": mark.light for name, mark in MARKS.items()}
-    assert dark == {f"--{css_name(name)}": mark.dark for name, mark in MARKS.items()}
+    (dark,) = rules()["@media screen"]
+    assert '@media screen {\nhtml[data-theme="dark"] {' in palette_css.css()
+    both = {css_name(name): mark for name, mark in MARKS.items()}
+    both |= {f"figure-{name}": part for name, part in PARTS.items()}
+    assert light == {f"--{name}": mark.light for name, mark in both.items()}
+    assert dark == {f"--{name}": mark.dark for name, mark in both.items()}
     assert dashes["--case-g2-dash"] == "12 4"
     assert dashes["--case-baseline-dash"] == "none"
     cases = {"--case-baseline", "--case-g1", "--case-g2", "--case-g3"}
-    assert {*light} == cases | {"--target", "--limit", "--other", "--further"}
+    parts = {f"--figure-{name}" for name in PARTS}
+    assert {*light} == cases | parts | {"--target", "--limit", "--other", "--further"}
 
 
 def test_the_mark_in_a_table_repeats_the_dashes_of_the_plot_whole():

@@ -72,7 +72,8 @@ def test_scripts_of_data_are_left_alone(tmp_path):
 
 def test_images_get_their_size_and_wait_until_they_are_in_sight(tmp_path):
     Image.new("RGB", (30, 20)).save(tmp_path / "a b.png")
-    drawing(tmp_path, 'viewBox="0 0 9 6"')
+    frame = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 6"><image/></svg>'
+    (tmp_path / "x.svg").write_text(frame)
     body = '<article><img src="a%20b.png"/><img src="x.svg"/><img src="x.svg" width="9"/>'
     first, second, third = page(tmp_path, body).select("img")
     assert (first["width"], first["height"], first["loading"]) == ("30", "20", "lazy")

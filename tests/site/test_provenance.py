@@ -130,7 +130,7 @@ def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(html):
     assert [row.select("td")[3].get_text() for row in rows] == ["no run"] * 8
     anchors = [row.a["href"].split("#")[1] for row in rows]
     assert [page.find(id=anchor).name for anchor in anchors] == [
-        "table", "table", "img", "figure", "img", "img", "table", "table",
+        "table", "table", "svg", "figure", "svg", "svg", "table", "table",
     ]  # fmt: skip
 
 

@@ -2,19 +2,19 @@
 
 import pytest
 from built_site import LESSON_PAGES
+from playwright.sync_api import expect
 
 from robo_genesis.site.page_sizes import EXEMPT
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 MOST = 150
-MORE = {
-    *EXEMPT, "lessons/l03-rigid-bodies/lecture", "lessons/l04-joint-control/lecture",
-}  # fmt: skip
-"""Lectures that still have more: excerpts, tables and the readers' tools come with stops."""
-STOPS = """() => [...document.querySelectorAll(
+STOPS = """() => new Set([...document.querySelectorAll(
   "article :is(a[href], button, input, select, textarea, summary, [tabindex])"
-)].filter((one) => one.tabIndex >= 0 && !one.disabled && one.checkVisibility()).length"""
+)].filter((one) =>
+  one.tabIndex >= 0 && !one.disabled && one.checkVisibility({ visibilityProperty: true })
+).map((one) => one.type === "radio" ? one.name : one)).size"""
+"""Radio buttons of one name are one stop: the arrow keys choose among them."""
 LECTURES = [name for (_, page), name in LESSON_PAGES.items() if page == "lecture"]
 
 
@@ -24,7 +24,22 @@ def test_a_lecture_has_few_tab_stops(browser, address, name):
     page.goto(f"{address}/{name}.html")
     stops = page.evaluate(STOPS)
     assert stops > 0
-    assert stops <= MOST or name in MORE
+    assert stops <= MOST or name in EXEMPT
     page.evaluate("document.querySelector('article').innerHTML += '<a href=#x>a</a>'.repeat(151)")
     assert page.evaluate(STOPS) > MOST
+    page.close()
+
+
+def test_code_can_be_copied_where_the_pointer_or_the_focus_is(browser, address):
+    page = browser.new_page()
+    page.goto(f"{address}/lessons/l02-life-cycle/lecture.html")
+    block = page.locator("article .highlight:has(> pre):visible").first
+    button = block.locator("button.copybtn")
+    expect(button).to_be_hidden()
+    block.hover()
+    expect(button).to_be_visible()
+    page.mouse.move(0, 0)
+    expect(button).to_be_hidden()
+    block.locator("pre").evaluate("code => { code.tabIndex = 0; code.focus(); }")
+    expect(button).to_be_visible()
     page.close()

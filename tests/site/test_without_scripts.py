@@ -29,7 +29,7 @@ def test_of_the_replay_picture_figures_and_table_remain(page):
     assert page.locator(f"{REPLAY} .shown").inner_text() == "at the start"
     assert not page.locator(f"{REPLAY} button").is_visible()
     assert not page.locator(f"{REPLAY} .panel").is_visible()
-    assert page.locator("#fig-l04-gains img").is_visible()
+    assert page.locator("#fig-l04-gains svg").is_visible()
     assert page.locator("#fig-l04-posture img").is_visible()
     assert page.get_by_text("moves farthest").first.is_visible()
     page.locator(f"{BLOCK} summary").click()

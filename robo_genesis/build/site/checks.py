@@ -23,6 +23,7 @@ SERVICES = re.compile(
     r"unpkg\.com|jsdelivr\.net|cdnjs\.|googleapis\.com|gstatic\.com|polyfill\.io|mybinder\.org",
     re.IGNORECASE,
 )
+IMAGES = "img, svg.drawing"
 FILE_NAME = re.compile(r"^\S*\.(?:png|jpe?g|svg|webp|gif)$|^[0-9a-f]{16,}$", re.IGNORECASE)
 LEFTOVERS = re.compile(r"\{[a-z][a-z:_-]*\}(?=`|\()|\\[\[\(]|\$\$|\[\[[^\]]*\]\]|<Figure size ")
 
@@ -97,7 +98,7 @@ def page_facts(page: scripts.Page) -> PageFacts:
         addresses=[(url, _is_loaded(tag)) for tag in tags for url in _addresses(tag)],
         styles=[url for text in style for url in _in_style(text)],
         inline_addresses=[url for tag in inline for url in SCRIPT_ADDRESS.findall(tag.get_text())],
-        images=len(page.parsed.find_all("img")),
+        images=len(page.parsed.select(IMAGES)),
         alt_problems=list(_alt_problems(page.parsed)),
         scripts=len(page.parsed.find_all("script")),
         script_problems=sorted(set(scripts.page_problems(page))),
@@ -187,10 +188,11 @@ def _lines(site: Site, found: Mapping[Path, Sequence[str]]) -> tuple[str, ...]:
 
 
 def _alt_problems(page: BeautifulSoup) -> Iterator[str]:
-    for image in page.find_all("img"):
-        text, source = (str(image.get(name) or "").strip() for name in ("alt", "src"))
+    for image in page.select(IMAGES):
+        names = ("alt", "src") if image.name == "img" else ("aria-label", "data-file")
+        text, source = (str(image.get(name) or "").strip() for name in names)
         if not text or FILE_NAME.match(text) or text == PurePosixPath(urlsplit(source).path).stem:
-            yield f"{source} has the alt text {image.get('alt')!r}."
+            yield f"{source} has the alt text {text!r}."
 
 
 def _leftovers(page: BeautifulSoup) -> Iterator[str]:

@@ -24,10 +24,11 @@ KNOWN = {
     "16a7e2af3147b51a": "a setting of sphinx-togglebutton",
     "2343be2e4601753a": "what sphinx-togglebutton folds",
     "e39ada5c9c21545b": "a setting of the theme's search",
+    "193314e97c9cb956": "math_font's: the font of formulas loads before they show",
     "98dc83e96438bca1": "the page of the search: the cursor goes into its field",
 }
-"""The inline scripts of the theme by the first 16 digits of their SHA-256. After an upgrade of the
-theme, the check names the new ones: read them, and replace the old digests."""
+"""The inline scripts of the theme and the course by the first 16 digits of their SHA-256. After an
+upgrade of the theme, the check names the new ones: read them, and replace the old digests."""
 
 PAGE_NAME = "DOCUMENTATION_OPTIONS.pagename = '{}';"
 """The one inline script that differs by page: the theme's name of the page itself."""

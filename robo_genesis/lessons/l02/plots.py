@@ -10,15 +10,12 @@ from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02.metrics import fallen, predicted
 from robo_genesis.lessons.l02.study import step_study
 
-WIDTH = 7.0
-"""Of a figure [inch]."""
-
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured positions."""
     if run.rendered:
         return plotting.both_ends(run.frames)
-    figure = Figure(figsize=(4, 5))
+    figure = plotting.figure(4.5)
     case, trace = run.cases["baseline"], run.traces["baseline"]
     plotting.body_schematic(figure.subplots(), trace, case.size)
     return figure
@@ -26,14 +23,14 @@ def posture(run: Experiment) -> Figure:
 
 def height(run: Experiment) -> Figure:
     """Draw the height of the box's centre at every sample, and its height on the ground."""
-    figure = Figure(figsize=(WIDTH, 3.2))
+    figure = plotting.figure(3.2)
     draw_height(figure.subplots(), run)
     return figure
 
 
 def height_and_speed(run: Experiment) -> Figure:
     """Draw height and speed of the box at every sample, one above the other."""
-    figure = Figure(figsize=(WIDTH, 5.6))
+    figure = plotting.figure(5.6)
     above, below = figure.subplots(2, 1, sharex=True)
     draw_height(above, run)
     draw_speed(below, run)
@@ -50,7 +47,7 @@ def draw_height(ax: Axes, run: Experiment) -> None:
     ax.set_ylim(bottom=0)
     ax.set(xlabel="time [s]", ylabel="height z [m]")
     ax.set_title("Height of the box", loc="left")
-    ax.legend(fontsize="small", loc="center left")
+    ax.legend(loc="center left")
 
 
 def draw_speed(ax: Axes, run: Experiment) -> None:
@@ -61,7 +58,7 @@ def draw_speed(ax: Axes, run: Experiment) -> None:
     ax.plot(trace.t, case.gravity * trace.t, label="g t", **look("target"))
     ax.set(xlabel="time [s]", ylabel="speed downwards [m/s]")
     ax.set_title("Speed of the box", loc="left")
-    ax.legend(fontsize="small", loc="upper left")
+    ax.legend(loc="upper left")
 
 
 def three_drops(run: Experiment) -> Figure:
@@ -72,7 +69,7 @@ def three_drops(run: Experiment) -> Figure:
     trace, case = run.traces["baseline"], run.cases["baseline"]
     continuous = continuous_drop(trace.t, case.gravity)
     stepped = predicted(trace, case)
-    figure = Figure(figsize=(WIDTH, 3.2))
+    figure = plotting.figure(3.2)
     ax = figure.subplots()
     ax.axhline(0, label="continuous: g t² / 2", **look("target"))
     ax.plot(trace.t, 1000 * (stepped - continuous), label="stepped: g h² n (n + 1) / 2",
@@ -81,14 +78,14 @@ def three_drops(run: Experiment) -> Figure:
             color=look("baseline")["color"])  # fmt: skip
     ax.set(xlabel="time [s]", ylabel="farther down [mm]")
     ax.set_title("Against continuous free fall", loc="left")
-    ax.legend(fontsize="small", loc="upper left")
+    ax.legend(loc="upper left")
     return figure
 
 
 def gaps(run: Experiment) -> Figure:
     """Draw the distance ahead of continuous free fall at the end of the run by solver step."""
     study = step_study(run.metrics, run.cases)
-    figure = Figure(figsize=(WIDTH, 3.4))
+    figure = plotting.figure(3.4)
     ax = figure.subplots()
     h = 1000 * study.h
     ax.loglog(h, 1000 * study.expected, label="g h t / 2", **look("other"))
@@ -99,5 +96,5 @@ def gaps(run: Experiment) -> Figure:
     ax.set_xticks(h, [f"{step:g}" for step in h])
     ax.set_yticks([0.5, 1, 2, 5, 10], ["0.5", "1", "2", "5", "10"])
     ax.minorticks_off()
-    ax.legend(fontsize="small", loc="upper left")
+    ax.legend(loc="upper left")
     return figure

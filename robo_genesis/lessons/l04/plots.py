@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import marks_of
-from robo_genesis.core.plotting import LIMIT, look
+from robo_genesis.core.plotting import BAND, LIMIT, LINE, look
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
@@ -23,18 +23,13 @@ from robo_genesis.sim.joints import JointMap
 START = 0.4
 """End of the time axis where the compared cases differ [s]."""
 
-LINE: dict[str, Any] = {"color": "#7a7a7a", "linewidth": 0.9, "zorder": 1}
-"""A thin solid line for a target or for zero."""
-
-BAND = "#e9e4d4"
-
 Label = tuple[float, tuple[float, float]]
 """Time of the labelled sample [s], and where its text is relative to it [pt]."""
 
 GAINS_LABELS: Mapping[str, Mapping[str, Label]] = {
-    "position": {"G1": (0.15, (-6, 7)), "G2": (0.15, (8, 4)), "G3": (0.11, (12, -12))},
-    "velocity": {"G1": (0.06, (-30, 8)), "G2": (0.1, (10, -2)), "G3": (0.11, (12, 2))},
-    "control force": {"G1": (0.09, (-26, -4)), "G2": (0.21, (10, 4)), "G3": (0.14, (12, -10))},
+    "position": {"G1": (0.11, (10, -18)), "G2": (0.15, (8, 3)), "G3": (0.1, (12, -12))},
+    "velocity": {"G1": (0.06, (-26, 6)), "G2": (0.1, (8, 0)), "G3": (0.11, (10, 2))},
+    "control force": {"G1": (0.09, (-24, -4)), "G2": (0.2, (-10, -16)), "G3": (0.1, (8, -24))},
 }
 
 
@@ -45,14 +40,14 @@ def posture(run: Experiment) -> Figure:
 
 def links(run: Experiment, name: str) -> Figure:
     """Draw the measured link origins at both ends of a run."""
-    figure = Figure(figsize=(6, 5))
+    figure = plotting.figure(5)
     plotting.schematic(figure.subplots(), run.traces[name], LINK_PARENTS)
     return figure
 
 
 def assigned(run: Experiment) -> Figure:
     """Draw the stepped joint with assigned states and with a commanded target."""
-    figure = Figure(figsize=(7, 3.4))
+    figure = plotting.figure(3.4)
     both = run.traces[ASSIGNED], run.traces["baseline"]
     assigned_and_commanded(figure.subplots(), *both, run.joints, STEPPED_JOINT)
     return figure
@@ -60,7 +55,7 @@ def assigned(run: Experiment) -> Figure:
 
 def baseline(run: Experiment) -> Figure:
     """Draw position, velocity and control force of the stepped joint in the baseline."""
-    figure = Figure(figsize=(7, 7))
+    figure = plotting.figure(7)
     response(
         figure.subplots(3, 1, sharex=True), {"baseline": run.traces["baseline"]}, run.joints,
         STEPPED_JOINT, 0.6,
@@ -70,7 +65,7 @@ def baseline(run: Experiment) -> Figure:
 
 def compared(run: Experiment) -> Figure:
     """Draw the beginning of the compared cases: position, velocity, control force of the joint."""
-    figure = Figure(figsize=(7, 8))
+    figure = plotting.figure(8)
     traces = {name: run.traces[name] for name in COMPARED}
     axes = figure.subplots(3, 1, sharex=True)
     response(axes, traces, run.joints, STEPPED_JOINT, START, GAINS_LABELS)
@@ -79,27 +74,27 @@ def compared(run: Experiment) -> Figure:
 
 def baseline_forces(run: Experiment) -> Figure:
     """Draw both force getters of the baseline."""
-    figure = Figure(figsize=(7, 3.4))
+    figure = plotting.figure(3.4)
     two_forces(figure.subplots(), run.traces["baseline"], run.joints, STEPPED_JOINT)
     return figure
 
 
 def defined(run: Experiment) -> Figure:
     """Draw the position of G2 with its rise time, overshoot, settling time and final error."""
-    figure, trace, m = Figure(figsize=(7, 4)), run.traces["G2"], run.metrics["G2"]
+    figure, trace, m = plotting.figure(4), run.traces["G2"], run.metrics["G2"]
     ax, q, target = figure.subplots(), trace.q[:, ENTRY], float(trace.target[0, ENTRY])
     _target(ax, target, SETTLING_BAND)
     ax.plot(trace.t, q, marker=".", markersize=6, **solid(CASE_MARKS["G2"]))
-    times = [(m.rise_time, "rise time, 90 % of the step", (22, -75)),
-             (m.settling_time, "settling time, in the band from here on", (16, -36))]  # fmt: skip
-    for time, name, offset in times:
+    times = [(m.rise_time, "rise time, 90 % of the step:", 0.2),
+             (m.settling_time, "settling time, in the band\nfrom here on:", 0.42)]  # fmt: skip
+    for time, name, height in times:
         if time is not None:
             at = time, float(q[round(time / trace.dt)])
-            _note(ax, at, f"{name}: {format_value(time, 's')}", offset)
+            _note(ax, at, f"{name} {format_value(time, 's')}", height)
     peak, last = int(q.argmax()), int(np.abs(trace.t - START).argmin())
     overshoot, error = (format_value(value, "rad") for value in (m.overshoot, m.final_error))
-    _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", (30, -4))
-    _note(ax, (START, float(q[last])), f"final error: {error}, at the end", (-130, 22))
+    _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", 0.94)
+    _note(ax, (START, float(q[last])), f"final error: {error}", 0.62)
     unit = run.joints.position_units[ENTRY]
     _finish(ax, f"Position of {STEPPED_JOINT} in G2", f"q [{unit}]", START)
     return figure
@@ -117,7 +112,7 @@ def position(
     """Draw q of one joint for each trace, the common target and its settling band."""
     k, first = joints.entry(joint), next(iter(traces.values()))
     _target(ax, float(first.target[0, k]), SETTLING_BAND)
-    _curves(ax, {name: (trace.t, trace.q[:, k]) for name, trace in traces.items()}, labels)
+    _curves(ax, {name: (trace.t, trace.q[:, k]) for name, trace in traces.items()}, labels, until)
     return _finish(ax, f"Position of {joint}", f"q [{joints.position_units[k]}]", until)
 
 
@@ -128,7 +123,9 @@ def velocity(
     """Draw q̇ of one joint for each trace."""
     k = joints.entry(joint)
     ax.axhline(0, **LINE)
-    _curves(ax, {name: (trace.t_step, trace.qd[:, k]) for name, trace in traces.items()}, labels)
+    _curves(
+        ax, {name: (trace.t_step, trace.qd[:, k]) for name, trace in traces.items()}, labels, until
+    )
     return _finish(ax, f"Velocity of {joint}", f"q̇ [{joints.position_units[k]}/s]", until)
 
 
@@ -140,7 +137,7 @@ def control_force(
     k = joints.entry(joint)
     _limits(ax, next(iter(traces.values())), k, until)
     curves = {name: (trace.t_step, trace.control_force[:, k]) for name, trace in traces.items()}
-    _curves(ax, curves, labels)
+    _curves(ax, curves, labels, until)
     ylabel = f"control force [{joints.effort_units[k]}]"
     return _finish(ax, f"Control force of {joint}", ylabel, until)
 
@@ -166,8 +163,8 @@ def two_forces(ax: Axes, trace: Trace, joints: JointMap, joint: str) -> Axes:
     k, until = joints.entry(joint), 0.6
     _limits(ax, trace, k, until)
     for name, array, mark, label in (
-        ("get_dofs_control_force", trace.control_force, "baseline", (0.35, (4, 10))),
-        ("get_dofs_force", trace.internal_force, "other", (0.3, (10, -22))),
+        ("get_dofs_control_force", trace.control_force, "baseline", (0.14, (0, 32))),
+        ("get_dofs_force", trace.internal_force, "other", (0.25, (4, -20))),
     ):
         ax.plot(trace.t_step, array[:, k], label=name, marker=".", markersize=5, **solid(mark))
         _direct(ax, trace.t_step, array[:, k], name, solid(mark)["color"], label)
@@ -184,19 +181,22 @@ def assigned_and_commanded(
     ax.plot(assigned.t[::4], assigned.q[::4, k], label="assigned: set_dofs_position", **written)
     name = "commanded: control_dofs_position"
     ax.plot(commanded.t, commanded.q[:, k], label=name, **solid("baseline"))
-    _direct(ax, assigned.t, assigned.q[:, k], "assigned: set_dofs_position", written["color"],
-            (0.64, (10, -12)))  # fmt: skip
-    _direct(ax, commanded.t, commanded.q[:, k], name, solid("baseline")["color"], (0.2, (14, -8)))
+    for run, text, mark, label in (
+        (assigned, "set_dofs_position", "other", (0.6, (10, -20))),
+        (commanded, "control_dofs_position", "baseline", (0.27, (2, -18))),
+    ):
+        _direct(ax, run.t, run.q[:, k], text, look(mark)["color"], label)
     unit = joints.position_units[k]
     return _finish(ax, f"Assigned or commanded, {joint}", f"q [{unit}]", float(commanded.t[-1]))
 
 
 def _curves(
-    ax: Axes, curves: Mapping[str, tuple[Any, Any]], labels: Mapping[str, Label] | None
-) -> None:
+    ax: Axes, curves: Mapping[str, tuple[Any, Any]], labels: Mapping[str, Label] | None,
+    until: float,
+) -> None:  # fmt: skip
     """Draw one solid line with a mark at each sample for each case, labelled directly."""
     for name, mark in marks_of(list(curves), CASE_MARKS).items():
-        t, values = curves[name]
+        t, values = (array[curves[name][0] <= until] for array in curves[name])
         ax.plot(t, values, label=name, marker=".", markersize=5, **solid(mark))
         if labels:
             _direct(ax, t, values, name, look(mark)["color"], labels[name])
@@ -209,23 +209,27 @@ def _direct(
     time, offset = label
     n = int(np.abs(t - time).argmin())
     ax.annotate(text, (float(t[n]), float(values[n])), offset, textcoords="offset points",
-                color=color, fontsize="small", fontweight="bold")  # fmt: skip
+                color=color, fontweight="bold")  # fmt: skip
 
 
-def _note(ax: Axes, at: tuple[float, float], text: str, offset: tuple[float, float]) -> None:
-    """Point to a place and write a note beside it."""
-    arrow = {"arrowstyle": "->", "color": "#4d4d4d", "linewidth": 0.9}
-    ax.annotate(text, at, offset, textcoords="offset points", fontsize="small", arrowprops=arrow)
+def _note(ax: Axes, at: tuple[float, float], text: str, height: float) -> None:
+    """Point to a place from a note at the right; its height is a share of the axes'."""
+    arrow = {"arrowstyle": "->", "color": LINE["color"], "linewidth": 0.9}
+    ax.annotate(text, at, (0.98, height), textcoords="axes fraction", ha="right", va="center",
+                arrowprops=arrow)  # fmt: skip
 
 
 def _target(ax: Axes, value: float, band: float | None = None) -> None:
-    """Draw the target with its settling band, and name both at the left edge."""
+    """Draw the target with its settling band, and name both: at the right edge below the band."""
     if band is not None:
         ax.axhspan(value - band, value + band, color=BAND, zorder=0)
     ax.axhline(value, **LINE)
     name = "target" if band is None else f"target ±{band:g} rad"
-    ax.annotate(name, (0, value), (4, 6 if band else -12), textcoords="offset points",
-                fontsize="small")  # fmt: skip
+    end: dict[str, Any] = {"xycoords": ax.get_yaxis_transform(), "textcoords": "offset points"}
+    if band is None:
+        ax.annotate(name, (0, value), (4, -4), va="top", **end)
+    else:
+        ax.annotate(name, (1, value - band), (-4, -4), ha="right", va="top", **end)
 
 
 def _limits(ax: Axes, trace: Trace, k: int, until: float) -> None:
@@ -235,7 +239,7 @@ def _limits(ax: Axes, trace: Trace, k: int, until: float) -> None:
     ax.axhline(-limit, **LIMIT)
     ax.set_ylim(-1.25 * limit, 1.25 * limit)
     ax.annotate("limit, read back", (until, limit), (-4, 4), textcoords="offset points",
-                fontsize="small", ha="right", color=LIMIT["color"])  # fmt: skip
+                ha="right", color=LIMIT["color"])  # fmt: skip
 
 
 def _finish(ax: Axes, title: str, ylabel: str, until: float) -> Axes:

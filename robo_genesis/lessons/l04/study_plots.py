@@ -4,15 +4,18 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap, to_rgba
 from matplotlib.figure import Figure
 
-from robo_genesis.core.plotting import look
+from robo_genesis.core import plotting
+from robo_genesis.core.palette import MARKS, PARTS
+from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study
 from robo_genesis.lessons.l04.engine_comparison import ENGINE_LABELS
 from robo_genesis.lessons.l04.explorer import cell_labels
-from robo_genesis.lessons.l04.plots import LINE, solid
+from robo_genesis.lessons.l04.plots import solid
 from robo_genesis.lessons.l04.spec import CASE_MARKS
 from robo_genesis.lessons.l04.study_spec import (
     COMPARED,
@@ -27,6 +30,11 @@ from robo_genesis.lessons.l04.study_spec import (
 IDEAL = look("target", linestyle=(0, (4, 2)), linewidth=1.6)
 """The one dashed line of a figure: theory. Measured data have solid lines."""
 
+SHADES = LinearSegmentedColormap.from_list(
+    "shades", [to_rgba(MARKS["first"].light, alpha) for alpha in (0, 0.45)]
+)
+"""From nothing to a colour that covers the ground in part: text is readable on it in any theme."""
+
 ENGINE_STYLES = {
     "Genesis": solid(CASE_MARKS["G2"], marker="o"),
     "MuJoCo implicitfast": solid("other", marker="s"),
@@ -37,10 +45,10 @@ ENGINE_STYLES = {
 
 def theory(run: Experiment) -> Figure:
     """Draw the compared cases over the ideal joint's response."""
-    figure = Figure(figsize=(7, 3.2))
+    figure = plotting.figure(7)
     start, t = float(spec.BASELINE.q_start[spec.ENTRY]), run.traces["G1"].t
     beside_ideal(
-        figure.subplots(1, 3, sharey=True),
+        figure.subplots(3, 1, sharex=True),
         t,
         {name: run.traces[name].q[:, spec.ENTRY] for name in COMPARED},
         {name: start + spec.STEP * study.ideal(run, name).response(t) for name in COMPARED},
@@ -52,7 +60,7 @@ def theory(run: Experiment) -> Figure:
 
 def step_size(run: Experiment) -> Figure:
     """Draw the response to both heights of the step beside the ideal joint's."""
-    figure, t = Figure(figsize=(7, 3.6)), run.traces["G1"].t
+    figure, t = plotting.figure(5.6), run.traces["G1"].t
     shares = {
         name: {
             "ideal joint": study.ideal(run, name).response(t),
@@ -61,13 +69,13 @@ def step_size(run: Experiment) -> Figure:
         }
         for name in SMALL_STEPPED
     }
-    step_sizes(figure.subplots(1, 2, sharey=True), t, shares, until=0.4)
+    step_sizes(figure.subplots(2, 1, sharex=True), t, shares, until=0.4)
     return figure
 
 
 def overshoot_by_step(run: Experiment) -> Figure:
     """Draw the overshoot of G2 over the solver's step for each engine."""
-    figure = Figure(figsize=(7, 3.8))
+    figure = plotting.figure(3.8)
     curves = {
         ENGINE_LABELS[engine]: {
             1000 * spec.G2.dt / n: (value, study.unstable(run, engine, n))
@@ -86,7 +94,7 @@ def grid_saturation(run: Experiment) -> Figure:
 
 
 def _grid(values: FloatArray, numbers: Sequence[str]) -> Figure:
-    figure = Figure(figsize=(7, 6.8))
+    figure = plotting.figure(6.8)
     axes = list(figure.subplots(2, 2).flat)
     grid_maps(axes, values, cell_labels(numbers), STEP_SIZES, KP, KV)
     return figure
@@ -134,7 +142,7 @@ def step_sizes(
 def _finish_case(ax: Axes, title: str, ylabel: str, until: float) -> None:
     ax.set_title(title, loc="left")
     ax.set(xlim=(0, until), xlabel="time [s]", ylabel=ylabel)
-    ax.legend(fontsize="small", loc="lower right")
+    ax.legend(loc="lower right")
     ax.label_outer()
 
 
@@ -152,14 +160,16 @@ def convergence(
         ax.plot(list(stable), list(stable.values()), label=name, **style)
         hollow = {h: v for h, (v, unstable) in values.items() if unstable}
         if hollow:
-            empty = style | {"linestyle": "", "markerfacecolor": "white"}
+            empty = style | {"linestyle": "", "markerfacecolor": PARTS["ground"].light}
             ax.plot(list(hollow), list(hollow.values()), label=f"{name}, unstable", **empty)
     ax.axvline(declared, **LINE)
-    ax.annotate("the lesson's step", (declared, 0), (4, 4), textcoords="offset points",
-                fontsize="small")  # fmt: skip
+    ax.annotate("the lesson's step", (declared, 0), (-4, 4), textcoords="offset points", ha="right")
     ax.set(xscale="log", xlabel="solver step h [ms]", ylabel="overshoot of G2 [rad]")
-    ax.set_ylim(bottom=0)
-    ax.legend(fontsize="small", loc="upper left")
+    steps = sorted({h for values in overshoot.values() for h in values})
+    ax.set_xticks(steps, [f"{h:g}" for h in steps])
+    ax.minorticks_off()
+    ax.set_ylim(0, 1.4 * ax.get_ylim()[1])  # space for the legend
+    ax.legend(loc="upper left")
     return ax
 
 
@@ -185,12 +195,16 @@ def grid_maps(
     maps, texts = np.reshape(values, shape), np.reshape(np.array(labels), shape)
     for number, (ax, step) in enumerate(zip(axes, steps, strict=True)):
         ax.pcolormesh(
-            maps[number], cmap="Blues", vmin=0, vmax=highest, edgecolors="#d9d9d9", linewidth=1
+            maps[number],
+            cmap=SHADES,
+            vmin=0,
+            vmax=highest,
+            edgecolors=PARTS["grid"].light,
+            linewidth=1,
         )
         for (row, column), text in np.ndenumerate(texts[number]):
-            color = "white" if maps[number, row, column] > 0.55 * highest else "black"
             x, y = column + 0.5, row + 0.5
-            ax.text(x, y, text, ha="center", va="center", fontsize="small", color=color)
+            ax.text(x, y, text, ha="center", va="center")
         ax.grid(visible=False)
         ax.set_xticks(np.arange(len(kv)) + 0.5, [f"{value:g}" for value in kv])
         ax.set_yticks(np.arange(len(kp)) + 0.5, [f"{value:g}" for value in kp])

@@ -70,13 +70,13 @@ def response(folder: Path, compared: Compared | Moving) -> Picture:
     from robo_genesis.core import plotting
 
     with plotting.course_style():
-        drawing = Figure(figsize=(4.8, 3.6))
+        drawing = plotting.figure(3.2)
         ax = drawing.subplots()
         plotting.first_channel(ax, runs, COURSE_MARKS)
         ax.set_xlim(0, compared.until)
         ends = [(values[0], values[-1]) for values in runs.channels[0].values.values()]
         fall = sum(last < first for first, last in ends) > len(ends) / 2
-        ax.legend(loc="upper right" if fall else "lower right", fontsize="medium")
+        ax.legend(loc="upper right" if fall else "lower right")
         drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return Picture("response", ".svg", stream.getvalue(), runs.alt, runs.caption)
 

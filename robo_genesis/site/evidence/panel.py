@@ -137,13 +137,13 @@ def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture
     from robo_genesis.core import plotting
 
     with plotting.course_style():
-        figure = Figure(figsize=(7, 1 + 2.5 * count))
-        axes = figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+        drawing = plotting.figure(0.5 + 3 * count)
+        axes = drawing.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
         for ax, drawn in zip(axes, runs.channels, strict=True):
             levels = runs.levels_of(drawn)
             plotting.channel(ax, runs.t, drawn, runs.subject, COURSE_MARKS, levels)
             ax.label_outer()
-        figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+        drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     names = listed([channel.name for channel in runs.channels])
     what = f"{names.capitalize()} of {runs.subject}"
     several = f", with the cases {compared.names} drawn over each other"

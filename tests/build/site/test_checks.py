@@ -101,6 +101,7 @@ MARKUP = (
     [
         *((body, "links", said) for body, said in LINKED),
         *((f'<img src="picture.png" {alt}>', "alt texts", "has the alt text") for alt in ALT_TEXTS),
+        ('<svg class="drawing" aria-label=""></svg>', "alt texts", "has the alt text ''"),
         *((body, "third parties", "") for body in LOADED),
         *((body, "leftovers", "") for body in MARKUP),
     ],

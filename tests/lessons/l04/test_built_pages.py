@@ -74,9 +74,9 @@ def test_a_symptom_is_visible_before_the_fold_that_explains_it(mistakes, anchor,
 
 
 def test_figures_of_mistakes_say_what_they_show(mistakes):
-    images = mistakes.select("figure img")
-    assert len(images) == 6
-    assert sum("joint4" in image["alt"] for image in images) == 5
+    drawings = mistakes.select("figure svg")
+    assert len(drawings) == 6
+    assert sum("joint4" in drawing["aria-label"] for drawing in drawings) == 5
 
 
 def test_fingers_before_and_after_gains_are_on_the_page(mistakes):
@@ -119,7 +119,7 @@ def test_the_missing_reference_run_has_a_panel_with_its_command(lecture):
         f"No run on this backend is recorded for Genesis {project.engine_pin()}" in panel.get_text()
     )
     assert "make evidence LESSON=l04 BACKEND=amdgpu" in panel.get_text()
-    assert not panel.select("img")
+    assert not panel.select("img, svg.drawing")
 
 
 def test_engine_warnings_are_kept_in_a_fold(site):
