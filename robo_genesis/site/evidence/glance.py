@@ -65,7 +65,6 @@ def response(folder: Path, compared: Compared | Moving) -> Picture:
     """Return the first channel of the compared cases, drawn from a bundle's arrays."""
     runs = read_runs(folder, compared)
     stream = io.BytesIO()
-    from matplotlib.figure import Figure  # most builds draw nothing anew
 
     from robo_genesis.core import plotting
 

@@ -132,7 +132,6 @@ def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture
     """Return every channel of the compared cases, drawn from the bundle's arrays."""
     runs = read_runs(folder, compared)
     stream, count = io.BytesIO(), len(runs.channels)
-    from matplotlib.figure import Figure  # most builds draw nothing anew
 
     from robo_genesis.core import plotting
 
