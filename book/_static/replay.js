@@ -118,7 +118,7 @@ document.addEventListener("DOMContentLoaded", () => {
         "disable-pan": "", "interaction-prompt": "none", "touch-action": "pan-y",
         "camera-orbit": orbit, "camera-target": target,
         "min-camera-orbit": distance, "max-camera-orbit": distance,
-        "environment-image": light(), exposure: "0.9", "animation-crossfade-duration": "0",
+        "environment-image": light(), exposure: "1.25", "animation-crossfade-duration": "0",
         src: `data:model/gltf-binary;base64,${globalThis.replayModels[name]}`,
       };
       for (const [key, value] of Object.entries(settings)) element.setAttribute(key, value);

@@ -271,7 +271,7 @@ def test_the_picture_is_that_of_the_model(shown):
     model = lightness(shown, stage, "model-viewer")
     picture = lightness(shown, stage, ".still")
     above = np.s_[: int(0.7 * len(model))]  # the floor is below; its light differs
-    robot, drawn = (np.abs(image - image[20, -20])[above] > 30 for image in (model, picture))
+    robot, drawn = (np.abs(image - image[20, -20])[above] > 15 for image in (model, picture))
     assert 0.15 < robot.mean() < 0.5
     assert (robot & drawn).sum() / (robot | drawn).sum() > 0.8
 
