@@ -29,6 +29,8 @@ COLOUR = re.compile(r'(?<=[:"])( ?)(#[0-9a-fA-F]{3,8})(?=[;"])')
 DROPPED = re.compile(r"<!--.*?-->|<(metadata|style|title)\b.*?</\1>|\s+xmlns:\w+=\"[^\"]*\"", re.S)
 REFERENCE = re.compile(r'(?<=url\(#)[^)]+|(?<=href="#)[^"]+')
 IDENTIFIER = re.compile(r'\s+id="([^"]*)"')
+FRACTION = re.compile(r"\b([1-9]\d*\.\d\d)\d+")
+"""Digits beyond a hundredth of a coordinate; a scale is smaller than one and keeps all."""
 SIZE = re.compile(r'\s(?:width|height|version|role)="[^"]*"')
 LINES = "stroke-linejoin: round; stroke-linecap: butt"
 """Matplotlib's own style sheet, which would apply to the whole page."""
@@ -84,6 +86,7 @@ def element(drawing: str, prefix: str, attributes: dict[str, str]) -> str:
         lambda found: f' id="{prefix}{found[1]}"' if found[1] in used else "", drawing
     )
     drawing = REFERENCE.sub(lambda found: prefix + found[0], drawing)
+    drawing = FRACTION.sub(r"\1", drawing)
     drawing = COLOUR.sub(lambda found: found[1] + variable(found[2]), drawing)
     start, rest = drawing.split(">", 1)
     given = "".join(f' {name}="{escape(value)}"' for name, value in attributes.items())

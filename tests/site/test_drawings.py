@@ -41,6 +41,11 @@ def test_a_drawing_is_an_element_with_variables_and_names_of_its_own(tmp_path):
     assert "note" not in str(first)
 
 
+def test_digits_that_nobody_sees_are_left_out():
+    drawing = '<svg><g transform="translate(12.345678 0.5) scale(0.015625)"/></svg>'
+    assert "translate(12.34 0.5) scale(0.015625)" in element(drawing, "a-", {})
+
+
 def test_a_drawing_is_not_a_link_to_its_file(tmp_path):
     (tmp_path / "a.svg").write_text(SVG)
     link = '<a class="reference image-reference" href="a.svg"><img src="a.svg" alt="A"/></a>'

@@ -75,6 +75,7 @@ def response(folder: Path, compared: Compared | Moving) -> Picture:
         ax.set_xlim(0, compared.until)
         ends = [(values[0], values[-1]) for values in runs.channels[0].values.values()]
         fall = sum(last < first for first, last in ends) > len(ends) / 2
+        ax.set_title(ax.get_title(loc="left"), loc="left", pad=6)
         ax.legend(loc="upper right" if fall else "lower right")
         drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return Picture("response", ".svg", stream.getvalue(), runs.alt, runs.caption)
