@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
-from robo_genesis.core.plotting import look
+from robo_genesis.core.plotting import LINE, legend_above, look
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import checks, friction, spec
@@ -35,9 +35,6 @@ BOUNCES_SHOWN = ("bounce_sub1", "bounce_sub2", "bounce_sub100")
 WINDOW = (0.18, 0.44)
 """Around the landing of the lab [s]."""
 
-WIDTH = 7.0
-"""Of a figure [inch]."""
-
 Cases = Mapping[str, ContactCase]
 Traces = Mapping[str, ContactTrace]
 
@@ -46,28 +43,28 @@ def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured positions."""
     if run.rendered:
         return plotting.both_ends(run.frames)
-    figure = Figure(figsize=(4, 5))
+    figure = plotting.figure(5)
     plotting.body_schematic(figure.subplots(), run.traces["baseline"], spec.BASELINE.size, TOP)
     return figure
 
 
 def landings(run: Experiment) -> Figure:
     """Draw the clearance below the cubes of the lab around their landing."""
-    figure = Figure(figsize=(WIDTH, 3.6))
+    figure = plotting.figure(3.6)
     heights(figure.subplots(), run.traces, spec.LANDINGS, WINDOW)
     return figure
 
 
 def contact_counts(run: Experiment) -> Figure:
     """Draw the number of contact points of the lab's cubes around their landing."""
-    figure = Figure(figsize=(WIDTH, 4))
+    figure = plotting.figure(4)
     counted(figure.subplots(4, 1, sharex=True, sharey=True), run.traces, WINDOW)
     return figure
 
 
 def pushed(run: Experiment) -> Figure:
     """Draw speed, clearance and angular speed of the lab's pushed cubes."""
-    figure = Figure(figsize=(WIDTH, 6.4))
+    figure = plotting.figure(6.4)
     slides(figure.subplots(3, 1, sharex=True), run.traces, spec.SLIDES, SLIDE_MARKS)
     return figure
 
@@ -78,7 +75,7 @@ def stopping_distances(run: Experiment) -> Figure:
         name: friction.coulomb_distance(case.speed, friction.pair_friction(case))
         for name, case in spec.SLIDES.items()
     }
-    figure = Figure(figsize=(WIDTH, 2.6))
+    figure = plotting.figure(2.6)
     found = {name: of.stop_distance for name, of in checks.slides(run).items()}
     stopping(figure.subplots(), found, coulomb)
     return figure
@@ -86,7 +83,7 @@ def stopping_distances(run: Experiment) -> Figure:
 
 def ball_energies(run: Experiment) -> Figure:
     """Draw both energies of the ball for three of the solver steps."""
-    figure = Figure(figsize=(WIDTH, 6))
+    figure = plotting.figure(6)
     shown = {name: spec.BOUNCES[name] for name in BOUNCES_SHOWN}
     energies(figure.subplots(2, 1, sharex=True), run.traces, shown)
     return figure
@@ -94,7 +91,7 @@ def ball_energies(run: Experiment) -> Figure:
 
 def kept_by_step(run: Experiment) -> Figure:
     """Draw the energy that the ball keeps at its first bounce by solver step."""
-    figure = Figure(figsize=(WIDTH, 3.2))
+    figure = plotting.figure(3.2)
     shares = {spec.BOUNCES[name].h: of.first_kept for name, of in checks.bounces(run).items()}
     assert spec.DROPPED_BALL.spring is not None
     kept(figure.subplots(), shares, 100 * kept_at_bounces(spec.DROPPED_BALL.spring[1]))
@@ -128,8 +125,7 @@ def heights(
         )
     ax.axhline(0, **look("limit"))
     ax.set(xlim=window, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]")
-    ax.set_title("Below zero, the cube is in the surface", loc="left")
-    ax.legend(fontsize="small", loc="upper right")
+    legend_above(ax, "Below zero, the cube is in the surface")
     return ax
 
 
@@ -138,7 +134,7 @@ def counted(axes: Sequence[Axes], traces: Traces, window: tuple[float, float]) -
     for ax, (name, mark) in zip(axes, LANDING_MARKS.items(), strict=True):
         ax.step(traces[name].t, traces[name].contacts[:, 0], where="post", **look(mark))
         ax.set(xlim=window, yticks=[0, 4], ylim=(-0.5, 4.8))
-        ax.set_title(name, loc="left", fontsize="small")
+        ax.set_title(name, loc="left")
     axes[-1].set_xlabel("time [s]")
 
 
@@ -167,9 +163,9 @@ def slides(
     heads = ("speed along x [m/s]", "clearance [mm]", "turning about y [rad/s]")
     for ax, head in zip(axes, heads, strict=True):
         ax.set_ylabel(head)
-        ax.axhline(0, color="#7a7a7a", linewidth=0.8)
+        ax.axhline(0, **LINE)
         ax.set_xlim(0, 0.9)
-    axes[0].legend(fontsize="small", loc="upper right")
+    legend_above(axes[0], "")
     axes[2].set_xlabel("time after the push [s]")
 
 
@@ -202,11 +198,11 @@ def energies(axes: Sequence[Axes], traces: Traces, cases: Cases) -> None:
             label = f"h = {1000 * case.h:g} ms"
             ax.plot(trace.t, share, label=label, **look(mark, linewidth=1.5))
     axes[0].set_title("Total energy", loc="left")
-    axes[1].set_title("Less m g h v / 2, which semi-implicit Euler keeps in the air", loc="left")
+    axes[1].set_title("Less m g h v / 2", loc="left")
     for ax in axes:
         ax.set(ylabel="share of the start [%]", ylim=(50, 108))
     axes[1].set_xlabel("time [s]")
-    axes[1].legend(fontsize="small", loc="lower left")
+    axes[1].legend(loc="lower left")
 
 
 def kept(ax: Axes, shares: Mapping[float, float | None], expected: float) -> Axes:
@@ -224,5 +220,5 @@ def kept(ax: Axes, shares: Mapping[float, float | None], expected: float) -> Axe
     ax.set_xticks(h, [f"{step:g}" for step in h])
     ax.minorticks_off()
     ax.set(xlabel="solver step h [ms]", ylabel="kept at the first bounce [%]")
-    ax.legend(fontsize="small", loc="lower left")
+    legend_above(ax, "")
     return ax

@@ -4,12 +4,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from robo_genesis.core import plotting
 from robo_genesis.core.plotting import legend_above, look
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, plots, study, study_contact, study_spec, theory
 from robo_genesis.lessons.l03.energy import clearance
 from robo_genesis.lessons.l03.metrics import CLEAR
-from robo_genesis.lessons.l03.plots import WIDTH
 from robo_genesis.lessons.l03.study import slide
 
 STEP_MARKS = {
@@ -37,7 +37,7 @@ LABELS = {"low": "μ = 0.5", "high": "μ = 0.8"}
 
 def landings_by_step(run: Experiment) -> Figure:
     """Draw the landing from the baseline's height at four solver steps."""
-    figure = Figure(figsize=(WIDTH, 3.6))
+    figure = plotting.figure(3.6)
     ax = figure.subplots()
     for name, mark in STEP_MARKS.items():
         case, trace = run.cases[name], run.traces[name]
@@ -49,13 +49,13 @@ def landings_by_step(run: Experiment) -> Figure:
     ax.axhline(0, **look("limit"))
     ax.set(xlim=(0.2, 0.34), ylim=(-26, 14), xlabel="time [s]", ylabel="clearance [mm]")
     ax.set_title("Below zero: overlap", loc="left")
-    ax.legend(fontsize="small", loc="lower right")
+    ax.legend(loc="lower right")
     return figure
 
 
 def depths_by_step(run: Experiment) -> Figure:
     """Draw each depth as a share of v T / e by the solver step."""
-    figure = Figure(figsize=(WIDTH, 3.8))
+    figure = plotting.figure(3.8)
     depths(figure.subplots(), run)
     return figure
 
@@ -84,15 +84,15 @@ def depths(ax: Axes, run: Experiment) -> Axes:
     ax.minorticks_off()
     ax.set_ylim(bottom=0)
     ax.set(xlabel="solver step h [ms]", ylabel="depth / (v T / e)")
-    ax.set_title("Nine heights", loc="left")
-    legend_above(ax)
+    legend_above(ax, "Nine heights")
     return ax
 
 
 def hops(run: Experiment) -> Figure:
     """Draw the hops by solver step and by speed, with the formula of one step."""
-    figure = Figure(figsize=(WIDTH, 3.8))
-    by_step, by_speed = figure.subplots(1, 2)
+    figure = plotting.figure(7)
+    by_step, by_speed = figure.subplots(2, 1)
+    figure.subplots_adjust(hspace=0.35)
     for lane, mark in LANE_MARKS.items():
         cases = {f"{s}_{lane}": of[f"{s}_{lane}"] for s, of in study_spec.HOP_STEP_CASES.items()}
         h = [1000 * case.h for case in cases.values()]
@@ -105,7 +105,7 @@ def hops(run: Experiment) -> Figure:
     ticks = sorted({1000 * of[f"{s}_low"].h for s, of in study_spec.HOP_STEP_CASES.items()} - {2})
     by_step.set_xticks(ticks, [f"{step:g}" for step in ticks])
     by_step.set_title("Push at 2 m/s", loc="left")
-    by_step.legend(fontsize="small", loc="lower right")
+    by_step.legend(loc="lower right")
     slow = study_spec.HOP_SPEED_CASES
     speeds = [case.speed for case in slow.values()]
     colour = look("first")["color"]
@@ -113,7 +113,7 @@ def hops(run: Experiment) -> Figure:
     by_speed.loglog(speeds, heights, "o", color=colour)
     formula = [1000 * theory.hop(case) for case in slow.values()]
     by_speed.loglog(speeds, formula, color=colour, linestyle=":", linewidth=1.4)
-    by_speed.set(xlabel="speed of the push [m/s]", ylim=(0.01, 100))
+    by_speed.set(xlabel="speed of the push [m/s]", ylabel="hop [mm]", ylim=(0.01, 100))
     by_speed.set_title("h = 5 ms, μ = 0.5", loc="left")
     by_speed.set_xticks(speeds, [f"{speed:g}" for speed in speeds])
     for ax in (by_step, by_speed):
@@ -124,7 +124,7 @@ def hops(run: Experiment) -> Figure:
 
 def cones(run: Experiment) -> Figure:
     """Draw speed, clearance and angular speed with both friction models."""
-    figure = Figure(figsize=(WIDTH, 6.4))
+    figure = plotting.figure(6.4)
     cases = {name: run.cases[name] for name in CONE_MARKS}
     axes = figure.subplots(3, 1, sharex=True)
     plots.slides(axes, run.traces, cases, CONE_MARKS, CONE_LABELS)
@@ -133,7 +133,7 @@ def cones(run: Experiment) -> Figure:
 
 def stops(run: Experiment) -> Figure:
     """Draw the stopping distances of both pushed cubes by solver step, beside Coulomb's."""
-    figure = Figure(figsize=(WIDTH, 3.4))
+    figure = plotting.figure(3.4)
     ax = figure.subplots()
     for lane, mark in LANE_MARKS.items():
         cases = study_contact.runs_of_lane(lane)
@@ -150,14 +150,13 @@ def stops(run: Experiment) -> Figure:
     ax.set_xticks(ticks, [f"{step:g}" for step in ticks])
     ax.minorticks_off()
     ax.set(xlabel="solver step h [ms]", ylabel="stopping distance [m]", ylim=(0.15, 0.5))
-    ax.set_title("Dotted: v² / (2 μ g)", loc="left")
-    legend_above(ax)
+    legend_above(ax, "Dotted: v² / (2 μ g)")
     return figure
 
 
 def releases(run: Experiment) -> Figure:
     """Draw the landing from the baseline's height for three time constants, beside the theory."""
-    figure = Figure(figsize=(WIDTH, 3.8))
+    figure = plotting.figure(3.8)
     ax = figure.subplots()
     for scene, mark in RELEASE_MARKS.items():
         name = f"{scene}_10000"
@@ -173,6 +172,5 @@ def releases(run: Experiment) -> Figure:
     ax.axhline(0, **look("limit"))
     ax.set(xlim=(-5, 55), ylim=(-9, 4), xlabel="time after touchdown [ms]")
     ax.set_ylabel("clearance [mm]")
-    ax.set_title("Dotted: linear contact", loc="left")
-    legend_above(ax)
+    legend_above(ax, "Dotted: linear contact")
     return figure
