@@ -138,6 +138,7 @@ UNDER = IdealJoint(1.077, 101.0, 3500.0)
     [
         (PARTED, "0.01 rad at 0.03 s. The largest distance in this window is 0.1200 rad", "reason"),
         (PARTED, "2 of 3 efforts were clipped.", "stays within"),
+        (replace(PARTED, clipped=1, efforts=1), "The only effort before that was clipped.", "of 1"),
         (replace(PARTED, clipped=0), "saturation is not the reason. Look", "higher gain could"),
         (replace(PARTED, time=None, distance=0.004), "stays within 0.01 rad", "clipped"),
     ],
@@ -170,8 +171,8 @@ def test_step_sizes_are_compared_with_theory(small, large, says):
 @pytest.mark.parametrize(
     ("effort", "velocity", "says", "not_said"),
     [
-        (21.5, 0.0, "A balance of the two would look like this", "does not explain"),
-        (30.0, 0.0, "Gravity alone does not explain the error", "would look like"),
+        (21.5, 0.0, "A balance between the motor and gravity", "does not explain"),
+        (30.0, 0.0, "Gravity alone does not explain the error", "balance"),
         (21.5, 0.5, "G1 still moved at the last sample.", "does not prove"),
     ],
 )
