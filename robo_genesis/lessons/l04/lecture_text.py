@@ -73,7 +73,30 @@ def shared_starts(run: Experiment) -> str:
     return bullets(
         f"{one} and {other}: "
         + text.start_sentence((one, other), traces, entries, spec.ENTRY, spec.RESOLUTION)
+        + leaving_sentence(
+            (one, other), [clipped_until(traces[c], spec.ENTRY) for c in (one, other)]
+        )
         for (one, other), entries in changed.items()
+    )
+
+
+def leaving_sentence(names: tuple[str, str], until: list[float | None]) -> str:
+    """Say which effort leaves its first limit earlier, with a space in front.
+
+    Args:
+        names: the two cases, in order.
+        until: by case, from `clipped_until` [s].
+    """
+    a, b = until
+    if a is None or b is None:
+        return " At t = 0 at least one of the two efforts is below the limit."
+    times = [format_value(time, "s") for time in (a, b)]
+    if times[0] == times[1]:
+        return f" Both efforts stay at the limit until {times[0]}."
+    first, second = names if a < b else names[::-1]
+    return (
+        f" {first} leaves the limit before {second}: {names[0]} stays there until {times[0]}, "
+        f"{names[1]} until {times[1]}."
     )
 
 
@@ -171,13 +194,14 @@ def gravity_sentences(
     limit = share_text(study_spec.GRAVITY_AGREEMENT)
     if agree:
         yield (
-            f"{listed(agree)} ended nearly at rest, and KP × error is within {limit} of the gravity "
-            "effort. A balance between the motor and gravity gives this result."
+            f"{listed(agree)} ended nearly at rest, and KP × error is within {limit} of the "
+            "gravity effort. A balance between the motor and gravity gives this result."
         )
     if differ:
         yield (
-            f"{listed(differ)} ended nearly at rest, but KP × error differs from the gravity effort by "
-            f"more than {limit}. Gravity alone does not explain the error. Look at tail, saturation, contacts."
+            f"{listed(differ)} ended nearly at rest, but KP × error differs from the gravity "
+            f"effort by more than {limit}. Gravity alone does not explain the error. Look at tail, "
+            "saturation, contacts."
         )
     if moving:
         yield (
