@@ -280,7 +280,12 @@ def test_the_stepped_model_is_compared_run_by_run(study_runs):
     assert [row.split("|")[1].strip() for row in rows] == [
         "G1, +0.005 rad", "G2, +0.005 rad", "G1, +0.25 rad", "G2, +0.25 rad", "G3, +0.25 rad",
     ]  # fmt: skip
-    assert "percentage points from the engine" in theory_text.stepped_sentences(study_runs)
+    text = theory_text.stepped_sentences(study_runs)
+    assert "percentage points from the engine" in text
+    assert text.count("The model predicts correctly whether this case overshoots.") == 3
+    none = {name: replace(m, overshoot=0.0) for name, m in study_runs.metrics.items()}
+    text = theory_text.stepped_sentences(replace(study_runs, accepted=none))
+    assert text.count("The model does not predict correctly") == 1
 
 
 def test_rows_of_the_tables_are_the_study_runs_values(study_runs):
