@@ -35,10 +35,12 @@ CLAIMS: dict[str, str] = {
         "No effort of the small steps and of the hold runs reaches the saturation threshold."
     ),
     "theory_small_step": (
-        "Theory predicts a small step's overshoot, and its curve better than a large step's."
+        "The overshoot of each small step agrees with the formula within the declared margin, and "
+        "its curve is closer to the formula than that of the large step."
     ),
     "stepped_model": (
-        "A model of one joint with the solver's step predicts overshoot of small and large steps."
+        "The overshoots of a one-joint model with the solver step agree with Genesis within the "
+        "declared margins."
     ),
     "gravity_support": (
         "Where a case ends nearly at rest, KP × final error agrees with the gravity effort."

@@ -236,7 +236,7 @@ def survival_sentence(run: Experiment) -> str:
         )
     return (
         f"Of the {count} orderings that this lesson claims, {count - len(failed)} hold in "
-        f"{listed(_labels(stable))}. These do not survive the change of engine or integrator: "
+        f"{listed(_labels(stable))}. These do not hold in each of them: "
         f"{', '.join(failed)}.{out}"
     )
 

@@ -36,7 +36,7 @@ def force_ranges(run: Experiment) -> str:
 
 
 def first_demand(run: Experiment) -> str:
-    """Compare for each case the effort that the PD law asks for at t = 0 with what it gets."""
+    """Compare for each case the demand of the PD law at t = 0 with the clipped effort."""
     k, rows = spec.ENTRY, []
     for name, case in study_spec.COMPARED.items():
         trace = run.traces[name]
@@ -44,8 +44,10 @@ def first_demand(run: Experiment) -> str:
         rows.append(
             {
                 "case": name,
-                "asks for, t = 0": f"{demand:.0f} {run.joints.effort_units[k]}",
-                "gets": f"{float(trace.start_control_force[k]):.0f} {run.joints.effort_units[k]}",
+                "demand at t = 0": f"{demand:.0f} {run.joints.effort_units[k]}",
+                "clipped effort": (
+                    f"{float(trace.start_control_force[k]):.0f} {run.joints.effort_units[k]}"
+                ),
                 "at the same limit until": format_value(clipped_until(trace, k), "s"),
             }
         )
@@ -71,7 +73,30 @@ def shared_starts(run: Experiment) -> str:
     return bullets(
         f"{one} and {other}: "
         + text.start_sentence((one, other), traces, entries, spec.ENTRY, spec.RESOLUTION)
+        + leaving_sentence(
+            (one, other), [clipped_until(traces[c], spec.ENTRY) for c in (one, other)]
+        )
         for (one, other), entries in changed.items()
+    )
+
+
+def leaving_sentence(names: tuple[str, str], until: list[float | None]) -> str:
+    """Say which effort leaves its first limit earlier, with a space in front.
+
+    Args:
+        names: the two cases, in order.
+        until: by case, from `clipped_until` [s].
+    """
+    a, b = until
+    if a is None or b is None:
+        return " At t = 0 at least one of the two efforts is below the limit."
+    times = [format_value(time, "s") for time in (a, b)]
+    if times[0] == times[1]:
+        return f" Both efforts stay at the limit until {times[0]}."
+    first, second = names if a < b else names[::-1]
+    return (
+        f" {first} leaves the limit before {second}: {names[0]} stays there until {times[0]}, "
+        f"{names[1]} until {times[1]}."
     )
 
 
@@ -144,7 +169,7 @@ def gravity_rows(
             "case": name,
             "KP × final error": format_value(support, "N·m"),
             "gravity, engine": format_value(effort, "N·m"),
-            "apart": share_text(disagreement(support, effort)),
+            "difference": share_text(disagreement(support, effort)),
             "final velocity": format_value(metrics[name].final_velocity, "rad/s"),
             "settled from": format_value(metrics[name].settling_time, "s"),
         }
@@ -169,13 +194,14 @@ def gravity_sentences(
     limit = share_text(study_spec.GRAVITY_AGREEMENT)
     if agree:
         yield (
-            f"{listed(agree)} ended nearly at rest, with a support within {limit} of gravity. A "
-            "balance of the two would look like this, without an integral term in the controller."
+            f"{listed(agree)} ended nearly at rest, and KP × error is within {limit} of the "
+            "gravity effort. A balance between the motor and gravity gives this result."
         )
     if differ:
         yield (
-            f"{listed(differ)} ended nearly at rest, with a support more than {limit} off gravity. "
-            "Gravity alone does not explain the error. Look at tail, saturation, contacts."
+            f"{listed(differ)} ended nearly at rest, but KP × error differs from the gravity "
+            f"effort by more than {limit}. Gravity alone does not explain the error. Look at tail, "
+            "saturation, contacts."
         )
     if moving:
         yield (
@@ -185,7 +211,7 @@ def gravity_sentences(
     if agree or differ:
         yield (
             "This does not prove that the error would remain beyond this window, that nothing else "
-            "contributes to it within the tolerance, or that another pose would leave the same one."
+            "contributes to it within this margin, or that the error is the same in another pose."
         )
 
 

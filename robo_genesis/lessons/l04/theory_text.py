@@ -120,8 +120,13 @@ def parting_sentence(case: str, ideal: IdealJoint, found: Parting) -> str:
             f"{lead} None of the {found.efforts} efforts before that was clipped, so saturation is "
             "not the reason. Look at gravity, coupling and the solver's step."
         )
+    clipped = (
+        "The only effort before that was clipped."
+        if found.efforts == 1
+        else f"Before that, {found.clipped} of {found.efforts} efforts were clipped."
+    )
     return (
-        f"{lead} Before that, {found.clipped} of {found.efforts} efforts were clipped. The joint "
+        f"{lead} {clipped} The joint "
         "got less effort than the formula assumes, and a higher gain could not change that."
     )
 
@@ -208,8 +213,18 @@ def stepped_table(run: Experiment) -> str:
 
 
 def stepped_sentences(run: Experiment) -> str:
-    """Say for each run where the solver's step explains the distance from the ideal joint."""
-    return bullets(_stepped_sentence(run, case) for case in study_spec.SMALL_STEPPED)
+    """Say for each small step which model is nearer, and which large steps overshoot."""
+    small = (_stepped_sentence(run, case) for case in study_spec.SMALL_STEPPED)
+    return bullets((*small, *(_large_sentence(run, case) for case in study_spec.COMPARED)))
+
+
+def _large_sentence(run: Experiment, case: str) -> str:
+    model, found = study.stepped_overshoot(run, case, spec.STEP), run.metrics[case].overshoot
+    values = [format_value(value, "rad") for value in (model, found)]
+    words = f"{case}, large step: the model overshoots by {values[0]}, Genesis by {values[1]}."
+    if (model > spec.MARGINS["overshoot"]) == (found > spec.MARGINS["overshoot"]):
+        return f"{words} The model predicts correctly whether this case overshoots."
+    return f"{words} The model does not predict correctly whether this case overshoots."
 
 
 def _stepped_sentence(run: Experiment, case: str) -> str:
@@ -223,5 +238,5 @@ def _stepped_sentence(run: Experiment, case: str) -> str:
         f"points from the engine, the ideal joint {100 * abs(ideal - small):.1f}."
     )
     if abs(model - small) < abs(ideal - small):
-        return f"{words} The solver's step explains most of the difference."
-    return f"{words} The solver's step alone does not explain the difference: neighbours also move."
+        return f"{words} The stepped model is nearer."
+    return f"{words} The stepped model is not nearer. It leaves out the other joints."

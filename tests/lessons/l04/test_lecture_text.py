@@ -110,6 +110,19 @@ def test_shared_starts_are_described_for_each_pair(study_runs):
     assert lines[1].startswith("- G2 and G3: Up to ")
 
 
+@pytest.mark.parametrize(
+    ("until", "says"),
+    [
+        ([0.07, 0.09], "G1 leaves the limit before G2: G1 stays there until 0.07 s, G2 until 0.09"),
+        ([0.09, 0.07], "G2 leaves the limit before G1: G1 stays there until 0.09 s, G2 until 0.07"),
+        ([0.09, 0.09], "Both efforts stay at the limit until 0.09 s."),
+        ([None, 0.09], "at least one of the two efforts is below the limit"),
+    ],
+)
+def test_the_effort_that_leaves_its_limit_first_is_named(until, says):
+    assert says in lecture_text.leaving_sentence(("G1", "G2"), until)
+
+
 def test_the_outcome_of_each_prediction_is_given_with_its_margin(study_runs):
     rows = lecture_text.outcomes_of_predictions(study_runs).splitlines()[2:]
     assert len(rows) == len(spec.RELATIONS)

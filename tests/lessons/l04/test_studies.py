@@ -138,6 +138,7 @@ UNDER = IdealJoint(1.077, 101.0, 3500.0)
     [
         (PARTED, "0.01 rad at 0.03 s. The largest distance in this window is 0.1200 rad", "reason"),
         (PARTED, "2 of 3 efforts were clipped.", "stays within"),
+        (replace(PARTED, clipped=1, efforts=1), "The only effort before that was clipped.", "of 1"),
         (replace(PARTED, clipped=0), "saturation is not the reason. Look", "higher gain could"),
         (replace(PARTED, time=None, distance=0.004), "stays within 0.01 rad", "clipped"),
     ],
@@ -170,8 +171,8 @@ def test_step_sizes_are_compared_with_theory(small, large, says):
 @pytest.mark.parametrize(
     ("effort", "velocity", "says", "not_said"),
     [
-        (21.5, 0.0, "A balance of the two would look like this", "does not explain"),
-        (30.0, 0.0, "Gravity alone does not explain the error", "would look like"),
+        (21.5, 0.0, "A balance between the motor and gravity", "does not explain"),
+        (30.0, 0.0, "Gravity alone does not explain the error", "balance"),
         (21.5, 0.5, "G1 still moved at the last sample.", "does not prove"),
     ],
 )
@@ -279,7 +280,12 @@ def test_the_stepped_model_is_compared_run_by_run(study_runs):
     assert [row.split("|")[1].strip() for row in rows] == [
         "G1, +0.005 rad", "G2, +0.005 rad", "G1, +0.25 rad", "G2, +0.25 rad", "G3, +0.25 rad",
     ]  # fmt: skip
-    assert "percentage points from the engine" in theory_text.stepped_sentences(study_runs)
+    text = theory_text.stepped_sentences(study_runs)
+    assert "percentage points from the engine" in text
+    assert text.count("The model predicts correctly whether this case overshoots.") == 3
+    none = {name: replace(m, overshoot=0.0) for name, m in study_runs.metrics.items()}
+    text = theory_text.stepped_sentences(replace(study_runs, accepted=none))
+    assert text.count("The model does not predict correctly") == 1
 
 
 def test_rows_of_the_tables_are_the_study_runs_values(study_runs):
