@@ -92,7 +92,6 @@ def hops(run: Experiment) -> Figure:
     """Draw the hops by solver step and by speed, with the formula of one step."""
     figure = plotting.figure(7)
     by_step, by_speed = figure.subplots(2, 1)
-    figure.subplots_adjust(hspace=0.35)
     for lane, mark in LANE_MARKS.items():
         cases = {f"{s}_{lane}": of[f"{s}_{lane}"] for s, of in study_spec.HOP_STEP_CASES.items()}
         h = [1000 * case.h for case in cases.values()]
