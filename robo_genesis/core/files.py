@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 
-from robo_genesis.core.project import CACHE, installed, lock_digest
+from robo_genesis.core.project import CACHE, ProjectError, installed, lock_digest
 
 NEXT, OLD = ".next", ".old"
 DIGEST = hashlib.sha256().digest_size
@@ -113,7 +113,11 @@ def derived(
         make: called if the cache has no such file.
         cache: the cache folder.
     """
-    key = hashlib.sha256(json.dumps([lock_digest(), sys.version, _installed()]).encode())
+    try:
+        lock = lock_digest()
+    except ProjectError:  # an installed package has no checkout, and so no cache
+        return make()
+    key = hashlib.sha256(json.dumps([lock, sys.version, _installed()]).encode())
     for part in inputs:
         key.update(hashlib.sha256(part).digest())
     file = cache / "derived" / kind / key.hexdigest()
