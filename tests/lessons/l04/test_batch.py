@@ -59,9 +59,9 @@ def test_packed_data_unpacks_within_half_a_unit(study_runs):
     )
     q = q + data["start"]
     # The arrays are float32: their own last bit adds to the half unit.
-    assert np.abs(q - of_q).max() <= 0.5 * explorer.RESOLUTION["q"] + 1e-6
-    assert np.abs(force - of_force).max() <= 0.5 * explorer.RESOLUTION["force"] + 1e-5
-    assert np.ptp(of_q) > 1000 * explorer.RESOLUTION["q"]
+    assert np.abs(q - of_q).max() <= 0.5 * explorer.PACKED["q"] + 1e-6
+    assert np.abs(force - of_force).max() <= 0.5 * explorer.PACKED["force"] + 1e-5
+    assert np.ptp(of_q) > 1000 * explorer.PACKED["q"]
 
 
 def test_packed_metrics_are_those_of_the_full_arrays(study_runs):
