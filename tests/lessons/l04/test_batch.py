@@ -71,6 +71,15 @@ def test_packed_metrics_are_those_of_the_full_arrays(study_runs):
     assert [len(point["metrics"]) for point in data["points"]] == [len(data["labels"])] * 100
 
 
+def test_each_measure_has_the_lesson_s_margin_and_the_values_of_all_runs(study_runs):
+    measures = explorer.pack(study_runs)["measures"]
+    assert explorer.CELLS.keys() == spec.MARGINS.keys()
+    for name, measure in zip(explorer.CELLS, measures, strict=True):
+        assert measure["margin"] == spec.MARGINS[name]
+        values = [getattr(study_runs.metrics[point.name], name) for point in POINTS]
+        assert measure["values"] == values
+
+
 def test_the_axes_number_the_points(study_runs):
     """As the page's script counts: the last axis fastest."""
     axes = explorer.pack(study_runs)["axes"]
