@@ -7,10 +7,11 @@ document.addEventListener("change", ({ target }) => {
   const texts = [...question.querySelectorAll(".feedback")];
   let shown = target.parentElement.querySelector(".feedback");
   if (target.type === "number") {
-    const { value, tolerance } = question.dataset;
-    const difference = target.valueAsNumber - Number(value);
-    const side = difference < 0 ? "low" : "high";
-    const key = Math.abs(difference) <= Number(tolerance) ? "right" : side;
+    const [value, tolerance] = [question.dataset.value, question.dataset.tolerance].map(Number);
+    const near = (factor) => Math.abs(target.valueAsNumber - factor * value) <= factor * tolerance;
+    const wrong = texts.map((text) => text.dataset.key).find((k) => near(Number(k.slice(1))));
+    const side = target.valueAsNumber < value ? "low" : "high";
+    const key = near(1) ? "right" : wrong ?? side;
     shown = target.value ? texts.find((text) => text.dataset.key === key) : null;
     for (const text of texts) text.classList.toggle("shown", text === shown);
   }

@@ -1,94 +1,243 @@
-/* Shows one run of the lecture's grid at a time; the page contains all runs as JSON. */
+/* Shows runs of the lecture's grid: a map to choose from, a question before each run, and the run
+   itself over the last one. The page contains all runs as JSON. */
 "use strict";
 
 /* plot.js has loaded by then, in whatever order the page lists the scripts. */
 document.addEventListener("DOMContentLoaded", () => {
   const { add, draw, write } = globalThis.timePlot;
   const HEIGHT = 210;
+  const UNKNOWN = "this record cannot tell";
+  const KEYS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
+
+  const make = (parent, name, text = "", attributes = {}) => {
+    const element = document.createElement(name);
+    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+    element.textContent = text;
+    parent.append(element);
+    return element;
+  };
 
   function start(root) {
     const data = JSON.parse(root.dataset.grid);
-    const inputs = data.axes.map((axis) => root.querySelector(`#explorer-${axis.name}`));
-    const plots = root.querySelector(".plots");
+    const [STEPS, KPS, KVS] = data.axes.map((axis) => axis.values);
+    const SIZE = KPS.length * KVS.length;
+    const find = (name) => root.querySelector(name);
+    const [step, measure, predict] = ["step", "measure", "predict"].map((n) => find(`[name=${n}]`));
+    const [map, question, output, plots] = [".map", ".question", "output", ".plots"].map(find);
     const svgs = Object.fromEntries(
       plots.dataset.curves.split(" ").map((curve) => [
         curve, add(plots, "svg", { role: "img", "data-curve": curve }),
       ]),
     );
-    const positions = (point) => point.q.map((q) => data.start + q * data.resolution.q);
+    let shown = data.opens; // the run whose curves are drawn
+    let chosen = shown; // the cell of the map; it differs from `shown` while a question is open
+    let last = null; // the run before, drawn as a ghost
+    let asked = 0; // how many questions were answered or skipped
 
-    /* The run of the chosen inputs; the last axis changes fastest. */
-    function chosen() {
-      const number = inputs.reduce(
-        (sum, input, k) => sum * data.axes[k].values.length + Number(input.value), 0,
+    /* Numbers of runs: the last axis changes fastest. */
+    const stepOf = (n) => STEPS[Math.floor(n / SIZE)];
+    const kpOf = (n) => KPS[Math.floor(n / KVS.length) % KPS.length];
+    const kvOf = (n) => KVS[n % KVS.length];
+    const gains = (n) => `KP ${kpOf(n)}, KV ${kvOf(n)}`;
+    const setting = (n) => `${gains(n)}, step ${stepOf(n)} rad`;
+    const written = ({ label }, n) => data.points[n].metrics[label];
+    const positions = (n) => data.points[n].q.map((q) => data.start + q * data.resolution.q);
+    const forces = (n) => data.points[n].force.map((force) => force * data.resolution.force);
+
+    /* The map: KP upwards, KV to the right; one stop for the Tab key. */
+    const cells = [];
+    for (let row = KPS.length - 1; row >= 0; row -= 1) {
+      const line = make(map, "tr");
+      make(line, "th", KPS[row], { scope: "row" });
+      KVS.forEach((_, column) => {
+        const cell = make(line, "td", "", { role: "gridcell" });
+        const k = row * KVS.length + column;
+        cells[k] = cell;
+        cell.addEventListener("click", () => choose(Number(step.value) * SIZE + k));
+        cell.addEventListener("keydown", (event) => {
+          const [up, right] = KEYS[event.key] ?? [];
+          if (up === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
+          event.preventDefault();
+          const [to, beside] = [row + up, column + right];
+          if (!(to in KPS) || !(beside in KVS)) return;
+          choose(Number(step.value) * SIZE + to * KVS.length + beside);
+        });
+      });
+    }
+    const foot = make(map, "tr");
+    make(foot, "td", "");
+    for (const kv of KVS) make(foot, "th", kv, { scope: "col" });
+
+    function writeMap() {
+      const { label, noun, values, cell: format } = data.measures[measure.value];
+      const seen = values.filter((value) => value !== null);
+      const [low, high] = [Math.min(...seen), Math.max(...seen)];
+      const compared = chosen === shown ? last : shown;
+      step.value = Math.floor(chosen / SIZE);
+      map.caption.textContent =
+        `Map of the runs: ${data.labels[label]} [${format.unit}]. KP upwards, KV to the right.`;
+      cells.forEach((cell, k) => {
+        const n = Number(step.value) * SIZE + k;
+        const [value, name] = [values[n], data.points[n].case];
+        cell.textContent = value === null ? "–" : write(value * format.factor, format.digits);
+        if (name) cell.prepend(make(cell, "b", name));
+        const which = `${gains(n)}${name ? `, the case ${name}` : ""}`;
+        const state = n === compared ? ", the last run" : "";
+        cell.setAttribute(
+          "aria-label", `${which}: ${noun} ${written(data.measures[measure.value], n)}${state}`,
+        );
+        cell.setAttribute("aria-selected", n === chosen);
+        cell.classList.toggle("last", n === compared);
+        cell.tabIndex = n === chosen ? 0 : -1;
+        cell.style.setProperty("--share", value === null ? 0 : (value - low) / (high - low || 1));
+      });
+    }
+
+    function choose(n) {
+      const inside = map.contains(document.activeElement);
+      chosen = n;
+      writeMap();
+      if (inside) cells[n % SIZE].focus();
+      question.hidden = true;
+      if (n === shown) output.textContent = data.points[n].sentence;
+      else if (predict.checked) ask();
+      else show("");
+    }
+
+    /* The order of the run `n` relative to the run `from`, as the lesson judges it. A time that the
+       window did not reach is later than any in it. */
+    function order({ values, margin }, from, n) {
+      const [a, b] = [values[from] ?? Infinity, values[n] ?? Infinity];
+      if (a === b) return a === Infinity ? UNKNOWN : "equal";
+      if (Math.abs(b - a) <= margin) return "equal";
+      return b > a ? "higher" : "lower";
+    }
+
+    /* Questions are about metrics in turn, except the one that the map shows. */
+    function ask() {
+      const others = data.measures.filter((_, k) => k !== Number(measure.value));
+      const about = others[asked % others.length];
+      const words = { lower: about.lower, equal: "too close to call", higher: about.higher };
+      if (about.values.includes(null)) words[UNKNOWN] = UNKNOWN;
+      const text =
+        `From ${setting(shown)} to ${setting(chosen)}: what happens to the ${about.noun}?`;
+      const [legend] = question.children;
+      legend.textContent = text;
+      question.replaceChildren(legend);
+      for (const [key, word] of [...Object.entries(words), ["", "Skip"]]) {
+        make(question, "button", word, { type: "button" }).addEventListener("click", () => {
+          answer(about, key, words);
+        });
+      }
+      question.hidden = false;
+      output.textContent = text;
+    }
+
+    function answer(about, key, words) {
+      const right = order(about, shown, chosen);
+      const margin = right === "equal" ? ` The margin is ${about.within}.` : "";
+      const verdict = key ? (key === right ? "Yes" : "No") : "Skipped";
+      const [before, now] = [shown, chosen].map((n) => written(about, n));
+      asked += 1;
+      show(
+        `${verdict}. The ${about.noun}: ${words[right]}, first ${before}, now ${now}.${margin} `,
       );
-      return data.points[number];
+      cells[chosen % SIZE].focus({ preventScroll: true }); // the button has gone
     }
 
-    /* Position axis: wide enough for every run of this step, so that gains can be compared. */
-    function range(step) {
-      const size = data.points.length / data.axes[0].values.length;
-      const first = data.axes[0].values.indexOf(step) * size;
-      const all = data.points.slice(first, first + size).flatMap(positions);
-      return [data.start - 0.08 * step, Math.max(...all, data.start + step) + 0.08 * step];
+    function show(feedback) {
+      [last, shown] = [shown, chosen];
+      question.hidden = true;
+      writeMap();
+      output.textContent = feedback + data.points[shown].sentence;
+      writeMetrics();
+      drawRuns();
     }
 
-    function drawRun() {
-      const point = chosen();
-      const step = data.axes[0].values[inputs[0].value];
-      const target = data.start + step;
-      const mark = point.case ? `case-${point.case.toLowerCase()}` : "further";
-      const shared = { height: HEIGHT, end: (point.q.length - 1) * data.dt };
-      const curve = (times, values) => [{ times, values, mark, chosen: true }];
-      const [low, high] = range(step);
-      draw(svgs.q, {
-        ...shared, low, high,
+    function writeMetrics() {
+      const rows = data.points[shown].metrics.map((value, k) => {
+        const row = document.createElement("div");
+        make(row, "dt", data.labels[k]);
+        make(row, "dd", value);
+        if (last !== null) {
+          make(row, "dd", `last run: ${data.points[last].metrics[k]}`, { class: "last" });
+        }
+        return row;
+      });
+      find("dl").replaceChildren(...rows);
+    }
+
+    /* Position axis: wide enough for every run of the steps, so that gains can be compared. */
+    function range(steps) {
+      const runs = data.points.map((_, n) => n).filter((n) => steps.includes(stepOf(n)));
+      const room = 0.08 * Math.max(...steps);
+      const highest = Math.max(...runs.flatMap(positions), data.start + Math.max(...steps));
+      return [data.start - room, highest + room];
+    }
+
+    /* Draws a quantity of the run over that of the last one, whose label stands where the two
+       differ most. `offset` is the number of the first sample. */
+    function drawRun(curve, of, offset, plot) {
+      const svg = svgs[curve];
+      const own = data.points[shown].case;
+      const mark = own ? `case-${own.toLowerCase()}` : "further";
+      const time = (_, k) => (k + offset) * data.dt;
+      const [now, before] = [of(shown), last === null ? null : of(last)];
+      const ghost = before ? [{ times: before.map(time), values: before, mark: "ghost" }] : [];
+      const run = { times: now.map(time), values: now, mark, chosen: true };
+      const end = (data.points[shown].q.length - 1) * data.dt;
+      const curves = [...ghost, run];
+      const { x, y, top, floor } = draw(svg, { ...plot, height: HEIGHT, end, curves });
+      const name = `${plot.name} of joint4 over time. ${data.points[shown].sentence}`;
+      const grey = before ? ` Grey: the last run, ${setting(last)}.` : "";
+      svg.setAttribute("aria-label", name + grey);
+      if (!before) return;
+      const apart = now.map((value, k) => Math.abs(value - before[k]));
+      const at = apart.indexOf(Math.max(...apart));
+      const late = time(0, at) > end / 3;
+      const beside = y(before[at]) + (before[at] > now[at] ? -6 : 14);
+      add(svg, "text", {
+        class: late ? "ghost-label end" : "ghost-label",
+        x: x(time(0, at)) + (late ? -6 : 6),
+        y: Math.min(Math.max(beside, top + 26), floor - 16), // clear of the limits
+      }, `last run: ${gains(last)}`);
+    }
+
+    function drawRuns() {
+      const steps = [shown, last ?? shown].map(stepOf);
+      const target = data.start + steps[0];
+      const [low, high] = range(steps);
+      drawRun("q", positions, 0, {
+        name: "Position", low, high,
         title: "Position [rad], target dotted",
-        curves: curve(point.q.map((_, k) => k * data.dt), positions(point)),
-        ticks: [data.start, data.start + step / 2, target].map((value) => ({
+        ticks: [data.start, data.start + steps[0] / 2, target].map((value) => ({
           value, label: write(value, 3),
         })),
         levels: [{ value: target, mark: "target" }],
       });
-      draw(svgs.force, {
-        ...shared, low: -1.15 * data.limit, high: 1.15 * data.limit,
+      drawRun("force", forces, 1, {
+        name: "Control force", low: -1.15 * data.limit, high: 1.15 * data.limit,
         title: "Control force [N·m], limits dashed",
-        curves: curve(
-          point.force.map((_, k) => (k + 1) * data.dt),
-          point.force.map((force) => force * data.resolution.force),
-        ),
         ticks: [-data.limit, 0, data.limit].map((value) => ({ value, label: write(value, 0) })),
         levels: [-data.limit, data.limit].map((value) => ({ value, mark: "limit" })),
       });
-      svgs.q.setAttribute("aria-label", `Position of joint4 over time. ${point.sentence}`);
-      svgs.force.setAttribute("aria-label", `Control force of joint4 over time. ${point.sentence}`);
-    }
-
-    function show() {
-      inputs.forEach((input, k) => {
-        const text = `${data.axes[k].values[input.value]} ${data.axes[k].unit}`;
-        input.setAttribute("aria-valuetext", text);
-        input.labels[0].querySelector(".value").textContent = text;
-      });
-      const point = chosen();
-      root.querySelector("output").textContent = point.sentence;
-      root.querySelector("dl").replaceChildren(
-        ...point.metrics.map((value, k) => {
-          const row = document.createElement("div");
-          const [term, described] = ["dt", "dd"].map((name) => document.createElement(name));
-          [term.textContent, described.textContent] = [data.labels[k], value];
-          row.append(term, described);
-          return row;
-        }),
-      );
-      drawRun();
     }
 
     root.hidden = false;
     root.nextElementSibling.remove(); // the sentence that a script is needed
-    for (const input of inputs) input.addEventListener("input", show);
-    new ResizeObserver(drawRun).observe(plots);
-    show();
+    step.addEventListener("change", () => choose(Number(step.value) * SIZE + (chosen % SIZE)));
+    measure.addEventListener("change", () => {
+      writeMap();
+      if (!question.hidden) ask();
+    });
+    predict.addEventListener("change", () => {
+      if (!question.hidden) show("");
+    });
+    new ResizeObserver(drawRuns).observe(plots);
+    writeMap();
+    output.textContent = data.points[shown].sentence;
+    writeMetrics();
+    drawRuns();
   }
 
   document.querySelectorAll(".explorer").forEach(start);

@@ -16,9 +16,11 @@ stale. A list below the question gives the cause for each answer; it may be left
     How large is the overshoot of G2?
 
     - low: Saturation makes the overshoot larger than the linear formula says.
+    - x57.3: That is in degrees.
     ```
 
 The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent.
+A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 """
 
 import re
@@ -46,8 +48,11 @@ UNKNOWN = "unknown"
 """The key of the option that no order was observed."""
 JUDGED = ("right", "low", "high")
 """The keys of an answer that is a number."""
-CAUSE = re.compile(r"[-*] +(\w+): +(.+)", re.DOTALL)
-"""The relation of the second case to the first, in a reader's words."""
+WRONG = "x57.3"
+"""Stands for the keys of typical wrong numbers, which `FACTOR` matches."""
+CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
+FACTOR = re.compile(r"x\d+(\.\d+)?")
+"""The key of a typical wrong number: the value times this factor."""
 
 
 class choice(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes in lower case
@@ -63,7 +68,7 @@ def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict
 
     Args:
         content: lines; each cause begins a line with `- key:`.
-        keys: the valid keys.
+        keys: the valid keys; `WRONG` stands for all keys of its form.
 
     Raises:
         LookupError: a key is not valid or given twice; the message lists the valid ones.
@@ -72,7 +77,8 @@ def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict
     causes: dict[str, str] = {}
     for item in items:
         found = CAUSE.fullmatch(item.strip())
-        if found is None or found[1] not in keys or found[1] in causes:
+        known = found and (found[1] in keys or (WRONG in keys and FACTOR.fullmatch(found[1])))
+        if found is None or not known or found[1] in causes:
             valid = ", ".join(f"`- {key}: …`" for key in keys)
             raise LookupError(f"{item.strip()!r} is not a cause. Valid, once each: {valid}.")
         causes[found[1]] = " ".join(found[2].split())
@@ -124,7 +130,7 @@ class Number(Question):
     def ask(self) -> tuple[str, choice]:
         """See `Question.ask`."""
         page, name = self.arguments
-        text, causes = split_causes(self.content, JUDGED)
+        text, causes = split_causes(self.content, [*JUDGED, WRONG])
         if "tolerance" not in self.options:
             raise LookupError("the option tolerance is missing. Give percents: `:tolerance: 20`.")
         return text, number(**asked_number(page, name, self.options["tolerance"], causes))
@@ -139,7 +145,7 @@ def asked_number(
         lesson_page: as `l04/lab`.
         name: `case.metric`.
         percent: the tolerance relative to the value.
-        causes: texts by `JUDGED`, any of them.
+        causes: texts by `JUDGED` or a factor, any of them.
 
     Raises:
         LookupError: there is no such metric, or it has no value.
@@ -151,6 +157,7 @@ def asked_number(
     if record.value is None:
         raise LookupError(f"{lesson_page} did not observe {name}. Ask with {{choice}}.")
     verdicts = {"right": "Yes.", "low": "Too low.", "high": "Too high."}
+    verdicts |= {key: "No." for key in causes if key not in JUDGED}
     feedback = [(key, f"{said} {causes.get(key, '')}".strip()) for key, said in verdicts.items()]
     return {
         "value": record.value, "tolerance": abs(record.value) * percent / 100,
@@ -228,9 +235,10 @@ def depart_number(self: Any, node: number) -> None:
         f"{escape(text)}</p>"
         for key, text in node["feedback"]
     )
+    unit = f" in {escape(node['unit'])}" if node["unit"] else ""
     field = (
-        f'<div class="number"><input type="number" step="any" id="{name}"/>'
-        f'<label for="{name}">{escape(node["unit"]) or "your number"}</label>{texts}</div>'
+        f'<div class="number"><label for="{name}">Your number{unit}</label>'
+        f'<input type="number" step="any" inputmode="decimal" id="{name}"/>{texts}</div>'
     )
     close(self, node, field, escape(node["answer"]))
 

@@ -194,8 +194,9 @@ def test_a_run_of_a_case_has_that_case_s_line_in_the_explorer(page, theme):
     output = page.locator(".explorer output").inner_text()
     name = re.search(r"the case (G\d)", output).group(1)
     assert lines(page, ".explorer svg .curve")[0][1:] == look(CASES[name], theme)
-    page.locator("#explorer-kp").press("ArrowLeft")  # between the cases: no case's line
-    assert lines(page, ".explorer svg .curve")[0][1:] == look("further", theme)
+    page.get_by_label("Predict first").uncheck()
+    page.locator(".explorer [aria-selected=true]").press("ArrowDown")  # between the cases
+    assert lines(page, ".explorer svg .curve.chosen")[0][1:] == look("further", theme)
 
 
 def test_each_run_of_the_replay_has_its_case_s_line(page, theme):

@@ -9,9 +9,11 @@ from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.site import multiple_choice
 from robo_genesis.site.multiple_choice import (
+    JUDGED,
     LOWER,
     UNDECIDED,
     UNKNOWN,
+    WRONG,
     asked_number,
     declared_margin,
     measured_order,
@@ -83,6 +85,15 @@ def test_a_question_s_causes_follow_it():
     assert split_causes(["When?"], KEYS) == ("When?", {})
 
 
+def test_a_number_s_typical_wrong_answer_has_a_factor_as_its_key():
+    asked = ["How far?", "", "- x57.3: In degrees."]
+    assert split_causes(asked, [*JUDGED, WRONG])[1] == {"x57.3": "In degrees."}
+    with pytest.raises(LookupError, match=r"Valid.*`- x57\.3: …`"):
+        split_causes(["How far?", "", "- x5.: No."], [*JUDGED, WRONG])
+    with pytest.raises(LookupError, match="is not a cause"):
+        split_causes(asked, KEYS)
+
+
 @pytest.mark.parametrize("line", ["- lowest: No.", "- no cause", "- lower: a\n- lower: b"])
 def test_a_cause_without_a_valid_key_is_refused_with_the_valid_ones(line):
     with pytest.raises(LookupError, match=r"is not a cause.*`- lower: …`, .*`- unknown: …`"):
@@ -115,17 +126,20 @@ def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
 
 
 def test_the_right_number_is_the_bundle_s(outputs, experiment):
-    found = asked_number("l04/lab", "G2.overshoot", 20, {"low": "The motor saturates."})
+    causes = {"low": "The motor saturates.", "x57.3": "In degrees."}
+    found = asked_number("l04/lab", "G2.overshoot", 20, causes)
     value = experiment.metrics["G2"].overshoot
     assert found["value"] == pytest.approx(value)
     assert found["tolerance"] == pytest.approx(value / 5)
     assert found["feedback"][1] == ("low", "Too low. The motor saturates.")
+    assert found["feedback"][3] == ("x57.3", "No. In degrees.")
     assert found["answer"].startswith(f"{value:.4f} rad; answers within 20 %")
     with pytest.raises(LookupError, match=r"Known: .*G2\.overshoot"):
         asked_number("l04/lab", "G2.overshot", 20, {})
 
 
 FEEDBACK = [("right", "Yes."), ("low", "Too low. It saturates."), ("high", "Too high.")]
+FEEDBACK += [("x57.3", "No. In degrees.")]
 
 
 @pytest.fixture
@@ -155,11 +169,19 @@ def test_feedback_is_announced_by_keyboard_too(asked):
 
 
 @pytest.mark.browser
+def test_the_field_of_a_number_has_a_name_with_its_unit(asked):
+    field = asked.get_by_label("Your number in rad")
+    assert field.get_attribute("inputmode") == "decimal"
+
+
+@pytest.mark.browser
 def test_a_number_is_right_within_its_tolerance(asked):
     for typed, text in (
         ("0.041", "Yes."),
         ("0.039", "Too low. It saturates."),
         ("0.061", "Too high."),
+        ("2.9", "No. In degrees."),
+        ("1.0", "Too high."),
         ("", ""),
     ):
         asked.locator("#choice-4").fill(typed)

@@ -1,7 +1,10 @@
-"""The step explorer: the grid as compact JSON, as a table, and as markup for a script."""
+"""The step explorer: the grid as compact JSON, as a table, and as markup for a script.
+
+The script asks what a chosen run will show before it shows the run beside the last one.
+"""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Any
 
@@ -14,23 +17,32 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04.claims_text import CLAIMS
 from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import ENTRY, STEPPED_JOINT
+from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, RESOLUTION, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_checks import GRID_CHECKS
 from robo_genesis.lessons.l04.study_spec import CASE_POINTS, KP, KV, POINTS, STEP_SIZES, GridPoint
 
-RESOLUTION = {"q": 1e-4, "force": 1e-2}
+PACKED = {"q": 1e-4, "force": 1e-2}
 """Value of one unit of the packed integers [rad, N·m]. Metrics come from the full arrays."""
 
-AXES: tuple[tuple[str, str, Sequence[float], str], ...] = (
-    ("step", "Step", STEP_SIZES, "rad"),
-    ("kp", "KP", KP, "N·m/rad"),
-    ("kv", "KV", KV, "N·m·s/rad"),
+AXES: tuple[tuple[str, Sequence[float], str], ...] = (
+    ("step", STEP_SIZES, "rad"),
+    ("kp", KP, "N·m/rad"),
+    ("kv", KV, "N·m·s/rad"),
 )
-"""Name, label, values and unit of each axis, in the order of the grid's points."""
+"""Name, values and unit of each axis, in the order of the grid's points."""
 
 LABELS = StepMetrics.about("label")
 SHOWN = tuple(name for name in LABELS if name != "initial_error")
 """The metrics shown for a run. The initial error is left out: it equals the step."""
+
+CELLS = {
+    "saturation_samples": (1, 0, "samples"),
+    "rise_time": (1000, 0, "ms"),
+    "overshoot": (1000, 1, "mrad"),
+    "peak_speed": (1, 2, "rad/s"),
+}
+"""Factor, digits and unit of the number in a cell of the map, by metric. These metrics have a
+declared margin, so a reader can be asked for the order of two runs."""
 
 NAMES = {point: name for name, point in CASE_POINTS.items()}
 
@@ -60,10 +72,34 @@ def pack(run: Experiment) -> dict[str, Any]:
         "dt": first.dt,
         "start": start,
         "limit": float(first.effort_limit[ENTRY]),
-        "resolution": RESOLUTION,
-        "axes": [{"name": n, "values": list(v), "unit": u} for n, _, v, u in AXES],
+        "resolution": PACKED,
+        "axes": [{"name": n, "values": list(v), "unit": u} for n, v, u in AXES],
+        "opens": POINTS.index(_opens(run)),
         "labels": [LABELS[name] for name in SHOWN],
+        "measures": [_measure(run, name) for name in CELLS],
         "points": [_packed(run, point, start) for point in POINTS],
+    }
+
+
+def _opens(run: Experiment) -> GridPoint:
+    """Return the first of the lesson's cases that overshoots, else the last point."""
+    return next((p for p in NAMES if run.metrics[p.name].overshoot > 0), POINTS[-1])
+
+
+def _measure(run: Experiment, name: str) -> dict[str, Any]:
+    """Return a metric of the map and of the questions, with its value in each run."""
+    factor, digits, shown = CELLS[name]
+    unit, noun = (StepMetrics.about(what)[name] for what in ("unit", "noun"))
+    words = ("earlier", "later") if unit == "s" else ("lower", "higher")
+    return {
+        "label": SHOWN.index(name),
+        "noun": noun,
+        "lower": words[0],
+        "higher": words[1],
+        "margin": max(MARGINS[name], RESOLUTION[unit]),
+        "within": f"{MARGINS[name]:g} {'samples' if unit == '1' else unit}",
+        "values": [getattr(run.metrics[point.name], name) for point in POINTS],
+        "cell": {"factor": factor, "digits": digits, "unit": shown},
     }
 
 
@@ -72,8 +108,8 @@ def _packed(run: Experiment, point: GridPoint, start: float) -> dict[str, Any]:
     trace, measured = run.traces[point.name], run.metrics[point.name]
     return {
         "case": NAMES.get(point, ""),
-        "q": _integers(trace.q[:, ENTRY].astype(float) - start, RESOLUTION["q"]),
-        "force": _integers(trace.control_force[:, ENTRY].astype(float), RESOLUTION["force"]),
+        "q": _integers(trace.q[:, ENTRY].astype(float) - start, PACKED["q"]),
+        "force": _integers(trace.control_force[:, ENTRY].astype(float), PACKED["force"]),
         "sentence": sentence(point, measured, trace.steps),
         "metrics": [v for n, v in _written(measured).items() if n in SHOWN],
     }
@@ -128,22 +164,27 @@ def markup(run: Experiment) -> str:
     """Return the explorer as HTML. A notice replaces it until `_static/explorer.js` runs.
 
     The data are an attribute, because a script in Markdown is shown as text.
-    It opens at the first of the lesson's cases that overshoots, if there is one.
     """
-    text = json.dumps(pack(run), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    first = next((p for p in NAMES if run.metrics[p.name].overshoot > 0), POINTS[-1])
-    inputs = "".join(
-        f'<p><label for="explorer-{name}">{label} <span class="value"></span></label>'
-        f'<input type="range" id="explorer-{name}" min="0" max="{len(values) - 1}" step="1" '
-        f'value="{list(values).index(getattr(first, name))}"></p>'
-        for name, label, values, _ in AXES
+    packed = pack(run)
+    text = json.dumps(packed, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    steps = _options(f"{step:g} rad" for step in STEP_SIZES)
+    shown = _options(
+        f"{packed['labels'][m['label']]} [{m['cell']['unit']}]" for m in packed["measures"]
     )
     return (
-        f'<div class="explorer" data-grid="{escape(text)}" hidden><fieldset>'
-        f"<legend>Pick a run of {STEPPED_JOINT}</legend>{inputs}</fieldset>"
-        f'<output for="{" ".join(f"explorer-{a[0]}" for a in AXES)}" '
-        'aria-live="polite"></output>'
-        f'<div class="plots" data-curves="{" ".join(RESOLUTION)}"></div><dl></dl></div>'
+        f'<div class="explorer" data-grid="{escape(text)}" hidden><div class="controls">'
+        f'<label>Step of {STEPPED_JOINT} <select name="step">{steps}</select></label>'
+        f'<label>Map shows <select name="measure">{shown}</select></label>'
+        '<label><input type="checkbox" name="predict" checked> Predict first</label></div>'
+        '<table role="grid" class="map"><caption></caption></table>'
+        '<fieldset class="question" hidden><legend></legend></fieldset>'
+        '<output aria-live="polite"></output>'
+        f'<div class="plots" data-curves="{" ".join(PACKED)}"></div><dl></dl></div>'
         "<p>The explorer needs JavaScript. The table of all runs on the page about the grid shows "
         "the same.</p>"
     )
+
+
+def _options(texts: Iterable[str]) -> str:
+    """Return the options of a `select`, numbered from 0."""
+    return "".join(f'<option value="{k}">{escape(text)}</option>' for k, text in enumerate(texts))

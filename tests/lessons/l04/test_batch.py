@@ -59,9 +59,9 @@ def test_packed_data_unpacks_within_half_a_unit(study_runs):
     )
     q = q + data["start"]
     # The arrays are float32: their own last bit adds to the half unit.
-    assert np.abs(q - of_q).max() <= 0.5 * explorer.RESOLUTION["q"] + 1e-6
-    assert np.abs(force - of_force).max() <= 0.5 * explorer.RESOLUTION["force"] + 1e-5
-    assert np.ptp(of_q) > 1000 * explorer.RESOLUTION["q"]
+    assert np.abs(q - of_q).max() <= 0.5 * explorer.PACKED["q"] + 1e-6
+    assert np.abs(force - of_force).max() <= 0.5 * explorer.PACKED["force"] + 1e-5
+    assert np.ptp(of_q) > 1000 * explorer.PACKED["q"]
 
 
 def test_packed_metrics_are_those_of_the_full_arrays(study_runs):
@@ -69,6 +69,15 @@ def test_packed_metrics_are_those_of_the_full_arrays(study_runs):
     overshoot = data["points"][number]["metrics"][data["labels"].index("overshoot")]
     assert overshoot == format_value(study_runs.metrics[G2.name].overshoot, "rad")
     assert [len(point["metrics"]) for point in data["points"]] == [len(data["labels"])] * 100
+
+
+def test_each_measure_has_the_lesson_s_margin_and_the_values_of_all_runs(study_runs):
+    measures = explorer.pack(study_runs)["measures"]
+    assert explorer.CELLS.keys() == spec.MARGINS.keys()
+    for name, measure in zip(explorer.CELLS, measures, strict=True):
+        assert measure["margin"] == spec.MARGINS[name]
+        values = [getattr(study_runs.metrics[point.name], name) for point in POINTS]
+        assert measure["values"] == values
 
 
 def test_the_axes_number_the_points(study_runs):

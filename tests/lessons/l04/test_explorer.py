@@ -1,4 +1,4 @@
-"""The step explorer in a real browser: it shows the page's own data, by keyboard and offline."""
+"""The step explorer in a real browser: it shows and judges the recorded runs, also offline."""
 
 import json
 from collections.abc import Iterator
@@ -8,6 +8,7 @@ from bs4 import BeautifulSoup
 from playwright.sync_api import Page
 from watching import errors
 
+from robo_genesis.core.orderings import order
 from robo_genesis.core.quantities import format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons.l04.metrics import StepMetrics
@@ -35,72 +36,207 @@ def data(lecture) -> dict:
 
 
 @pytest.fixture(scope="module", params=["served", "from disk"])
-def page(request, browser, address, site) -> Iterator[Page]:
-    """The lecture on a phone: served in the light, from disk in the dark."""
+def opened(request, browser, address, site) -> Iterator[tuple[Page, str]]:
+    """A window of a phone and the address of the lecture: in the light, from disk in the dark."""
     base, scheme = {"served": (address, "light"), "from disk": (site.as_uri(), "dark")}[
         request.param
     ]
-    page = browser.new_page(viewport={"width": 320, "height": 900}, color_scheme=scheme)
+    page = browser.new_page(
+        viewport={"width": 320, "height": 900}, color_scheme=scheme, has_touch=True
+    )
     problems = errors(page)
-    page.goto(f"{base}/{LECTURE}")
-    yield page
+    yield page, f"{base}/{LECTURE}"
     assert problems == []
     page.close()
 
 
-@pytest.fixture(scope="module")
-def opened(page) -> tuple[str, dict[str, str]]:
-    """What the widget shows before anybody touches it."""
-    return shown(page)
+@pytest.fixture
+def page(opened) -> Page:
+    """The lecture, freshly loaded."""
+    page, address = opened
+    page.goto(address)
+    return page
 
 
-@pytest.fixture(autouse=True)
-def untouched(request) -> None:
-    """Look at the widget before a test moves it."""
-    if "page" in request.fixturenames:
-        request.getfixturevalue("opened")
+def cell(page, kp, kv):
+    return page.locator(f".explorer [role=gridcell][aria-label^='KP {kp}, KV {kv}']")
 
 
-def press(page, name, key):
-    page.locator(f"#explorer-{name}").focus()
-    page.keyboard.press(key)
+def chosen(page):
+    return page.locator(".explorer [aria-selected=true]")
+
+
+def press(page, *keys):
+    """Press keys on the map."""
+    chosen(page).focus()
+    for key in keys:
+        page.keyboard.press(key)
+
+
+def answer(page, text):
+    page.locator(".explorer .question").get_by_role("button", name=text, exact=True).click()
+
+
+def without_questions(page):
+    page.get_by_label("Predict first").uncheck()
 
 
 def shown(page):
     """Return what the widget shows as the packed data has it: (sentence, metrics)."""
-    terms, values = (page.locator(f".explorer {tag}").all_inner_texts() for tag in ("dt", "dd"))
+    terms, values = (
+        page.locator(f".explorer {tag}").all_inner_texts() for tag in ("dt", "dd:not(.last)")
+    )
     return page.locator(".explorer output").inner_text(), dict(zip(terms, values, strict=True))
 
 
+def number(data, step, kp, kv):
+    """Return the number of a point among the packed ones."""
+    axes = [axis["values"] for axis in data["axes"]]
+    at = [values.index(value) for values, value in zip(axes, (step, kp, kv), strict=True)]
+    return (at[0] * len(axes[1]) + at[1]) * len(axes[2]) + at[2]
+
+
 def expected(data, step, kp, kv):
-    sizes = [len(axis["values"]) for axis in data["axes"]]
-    point = data["points"][(step * sizes[1] + kp) * sizes[2] + kv]
+    point = data["points"][number(data, step, kp, kv)]
     return point["sentence"], dict(zip(data["labels"], point["metrics"], strict=True))
 
 
-def test_keys_move_to_a_run_and_all_of_it_is_shown(page, data):
-    for name in ("step", "kp", "kv"):
-        press(page, name, "Home")
-    assert shown(page) == expected(data, 0, 0, 0)
-    curve = page.locator('.explorer svg[data-curve="q"] polyline')
+def test_arrow_keys_choose_a_run_and_all_of_it_is_shown(page, data):
+    without_questions(page)
+    curve = page.locator('.explorer svg[data-curve="q"] .chosen')
     before = curve.get_attribute("points")
-    press(page, "step", "End")
-    press(page, "kp", "ArrowRight")
-    press(page, "kp", "ArrowRight")
-    press(page, "kv", "ArrowRight")
-    assert shown(page) == expected(data, 3, 2, 1)
-    assert len({shown(page)[0], expected(data, 0, 0, 0)[0]}) == 2
+    press(page, "ArrowUp", "ArrowDown", "ArrowDown", "ArrowRight")  # the first leaves the map
+    assert shown(page) == expected(data, 0.25, 5250, 150)
     points = curve.get_attribute("points")
     assert points != before
     assert len(points.split()) == len(data["points"][0]["q"])
-    assert page.locator("#explorer-kp").get_attribute("aria-valuetext") == "5250 N·m/rad"
+    assert chosen(page).get_attribute("aria-label").startswith("KP 5250, KV 150: ")
+    assert chosen(page).evaluate("cell => cell === document.activeElement")
+
+
+def test_a_touch_and_another_step_choose_a_run(page, data):
+    without_questions(page)
+    cell(page, 3500, 300).tap()
+    assert shown(page) == expected(data, 0.25, 3500, 300)
+    page.get_by_label("Step of joint4").select_option("0.05 rad")
+    assert shown(page) == expected(data, 0.05, 3500, 300)
+
+
+def test_the_map_is_one_stop_for_the_keyboard(page):
+    press(page, "ArrowRight")
+    stops = page.locator(".explorer .map [tabindex='0']")
+    assert stops.count() == 1
+    assert chosen(page).get_attribute("tabindex") == "0"
+    page.keyboard.press("Tab")
+    assert page.locator(".explorer .question button").first.evaluate(
+        "button => button === document.activeElement"
+    )
+    page.keyboard.press("Enter")
+    assert chosen(page).evaluate("cell => cell === document.activeElement")
+
+
+@pytest.mark.parametrize("measure", ["saturation [samples]", "rise time [ms]", "overshoot [mrad]"])
+def test_each_cell_of_the_map_holds_its_measured_number(page, data, measure):
+    page.get_by_label("Map shows").select_option(measure)
+    (found,) = (
+        m for m in data["measures"]
+        if measure == f"{data['labels'][m['label']]} [{m['cell']['unit']}]"
+    )  # fmt: skip
+    for kp, kv in ((7000, 100), (3500, 300), (6125, 150)):
+        value = found["values"][number(data, 0.25, kp, kv)] * found["cell"]["factor"]
+        text = cell(page, kp, kv).inner_text().split()[-1]
+        assert float(text) == pytest.approx(value, abs=0.05 + 0.45 * (found["cell"]["digits"] == 0))
+    grounds = page.locator(".explorer [role=gridcell]").evaluate_all(
+        "all => all.map(one => getComputedStyle(one).backgroundColor)"
+    )
+    assert len(set(grounds)) > 3
+
+
+def judged(data, noun, first, second):
+    """Return the order of the second run by Python's rule."""
+    (measure,) = (m for m in data["measures"] if m["noun"] == noun)
+    return measure, order(measure["values"][first], measure["values"][second], measure["margin"])
+
+
+QUESTIONS = [
+    # the answers before, the run before and the run, the question's metric, the answer, its verdict
+    (0, (7000, 100), (6125, 100), "rise time", "too close to call", "Yes"),
+    (0, (7000, 100), (6125, 100), "rise time", "earlier", "No"),
+    (0, (7000, 100), (3500, 300), "rise time", "later", "Yes"),
+    (1, (7000, 100), (6125, 100), "overshoot", "lower", "Yes"),
+    (1, (7000, 100), (6125, 100), "overshoot", "too close to call", "No"),
+    (2, (7000, 100), (3500, 300), "peak speed", "lower", "Yes"),
+]
+
+
+@pytest.mark.parametrize(("earlier", "first", "second", "noun", "said", "verdict"), QUESTIONS)
+def test_a_prediction_is_judged_by_the_recorded_runs(
+    page, data, earlier, first, second, noun, said, verdict
+):
+    for turn in range(earlier):
+        cell(page, *((7000, 150), (7000, 100))[turn % 2]).tap()
+        answer(page, "Skip")
+    if earlier % 2:
+        without_questions(page)
+        cell(page, *first).tap()
+        page.get_by_label("Predict first").check()
+    before = shown(page)[1]
+    cell(page, *second).tap()
+    question = page.locator(".explorer .question legend").inner_text()
+    assert question == page.locator(".explorer output").text_content()
+    assert question.endswith(f"what happens to the {noun}?")
+    assert shown(page)[1] == before  # nothing is shown before the answer
+    answer(page, said)
+    output, metrics = shown(page)
+    runs = [number(data, 0.25, *gains) for gains in (first, second)]
+    measure, found = judged(data, noun, *runs)
+    words = {"equal": "too close to call"}.get(found) or measure[found]
+    assert (words == said) == (verdict == "Yes")
+    assert output.startswith(f"{verdict}. The {noun}: {words}, first ")
+    assert (f"The margin is {measure['within']}." in output) == (found == "equal")
+    assert output.endswith(expected(data, 0.25, *second)[0])
+    assert metrics == expected(data, 0.25, *second)[1]
+
+
+def test_where_neither_run_has_a_rise_time_the_record_cannot_tell(page):
+    without_questions(page)
+    page.get_by_label("Step of joint4").select_option("0.02 rad")
+    cell(page, 3500, 300).tap()
+    page.get_by_label("Predict first").check()
+    cell(page, 3500, 250).tap()
+    answer(page, "this record cannot tell")
+    assert shown(page)[0].startswith("Yes. The rise time: this record cannot tell, first not obs")
+
+
+def test_the_last_run_stays_as_a_labelled_grey_line_with_its_metrics(page, data):
+    assert page.locator(".explorer .ghost, .explorer dd.last").count() == 0
+    without_questions(page)
+    old = page.locator('.explorer svg[data-curve="force"] .chosen').get_attribute("points")
+    cell(page, 3500, 150).tap()
+    ghost = page.locator('.explorer svg[data-curve="force"] .ghost')
+    assert ghost.get_attribute("points") == old
+    labels = page.locator(".explorer .ghost-label").all_text_contents()
+    assert labels == ["last run: KP 7000, KV 100"] * 2
+    last = [text.removeprefix("last run: ") for text in
+            page.locator(".explorer dd.last").all_inner_texts()]  # fmt: skip
+    assert last == list(expected(data, 0.25, 7000, 100)[1].values())
+    assert "the last run" in page.locator(".explorer .map .last").get_attribute("aria-label")
+
+
+def test_no_question_is_asked_once_the_reader_turned_them_off(page, data):
+    cell(page, 3500, 150).tap()
+    assert page.locator(".explorer .question").is_visible()
+    without_questions(page)
+    assert shown(page) == expected(data, 0.25, 3500, 150)
+    cell(page, 3500, 200).tap()
+    assert not page.locator(".explorer .question").is_visible()
 
 
 def test_the_curve_is_drawn_to_scale(page, data):
     """The lowest and highest point of the drawn force are the packed ones, between the limits."""
-    for name, key in (("step", "End"), ("kp", "End"), ("kv", "Home")):
-        press(page, name, key)
-    force = [value * data["resolution"]["force"] for value in data["points"][95]["force"]]
+    force = [
+        value * data["resolution"]["force"] for value in data["points"][data["opens"]]["force"]
+    ]
     drawn = page.locator('.explorer svg[data-curve="force"]').evaluate("""svg => ({
         y: svg.querySelector("polyline").getAttribute("points").split(" ")
           .map(pair => Number(pair.split(",")[1])),
@@ -111,8 +247,8 @@ def test_the_curve_is_drawn_to_scale(page, data):
     assert to_force == pytest.approx(force, abs=0.1)  # coordinates have one decimal
 
 
-def test_the_widget_opens_at_g2_with_what_the_bundle_holds(opened, site):
-    sentence, metrics = opened
+def test_the_widget_opens_at_g2_with_what_the_bundle_holds(page, site):
+    sentence, metrics = shown(page)
     assert "(the case G2)" in sentence
     records = bundle.read_metrics(site.parent / "evidence" / "l04" / "cpu")["G2"]
     assert metrics == {
@@ -123,10 +259,11 @@ def test_the_widget_opens_at_g2_with_what_the_bundle_holds(opened, site):
 
 
 def test_controls_and_pictures_have_names(page):
-    names = page.locator(".explorer input").evaluate_all(
-        "all => all.map(i => i.labels[0].textContent)"
+    names = page.locator(".explorer :is(select, input)").evaluate_all(
+        "all => all.map(i => i.labels[0].firstChild.textContent.trim() || i.name)"
     )
-    assert [name.split()[0] for name in names] == ["Step", "KP", "KV"]
+    assert names == ["Step of joint4", "Map shows", "predict"]
+    assert page.get_by_role("grid", name="Map of the runs: saturation [samples].").is_visible()
     pictures = page.locator(".explorer svg").evaluate_all(
         "all => all.map(svg => [svg.getAttribute('role'), svg.getAttribute('aria-label')])"
     )
@@ -136,15 +273,21 @@ def test_controls_and_pictures_have_names(page):
 
 
 def test_nothing_in_the_widget_is_cut_off_on_a_phone(page):
+    without_questions(page)
+    cell(page, 5250, 200).tap()
+    page.get_by_label("Predict first").check()
+    cell(page, 5250, 250).tap()
     overflow = page.locator(".explorer").evaluate("""root => {
       const edge = root.getBoundingClientRect().right;
-      return [...root.querySelectorAll("input, output, svg, svg text, dl div")]
+      return [...root.querySelectorAll("input, select, button, td, output, svg, svg text, dl div")]
         .filter(e => e.getBoundingClientRect().right > edge).map(e => e.textContent);
     }""")
     assert overflow == []
 
 
 def test_text_and_curves_stand_out_from_the_ground(page):
+    without_questions(page)
+    cell(page, 6125, 100).tap()
     contrasts = page.locator(".explorer").evaluate("""root => {
       const light = text => text.match(/[\\d.]+/g).slice(0, 3)
         .map(v => v / 255).map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4)
@@ -160,11 +303,12 @@ def test_text_and_curves_stand_out_from_the_ground(page):
       };
       return {
         output: of("output", "color"), text: of("svg text", "fill"),
-        curve: of(".curve", "stroke"), limit: of(".limit", "stroke"),
+        curve: of(".curve.chosen", "stroke"), limit: of(".limit", "stroke"),
+        ghost: of(".curve.ghost", "stroke"), label: of(".ghost-label", "fill"),
       };
     }""")
-    assert min(contrasts["output"], contrasts["text"]) >= 4.5, contrasts
-    assert min(contrasts["curve"], contrasts["limit"]) >= 3, contrasts
+    assert min(contrasts[name] for name in ("output", "text", "label")) >= 4.5, contrasts
+    assert min(contrasts[name] for name in ("curve", "limit", "ghost")) >= 3, contrasts
 
 
 def test_the_script_is_deferred_and_on_no_other_page(site, lecture):
