@@ -41,7 +41,7 @@ from robo_genesis.core.files import locked, settle
 from robo_genesis.core.git import unclean
 from robo_genesis.evidence import bundle_store
 from robo_genesis.evidence.status import refused_records
-from robo_genesis.evidence.verify import verify_bundle, verify_once
+from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.book_pages import Page, find_pages
 
 
@@ -102,8 +102,7 @@ def run_build(build: Build) -> list[str]:
         npm.require_published()
         engine, pages, into = _prepare(build)
         from_nothing = build.release or build.executed or site_address()
-        recompute = verify_bundle if from_nothing else verify_once
-        verify = build.verify or partial(recompute, book=build.book)
+        verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
         if build.release:
             _require_for_release(unclean(build.root))
         if build.executed:

@@ -1,7 +1,7 @@
 """The state of evidence; only this module decides it."""
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -106,7 +106,7 @@ def bundle_status(
     *,
     root: Path = project.ROOT,
     cpu_runs: Sequence[Path] = (),
-    verify: Callable[..., Manifest] = verify_bundle,
+    once: bool = False,
 ) -> Status:
     """Return the state of the bundle in a folder that is named after its backend.
 
@@ -118,7 +118,7 @@ def bundle_status(
         book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
         cpu_runs: bundles of CPU runs, of which one of an accelerator must not be a copy.
-        verify: `verify_bundle`, or `verify_once`.
+        once: see `verify_bundle`.
 
     Raises:
         ProjectError, PageError: the checkout itself cannot be read.
@@ -127,7 +127,7 @@ def bundle_status(
     if not os.path.lexists(folder):
         return Status("missing", backend, absent, None)
     try:
-        manifest = verify(folder, lesson=lesson, page=page, root=root, book=book)
+        manifest = verify_bundle(folder, lesson=lesson, page=page, root=root, book=book, once=once)
         copies.require_own_run(folder, cpu_runs)
     except BundleRefused as refusal:
         code = refusal.code

@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 from robo_genesis.core import project
@@ -31,6 +31,7 @@ def verify_bundle(
     page: str | None = None,
     root: Path = project.ROOT,
     book: Path = project.BOOK,
+    once: bool = False,
 ) -> Manifest:
     """Check one bundle against its files, the checkout and the pin.
 
@@ -43,6 +44,9 @@ def verify_bundle(
         page: the required page, None for any.
         root: the checkout, for pin, lock and modules.
         book: the folder of the pages.
+        once: whether metrics and checks are not computed again if they were accepted before, with
+            the same files of the bundle and the same code of the course. All other rules apply each
+            time, and a refusal is not kept.
 
     Returns:
         The accepted manifest; its checks have today's verdicts.
@@ -61,59 +65,26 @@ def verify_bundle(
     manifest_rules.check_log(folder, manifest, root)
     manifest_rules.check_engine_files(manifest)
     evidence_key.check_current(manifest, root, book)
+    if once:
+        contents = [(folder / name).read_bytes() for name in sorted(present)]
+        inputs = [json.dumps(sorted(present)).encode(), *contents, _code()]
+        derived("accepted", inputs, partial(_recompute, folder, manifest))
+    else:
+        _recompute(folder, manifest)
+    return as_judged_today(manifest)
+
+
+def _recompute(folder: Path, manifest: Manifest) -> bytes:
+    """Compute metrics and checks again from the arrays of a bundle.
+
+    Raises:
+        BundleRefused: see `verify_bundle`.
+    """
     metrics = bundle.read_metrics(folder)
     experiment = from_bundle(folder, manifest, metrics)
     check_metrics(metrics, experiment)
     check_outcomes(manifest, experiment.outcomes())
-    return as_judged_today(manifest)
-
-
-def verify_once(
-    folder: Path,
-    run_id: str | None = None,
-    *,
-    lesson: str | None = None,
-    page: str | None = None,
-    root: Path = project.ROOT,
-    book: Path = project.BOOK,
-) -> Manifest:
-    """Check one bundle as `verify_bundle` does, but recompute an accepted one only once.
-
-    The acceptance is kept for the content of all files of the bundle, the question that it answers
-    today, and the course's code. A refusal is not kept.
-
-    Args:
-        folder: see `verify_bundle`, as for the others.
-        run_id: the required run.
-        lesson: the required lesson.
-        page: the required page.
-        root: the checkout.
-        book: the folder of the pages.
-
-    Returns:
-        The accepted manifest; its checks have today's verdicts.
-
-    Raises:
-        BundleRefused, ProjectError, PageError: see `verify_bundle`.
-    """
-    present = bundle_files.scan(folder)
-    manifest = bundle.read_manifest(folder)
-    manifest_rules.check_identity(manifest, run_id, lesson, page)
-    predicate = manifest.predicate
-    question = evidence_key.question(predicate.lesson, predicate.page, root, book)
-    names = sorted(present)
-    inputs = [
-        json.dumps([folder.name, str(root), names, question], sort_keys=True).encode(),
-        *((folder / name).read_bytes() for name in names),
-        _code(),
-    ]
-
-    def verify() -> bytes:
-        verify_bundle(folder, root=root, book=book)
-        return b"accepted"
-
-    derived("accepted", inputs, verify)
-    return as_judged_today(manifest)
+    return b"accepted"
 
 
 @lru_cache(maxsize=1)

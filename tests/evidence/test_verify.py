@@ -45,26 +45,30 @@ def test_a_sound_bundle_is_accepted_also_when_sealed_again(folder):
 
 
 def test_an_accepted_bundle_is_recomputed_only_when_something_changed(folder, monkeypatch):
-    recomputed = []
+    recomputed, recompute = [], verify._recompute
 
-    def counted(*args, **kwargs):
-        recomputed.append(args)
-        return verify_bundle(*args, **kwargs)
+    def counted(*given):
+        recomputed.append(given)
+        return recompute(*given)
 
-    monkeypatch.setattr(verify, "verify_bundle", counted)
-    accepted = verify.verify_once(folder)
-    assert accepted == bundle.read_manifest(folder)
+    monkeypatch.setattr(verify, "_recompute", counted)
+    accepted = verify_bundle(folder, once=True)
+    assert accepted == verify_bundle(folder) == bundle.read_manifest(folder)
     recomputed.clear()  # another test may have had the same bundle accepted
-    assert verify.verify_once(folder) == accepted
+    assert verify_bundle(folder, once=True) == accepted
     assert recomputed == []
     with pytest.raises(BundleRefused, match="run_id"):
-        verify.verify_once(folder, "0" * 32)
-    array = next(folder.rglob("*.npy"), None) or next(folder.rglob("*.npz"))
-    array.write_bytes(array.read_bytes()[:-1])
+        verify_bundle(folder, "0" * 32, once=True)
+    code = os.urandom(16)  # in no cache
+    monkeypatch.setattr(verify, "_code", lambda: code)
+    verify_bundle(folder, once=True)
+    assert len(recomputed) == 1
+    (folder / "metrics.json").write_text((folder / "metrics.json").read_text().replace("1", "2", 1))
+    seal(folder)
     for _ in range(2):  # a refusal is not kept
         with pytest.raises(BundleRefused):
-            verify.verify_once(folder)
-    assert len(recomputed) == 2
+            verify_bundle(folder, once=True)
+    assert len(recomputed) == 3
 
 
 @pytest.mark.parametrize("accelerator", ["amdgpu", "cuda"])

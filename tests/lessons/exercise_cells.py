@@ -1,6 +1,7 @@
 """The functions that a lab leaves to the student: their cells, our solutions, what both must be."""
 
 import re
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,8 @@ def lab_of(lesson: str) -> Page:
 
 def solutions(lesson: str) -> dict[str, Any]:
     """Return our solutions by the name of the function."""
-    solved: dict[str, Any] = {"np": np}
+    names = {"np": np, lesson: import_module(f"robo_genesis.lessons.{lesson}")}
+    solved: dict[str, Any] = names  # as the set-up cell of the notebook imports them
     for cell in lab_of(lesson).notebook.cells:
         if "solution" in cell.metadata.get("tags", []):
             exec(cell.source, solved)

@@ -111,7 +111,8 @@ def test_the_lab_shows_a_verified_run_with_its_figures_frames_metrics_and_backen
     assert "cpu, this build" in text
     assert "amdgpu, recorded" in text
     figures = [figure["id"] for figure in panel.select("figure")]
-    assert figures == [f"l04-amdgpu-{name}" for name in ("response", "initial", "final")]
+    pictures = [f"l04-amdgpu-{name}" for name in ("response", "initial", "final")]
+    assert figures == [*pictures, "replay-l04-lab-amdgpu-recorded-model"]
     assert panel.select(".replay-block")
 
 

@@ -69,7 +69,9 @@ class BounceMetrics(CaseMetrics):
     flight_drift: float | None = metric(
         "J", "largest change of the kept energy in a flight", *ENERGY
     )
-    lent: float | None = metric("J", "largest change of the total energy in a flight", *ENERGY)
+    flight_change: float | None = metric(
+        "J", "largest change of the total energy in a flight", *ENERGY
+    )
 
 
 def metrics_class(case: ContactCase) -> type[CaseMetrics]:
@@ -140,7 +142,7 @@ def slide_metrics(trace: ContactTrace, case: ContactCase) -> SlideMetrics:
 def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
     """Measure the energy of each flight, by the energy that semi-implicit Euler conserves.
 
-    lent  largest change of the total energy within one flight; it is zero again when v_z is
+    flight_change  largest change of the total energy within a flight; it is zero again when v_z is
     """
     kept, total = conserved_energy(trace, case), total_energy(trace, case)
     in_air = list(flights(trace, case))
@@ -154,5 +156,5 @@ def bounce_metrics(trace: ContactTrace, case: ContactCase) -> BounceMetrics:
         first_kept=share(1),
         later_kept=share(BOUNCES_COUNTED),
         flight_drift=max((float(np.ptp(kept[flight])) for flight in in_air), default=None),
-        lent=max((float(np.ptp(total[flight])) for flight in in_air), default=None),
+        flight_change=max((float(np.ptp(total[flight])) for flight in in_air), default=None),
     )

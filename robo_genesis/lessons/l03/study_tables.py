@@ -296,7 +296,7 @@ def kept_by_step(run: Experiment) -> str:
                 "h": milliseconds(case.h),
                 "kept at the first bounce": percent(run.metrics[name].first_kept),
                 "left after 4 bounces": percent(run.metrics[name].later_kept),
-                "total energy changes in a flight by": millijoule(run.metrics[name].lent),
+                "total energy changes in a flight by": millijoule(run.metrics[name].flight_change),
             }
             for name, case in spec.BOUNCES.items()
         ]

@@ -176,9 +176,9 @@ def energy_sentences(
             f"{expected:.2f} %. {cause}"
         )
     flown = [
-        (1000 * of.lent, of.flight_drift / of.start_energy)
+        (1000 * of.flight_change, of.flight_drift / of.start_energy)
         for of in bounces.values()
-        if of.lent is not None and of.flight_drift is not None
+        if of.flight_change is not None and of.flight_drift is not None
     ]
     if flown:
         bounded, drift = zip(*flown, strict=True)

@@ -35,7 +35,6 @@ from robo_genesis.evidence.status import (
     recorded_folders,
     recorded_status,
 )
-from robo_genesis.evidence.verify import verify_once
 from robo_genesis.site.evidence.ledger_data import Run
 
 BACKEND = project.BUILD_BACKEND
@@ -97,7 +96,7 @@ def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> Run:
     """Return a page's run of this build; it does not change while Sphinx runs."""
     folder = page_outputs(f"{lesson}/{page}") / BACKEND
     absent = f"No bundle was recorded for {lesson}/{page}."
-    status = bundle_status(folder, lesson, page, absent, book, verify=verify_once)
+    status = bundle_status(folder, lesson, page, absent, book, once=True)
     return Run(f"{lesson}/{page}", folder, status)
 
 

@@ -124,8 +124,8 @@ def test_the_kept_energy_of_a_thrown_body_stays_and_the_total_one_does_not():
     trace, case = thrown(3.0, 0.01, 60)
     kept, total = energy.conserved_energy(trace, case), energy.total_energy(trace, case)
     assert np.ptp(kept) < 1e-6 * kept[0]
-    lent = case.mass * case.gravity * case.h * np.ptp(trace.link_vel[:, 0, 2]) / 2
-    assert np.ptp(total) == pytest.approx(lent, rel=1e-4)
+    flight_change = case.mass * case.gravity * case.h * np.ptp(trace.link_vel[:, 0, 2]) / 2
+    assert np.ptp(total) == pytest.approx(flight_change, rel=1e-4)
 
 
 def test_turning_counts_as_energy():
@@ -209,7 +209,7 @@ def test_the_kept_share_is_that_of_the_flights(contact_traces):
     none = bounce_metrics(body_at([1.0] * 5), case)
     assert (none.first_kept, none.later_kept) == (None, None)
     resting = bounce_metrics(body_at([case.rest_height] * 5), case)
-    assert (resting.flight_drift, resting.lent) == (None, None)
+    assert (resting.flight_drift, resting.flight_change) == (None, None)
 
 
 def test_contacts_of_another_length_form_no_run():

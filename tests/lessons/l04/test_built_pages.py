@@ -40,7 +40,10 @@ def test_all_symptoms_showed(mistakes):
     ("anchor", "evidence"),
     [
         ("the-wrong-joint-moves", r"joint7`? moved most: at the last sample it was \d\.\d{4} rad"),
-        ("seven-values-are-refused-one-is-not", r"GenesisException: Invalid input shape: \(7,\)"),
+        (
+            "seven-values-raise-an-error-one-does-not",
+            r"GenesisException: Invalid input shape: \(7,\)",
+        ),
         (
             "the-joint-stops-short-and-the-motor-keeps-pushing",
             r"with its limit at -\d\.\d{4} rad",
