@@ -23,7 +23,9 @@ document.addEventListener("DOMContentLoaded", () => {
     const SIZE = KPS.length * KVS.length;
     const find = (name) => root.querySelector(name);
     const [step, measure, predict] = ["step", "measure", "predict"].map((n) => find(`[name=${n}]`));
-    const [map, question, output, plots] = [".map", ".question", "output", ".plots"].map(find);
+    const [question, output, plots] = [".question", "output", ".plots"].map(find);
+    const map = make(find(".map-of-runs"), "table", "", { class: "map", role: "grid" });
+    map.createCaption();
     const svgs = Object.fromEntries(
       plots.dataset.curves.split(" ").map((curve) => [
         curve, add(plots, "svg", { role: "img", "data-curve": curve }),
@@ -182,10 +184,11 @@ document.addEventListener("DOMContentLoaded", () => {
       const own = data.points[shown].case;
       const mark = own ? `case-${own.toLowerCase()}` : "further";
       const time = (_, k) => (k + offset) * data.dt;
-      const [now, before] = [of(shown), last === null ? null : of(last)];
+      const visible = (values) => values.filter((_, k) => time(_, k) < data.until + data.dt / 2);
+      const [now, before] = [visible(of(shown)), last === null ? null : visible(of(last))];
       const ghost = before ? [{ times: before.map(time), values: before, mark: "ghost" }] : [];
       const run = { times: now.map(time), values: now, mark, chosen: true };
-      const end = (data.points[shown].q.length - 1) * data.dt;
+      const end = data.until;
       const curves = [...ghost, run];
       const { x, y, top, floor } = draw(svg, { ...plot, height: HEIGHT, end, curves });
       const name = `${plot.name} of joint4 over time. ${data.points[shown].sentence}`;

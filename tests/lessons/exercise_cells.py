@@ -13,25 +13,25 @@ LONGEST = 15
 """Most lines of a solution below its first one."""
 
 
-def lab_of(lesson: str) -> Page:
-    """Return the lab of a lesson."""
-    (lab,) = (page for page in find_pages(BOOK) if (page.lesson, page.page) == (lesson, "lab"))
-    return lab
+def page_of(lesson: str, name: str) -> Page:
+    """Return an executed page of a lesson."""
+    (found,) = (page for page in find_pages(BOOK) if (page.lesson, page.page) == (lesson, name))
+    return found
 
 
-def solutions(lesson: str) -> dict[str, Any]:
-    """Return our solutions by the name of the function."""
+def solutions(lesson: str, page: str = "lab") -> dict[str, Any]:
+    """Return our solutions on a page by the name of the function."""
     names = {"np": np, lesson: import_module(f"robo_genesis.lessons.{lesson}")}
     solved: dict[str, Any] = names  # as the set-up cell of the notebook imports them
-    for cell in lab_of(lesson).notebook.cells:
+    for cell in page_of(lesson, page).notebook.cells:
         if "solution" in cell.metadata.get("tags", []):
             exec(cell.source, solved)
     return solved
 
 
-def require_exercise(lesson: str, name: str) -> None:
+def require_exercise(lesson: str, name: str, page: str = "lab") -> None:
     """Require a stub with a docstring, a short solution that only the site shows, and a test."""
-    all_cells = lab_of(lesson).notebook.cells
+    all_cells = page_of(lesson, page).notebook.cells
     stub, solution = [c for c in all_cells if c.source.startswith(f"def {name}(")]
     assert '"""' in stub.source
     assert "NotImplementedError" in stub.source

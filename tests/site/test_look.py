@@ -190,13 +190,15 @@ def look(name: str, theme: str) -> list:
     return [getattr(mark, theme), [2 * length for length in mark.dashes]]
 
 
-def test_a_run_of_a_case_has_that_case_s_line_in_the_explorer(page, theme):
+def test_a_run_of_a_case_has_that_case_s_colour_in_the_explorer_and_a_solid_line(page, theme):
     output = page.locator(".explorer output").inner_text()
     name = re.search(r"the case (G\d)", output).group(1)
-    assert lines(page, ".explorer svg .curve")[0][1:] == look(CASES[name], theme)
+    solid = [getattr(MARKS[CASES[name]], theme), []]
+    assert lines(page, ".explorer svg .curve")[0][1:] == solid
     page.get_by_label("Predict first").uncheck()
     page.locator(".explorer [aria-selected=true]").press("ArrowDown")  # between the cases
-    assert lines(page, ".explorer svg .curve.chosen")[0][1:] == look("further", theme)
+    between = [getattr(MARKS["further"], theme), []]
+    assert lines(page, ".explorer svg .curve.chosen")[0][1:] == between
 
 
 def test_each_run_of_the_replay_has_its_case_s_line(page, theme):

@@ -109,7 +109,10 @@ ASSIGNED = Run(
 LECTURE = with_runs(
     LAB,
     "lecture",
-    {**runs_of(study_spec.LONGER_CASES), study_spec.ASSIGNED: ASSIGNED},
+    {
+        **runs_of(study_spec.EXAMPLE_CASES | study_spec.LONGER_CASES),
+        study_spec.ASSIGNED: ASSIGNED,
+    },
     study.GRAVITY,
     study_checks.LECTURE,
 )

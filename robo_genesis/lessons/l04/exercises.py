@@ -1,4 +1,4 @@
-"""Checks of the four functions that a student writes in L04's lab.
+"""Checks of the functions that a student writes: four in L04's lab, one beside the formula.
 
 See `core/exercises.py`.
 """
@@ -15,11 +15,19 @@ from robo_genesis.core.mistakes import refused
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import CONTROL_LAW_TOLERANCE, ENTRY
+from robo_genesis.lessons.l04.theory import IdealJoint, stepped_joint
 from robo_genesis.sim.joint_control import ControlCase
 from robo_genesis.sim.joints import JointMap
 
 TINY = 1e-6
 """Largest difference of a returned time or angle that rounding explains."""
+
+INVENTED = {
+    "not_clipped": (1.1, 3500.0, 100.0, 1.0, np.inf, 0.0, 0.005, 0.005, 80),
+    "clipped_with_gravity": (1.1, 7000.0, 100.0, 1.0, 87.0, 22.0, 0.25, 0.005, 80),
+    "much_passive_damping": (0.4, 900.0, 10.0, 30.0, 12.0, -3.0, -0.2, 0.002, 80),
+}
+"""Arguments of `stepped` in the order of its signature."""
 
 RESPONSE = ("rise_time", "overshoot", "settling_time")
 
@@ -121,3 +129,20 @@ def step_response(
         )
 
     return outcome("step_response", findings)
+
+
+def stepped(model: Callable[..., Any]) -> list[Check]:
+    """Check `model(inertia, kp, kv, d, limit, g, step, h, n)`: n + 1 positions [rad]."""
+
+    def findings(_: None) -> Iterator[Finding]:
+        for name, arguments in INVENTED.items():
+            inertia, kp, kv, d, limit, g, step, h, n = arguments
+            joint = IdealJoint(inertia, kv + d, kp)
+            expected = stepped_joint(joint, d, step, h, n, limit=limit, gravity=g)
+            found = np.asarray(model(*arguments), dtype=float)
+            yield equal(f"{name}.number_of_positions", found.size, n + 1)
+            if found.size == n + 1:
+                apart = float(np.abs(found.ravel() - expected).max())
+                yield at_most(f"{name}.distance_to_the_model", apart, TINY)
+
+    return outcome("stepped", findings)

@@ -31,6 +31,9 @@ AXES: tuple[tuple[str, Sequence[float], str], ...] = (
 )
 """Name, values and unit of each axis, in the order of the grid's points."""
 
+UNTIL = 0.6
+"""End of the time axis of the curves [s]; after it, no run of the grid moves visibly."""
+
 LABELS = StepMetrics.about("label")
 SHOWN = tuple(name for name in LABELS if name != "initial_error")
 """The metrics shown for a run. The initial error is left out: it equals the step."""
@@ -70,6 +73,7 @@ def pack(run: Experiment) -> dict[str, Any]:
     start = float(first.q[0, ENTRY])
     return {
         "dt": first.dt,
+        "until": UNTIL,
         "start": start,
         "limit": float(first.effort_limit[ENTRY]),
         "resolution": PACKED,
@@ -176,7 +180,7 @@ def markup(run: Experiment) -> str:
         f'<label>Step of {STEPPED_JOINT} <select name="step">{steps}</select></label>'
         f'<label>Map shows <select name="measure">{shown}</select></label>'
         '<label><input type="checkbox" name="predict" checked> Predict first</label></div>'
-        '<table role="grid" class="map"><caption></caption></table>'
+        '<div class="map-of-runs"></div>'
         '<fieldset class="question" hidden><legend></legend></fieldset>'
         '<output aria-live="polite"></output>'
         f'<div class="plots" data-curves="{" ".join(PACKED)}"></div><dl></dl></div>'

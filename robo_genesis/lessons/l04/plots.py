@@ -16,7 +16,7 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 from robo_genesis.lessons.l04.spec import CASE_MARKS, ENTRY, STEPPED_JOINT
-from robo_genesis.lessons.l04.study_spec import ASSIGNED, COMPARED
+from robo_genesis.lessons.l04.study_spec import ASSIGNED, COMPARED, EXAMPLE
 from robo_genesis.sim.franka import LINK_PARENTS
 from robo_genesis.sim.joints import JointMap
 
@@ -80,11 +80,11 @@ def baseline_forces(run: Experiment) -> Figure:
 
 
 def defined(run: Experiment) -> Figure:
-    """Draw the position of G2 with its rise time, overshoot, settling time and final error."""
-    figure, trace, m = plotting.figure(4), run.traces["G2"], run.metrics["G2"]
+    """Draw the position of the example with its rise and settling time, overshoot, final error."""
+    figure, trace, m = plotting.figure(4), run.traces[EXAMPLE], run.metrics[EXAMPLE]
     ax, q, target = figure.subplots(), trace.q[:, ENTRY], float(trace.target[0, ENTRY])
     _target(ax, target, SETTLING_BAND)
-    ax.plot(trace.t, q, marker=".", markersize=6, **solid(CASE_MARKS["G2"]))
+    ax.plot(trace.t, q, marker=".", markersize=6, **solid("further"))
     times = [(m.rise_time, "rise time, 90 % of the step:", 0.2),
              (m.settling_time, "settling time, in the band\nfrom here on:", 0.42)]  # fmt: skip
     for time, name, height in times:
@@ -96,7 +96,7 @@ def defined(run: Experiment) -> Figure:
     _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", 0.94)
     _note(ax, (START, float(q[last])), f"final error: {error}", 0.62)
     unit = run.joints.position_units[ENTRY]
-    _finish(ax, f"Position of {STEPPED_JOINT} in G2", f"q [{unit}]", START)
+    _finish(ax, f"Position of {STEPPED_JOINT} in the example", f"q [{unit}]", START)
     return figure
 
 

@@ -46,6 +46,10 @@ SUBSTEP_CASES = {
 }
 """The solver's step is the one factor. Each case needs its own scene."""
 
+EXAMPLE = "example"
+EXAMPLE_CASES = {EXAMPLE: replace(G1, kv=with_entry(G1.kv, 50.0))}
+"""Illustrates the metrics before the comparison: it overshoots, and is not one of the cases."""
+
 LONGER = "G2_longer"
 LONGER_CASES = {LONGER: replace(G2, steps=2 * G2.steps)}
 """The length of the window is the one factor."""
@@ -175,7 +179,7 @@ counts must be equal. A CPU showed 0 rad, 2e-7 rad/s and 6e-5 N·m."""
 def parameters(page: str) -> dict[str, Any]:
     """Return every configured input of a page's own runs as JSON values, for the evidence key."""
     own: dict[str, dict[str, Any]] = {
-        "lecture": {"cases": case_parameters(LONGER_CASES)},
+        "lecture": {"cases": case_parameters(EXAMPLE_CASES | LONGER_CASES)},
         "formula": {"cases": case_parameters(STEP_CASES)},
         "integrator": {
             "cases": case_parameters(SUBSTEP_CASES),

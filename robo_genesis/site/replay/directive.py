@@ -89,7 +89,7 @@ def replay_block(
         opening = controls.opening(name, runs, around.camera, files)
     except (LookupError, ValueError) as error:
         raise directive.error(f"replay: {key}: {error}") from error
-    summary = f"All samples of {', '.join(runs.traces)} as a table"
+    summary = f"Results of {', '.join(runs.traces)}, and all samples as a table"
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     block += nodes.raw("", opening, format="html")
@@ -101,8 +101,8 @@ def replay_block(
     block += nodes.figure("", stage, caption, ids=[f"{name}-model"])
     block += nodes.raw("", controls.panel(name, runs, weight), format="html")
     lines = (nodes.paragraph("", "", *marked(text)) for text in runs.moves.values())
-    block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
+    block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
     block += scroll_box("", *directive.parse_text_to_nodes(controls.samples(runs)), label=summary)
     origin = origin_html(name, folder, up, runs.view.credit)
     block += nodes.raw("", f"</details>{origin}", format="html")

@@ -8,7 +8,7 @@ from lessons.exercise_cells import require_exercise, solutions
 
 from robo_genesis.lessons.l04 import exercises, spec
 
-SOLVED = solutions("l04")
+SOLVED = solutions("l04") | solutions("l04", "formula")
 
 
 class Tensor:
@@ -127,9 +127,24 @@ WRONG = {
         ),
         "one sample late": lambda t, q, target: measured(t + t[1], q, target),
     },
+    "stepped": {
+        "not clipped": lambda i, kp, kv, d, limit, *rest: (
+            SOLVED["stepped"](i, kp, kv, d, np.inf, *rest)
+        ),
+        "explicit damping": lambda i, kp, kv, d, limit, g, step, h, n: SOLVED["stepped"](
+            i - h * (d + kv), kp, kv, d, limit, g, step, h, n
+        ),
+        "gravity upwards": lambda i, kp, kv, d, limit, g, *rest: (
+            SOLVED["stepped"](i, kp, kv, d, limit, -g, *rest)
+        ),
+        "start missing": lambda *given: SOLVED["stepped"](*given)[1:],
+        "passive damping of the inertia alone": lambda i, kp, kv, d, limit, g, step, h, n: (
+            SOLVED["stepped"](i + h * d, kp, kv, 0.0, limit, g, step, h, n)
+        ),
+    },
 }  # fmt: skip
 OURS = {"resolver": "resolve", "control_loop": "record", "pd_law": "pd_effort",
-        "step_response": "measure"}  # fmt: skip
+        "step_response": "measure", "stepped": "stepped"}  # fmt: skip
 
 
 @pytest.fixture
@@ -144,6 +159,7 @@ def tested(study_runs):
             "control_loop": (playback, playback, joints, spec.BASELINE, trace),
             "pd_law": ([(study_runs.traces[n], case) for n, case in spec.CASES.items()],),
             "step_response": ([(study_runs.traces[n], study_runs.metrics[n]) for n in spec.CASES],),
+            "stepped": (),
         }[name]
         return getattr(exercises, name)(function, *more)
 
@@ -170,4 +186,4 @@ def test_each_function_has_at_least_three_wrong_solutions():
 
 @pytest.mark.parametrize("name", OURS.values())
 def test_the_student_writes_at_most_fifteen_lines_below_a_docstring(name):
-    require_exercise("l04", name)
+    require_exercise("l04", name, "formula" if name == "stepped" else "lab")

@@ -96,6 +96,11 @@ def number(data, step, kp, kv):
     return (at[0] * len(axes[1]) + at[1]) * len(axes[2]) + at[2]
 
 
+def drawn_samples(data):
+    """Return the number of drawn positions, the one at t = 0 included."""
+    return round(data["until"] / data["dt"]) + 1
+
+
 def expected(data, step, kp, kv):
     point = data["points"][number(data, step, kp, kv)]
     return point["sentence"], dict(zip(data["labels"], point["metrics"], strict=True))
@@ -109,7 +114,7 @@ def test_arrow_keys_choose_a_run_and_all_of_it_is_shown(page, data):
     assert shown(page) == expected(data, 0.25, 5250, 150)
     points = curve.get_attribute("points")
     assert points != before
-    assert len(points.split()) == len(data["points"][0]["q"])
+    assert len(points.split()) == drawn_samples(data)
     assert chosen(page).get_attribute("aria-label").startswith("KP 5250, KV 150: ")
     assert chosen(page).evaluate("cell => cell === document.activeElement")
 
@@ -232,11 +237,15 @@ def test_no_question_is_asked_once_the_reader_turned_them_off(page, data):
     assert not page.locator(".explorer .question").is_visible()
 
 
+def test_no_run_moves_visibly_after_the_end_of_the_plots(data):
+    late = [point["q"][drawn_samples(data) - 1 :] for point in data["points"]]
+    assert max(max(q) - min(q) for q in late) * data["resolution"]["q"] < 5e-4  # rad
+
+
 def test_the_curve_is_drawn_to_scale(page, data):
     """The lowest and highest point of the drawn force are the packed ones, between the limits."""
-    force = [
-        value * data["resolution"]["force"] for value in data["points"][data["opens"]]["force"]
-    ]
+    packed = data["points"][data["opens"]]["force"][: drawn_samples(data) - 1]
+    force = [value * data["resolution"]["force"] for value in packed]
     drawn = page.locator('.explorer svg[data-curve="force"]').evaluate("""svg => ({
         y: svg.querySelector("polyline").getAttribute("points").split(" ")
           .map(pair => Number(pair.split(",")[1])),

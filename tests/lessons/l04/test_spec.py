@@ -108,6 +108,7 @@ def test_what_decides_a_run_is_a_parameter_and_a_judgement_is_none(
         ("SECOND_RUNS", {}, ["integrator"]),
         ("STEP_CASES", {}, ["formula"]),
         ("LONGER_CASES", {}, ["lecture"]),
+        ("EXAMPLE_CASES", {}, ["lecture"]),
     ],
 )
 def test_an_input_of_a_page_is_a_parameter_of_that_page_alone(monkeypatch, name, other, pages):
