@@ -85,16 +85,16 @@ def defined(run: Experiment) -> Figure:
     ax, q, target = figure.subplots(), trace.q[:, ENTRY], float(trace.target[0, ENTRY])
     _target(ax, target, SETTLING_BAND)
     ax.plot(trace.t, q, marker=".", markersize=6, **solid("further"))
-    times = [(m.rise_time, "rise time, 90 % of the step:", 0.2),
-             (m.settling_time, "settling time, in the band\nfrom here on:", 0.42)]  # fmt: skip
-    for time, name, height in times:
+    times = [(m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
+             (m.settling_time, "settling time, in the band\nfrom here on:", 0.42, (0.35, 1))]  # fmt: skip
+    for time, name, *place in times:
         if time is not None:
             at = time, float(q[round(time / trace.dt)])
-            _note(ax, at, f"{name} {format_value(time, 's')}", height)
+            _note(ax, at, f"{name} {format_value(time, 's')}", *place)
     peak, last = int(q.argmax()), int(np.abs(trace.t - START).argmin())
     overshoot, error = (format_value(value, "rad") for value in (m.overshoot, m.final_error))
-    _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", 0.94)
-    _note(ax, (START, float(q[last])), f"final error: {error}", 0.62)
+    _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", 0.94, (0, 0.5))
+    _note(ax, (START, float(q[last])), f"final error: {error}", 0.62, (0.8, 1))
     unit = run.joints.position_units[ENTRY]
     _finish(ax, f"Position of {STEPPED_JOINT} in the example", f"q [{unit}]", START)
     return figure
@@ -212,9 +212,19 @@ def _direct(
                 color=color, fontweight="bold")  # fmt: skip
 
 
-def _note(ax: Axes, at: tuple[float, float], text: str, height: float) -> None:
-    """Point to a place from a note at the right; its height is a share of the axes'."""
-    arrow = {"arrowstyle": "->", "color": LINE["color"], "linewidth": 0.9}
+def _note(
+    ax: Axes, at: tuple[float, float], text: str, height: float, start: tuple[float, float]
+) -> None:
+    """Point to a place from a note at the right.
+
+    Args:
+        ax: the axes.
+        at: the place, in data coordinates.
+        text: the note.
+        height: of the note, as a share of the axes.
+        start: of the arrow, as shares of the note's width and height.
+    """
+    arrow = {"arrowstyle": "->", "color": LINE["color"], "linewidth": 0.9, "relpos": start}
     ax.annotate(text, at, (0.98, height), textcoords="axes fraction", ha="right", va="center",
                 arrowprops=arrow)  # fmt: skip
 
