@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.lessons.l04 import plots
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
+from robo_genesis.lessons.l04.study_spec import EXAMPLE
 
 JOINT, K = "joint4", 3
 
@@ -126,12 +127,12 @@ def test_assigned_and_commanded_name_their_calls(ax, traces, joints):
 def test_the_metrics_are_drawn_on_the_curve_that_has_them(study_runs):
     (ax,) = plots.defined(study_runs).axes
     found = " ".join(" ".join(text.get_text() for text in ax.texts).split())
-    m = study_runs.metrics["G2"]
+    m = study_runs.metrics[EXAMPLE]
     assert f"rise time, 90 % of the step: {m.rise_time:.2f} s" in found
     assert f"settling time, in the band from here on: {m.settling_time:.2f} s" in found
     assert f"overshoot: {m.overshoot:.4f} rad" in found
     assert f"final error: {m.final_error:.4f} rad" in found
     never = replace(m, rise_time=None, settling_time=None)
-    run = replace(study_runs, accepted=dict(study_runs.metrics) | {"G2": never})
+    run = replace(study_runs, accepted=dict(study_runs.metrics) | {EXAMPLE: never})
     texts = [text.get_text() for text in plots.defined(run).axes[0].texts]
     assert not any("time" in text for text in texts)
