@@ -85,8 +85,10 @@ def defined(run: Experiment) -> Figure:
     ax, q, target = figure.subplots(), trace.q[:, ENTRY], float(trace.target[0, ENTRY])
     _target(ax, target, SETTLING_BAND)
     ax.plot(trace.t, q, marker=".", markersize=6, **solid("further"))
-    times = [(m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
-             (m.settling_time, "settling time, in the band\nfrom here on:", 0.42, (0.35, 1))]  # fmt: skip
+    times = (
+        (m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
+        (m.settling_time, "settling time, in the band\nfrom here on:", 0.42, (0.35, 1)),
+    )
     for time, name, *place in times:
         if time is not None:
             at = time, float(q[round(time / trace.dt)])
