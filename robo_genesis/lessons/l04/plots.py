@@ -89,10 +89,10 @@ def defined(run: Experiment) -> Figure:
         (m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
         (m.settling_time, "settling time, in the band\nfrom here on:", 0.42, (0.35, 1)),
     )
-    for time, name, *place in times:
+    for time, name, height, start in times:
         if time is not None:
             at = time, float(q[round(time / trace.dt)])
-            _note(ax, at, f"{name} {format_value(time, 's')}", *place)
+            _note(ax, at, f"{name} {format_value(time, 's')}", height, start)
     peak, last = int(q.argmax()), int(np.abs(trace.t - START).argmin())
     overshoot, error = (format_value(value, "rad") for value in (m.overshoot, m.final_error))
     _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", 0.94, (0, 0.5))
