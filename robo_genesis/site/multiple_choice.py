@@ -49,7 +49,7 @@ UNKNOWN = "unknown"
 JUDGED = ("right", "low", "high")
 """The keys of an answer that is a number."""
 WRONG = "x57.3"
-"""Stands for the keys of typical wrong numbers, which `FACTOR` matches."""
+"""Represents the keys of typical wrong numbers, which `FACTOR` matches."""
 CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
 FACTOR = re.compile(r"x\d+(\.\d+)?")
 """The key of a typical wrong number: the value times this factor."""
@@ -68,7 +68,7 @@ def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict
 
     Args:
         content: lines; each cause begins a line with `- key:`.
-        keys: the valid keys; `WRONG` stands for all keys of its form.
+        keys: the valid keys; `WRONG` represents all keys of its form.
 
     Raises:
         LookupError: a key is not valid or given twice; the message lists the valid ones.
