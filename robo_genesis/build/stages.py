@@ -7,6 +7,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -30,7 +31,7 @@ from robo_genesis.build.page_store import (
 from robo_genesis.build.release import missing_for_release
 from robo_genesis.build.site.address import site_address, site_root
 from robo_genesis.build.site.archive import pack
-from robo_genesis.build.site.checks import check_site
+from robo_genesis.build.site.checks import Site, run_checks
 from robo_genesis.build.site.publish import publish
 from robo_genesis.build.site.render import render
 from robo_genesis.build.site.sphinx_process import LOG, SphinxProcess
@@ -120,9 +121,12 @@ def run_build(build: Build) -> list[str]:
         built = BuiltPages.of(results)
         kept = None if from_nothing else build.cache / project.KEPT
         html = render(sphinx, staging, built, kept)
-        progress("pack", pack(html).name)
+        with ThreadPoolExecutor(1) as beside:  # compression runs beside Python
+            packing = beside.submit(pack, html)
+            site = Site(html, site_root())
+            progress("pack", packing.result().name)
         progress("sums", write_sums(html).name)  # last of the site's files; the checks look for it
-        checked = _check(html, progress)
+        checked = _check(site, progress)
         forget(build.cache / project.STORE, results)
         summary = partial(_summary, engine, results, manifests, checked)
 
@@ -233,9 +237,9 @@ def _execute(
     return results
 
 
-def _check(html: Path, progress: Progress) -> int:
+def _check(site: Site, progress: Progress) -> int:
     """Check the rendered site and return the number of checks passed."""
-    checks = check_site(html, site_root())
+    checks = run_checks(site)
     for check in checks:
         found = f"{len(check.problems)} problems" if check.problems else "passed"
         progress("check", f"{check.name} ({check.count})", found)

@@ -303,7 +303,10 @@ def _own_source() -> bytes:
 
 @lru_cache(maxsize=1)
 def _installed() -> list[str]:
-    return installed_packages()
+    names: list[str] = json.loads(
+        derived("packages", [], lambda: json.dumps(installed_packages()).encode())
+    )
+    return names
 
 
 def _data_files(lesson: str | None, root: Path) -> Iterator[Path]:

@@ -98,12 +98,20 @@ def drop_downloads(app: Sphinx, builder: Any) -> None:
     shutil.rmtree(Path(builder.outdir) / "_downloads", ignore_errors=True)
 
 
+def leave_out_parents(app: Sphinx, builder: Any) -> None:
+    """Keep Sphinx from writing the parents of a changed page; see `outdated_pages`."""
+    vars(builder)["robo_genesis_parents"] = builder.env.files_to_rebuild
+    builder.env.files_to_rebuild = {}
+
+
 def finish(app: Sphinx, error: Exception | None) -> None:
     """Remove the pictures that no page shows any more, and report what cannot be kept.
 
     The names of pictures with equal file names depend on the order in which they were read.
     """
     env = app.env
+    if env is not None and (parents := vars(app.builder).pop("robo_genesis_parents", None)):
+        env.files_to_rebuild = parents
     if error is not None or env is None:
         return
     named = {name: file for file, (_, name) in env.images.items()}
@@ -121,4 +129,5 @@ def setup(app: Sphinx) -> None:
     app.connect("env-get-outdated", including_pages)
     app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)
+    app.connect("write-started", leave_out_parents)
     app.connect("build-finished", finish)

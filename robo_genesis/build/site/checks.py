@@ -113,7 +113,11 @@ def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
         html: the folder with the site's `index.html`.
         base: the path that this folder will have on its server, with a slash at both ends.
     """
-    site = Site(html, base)
+    return run_checks(Site(html, base))
+
+
+def run_checks(site: Site) -> list[SiteCheck]:
+    """Run all checks on a site whose pages were read."""
     checks = (check_links, check_alt_texts, check_third_parties, check_scripts, check_leftovers)
     return [check(site) for check in checks]
 
@@ -125,7 +129,7 @@ def check_links(site: Site) -> SiteCheck:
     inside = [(path, url) for path, url in found if not urlsplit(url).scheme and url[:2] != "//"]
     problems = {
         f"{site.name(path)}: {url!r} {reason}"
-        for path, url in inside
+        for path, url in dict.fromkeys(inside)
         if (reason := _broken(site, path, url))
     }
     return SiteCheck("links", len(inside), tuple(sorted(problems)))

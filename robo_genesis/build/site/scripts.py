@@ -12,10 +12,13 @@ import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 from bs4 import BeautifulSoup, Comment, Tag
+
+from robo_genesis.core.files import derived
 
 KNOWN = {
     "b08c20317fb3eb19": "light or dark before the page shows; the second half is page_weight's",
@@ -108,7 +111,10 @@ def file_problems(root: Path) -> Iterator[str]:
         elif name != "sitemap.xml" and (suffix in OTHER_PAGES or path.suffix in DISGUISED):
             yield f"{name}: a browser may run script in it. Valid: pages .html, drawings .svg."
         elif suffix == ".svg":
-            yield from (f"{name}: {found}" for found in _drawing(path))
+            code = Path(__file__).read_bytes()
+            drawing = partial(_drawing_problems, path)
+            listed = json.loads(derived("drawing", [path.read_bytes(), code], drawing))
+            yield from (f"{name}: {found}" for found in listed)
 
 
 def _script(page: Page, script: Tag) -> Iterator[str]:
@@ -164,6 +170,10 @@ def _element(tag: str, attributes: Mapping[str, str]) -> Iterator[str]:
             yield f"{what}, an event handler that is not known. Remove it."
         elif RUNNING_ADDRESS.search(UNSEEN.sub("", value)):
             yield f"{what}, an address that can run script. Remove it."
+
+
+def _drawing_problems(path: Path) -> bytes:
+    return json.dumps(list(_drawing(path))).encode()
 
 
 def _drawing(path: Path) -> Iterator[str]:
