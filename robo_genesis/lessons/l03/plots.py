@@ -215,8 +215,8 @@ def kept(ax: Axes, shares: Mapping[float, float | None], expected: float) -> Axe
     """
     h = [1000 * step for step in shares]
     ax.semilogx(h, list(shares.values()), marker="o", label="measured", **look("baseline"))
-    ax.axhline(expected, label="linear spring, continuous time", **look("target"))
-    ax.axhline(100, label="nothing lost", **look("limit"))
+    ax.axhline(expected, label="linear spring", **look("target"))
+    ax.axhline(100, label="no loss", **look("limit"))
     ax.set_xticks(h, [f"{step:g}" for step in h])
     ax.minorticks_off()
     ax.set(xlabel="solver step h [ms]", ylabel="kept at the first bounce [%]")

@@ -236,8 +236,7 @@ def engine_rows(traces: Mapping[str, ContactTrace], metrics: Metrics) -> Rows:
         heights = [f"{1000 * rise(metrics[name]):.2f}" for name in pair]
         rows.append(
             {
-                "Genesis": pair[0],
-                "MuJoCo": pair[1],
+                "run": described(*pair),
                 "rebound or hop [mm]": " and ".join(heights),
                 "farthest apart": apart(float(distance.max())),
                 "over 0.05 mm from": since,
@@ -245,6 +244,15 @@ def engine_rows(traces: Mapping[str, ContactTrace], metrics: Metrics) -> Rows:
             }
         )
     return rows
+
+
+def described(name: str, other: str) -> str:
+    """Describe a pair of runs, in Genesis and in the other engine, by what distinguishes it."""
+    case = study_spec.BY_BOTH[name]
+    if case.speed:
+        return f"push, {case.cone}, μ = {friction.pair_friction(case):g}"
+    own = ", MuJoCo's own contact" if other == study_spec.OWN_DEFAULTS else ""
+    return f"landing, h = {milliseconds(case.h)}{own}"
 
 
 def apart(distance: float) -> str:
