@@ -78,7 +78,7 @@ def needs_line(lesson: Lesson) -> list[nodes.Node]:
     """Return the line with the lessons that come before, none where that is not decided yet."""
     if lesson.needs is None:
         return []
-    before = listed(lesson.needs) if lesson.needs else "nothing before it"
+    before = listed(lesson.needs) if lesson.needs else "no other lesson"
     return [nodes.paragraph("", f"Builds on {before}.", classes=["needs"])]
 
 
