@@ -13,6 +13,7 @@ from robo_genesis.core.project import ProjectError
 TEMPLATE = Path(__file__).with_name("template")
 SUFFIX = ".tmpl"
 TITLE = "A box lands"
+OUTCOME = "measure how a box lands"
 NAME = re.compile(r"l\d\d")
 CHAPTER = re.compile(r"  - file: (\S+)\s*")
 ENTRY = re.compile(r"- id: (\S+)\s*")
@@ -120,7 +121,7 @@ def with_entry(course_map: str, lesson: str) -> str:
     """
     lines = course_map.splitlines()
     entries, name = _matches(ENTRY, lines), lesson.upper()
-    new = [f"  page: lessons/{lesson}-new-lesson/lecture"]
+    new = [f"  page: lessons/{lesson}-new-lesson/lecture", f"  outcomes: [{OUTCOME}]"]
     if name in entries:
         at = _end(entries, entries[name], lines)
         if any(line.startswith("  page:") for line in lines[entries[name] : at]):

@@ -27,7 +27,7 @@ below.</p>
 WAYS_ON = {
     "index": "the course map: every lesson, published and planned",
     "glossary": "the words of the field",
-    "evidence/ledger": "every figure, table and run",
+    "evidence/index": "from a measured number to its run",
 }
 """Pages that the 404 page links to, where a book has them."""
 

@@ -1,9 +1,7 @@
-"""The lessons on the site, from `course_map.yml`: the map, links to them, and the featured one.
+"""The lessons of the course, from `course_map.yml`: links to them, and the featured one.
 
 | in a page | shows |
 |---|---|
-| {course-map} (directive) | a card for each lesson: what it builds on, and its state |
-| {course-status} (directive) | what was run for each published lesson, and its state |
 | {featured} L04 (directive) | its content, while the map features this lesson |
 | {lesson}`some words <l04/lab>` | a link to a lesson's page, plain text without that lesson |
 """
@@ -19,8 +17,6 @@ from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
-from robo_genesis.site.evidence.measured import lesson_badges
-
 FILE = "course_map.yml"
 LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
 """A link to a lesson's page: its words, the lesson and the page."""
@@ -35,13 +31,15 @@ class Lesson:
     """One lesson.
 
     `needs` is None where it is not decided yet. `page` is the lecture, None while the lesson is
-    planned. The home page shows the measurements of the `featured` lesson.
+    planned. `outcomes` is what a student can do after a published lesson, with code in backticks.
+    The home page shows the measurements of the `featured` lesson.
     """
 
     id: str
     title: str
     needs: tuple[str, ...] | None = None
     page: str | None = None
+    outcomes: tuple[str, ...] = ()
     featured: bool = False
 
 
@@ -50,17 +48,21 @@ def read_map(book: Path) -> list[Lesson]:
 
     Raises:
         CourseMapError: the file is not a list of lessons, an id occurs twice, a lesson needs one
-            that does not come before it, or two lessons are featured.
+            that does not come before it, a published one has no outcomes, or two are featured.
     """
     rows = yaml.safe_load((book / FILE).read_text("utf8"))
     lessons: list[Lesson] = []
     for row in rows if isinstance(rows, list) else [rows]:
         try:
-            needs = row.get("needs")
-            lesson = Lesson(**row | {"needs": None if needs is None else tuple(needs)})
+            needs, outcomes = row.get("needs"), row.get("outcomes", [])
+            if not isinstance(outcomes, list):
+                raise TypeError("outcomes is not a list")
+            lists = {"needs": None if needs is None else tuple(needs), "outcomes": tuple(outcomes)}
+            lesson = Lesson(**row | lists)
         except (AttributeError, TypeError) as error:
             raise CourseMapError(
-                f"{FILE} has {row!r}; a lesson has id, title and perhaps needs, page and featured."
+                f"{FILE} has {row!r}; a lesson has id, title and perhaps needs, page, outcomes and "
+                "featured."
             ) from error
         known = [earlier.id for earlier in lessons]
         if lesson.id in known:
@@ -70,6 +72,11 @@ def read_map(book: Path) -> list[Lesson]:
             raise CourseMapError(
                 f"{FILE}: {lesson.id} needs {', '.join(unknown)}; before it come "
                 f"{', '.join(known) or 'none'}."
+            )
+        if lesson.page and not lesson.outcomes:
+            raise CourseMapError(
+                f"{FILE}: {lesson.id} is published and has no outcomes. Add `outcomes:` with up to "
+                "three things that a student can do after it."
             )
         lessons.append(lesson)
     featured = [lesson.id for lesson in lessons if lesson.featured]
@@ -93,45 +100,6 @@ class MapDirective(SphinxDirective):
         if gone:
             raise self.error(f"{self.name}: the book has no page {', '.join(gone)}.")
         return lessons
-
-
-class CourseMap(MapDirective):
-    """Show the lessons as a list of cards."""
-
-    def run(self) -> list[nodes.Node]:
-        """Return the list."""
-        return [nodes.bullet_list("", *map(self.card, self.lessons()), classes=["course-map"])]
-
-    def card(self, lesson: Lesson) -> nodes.list_item:
-        """Return the card of one lesson."""
-        name = nodes.strong("", f"{lesson.id} ")
-        head = nodes.paragraph("", "", name, self.title(lesson))
-        state = nodes.paragraph("", "", *self.verdict(lesson), classes=["state"])
-        kind = "published" if lesson.page else "planned"
-        parts = [head, *needs_line(lesson), state]
-        return nodes.list_item("", *parts, classes=[kind], ids=[anchor(lesson.id)])
-
-    def title(self, lesson: Lesson) -> nodes.Node:
-        """Return the title, of a published lesson as a link."""
-        if lesson.page is None:
-            return nodes.inline("", lesson.title)
-        return page_link(self.env.docname, lesson.page, lesson.title)
-
-    def verdict(self, lesson: Lesson) -> list[nodes.Node]:
-        """Return the badges of a published lesson, a word for a planned one."""
-        if lesson.page is None:
-            return [nodes.inline("", "planned", classes=["planned"])]
-        return lesson_badges(Path(self.env.srcdir), lesson.id.lower())
-
-
-class CourseStatus(MapDirective):
-    """Show the state of each published lesson, as `lesson-status` does."""
-
-    def run(self) -> list[nodes.Node]:
-        """Return a name and a list for each."""
-        published = (lesson.id for lesson in self.lessons() if lesson.page)
-        text = "\n".join(f"**{i}**\n\n```{{lesson-status}} {i.lower()}\n```\n" for i in published)
-        return self.parse_text_to_nodes(text)
 
 
 class Featured(MapDirective):
@@ -181,27 +149,7 @@ def page_link(source: str, target: str, words: str) -> nodes.Node:
     )  # fmt: skip
 
 
-def needs_line(lesson: Lesson) -> list[nodes.Node]:
-    """Return the line with the lessons that come before, none where that is not decided yet."""
-    if lesson.needs is None:
-        return []
-    line = nodes.paragraph(classes=["needs"])
-    line += nodes.Text("Builds on ")
-    for number, need in enumerate(lesson.needs):
-        line += nodes.Text((", ", " and ")[number == len(lesson.needs) - 1] if number else "")
-        line += nodes.reference("", need, internal=True, refid=anchor(need))
-    line += nodes.Text("." if lesson.needs else "nothing before it.")
-    return [line]
-
-
-def anchor(lesson: str) -> str:
-    """Return the anchor of a lesson's card."""
-    return f"lesson-{lesson.lower()}"
-
-
 def setup(app: Sphinx) -> None:
-    """Register the directives and the role."""
-    app.add_directive("course-map", CourseMap)
-    app.add_directive("course-status", CourseStatus)
+    """Register the directive and the role."""
     app.add_directive("featured", Featured)
     app.add_role("lesson", LessonLink())

@@ -27,7 +27,9 @@ KEPT = (
     addnodes.pending_xref, nodes.caption, nodes.literal, nodes.literal_block, nodes.math,
     nodes.math_block, nodes.raw, nodes.reference, nodes.table, nodes.term, nodes.title,
 )  # fmt: skip
-KEPT_CLASSES = {"course-map", "evidence-badge", "lesson-status", "measured", "provenance"}
+KEPT_CLASSES = {
+    "course-map", "planned-lessons", "evidence-badge", "lesson-status", "measured", "provenance",
+}  # fmt: skip
 
 logger = logging.getLogger(__name__)
 

@@ -1,6 +1,10 @@
-"""A page's minutes below its title, its Git history at its end, and its description."""
+"""A page's minutes below its title, its Git history at its end, and its description.
+
+The minutes are counted when a page is read; the home page shows those of other pages.
+"""
 
 import textwrap
+from dataclasses import dataclass
 from functools import lru_cache
 from html import escape
 from itertools import islice
@@ -9,6 +13,7 @@ from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
 
 from robo_genesis.core.git import git_or_none
 from robo_genesis.site.evidence.origin import above
@@ -27,6 +32,8 @@ SOURCE = "cell_code_source"
 """What MyST-NB calls the code of a cell."""
 HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
 """Tags of cells whose code is not visible."""
+MINUTES = "minutes"
+"""The name of the time in a page's metadata."""
 UNCOUNTED = (nodes.literal_block, nodes.table, nodes.math, nodes.math_block, nodes.raw)
 
 
@@ -51,17 +58,34 @@ def count_work(document: nodes.document) -> tuple[int, int]:
     return lines, len(list(document.findall(choice)))
 
 
-def minutes(words: int, code_lines: int = 0, questions: int = 0) -> str:
-    """Return the time to read and to work in whole minutes.
+@dataclass(frozen=True, slots=True)
+class Minutes:
+    """The time that a page takes, in whole minutes: to read it, and to work with its code."""
+
+    read: int
+    work: int
+
+    def __str__(self) -> str:
+        work = f", {self.work} min to work" if self.work else ""
+        return f"{self.read} min to read{work}"
+
+
+def minutes(words: int, code_lines: int = 0, questions: int = 0) -> Minutes:
+    """Return the time that a page takes.
 
     Args:
         words: of running text.
         code_lines: visible lines of code, which a reader runs and changes.
         questions: to be answered.
     """
-    read = max(1, round(words / WORDS_A_MINUTE))
     work = round(code_lines / LINES_A_MINUTE + questions * MINUTES_A_QUESTION)
-    return f"About {read} min to read{f', {work} min to work' if work else ''}."
+    return Minutes(max(1, round(words / WORDS_A_MINUTE)), work)
+
+
+def minutes_of(env: BuildEnvironment, docname: str) -> Minutes:
+    """Return the time that a page takes which was read."""
+    found: Minutes = env.metadata[docname][MINUTES]
+    return found
 
 
 @lru_cache(maxsize=8)
@@ -100,9 +124,15 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     if section is None:
         return
     if docname != app.config.root_doc:
-        time = minutes(count_words(document), *count_work(document))
+        time = f"About {minutes_of(app.env, docname)}."
         section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))
     section += nodes.raw("", history_html(Path(app.env.doc2path(docname))), format="html")
+
+
+def keep_minutes(app: Sphinx, document: nodes.document) -> None:
+    """Keep the time that a page takes, before lines of provenance are added to its text."""
+    counted = minutes(count_words(document), *count_work(document))
+    app.env.metadata[app.env.docname][MINUTES] = counted
 
 
 def keep_description(app: Sphinx, document: nodes.document) -> None:
@@ -124,6 +154,7 @@ def write_description(
 
 def setup(app: Sphinx) -> None:
     """Register the additions."""
+    app.connect("doctree-read", keep_minutes)
     app.connect("doctree-read", keep_description)
     app.connect("html-page-context", write_description, priority=400)  # read by others at 500
     app.connect("doctree-resolved", add_facts)

@@ -101,7 +101,9 @@ def test_a_new_lesson_is_on_the_site_at_once(tmp_path, build_output):
     assert "passed" in unit_tests(work, "tests/lessons/l99")
     card = parsed(site, "index").select_one("#lesson-l99")
     assert card.a["href"] == "lessons/l99-new-lesson/lecture.html"
-    assert card.select_one(".evidence-badge").get_text() == "cpu-verified"
+    assert card.select_one("p.time").get_text().startswith("Lecture: ")
+    badges = parsed(site, "lessons/l99-new-lesson/lecture").select(".evidence-badge")
+    assert badges[0].get_text() == "cpu-verified"
     assert "L99 CHECK: PASSED" in parsed(site, "lessons/l99-new-lesson/lab").get_text()
     ledger = parsed(site, "evidence/ledger")
     places = [a["href"] for a in ledger.select("#figures-and-tables tbody a")]

@@ -6,6 +6,7 @@ from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
 
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.maintain.new_lesson import (
+    OUTCOME,
     TEMPLATE,
     LessonError,
     add_lesson,
@@ -116,6 +117,7 @@ def test_the_lists_stay_in_order(lesson, before):
     ids = [row["id"] for row in rows]
     assert ids == sorted(ids)
     assert rows[ids.index(lesson.upper())]["page"] == f"lessons/{lesson}-new-lesson/lecture"
+    assert rows[ids.index(lesson.upper())]["outcomes"] == [OUTCOME]
     assert [row for row in rows if row["id"] != lesson.upper()] == [
         row for row in yaml.safe_load(COURSE_MAP.read_text()) if row["id"] != lesson.upper()
     ]

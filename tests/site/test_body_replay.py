@@ -112,6 +112,20 @@ def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, t
     assert ">licence</a>" in text  # the viewer's
 
 
+def test_a_brief_replay_has_the_same_model_one_channel_and_no_sentences(dropped, tmp_path):
+    written = tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.glb"
+    replay_block(Panel(tmp_path / "book"), KEY, dropped)
+    model = written.read_bytes()
+    block = replay_block(Panel(tmp_path / "book"), KEY, dropped, brief=True)
+    assert written.read_bytes() == model
+    rows = [[cell.astext() for cell in row] for row in block.findall(nodes.row)]
+    assert rows[21] == ["0.2", "1.8", "0.8"]  # heights: high, low
+    assert not list(block.findall(nodes.list_item))
+    opening = next(iter(block.findall(nodes.raw))).astext()
+    assert "height" in opening
+    assert "velocity" not in opening
+
+
 def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_path):
     (tmp_path / LESSON / "lecture" / visual_shape.FILE).unlink()
     with pytest.raises(DirectiveError) as caught:

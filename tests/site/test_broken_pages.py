@@ -93,7 +93,7 @@ def report(tmp_path_factory):
     book = make_book(folder, **pages)
     (book / glossary.FORMS).write_text("forms: {gain: [gains]}\nunlinked: [force]")
     (book / course_map.FILE).write_text(
-        yaml.safe_dump([{"id": "L01", "title": "One", "page": "gone"}])
+        yaml.safe_dump([{"id": "L01", "title": "One", "page": "gone", "outcomes": ["go"]}])
     )
     frame = book / "evidence/l04/amdgpu/frames/final.svg"
     frame.write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")

@@ -2,6 +2,7 @@
 
 import hashlib
 import io
+import posixpath
 import re
 import zipfile
 from copy import deepcopy
@@ -38,7 +39,13 @@ def listed(pages) -> list[tuple[str, str]]:
     """Return (page, anchor) that each row of the ledger leads to."""
     rows = pages[LEDGER].select("#figures-and-tables tbody tr")
     links = [row.select_one("td a")["href"] for row in rows]
-    return [tuple(link.removeprefix("../").split("#")) for link in links]
+    return [place(link) for link in links]
+
+
+def place(link: str) -> tuple[str, str]:
+    """Return (page, anchor) that a link of the ledger leads to."""
+    address, _, anchor = link.partition("#")
+    return posixpath.normpath(posixpath.join(posixpath.dirname(LEDGER), address)), anchor
 
 
 def differences(pages) -> tuple[set, set]:
@@ -71,7 +78,7 @@ def test_each_line_of_provenance_leads_to_the_row_that_leads_back(pages):
     for name, page in pages.items():
         for line in page.select(".provenance"):
             row = rows[line.select_one("a")["href"].split("#")[1]]
-            target, anchor = row.select_one("td a")["href"].removeprefix("../").split("#")
+            target, anchor = place(row.select_one("td a")["href"])
             assert target == name
             kind, _, run = (cell.get_text(strip=True) for cell in row.select("td")[1:4])
             runs = [link.text for link in row.select("td")[3].select("a")]

@@ -1,4 +1,4 @@
-"""The course map is one file: what is planned is called so, what is published has its badges."""
+"""The course map is one file: published lessons become cards with minutes, planned ones a list."""
 
 import pytest
 import yaml
@@ -15,7 +15,20 @@ from robo_genesis.site.course_map import FILE, CourseMapError, Lesson, read_map
 MAP = [
     {"id": "L01", "title": "One"},
     {"id": "L02", "title": "Two", "needs": []},
-    {"id": "L04", "title": "Four", "needs": ["L01", "L02"], "page": "page", "featured": True},
+    {
+        "id": "L04",
+        "title": "Four",
+        "needs": ["L01", "L02"],
+        "page": "page",
+        "outcomes": ["read a `qpos`", "stop"],
+        "featured": True,
+    },
+    {
+        "id": "L06",
+        "title": "Six",
+        "page": "lessons/l06-six/lecture",
+        "outcomes": ["walk"],
+    },
 ]
 
 
@@ -34,7 +47,8 @@ def test_a_map_is_read_in_its_order(tmp_path):
     assert read_map(tmp_path) == [
         Lesson("L01", "One"),
         Lesson("L02", "Two", ()),
-        Lesson("L04", "Four", ("L01", "L02"), "page", featured=True),
+        Lesson("L04", "Four", ("L01", "L02"), "page", ("read a `qpos`", "stop"), featured=True),
+        Lesson("L06", "Six", None, "lessons/l06-six/lecture", ("walk",)),
     ]
 
 
@@ -44,6 +58,8 @@ def test_a_map_is_read_in_its_order(tmp_path):
         ([{"id": "L01"}], "a lesson has id, title"),
         ([{"id": "L01", "title": "One", "state": "verified"}], "a lesson has id, title"),
         (["L01"], "a lesson has id, title"),
+        ([MAP[0] | {"outcomes": "walk"}], "a lesson has id, title"),
+        ([MAP[0] | {"page": "page"}], "L01 is published and has no outcomes"),
         ([MAP[0], MAP[0]], "names L01 twice"),
         ([MAP[0], MAP[2]], "L04 needs L02; before it come L01"),
         ([{"id": "L01", "title": "One", "needs": ["L01"]}], "L01 needs L01; before it come none"),
@@ -72,32 +88,54 @@ Four was measured.
 
 ```{course-status}
 ```
+
+```{course-measured}
+```
 """
+WORDS = "word " * 600
+"""Three minutes to read."""
 
 
 @pytest.fixture(scope="module")
 def html(tmp_path_factory):
     """A book with this map, shown on one page, and lessons of it featured on another."""
     folder = tmp_path_factory.mktemp("map")
-    (folder / "book" / "lessons" / "l02-two").mkdir(parents=True)
+    for name in ("l02-two", "l06-six"):
+        (folder / "book" / "lessons" / name).mkdir(parents=True)
     pages = {"page": "Page", "lessons/l02-two/lecture": "Two", "cards": f"Map\n\n{CARDS}"}
-    pages |= {"featured": f"Map\n\n{FEATURED}"}
+    pages |= {"featured": f"Map\n\n{FEATURED}", "lessons/l06-six/lecture": f"Six\n\n{WORDS}"}
+    pages |= {f"lessons/l06-six/{name}": f"Six\n\n{WORDS}" for name in ("lab", "deeper", "more")}
     book = make_book(folder, **{name: f"# {text}\n\nText.\n" for name, text in pages.items()})
     write(book, MAP)
     return render(SphinxProcess(book, folder / "render.log"), folder / "staging", BuiltPages())
 
 
-def test_a_card_a_lesson_with_prerequisites_and_state(html):
+def test_a_published_lesson_is_a_card_with_outcomes_prerequisites_and_minutes(html):
     cards = parsed(html, "cards").select("ul.course-map > li")
-    lines = [[p.get_text() for p in card.select("p")] for card in cards]
-    assert lines == [
-        ["L01 One", "planned"],
-        ["L02 Two", "Builds on nothing before it.", "planned"],
-        ["L04 Four", "Builds on L01 and L02.", "cpu-missing amdgpu-missing"],
-    ]
-    assert [card["class"] for card in cards] == [["planned"], ["planned"], ["published"]]
-    assert [a["href"] for a in cards[2].select("a")] == ["page.html", "#lesson-l01", "#lesson-l02"]
-    assert {a["href"][1:] for a in cards[2].select(".needs a")} < {card["id"] for card in cards}
+    assert [[p.get_text() for p in card.select("p")] for card in cards] == [
+        ["L04 Four", "read a qpos", "stop", "Builds on L01 and L02.", "Lecture: 1 min to read"],
+        [
+            "L06 Six", "walk", "Lecture: 3 min to read", "Lab: 3 min to read",
+            "2 more pages: 6 min to read",
+        ],
+    ]  # fmt: skip
+    assert [a["href"] for a in cards[0].select("a")] == ["page.html", "page.html"]
+    folder = "lessons/l06-six"
+    pages = ("lecture", "lecture", "lab")
+    assert [a["href"] for a in cards[1].select("a")] == [f"{folder}/{name}.html" for name in pages]
+    assert cards[0].code.get_text() == "qpos"
+
+
+def test_the_minutes_of_a_card_are_those_that_the_page_shows(html):
+    facts = parsed(html, "lessons/l06-six/lecture").select_one(".page-facts").get_text()
+    assert facts == "About 3 min to read."
+
+
+def test_a_planned_lesson_is_a_title_without_a_link(html):
+    planned = parsed(html, "cards").select_one("ul.planned-lessons")
+    lines = {item["id"]: item.get_text().strip() for item in planned.select("li")}
+    assert lines == {"lesson-l01": "L01 One", "lesson-l02": "L02 Two"}
+    assert not planned.select("a")
 
 
 def test_lessons_that_are_absent_leave_words_and_no_content(html):
@@ -106,6 +144,12 @@ def test_lessons_that_are_absent_leave_words_and_no_content(html):
     assert first.get_text() == "The second and the third."
     assert [a["href"] for a in first.select("a")] == ["lessons/l02-two/lecture.html"]
     assert second.get_text() == "Four was measured."
-    assert [b.get_text() for b in article.select("section > p > strong")] == ["L04"]
-    assert len(article.select("ul.lesson-status > li")) == 2
+    assert [b.get_text() for b in article.select("section > p > strong")] == ["L04 ", "L06 "]
+    lines = article.select("ul.lesson-status > li")
+    assert [line.select_one(".evidence-badge").get_text() for line in lines] == 2 * [
+        "cpu-missing", "amdgpu-missing"
+    ]  # fmt: skip
+    assert article.select_one(".course-measured").get_text() == (
+        "No run of this build was accepted."
+    )
     assert "L05" not in article.get_text()

@@ -7,14 +7,18 @@ from bs4 import BeautifulSoup
 
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import MARKS, PARTS
-from robo_genesis.core.project import ROOT
-from robo_genesis.site.drawings import element, inline_drawings
+from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.site.drawings import WIDE, element, inline_drawings
+from robo_genesis.site.page_weight import image_size
 from robo_genesis.site.stacked_tables import stack_tables
 
 SVG = """<?xml version="1.0"?><svg width="90pt" height="60pt" viewBox="0 0 90 60">
 <metadata><b/></metadata><title>No</title><!-- a note --><defs><style>*{x: y}</style>
 <path id="m1" style="fill: #0072b2"/></defs><g id="axes_1"><use xlink:href="#m1"/></g>
 <g clip-path="url(#m1)" stroke="#7a7a7a"/></svg>"""
+
+ON_A_PHONE = 342
+"""Width of a drawing on a phone that is 390 pixels wide [CSS px]."""
 
 
 def inlined(folder, *names: str) -> BeautifulSoup:
@@ -123,3 +127,11 @@ def test_a_table_whose_columns_are_cases_does_not_break():
     stack_tables(page)
     assert page.select("table.stacks")
     assert page.select("tbody td")[1]["data-head"] == "G1"
+
+
+@pytest.mark.parametrize("file", sorted(BOOK.glob("lessons/*/*.svg")), ids=lambda file: file.name)
+def test_an_illustration_fits_on_a_phone_with_letters_that_can_be_read(file):
+    width, _ = image_size(file)
+    letters = re.findall(r'font-size="([\d.]+)"', file.read_text("utf8"))
+    assert width <= WIDE
+    assert min(map(float, letters)) * ON_A_PHONE / width >= 11

@@ -1,4 +1,4 @@
-"""The run that the home page shows at a glance."""
+"""The run that the page on evidence shows at a glance."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What a lesson measured, at a glance: ```` ```{glance} l04 ```` on the home page.
+"""What a lesson measured, at a glance: ```` ```{glance} l04 ```` on the page on evidence.
 
 A plot of this build's lab, and the camera's last frame beside it where rendering ran.
 """

@@ -14,6 +14,7 @@ Roles and a directive, as pages write them:
 """
 
 import importlib.metadata
+from collections.abc import Sequence
 from functools import lru_cache
 from html import escape
 from pathlib import Path
@@ -155,12 +156,17 @@ class LessonStatus(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Return the fold; inside it is one line per backend."""
         statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
-        lines = nodes.bullet_list(classes=["lesson-status"])
-        for status in statuses:
-            line = nodes.paragraph("", "", badge_node(status), nodes.Text(f" {status.sentence}"))
-            lines += nodes.list_item("", line)
         words = [(status.state, state_words(status)) for status in statuses]
-        return [status_fold("", lines, line=words)]
+        return [status_fold("", status_list(statuses), line=words)]
+
+
+def status_list(statuses: Sequence[Status]) -> nodes.bullet_list:
+    """Return the states of runs as a list: the badge and a sentence on each."""
+    lines = nodes.bullet_list(classes=["lesson-status"])
+    for status in statuses:
+        line = nodes.paragraph("", "", badge_node(status), nodes.Text(f" {status.sentence}"))
+        lines += nodes.list_item("", line)
+    return lines
 
 
 class LessonState(SphinxRole):

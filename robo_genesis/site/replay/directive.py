@@ -1,17 +1,20 @@
 """A recorded run that plays in the page, and the files that load only on a reader's request.
 
 A page writes ```` ```{replay} l04/lecture ````, or with the name of further cases that its lesson
-declares, ```` ```{replay} l03/lab slides ````. The panel of a recorded run also has a replay. Poses
-and curves come from the record; the shape comes from the model, which the lecture writes to a file.
+declares, ```` ```{replay} l03/lab slides ````. The option `:brief:` leaves out all channels but the
+first, and the sentences on each case. The panel of a recorded run also has a replay. Poses and
+curves come from the record; the shape comes from the model, which the lecture writes to a file.
 """
 
 import base64
 import gzip
 from collections.abc import Iterator
+from dataclasses import replace
 from html import escape
 from pathlib import Path
 
 from docutils import nodes
+from docutils.parsers.rst.directives import flag
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -38,6 +41,7 @@ class ReplayDirective(SphinxDirective):
 
     required_arguments = 1
     optional_arguments = 1
+    option_spec = {"brief": flag}  # noqa: RUF012 - as docutils declares it
 
     def run(self) -> list[nodes.Node]:
         """Return the replay.
@@ -48,11 +52,12 @@ class ReplayDirective(SphinxDirective):
         folder = page_outputs(lesson_page) / BACKEND
         if not (folder / "manifest.json").is_file():
             raise self.error(f"replay: {lesson_page} has no bundle on {BACKEND}.")
-        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *further)]
+        key = f"{lesson_page}/{BACKEND}"
+        return [replay_block(self, key, folder, *further, brief="brief" in self.options)]
 
 
 def replay_block(
-    directive: SphinxDirective, key: str, folder: Path, further: str = ""
+    directive: SphinxDirective, key: str, folder: Path, further: str = "", *, brief: bool = False
 ) -> nodes.Node:
     """Return the replay of an accepted bundle, with all its information as text and as a table.
 
@@ -61,6 +66,7 @@ def replay_block(
         key: names the run, as in the ledger.
         folder: of the bundle.
         further: name of further cases, empty for those that the lesson compares.
+        brief: whether to show the first channel alone, and no sentences on the cases.
 
     Raises:
         DirectiveError: the lesson has no such cases, its runs cannot be played together, or no page
@@ -86,10 +92,12 @@ def replay_block(
         weight = round((written + len(gzip.compress(viewer.viewer()))) / 1000)
         up = "../" * env.docname.count("/") + FOLDER
         files = controls.Files(f"{up}/{name}.js", f"{up}/{VIEWER}")
-        opening = controls.opening(name, runs, around.camera, files)
+        shown = first_channel(runs) if brief else runs  # the model is the same
+        opening = controls.opening(name, shown, around.camera, files)
     except (LookupError, ValueError) as error:
         raise directive.error(f"replay: {key}: {error}") from error
-    summary = f"Results of {', '.join(runs.traces)}, and all samples as a table"
+    samples = f"samples of {', '.join(runs.traces)} as a table"
+    summary = f"Results and all {samples}" if shown.moves else f"All {samples}"
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     block += nodes.raw("", opening, format="html")
@@ -99,14 +107,21 @@ def replay_block(
     stage = nodes.container("", poster, over, classes=["stage"])
     caption = nodes.caption("", controls.caption(runs, around))
     block += nodes.figure("", stage, caption, ids=[f"{name}-model"])
-    block += nodes.raw("", controls.panel(name, runs, weight), format="html")
-    lines = (nodes.paragraph("", "", *marked(text)) for text in runs.moves.values())
+    block += nodes.raw("", controls.panel(name, shown, weight), format="html")
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
-    block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
-    block += scroll_box("", *directive.parse_text_to_nodes(controls.samples(runs)), label=summary)
+    if shown.moves:
+        lines = (nodes.paragraph("", "", *marked(text)) for text in shown.moves.values())
+        block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
+    block += scroll_box("", *directive.parse_text_to_nodes(controls.samples(shown)), label=summary)
     origin = origin_html(name, folder, up, runs.view.credit)
     block += nodes.raw("", f"</details>{origin}", format="html")
     return block
+
+
+def first_channel(runs: Runs) -> Runs:
+    """Return runs with their first channel and its levels alone, and without sentences."""
+    first = runs.channels[0]
+    return replace(runs, channels=[first], levels=runs.levels_of(first), moves={})
 
 
 def shape_file(lesson: str, thing: str) -> Path:

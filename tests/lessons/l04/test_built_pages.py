@@ -109,7 +109,7 @@ def test_the_explorer_of_the_lecture_has_the_runs_of_the_grid(lecture, site):
 
 def test_a_number_in_prose_is_the_bundle_s_and_says_where_it_comes_from(site):
     records = bundle.read_metrics(site.parent / "evidence" / "l04" / "cpu")
-    number = parsed(site / "index.html").select_one(".measured")
+    number = parsed(site / "evidence" / "index.html").select_one(".measured")
     assert number.get_text() == f"{records['G2']['overshoot'].value:.4f} rad"
     assert re.search(
         r"l04/lab on cpu, Genesis .*, run \w{8}, \d{4}-\d\d-\d\d", number["data-provenance"]

@@ -1,0 +1,77 @@
+"""The runs of the whole course, computed from their bundles.
+
+| in a page | shows |
+|---|---|
+| {course-measured} (directive) | a line: engine version and dates of this build's runs |
+| {course-status} (directive) | the state of the runs of each published lesson |
+"""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from robo_genesis.core.text import listed
+from robo_genesis.site.course_map import MapDirective, page_link
+from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, status_list
+from robo_genesis.site.evidence.provenance import all_runs
+
+EVIDENCE = "evidence/index"
+"""The page that explains the evidence."""
+
+
+class CourseMeasured(SphinxDirective):
+    """Show with which engine and when the runs of this build were measured."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return the line, with a link to the page on evidence where the book has it."""
+        line = nodes.paragraph("", measured_line(all_runs(Path(self.env.srcdir)).values()))
+        if EVIDENCE in self.env.found_docs:
+            link = page_link(self.env.docname, EVIDENCE, "How to read the evidence")
+            line += [nodes.Text(" "), link]
+        line["classes"].append("course-measured")
+        return [line]
+
+
+def measured_line(runs: Iterable[Run]) -> str:
+    """Return backend, engine version and dates of the accepted runs that were not recorded.
+
+    Args:
+        runs: of this build, and recorded ones, which are left out.
+    """
+    own = [run for run in runs if not run.recorded]
+    accepted = [(run, run.predicate) for run in own if run.predicate is not None]
+    if not accepted:
+        return "No run of this build was accepted."
+    backends = sorted({READABLE.get(run.status.backend, run.status.backend) for run, _ in accepted})
+    engines = sorted({predicate.engine.version for _, predicate in accepted})
+    dates = sorted({predicate.started[:10] for _, predicate in accepted})
+    when = f"on {dates[0]}" if len(dates) == 1 else f"from {dates[0]} to {dates[-1]}"
+    line = f"Measured on {listed(backends)} with Genesis {listed(engines)} {when}."
+    if lacking := len(own) - len(accepted):
+        line += f" {lacking} of {len(own)} runs were not accepted."
+    return line
+
+
+class CourseStatus(MapDirective):
+    """Show the state of the runs of each published lesson's lab."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return a title and a list for each lesson."""
+        found: list[nodes.Node] = []
+        for lesson in (lesson for lesson in self.lessons() if lesson.page):
+            assert lesson.page is not None
+            title = page_link(self.env.docname, lesson.page, lesson.title)
+            found.append(nodes.paragraph("", "", nodes.strong("", f"{lesson.id} "), title))
+            statuses = lesson_statuses(Path(self.env.srcdir), lesson.id.lower())
+            found.append(status_list(statuses))
+        return found
+
+
+def setup(app: Sphinx) -> None:
+    """Register the directives."""
+    app.add_directive("course-measured", CourseMeasured)
+    app.add_directive("course-status", CourseStatus)
