@@ -11,6 +11,17 @@ MAKEFLAGS += --no-print-directory
 # A build uses all cores; a test or a second build at the same time would only disturb it.
 .NOTPARALLEL:
 
+# Variables are in capitals: `jobs=2` would be ignored without a word.
+NAMED := $(foreach word,$(MAKEOVERRIDES),$(if $(findstring =,$(word)),$(firstword $(subst =, ,$(word)))))
+KNOWN := RENDER RELEASE JOBS PORT EXECUTE EXECUTED BUNDLE GENESIS SITE_URL PAGE TO LESSON BACKEND OLD NEW \
+  REPORT ROWS RUNS PYTHON BASE_PYTHON
+ifneq ($(filter-out $(KNOWN),$(NAMED)),)
+  SMALL := $(foreach name,$(filter-out $(KNOWN),$(NAMED)),$(if $(filter $(KNOWN),$(shell echo '$(name)' | tr a-z A-Z)),$(name)))
+  ifneq ($(strip $(SMALL)),)
+    $(error $(SMALL) would be ignored: variables are in capitals. Write $(shell echo '$(SMALL)' | tr a-z A-Z))
+  endif
+endif
+
 ifdef PYTHON
   PY := $(PYTHON)
   ENVIRONMENT := has-packages
@@ -134,6 +145,8 @@ bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=
 
 .PHONY: has-packages
 has-packages:
+	@command -v "$(PY)" >/dev/null || { echo "PYTHON=$(PY) is not a Python command. Give the path of an" \
+	  "interpreter with the packages of requirements.lock, or leave PYTHON out to use .venv." >&2; exit 1; }
 	@"$(PY)" -c 'import sys; from importlib.util import find_spec; \
 	  needed = "genesis jupyter_book pytest xdist ruff mypy importlinter codespell_lib check_jsonschema".split(); \
 	  missing = [name for name in needed if find_spec(name) is None]; \

@@ -52,6 +52,34 @@ def test_a_python_without_the_packages_is_refused_with_their_names_and_the_fix(c
     assert str(checkout) not in done.stdout.splitlines()
 
 
+def test_a_python_that_is_none_is_refused_with_the_fix(checkout):
+    done = make(checkout, "serve", "PYTHON=nowhere/python")
+    assert done.returncode != 0
+    assert "PYTHON=nowhere/python is not a Python command" in done.stderr
+    assert "leave PYTHON out" in done.stderr
+    assert "not found" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["jobs=2"], "jobs would be ignored: variables are in capitals. Write JOBS"),
+        (["site_url=https://example.org/a=b"], "site_url would be ignored"),
+        (["Page=l04/lab", "to=folder"], "Write "),
+    ],
+)
+def test_a_variable_in_small_letters_is_refused_by_name(checkout, given, said):
+    done = make(checkout, "serve", f"PYTHON={python(checkout)}", *given)
+    assert done.returncode != 0
+    assert said in done.stderr
+    assert str(checkout) not in done.stdout.splitlines()
+
+
+def test_other_variables_and_values_with_spaces_are_accepted(checkout):
+    words = [f"PYTHON={python(checkout)}", "ROWS=prose live=fast", "pip_option=x"]
+    assert make(checkout, "serve", *words).returncode == 0
+
+
 def test_clean_keeps_what_the_engine_compiled_and_distclean_does_not(checkout):
     compiled = checkout / ".cache" / "engine" / "1-a" / "kernels" / "kernel.qdc"
     executed = checkout / ".cache" / "pages" / "b" / "notebooks" / "global.db"

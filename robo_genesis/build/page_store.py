@@ -117,6 +117,21 @@ def forget(store: Path, results: Iterable[PageResult]) -> None:
             shutil.rmtree(path)
 
 
+def require_export_folder(to: Path) -> None:
+    """Require a folder that is new, or holds nothing but executed pages.
+
+    Raises:
+        StoreError: something else is in it.
+    """
+    held = sorted(to.iterdir()) if to.is_dir() else []
+    others = [path for path in held if not (path / RECORD).is_file()]
+    if others:
+        raise StoreError(
+            f"TO={to} holds {others[0].name}, which is not an executed page. Name a new folder, "
+            "or one that holds only exported pages."
+        )
+
+
 def export_page(result: PageResult, to: Path) -> Path:
     """Copy one executed page, whole or not at all.
 
@@ -128,10 +143,11 @@ def export_page(result: PageResult, to: Path) -> Path:
         The page's folder.
 
     Raises:
-        StoreError: something else has the folder's name.
+        StoreError: the folder holds something else.
         OSError: it cannot be written.
     """
     assert result.folder is not None  # only a failed page has none
+    require_export_folder(to)
     place = to / _folder(result.page)
     if place.exists() and not (place / RECORD).is_file():
         raise StoreError(

@@ -27,6 +27,7 @@ from robo_genesis.build.page_store import (
     forget,
     import_pages,
     places,
+    require_export_folder,
 )
 from robo_genesis.build.release import missing_for_release
 from robo_genesis.build.site.address import site_address, site_root
@@ -183,6 +184,7 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
         if to is None:
             raise BuildError("TO is not set. Name the folder that gets the page: TO=folder.")
         bundle_store.require_folder(to)
+        require_export_folder(to)
         progress = Progress(build.say)
         [result] = _execute(build, [names[name]], into, progress)
         place = export_page(result, to)

@@ -55,6 +55,11 @@ def test_a_place_that_cannot_be_written_is_refused_before_the_run(folder, no_fil
         export(folder, "broken", None)
 
 
+def test_a_folder_with_other_content_is_refused_before_the_run(folder):
+    with pytest.raises(ProjectError, match=r"TO=.*/book holds .*, which is not an executed page"):
+        export(folder, "broken", folder / "book")
+
+
 def test_a_failed_page_is_status_1_its_report_and_no_export(folder, tmp_path):
     report = fails("execute.py", folder, PAGE="broken", TO=str(tmp_path / "to"))
     assert "broken, code cell 1, line 10: 1 / 0" in report

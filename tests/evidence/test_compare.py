@@ -129,8 +129,6 @@ def test_a_joint_with_another_dof_is_a_difference(folder, other):
         (part("parameters", stepped_joint="joint2"), "parameters.stepped_joint"),
         (part("parameters", more=1), "parameters.more differs: 'absent' and 1"),
         (predicate(seed=1), "The seed differs: 0 and 1"),
-        (predicate(page="lecture"), "The page differs: 'lab' and 'lecture'"),
-        (predicate(lesson="l02"), "The lesson differs: 'l04' and 'l02'"),
         (part("engine", precision="64"), "The precision differs: '32' and '64'"),
         (part("backend", actual_at_end="cuda"), "changed during the run, from cpu to cuda"),
         (both(ACCELERATED, UPGRADED), "9.9.9 (quadrants " + QUADRANTS + ") and backend cpu → cuda"),
@@ -349,6 +347,13 @@ def test_a_changed_or_missing_file_is_refused(folder, other, name):
 def test_huge_numbers_are_refused(folder, other):
     spoil(other, value("G1", "overshoot", 10**400))
     with pytest.raises(BundleRefused, match=r"^bad-json: .*metrics.json: '10+…"):
+        compare(folder, other)
+
+
+@pytest.mark.parametrize("change", [{"lesson": "l02"}, {"page": "lecture"}])
+def test_bundles_of_two_pages_are_refused_in_one_line(folder, other, change):
+    spoil(other, predicate(**change))
+    with pytest.raises(BundleRefused, match=r"is of l04/lab, .*Give two bundles of the same page"):
         compare(folder, other)
 
 
