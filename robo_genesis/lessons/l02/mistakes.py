@@ -16,6 +16,9 @@ from robo_genesis.sim.rigid_bodies import Drop, read_body
 LEAP = 0.5
 """Rise from which a box counts as leaping, as a share of its edge."""
 
+FALL_STEPS = 60
+"""Steps in which a box without collision geometry falls past the ground."""
+
 
 def second_init(gs: Any) -> Failure:
     """Initialise the engine a second time."""
@@ -87,6 +90,23 @@ def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
             f"{speed:.2f} m/s."
         ),
         curves={"pos=(…, 0)": (t, z)},
+    )
+
+
+def no_collision(scene: Any, ghost: Any, solid: Any, case: Drop) -> Failure:
+    """Drop a box whose morph has `collision=False`, beside an ordinary one."""
+    found = heights(scene, {"ghost": ghost, "solid": solid}, FALL_STEPS)
+    t = np.arange(FALL_STEPS + 1) * case.dt
+    end = {name: float(z[-1]) for name, z in found.items()}
+    return Failure(
+        "no_collision",
+        shown=end["ghost"] < -case.size and 0 < end["solid"] < case.size,
+        evidence=(
+            f"After {t[-1]:g} s the centre of the ordinary box is at {end['solid']:.3f} m and that "
+            f"of the other one at {end['ghost']:.3f} m. They have {len(solid.geoms)} and "
+            f"{len(ghost.geoms)} collision geoms, and {len(solid.vgeoms)} visual geom each."
+        ),
+        curves={"collision=False": (t, found["ghost"]), "ordinary": (t, found["solid"])},
     )
 
 

@@ -202,8 +202,17 @@ CLAIMS: dict[str, str] = {
     "sides_of_build": (
         "The engine accepts each call on its own side of build and refuses it on the other."
     ),
+    "two_geometries": (
+        "The box collides with what is drawn; the duck collides with fewer triangles than are "
+        "drawn, the tray with several pieces for one drawn mesh."
+    ),
+    "invisible_lid": (
+        "A ball rests on the floor of a tray of several collision pieces, and on the rim of a tray "
+        "with a single one."
+    ),
+    "further_falls": (
+        "After build, another height, speed, mass and gravity are accepted, and the stepped "
+        "formula holds with each."
+    ),
 }
 """What each named check of the pages requires, shown where it passed."""
-
-SAME_FALL = "Boxes of different colour or density fall alike, to the last bit."
-"""What the check of the lecture's boxes requires, which are in no bundle."""
