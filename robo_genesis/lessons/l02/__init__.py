@@ -60,6 +60,7 @@ LECTURE = replace(
     readings=study_readings,
     checks=(*checks.CHECKS, *study.CHECKS, life_cycle.sides_of_build, *trials.CHECKS),
     parameters=spec.study_parameters,
+    frames=(*LAB.frames, spec.TRAYS),
 )
 MISTAKES = replace(LAB)
 

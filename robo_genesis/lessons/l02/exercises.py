@@ -25,7 +25,7 @@ UNTIL_REST = 100
 
 
 def scene(make: Callable[..., Any], gs: Any, case: Drop) -> list[Check]:
-    """Check `make(gs)`: a built scene with a ground and the box of a case, which falls and lands."""
+    """Check `make(gs)`: a built scene with a ground, and the box of a case, which falls on it."""
 
     def findings(_: None) -> Iterator[Finding]:
         built, box = make(gs)

@@ -68,11 +68,10 @@ def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
             and (fixed.n_dofs, free.n_dofs) == (0, 6)
         ),
         evidence=(
-            f"In {t[-1]:g} s the free box fell {moved['free']:.4f} m and the fixed box "
-            f"{moved['fixed']:.4f} m. The free box has {free.n_dofs} DOFs, the fixed box "
-            f"{fixed.n_dofs}."
+            f"In {t[-1]:g} s this box fell {moved['fixed']:.4f} m and the other one "
+            f"{moved['free']:.4f} m. They have {fixed.n_dofs} and {free.n_dofs} DOFs."
         ),
-        curves={"fixed=True": (t, found["fixed"]), "free": (t, found["free"])},
+        curves={"this box": (t, found["fixed"]), "the other one": (t, found["free"])},
     )
 
 
@@ -89,7 +88,7 @@ def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
             f"The centre rose to {z.max():.3f} m; the largest upward speed between two samples was "
             f"{speed:.2f} m/s."
         ),
-        curves={"pos=(…, 0)": (t, z)},
+        curves={"centre of the box": (t, z)},
     )
 
 
@@ -102,11 +101,12 @@ def no_collision(scene: Any, ghost: Any, solid: Any, case: Drop) -> Failure:
         "no_collision",
         shown=end["ghost"] < -case.size and 0 < end["solid"] < case.size,
         evidence=(
-            f"After {t[-1]:g} s the centre of the ordinary box is at {end['solid']:.3f} m and that "
-            f"of the other one at {end['ghost']:.3f} m. They have {len(solid.geoms)} and "
-            f"{len(ghost.geoms)} collision geoms, and {len(solid.vgeoms)} visual geom each."
+            f"After {t[-1]:g} s the centre of this box is at {end['ghost']:.3f} m and that of the "
+            f"other one at {end['solid']:.3f} m. The lists `vgeoms` have {len(ghost.vgeoms)} and "
+            f"{len(solid.vgeoms)} entries, the lists `geoms` {len(ghost.geoms)} and "
+            f"{len(solid.geoms)}."
         ),
-        curves={"collision=False": (t, found["ghost"]), "ordinary": (t, found["solid"])},
+        curves={"this box": (t, found["ghost"]), "the other one": (t, found["solid"])},
     )
 
 

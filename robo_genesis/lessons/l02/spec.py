@@ -73,6 +73,9 @@ LID = 0.01
 TRAYS = "trays"
 """The camera frame of both trays."""
 
+FURTHER_TOLERANCE = 1e-6
+"""Tolerance of a further fall against the exact sum: float32 heights of up to a metre [m]."""
+
 HIGHER, THROWN, HEAVIER, MOON = 1.0, 1.0, 4.0, 1.62
 """The further falls: start height [m], upward speed [m/s], factor of the mass, gravity [m/s²]."""
 

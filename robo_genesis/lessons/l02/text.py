@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from robo_genesis.core import tables
 from robo_genesis.core.free_fall import ahead_of_continuous, continuous_drop, summed_drop
+from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block, signed
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02 import study as studies
@@ -17,6 +18,9 @@ from robo_genesis.lessons.l02.spec import (
 from robo_genesis.lessons.l02.study import StepStudy
 from robo_genesis.sim.rigid_bodies import Drop
 
+TENTH, MILLIMETRE = 0.1, 1e-3
+"""Lengths below the first are written in mm, below the second in µm [m]."""
+
 INSPECT = "Check the times of the samples, the first state, gravity, and contacts first."
 TERM = "g h t / 2".replace(" ", "\N{NO-BREAK SPACE}")
 """How far ahead of continuous free fall a stepped body is."""
@@ -29,7 +33,15 @@ def model_table(run: Experiment) -> str:
 
 def metric_table(run: Experiment) -> str:
     """Return the metrics of the baseline."""
-    return tables.six_digits({"baseline": run.metrics["baseline"]})
+    return tables.metric_table({"baseline": run.metrics["baseline"]}, readable)
+
+
+def readable(value: float | None, unit: str) -> str:
+    """Write a value with a unit of its size: `0.0689 µm`, `4.90 mm` and `0.2011 m`."""
+    if value is None or unit != "m" or value == 0 or abs(value) >= TENTH:
+        return format_value(value, unit).replace("-", "−")
+    size, name = (1e3, "mm") if abs(value) >= MILLIMETRE else (1e6, "µm")
+    return f"{size * value:.3g} {name}".replace("-", "−")
 
 
 def three_drops(run: Experiment) -> str:
@@ -46,7 +58,7 @@ def conclusions(run: Experiment) -> str:
 def substep_table(run: Experiment) -> str:
     """Return the drops of all solver steps."""
     study = studies.step_study(run.metrics, run.cases)
-    return tables.markdown(studies.rows(study, run.metrics))
+    return tables.markdown(studies.rows(study, run.metrics, run.cases))
 
 
 def substep_conclusions(run: Experiment) -> str:
