@@ -36,7 +36,7 @@ def readings() -> dict[str, Readings]:
 
 def count_shapes(entities: Mapping[str, Any]) -> dict[str, int]:
     """Return the counts of the visual and collision geometry of entities, by name."""
-    found = {}
+    found: dict[str, int] = {}
     for name, entity in entities.items():
         seen, felt = (
             sum(len(geom.get_trimesh().faces) for geom in geoms)
