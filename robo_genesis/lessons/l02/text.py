@@ -7,6 +7,7 @@ from robo_genesis.core.free_fall import ahead_of_continuous, continuous_drop, su
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block, signed
 from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l02 import spec, trials
 from robo_genesis.lessons.l02 import study as studies
 from robo_genesis.lessons.l02.metrics import DropMetrics
 from robo_genesis.lessons.l02.spec import (
@@ -65,6 +66,27 @@ def substep_conclusions(run: Experiment) -> str:
     """Return the sentences about all solver steps."""
     sentences = convergence(studies.step_study(run.metrics, run.cases))
     return "\n".join(f"- {sentence}" for sentence in sentences)
+
+
+def falls_table(run: Experiment) -> str:
+    """Return the further falls beside the stepped formula."""
+    words = {
+        "higher": f"from {spec.HIGHER:g} m",
+        "thrown": f"thrown upwards at {spec.THROWN:g} m/s",
+        "heavier": f"{spec.HEAVIER:g} times as heavy",
+        "moon": f"on the Moon, g = {spec.MOON:g} m/s²",
+    }
+    found, expected = run.readings[trials.FURTHER], trials.expected_falls()
+    return tables.markdown(
+        [
+            {
+                "fall": words[name],
+                "measured [m]": f"{found[name]:.6f}",
+                "stepped formula [m]": f"{expected[name]:.6f}",
+            }
+            for name in trials.FALLS
+        ]
+    )
 
 
 def interpretation(found: DropMetrics, case: Drop) -> tuple[Block, ...]:

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core import tables
 from robo_genesis.core.checks import Check, Finding, above, below, conclude, equal, within
 from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.trace import BodyTrace
@@ -97,27 +96,6 @@ def further_falls(run: Experiment) -> Iterator[Finding]:
     """Check the distances fallen after `build`; a named check of the lecture."""
     for name, expected in expected_falls().items():
         yield within(f"{name}_m", run.readings[FURTHER][name], expected, spec.FURTHER_TOLERANCE)
-
-
-def falls_table(run: Experiment) -> str:
-    """Return the further falls beside the stepped formula."""
-    words = {
-        "higher": f"from {spec.HIGHER:g} m",
-        "thrown": f"thrown upwards at {spec.THROWN:g} m/s",
-        "heavier": f"{spec.HEAVIER:g} times as heavy",
-        "moon": f"on the Moon, g = {spec.MOON:g} m/s²",
-    }
-    found, expected = run.readings[FURTHER], expected_falls()
-    return tables.markdown(
-        [
-            {
-                "fall": words[name],
-                "measured [m]": f"{found[name]:.6f}",
-                "stepped formula [m]": f"{expected[name]:.6f}",
-            }
-            for name in FALLS
-        ]
-    )
 
 
 def same_heights(heights: Sequence[float], trace: BodyTrace) -> Check:

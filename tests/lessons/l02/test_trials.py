@@ -11,7 +11,7 @@ from lessons.l02.readings import COUNTS, TRIALS
 
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.book_pages import find_pages
-from robo_genesis.lessons.l02 import LECTURE, plots, spec, trials
+from robo_genesis.lessons.l02 import LECTURE, plots, spec, text, trials
 
 
 def geom(faces):
@@ -79,7 +79,7 @@ def test_the_falls_are_those_of_the_stepped_formula():
     # g h² n (n + 1) / 2 with n = 40 and h = 5 ms; thrown: less 1 m/s · 0.2 s
     expected = {"higher": 0.201105, "thrown": 0.001105, "heavier": 0.201105, "moon": 0.03321}
     assert trials.expected_falls() == pytest.approx(expected, abs=1e-9)
-    assert "| on the Moon, g = 1.62 m/s² | 0.033210 | 0.033210 |" in trials.falls_table(run_with())
+    assert "| on the Moon, g = 1.62 m/s² | 0.033210 | 0.033210 |" in text.falls_table(run_with())
 
 
 def test_a_loop_that_differs_from_the_record_is_named():
