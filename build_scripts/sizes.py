@@ -1,6 +1,6 @@
 """Print the size of each executed page and compare it with the limits: a part of `make lint`.
 
-Exit status: 0 all pages keep their limits or are exempt; 1 otherwise.
+Exit status: 0 all pages keep their limits; 1 otherwise.
 """
 
 import sys

@@ -1,6 +1,6 @@
 """Read the experiment of a bundle from its files."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -36,7 +36,7 @@ def from_bundle(
         traces={name: trace_files.read_run(folder, arrays, name, page.kind) for name in page.runs},
         links=arrays.coords["link"],
         readings=readings(metrics, page, rendered),
-        frames=read_frames(folder, predicate),
+        frames=read_frames(folder, predicate, page.frames),
         rendered=rendered,
         joints=trace_files.read_joints(arrays) if page.joints else None,
     )
@@ -99,14 +99,20 @@ def readings(
     return found
 
 
-def read_frames(folder: Path, predicate: Predicate) -> dict[str, np.ndarray]:
+def read_frames(folder: Path, predicate: Predicate, names: Iterable[str]) -> dict[str, np.ndarray]:
     """Return the camera frames by name, each of this run.
+
+    Args:
+        folder: the bundle.
+        predicate: of its manifest.
+        names: the frames of a run with a camera.
 
     Raises:
         BundleRefused: `frames`.
     """
     present = sorted(path.name for path in (folder / "frames").glob("*"))
-    expected = ["final.png", "initial.png"] if predicate.render.mode == "camera" else []
+    with_camera = predicate.render.mode == "camera"
+    expected = sorted(f"{name}.png" for name in names) if with_camera else []
     what = f"list of frames with render mode {predicate.render.mode}"
     expect("frames", "frames/", what, present, expected)
     frames = {}

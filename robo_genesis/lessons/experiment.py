@@ -63,6 +63,7 @@ class MeasuringPage:
     | `parameters` | returns every configured input as JSON values |
     | `validate` | refuses arrays that no run can have |
     | `camera` | whether it has camera frames where the environment asks for them |
+    | `frames` | the names of these frames |
 
     The code that measures needs no declaration: `sources.measuring_modules` finds it. The `spec` of
     a lesson is not in it, because `parameters` covers it.
@@ -79,6 +80,7 @@ class MeasuringPage:
     joints: tuple[str, ...] = ()
     validate: Callable[["Experiment"], None] = field(default=lambda run: None)
     camera: bool = True
+    frames: tuple[str, ...] = ("initial", "final")
 
     @property
     def cases(self) -> dict[str, Any]:

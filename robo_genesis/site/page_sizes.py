@@ -1,7 +1,7 @@
 """The size of each page in its source, and the limits for its kind; `make lint` compares them."""
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,12 +37,6 @@ LIMITS = {
     "deeper": {"words": 2000},
 }
 """The largest numbers by kind of page: the first word of its name."""
-
-EXEMPT = {
-    "lessons/l02-life-cycle/lecture",
-}  # fmt: skip
-"""Pages that have their old form: `make lint` does not refuse their size, nor do tests their tab
-stops. An entry that is not needed any more is an error."""
 
 FENCE = re.compile(r"\s*(?P<marks>`{3,}|:{3,}|~{3,})(?:\{(?P<name>[\w:-]+)\})?(?P<rest>.*)")
 SHOWN_AS_PROSE = {"admonition", "note", "tip", "important", "warning", "caution", "hint", "seealso"}
@@ -130,40 +124,20 @@ def excess(found: Size, kind: str) -> list[str]:
     ]
 
 
-def report(
-    pages: Collection[Page], exempt: Collection[str] = frozenset(EXEMPT)
-) -> tuple[list[str], list[str]]:
-    """Return a line for each page, and the problems.
+def report(pages: Iterable[Page]) -> tuple[list[str], list[str]]:
+    """Return a line for each page, and what to do about each page that is too large.
 
     Args:
         pages: the executed pages of the book.
-        exempt: names of pages whose size is not refused.
     """
-    lines, over = [], {}
+    lines, problems = [], []
     for page in pages:
         found = size(page.notebook, page.path.parent)
         numbers = ", ".join(f"{getattr(found, name):,} {what}" for name, what in MEASURES.items())
         lines.append(f"{page.docname}: {numbers}")
-        if problem := excess(found, page.path.stem.partition("-")[0]):
-            over[page.docname] = problem
-    return lines, problems(over, exempt)
-
-
-def problems(over: Mapping[str, list[str]], exempt: Collection[str]) -> list[str]:
-    """Return what to do about pages that are too large, and about exemptions without need.
-
-    Args:
-        over: for each page that is over a limit, the phrases of `excess`.
-        exempt: names of pages.
-    """
-    large = [
-        f"{name} is over its size: {'; '.join(over[name])}. Shorten it, or move a part to a deeper "
-        "page."
-        for name in over
-        if name not in exempt
-    ]
-    return large + [
-        f"{name} keeps all limits, so its exemption is not needed. Remove it from EXEMPT in "
-        "robo_genesis/site/page_sizes.py."
-        for name in sorted(set(exempt) - over.keys())
-    ]
+        if over := excess(found, page.path.stem.partition("-")[0]):
+            problems.append(
+                f"{page.docname} is over its size: {'; '.join(over)}. Shorten it, or move a part "
+                "to a deeper page."
+            )
+    return lines, problems

@@ -177,7 +177,7 @@ CHANGES = [
     ("lessons/l02/text", CLAIM, ("l02",), NONE),
     ("lessons/l02/text", DOCSTRING, NONE, NONE),
     ("lessons/l04/claims_text", ('"The baseline ', '"A baseline '), ("l04",), NONE),
-    ("lessons/l02/checks", ('"""Check that', '"""Verify that'), NONE, NONE),
+    ("lessons/l02/checks", ('"""Named checks', '"""The checks'), NONE, NONE),
     ("lessons/l02/metrics", ('"""Return how far', '"""Find how far'), NONE, NONE),
 ]
 CHANGES += [  # a lesson can be removed with the folder of its tests alone

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import matplotlib as mpl
 import pytest
+from built_site import LESSON_PAGES
 from playwright.sync_api import Page
 
 from robo_genesis.core import plotting
@@ -169,6 +170,20 @@ def test_on_a_phone_no_figure_is_cut_off_and_its_letters_can_be_read(browser, ad
         assert left >= 0
         assert right <= 390
         assert scale * min(letters or [drawn]) >= 11
+    page.close()
+
+
+STACKED = """tables => tables.map(one =>
+  [one.parentElement.clientWidth, Math.max(one.scrollWidth, one.parentElement.scrollWidth)])"""
+
+
+@pytest.mark.parametrize("lab", [name for (_, page), name in LESSON_PAGES.items() if page == "lab"])
+def test_on_a_phone_a_stacked_table_fits_its_column(browser, address, lab):
+    page = browser.new_page(viewport={"width": 390, "height": 800})
+    page.goto(f"{address}/{lab}.html")
+    widths = page.eval_on_selector_all("article table.stacks", STACKED)
+    assert widths
+    assert [needed for column, needed in widths if needed > column] == []
     page.close()
 
 

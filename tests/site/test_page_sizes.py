@@ -4,9 +4,8 @@ import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from robo_genesis.core.project import BOOK
-from robo_genesis.lessons.book_pages import find_pages
-from robo_genesis.site import page_sizes
-from robo_genesis.site.page_sizes import EXEMPT, LIMITS, Size, excess, problems, prose, size
+from robo_genesis.lessons.book_pages import Page, find_pages
+from robo_genesis.site.page_sizes import LIMITS, Size, excess, prose, report, size
 
 
 @pytest.mark.parametrize(
@@ -63,14 +62,14 @@ def test_a_wide_excerpt_is_refused_on_every_page():
     ]
 
 
-def test_a_large_page_and_an_exemption_without_need_are_named():
-    over = {"new": ["4,000 words of prose (at most 3,300)"], "old": ["9 plots (at most 7)"]}
-    large, unneeded = problems(over, {"old", "small"})
-    assert large.startswith("new is over its size: 4,000 words of prose (at most 3,300). Shorten")
-    assert unneeded.startswith("small keeps all limits, so its exemption is not needed. Remove it")
+def test_a_large_page_is_named(tmp_path):
+    large = new_notebook(cells=[new_markdown_cell("word " * 3400)])
+    pages = [Page(name, tmp_path / f"{name}.md", large, None, None) for name in ("lecture", "lab")]
+    lines, (problem,) = report(pages)
+    assert [line.partition(":")[0] for line in lines] == ["lecture", "lab"]
+    assert problem.startswith("lecture is over its size: 3,400 words of prose (at most 3,300)")
+    assert problem.endswith("Shorten it, or move a part to a deeper page.")
 
 
 def test_the_course_s_pages_keep_their_sizes():
-    pages = find_pages(BOOK)
-    exempt = EXEMPT & {page.docname for page in pages}  # a lesson may have been removed
-    assert page_sizes.report(pages, exempt)[1] == []
+    assert report(find_pages(BOOK))[1] == []

@@ -8,13 +8,15 @@ from robo_genesis.lessons.declaration import Filmed, Lesson, Moving, on_demand
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.lessons.l02 import (
     checks,
+    exercises,
     life_cycle,
     mistakes,
     plausibility,
     spec,
     study,
     text,
-)  # fmt: skip
+    trials,
+)
 from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics, fallen
 from robo_genesis.sim.rigid_bodies import read_model, run_drop
 from robo_genesis.sim.visual_shape import floor, read_shape
@@ -23,8 +25,8 @@ if TYPE_CHECKING:
     from robo_genesis.lessons.l02 import plots
 
 __all__ = [
-    "LAB", "LECTURE", "LESSON", "fallen", "floor", "life_cycle", "mistakes", "plots", "read_model",
-    "read_shape", "run_drop", "spec", "text",
+    "LAB", "LECTURE", "LESSON", "MISTAKES", "exercises", "fallen", "floor", "life_cycle",
+    "mistakes", "plots", "read_model", "read_shape", "run_drop", "spec", "text", "trials",
 ]  # fmt: skip
 
 __getattr__ = on_demand(__name__, "plots")
@@ -37,7 +39,8 @@ def readings(rendered: bool) -> dict[str, Readings]:
 
 def study_readings(rendered: bool) -> dict[str, Readings]:
     """Return those of the lecture, which also tries each call on both sides of build."""
-    return readings(rendered) | {life_cycle.GROUP: counts(life_cycle.expected(rendered))}
+    tried = {life_cycle.GROUP: counts(life_cycle.expected(rendered))}
+    return readings(rendered) | tried | trials.readings()
 
 
 LAB = MeasuringPage(
@@ -55,14 +58,16 @@ LECTURE = replace(
     LAB,
     runs=runs_of(spec.CASES | spec.SUBSTEP_CASES),
     readings=study_readings,
-    checks=(*checks.CHECKS, *study.CHECKS, life_cycle.sides_of_build),
+    checks=(*checks.CHECKS, *study.CHECKS, life_cycle.sides_of_build, *trials.CHECKS),
     parameters=spec.study_parameters,
+    frames=(*LAB.frames, spec.TRAYS),
 )
+MISTAKES = replace(LAB)
 
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, DropMetrics),
-    pages={"lab": LAB, spec.STUDY_PAGE: LECTURE},
+    pages={"lab": LAB, spec.STUDY_PAGE: LECTURE, "mistakes": MISTAKES},
     filmed=Filmed("the box"),
     compared=Moving(tuple(spec.CASES), link=spec.LINK, thing="box"),
 )

@@ -16,6 +16,9 @@ from robo_genesis.sim.rigid_bodies import Drop, read_body
 LEAP = 0.5
 """Rise from which a box counts as leaping, as a share of its edge."""
 
+FALL_STEPS = 60
+"""Steps in which a box without collision geometry falls past the ground."""
+
 
 def second_init(gs: Any) -> Failure:
     """Initialise the engine a second time."""
@@ -65,11 +68,10 @@ def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
             and (fixed.n_dofs, free.n_dofs) == (0, 6)
         ),
         evidence=(
-            f"In {t[-1]:g} s the free box fell {moved['free']:.4f} m and the fixed box "
-            f"{moved['fixed']:.4f} m. The free box has {free.n_dofs} DOFs, the fixed box "
-            f"{fixed.n_dofs}."
+            f"In {t[-1]:g} s this box fell {moved['fixed']:.4f} m and the other one "
+            f"{moved['free']:.4f} m. They have {fixed.n_dofs} and {free.n_dofs} DOFs."
         ),
-        curves={"fixed=True": (t, found["fixed"]), "free": (t, found["free"])},
+        curves={"this box": (t, found["fixed"]), "the other one": (t, found["free"])},
     )
 
 
@@ -86,7 +88,25 @@ def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
             f"The centre rose to {z.max():.3f} m; the largest upward speed between two samples was "
             f"{speed:.2f} m/s."
         ),
-        curves={"pos=(…, 0)": (t, z)},
+        curves={"centre of the box": (t, z)},
+    )
+
+
+def no_collision(scene: Any, ghost: Any, solid: Any, case: Drop) -> Failure:
+    """Drop a box whose morph has `collision=False`, beside an ordinary one."""
+    found = heights(scene, {"ghost": ghost, "solid": solid}, FALL_STEPS)
+    t = np.arange(FALL_STEPS + 1) * case.dt
+    end = {name: float(z[-1]) for name, z in found.items()}
+    return Failure(
+        "no_collision",
+        shown=end["ghost"] < -case.size and 0 < end["solid"] < case.size,
+        evidence=(
+            f"After {t[-1]:g} s the centre of this box is at {end['ghost']:.3f} m and that of the "
+            f"other one at {end['solid']:.3f} m. The lists `vgeoms` have {len(ghost.vgeoms)} and "
+            f"{len(solid.vgeoms)} entries, the lists `geoms` {len(ghost.geoms)} and "
+            f"{len(solid.geoms)}."
+        ),
+        curves={"this box": (t, found["ghost"]), "the other one": (t, found["solid"])},
     )
 
 

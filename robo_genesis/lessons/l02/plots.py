@@ -7,6 +7,7 @@ from robo_genesis.core import plotting
 from robo_genesis.core.free_fall import continuous_drop
 from robo_genesis.core.plotting import look
 from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l02 import spec, trials
 from robo_genesis.lessons.l02.metrics import fallen, predicted
 from robo_genesis.lessons.l02.study import step_study
 
@@ -18,6 +19,25 @@ def posture(run: Experiment) -> Figure:
     figure = plotting.figure(4.5)
     case, trace = run.cases["baseline"], run.traces["baseline"]
     plotting.body_schematic(figure.subplots(), trace, case.size)
+    return figure
+
+
+def trays(run: Experiment) -> Figure:
+    """Show the camera frame of both trays, without a camera the heights of both balls."""
+    if run.rendered:
+        frame = run.frames[spec.TRAYS]
+        drawn = plotting.figure(plotting.WIDTH * frame.shape[0] / frame.shape[1])
+        drawn.set_layout_engine("none")
+        plotting.frames([drawn.add_axes((0, 0, 1, 1))], {spec.TRAYS: frame})
+        drawn.set_facecolor("none")
+        return drawn
+    figure = plotting.figure(2.6)
+    ax = figure.subplots()
+    found = run.readings[trials.TRAYS]
+    ax.bar(list(found), list(found.values()), color=look("baseline")["color"], width=0.4)
+    ax.axhline(spec.RIM, **plotting.LINE)
+    ax.set(ylabel="height of the ball [m]")
+    ax.set_title("Measured heights; the line is the rim:\nthis is not a camera frame", loc="left")
     return figure
 
 
@@ -71,9 +91,9 @@ def three_drops(run: Experiment) -> Figure:
     stepped = predicted(trace, case)
     figure = plotting.figure(3.2)
     ax = figure.subplots()
-    ax.axhline(0, label="continuous: g t² / 2", **look("target"))
+    ax.axhline(0, label="continuous: g t² / 2", **plotting.LINE)
     ax.plot(trace.t, 1000 * (stepped - continuous), label="stepped: g h² n (n + 1) / 2",
-            **look("other"))  # fmt: skip
+            **look("target"))  # fmt: skip
     ax.plot(trace.t, 1000 * (fallen(trace) - continuous), "o", markersize=4.5, label="measured",
             color=look("baseline")["color"])  # fmt: skip
     ax.set(xlabel="time [s]", ylabel="farther down [mm]")
@@ -88,7 +108,7 @@ def gaps(run: Experiment) -> Figure:
     figure = plotting.figure(3.4)
     ax = figure.subplots()
     h = 1000 * study.h
-    ax.loglog(h, 1000 * study.expected, label="g h t / 2", **look("other"))
+    ax.loglog(h, 1000 * study.expected, label="g h t / 2", **look("target"))
     ax.loglog(h, 1000 * study.gaps, "o", markersize=6, label="measured",
               color=look("baseline")["color"])  # fmt: skip
     ax.set(xlabel="solver step h [ms]", ylabel="farther down at the end [mm]")

@@ -58,8 +58,29 @@ BELONGS = {
 }
 """The side on which the engine accepts each call; on the other side it must refuse it."""
 
-VIEW = CAMERA | {"pos": (0.8, -0.8, 0.5), "lookat": (0.0, 0.0, 0.3), "fov": 40}
+VIEW = CAMERA | {"pos": (0.65, -0.65, 0.45), "lookat": (0.0, 0.0, 0.32), "fov": 36}
 """The lesson's camera: closer than the robot's, with ground and box in the picture."""
+
+RIM, BALL = 0.15, 0.03
+"""Height of a tray's rim and radius of the ball that falls into it [m]."""
+
+RESTING = 2e-3
+"""How far a body at rest may be from where it just touches [m]."""
+
+LID = 0.01
+"""How far a ball on the hull of a tray may be from the height of the rim [m]: the hull slopes."""
+
+TRAYS = "trays"
+"""The camera frame of both trays."""
+
+FURTHER_TOLERANCE = 1e-6
+"""Tolerance of a further fall against the exact sum: float32 heights of up to a metre [m]."""
+
+HIGHER, THROWN, HEAVIER, MOON = 1.0, 1.0, 4.0, 1.62
+"""The further falls: start height [m], upward speed [m/s], factor of the mass, gravity [m/s²]."""
+
+SHAPES = ("box", "duck", "tray", "hammer")
+"""The entities whose visual and collision geometry is counted."""
 
 RESOLUTION = {"m": 1e-6, "m/s": 1e-5, "rad/s": 1e-6, "s": DT / 2, "kg": 1e-6, "1": 0.5}
 """By unit, the difference below which two values count as equal."""
@@ -88,4 +109,7 @@ def study_parameters() -> dict[str, Any]:
     return parameters() | {
         "studies": {name: asdict(case) for name, case in SUBSTEP_CASES.items()},
         "calls": list(BELONGS),
+        "shapes": list(SHAPES),
+        "trays": {"rim": RIM, "ball": BALL},
+        "further": {"height": HIGHER, "speed": THROWN, "mass": HEAVIER, "gravity": MOON},
     }

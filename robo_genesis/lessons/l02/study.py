@@ -66,11 +66,13 @@ def first_order(run: Experiment) -> Iterator[Finding]:
 CHECKS = (one_factor, shrinks, first_order)
 
 
-def rows(study: StepStudy, metrics: Mapping[str, DropMetrics]) -> Sequence[dict[str, str]]:
+def rows(
+    study: StepStudy, metrics: Mapping[str, DropMetrics], cases: Mapping[str, Drop]
+) -> Sequence[dict[str, str]]:
     """Return one row per case, for a table on a page."""
     return [
         {
-            "run": name,
+            "substeps": str(cases[name].substeps),
             "h [ms]": f"{1000 * h:g}",
             "measured drop [m]": f"{metrics[name].drop:.6f}",
             "farther than g t² / 2 [mm]": f"{1000 * gap:.3f}",

@@ -4,8 +4,10 @@ from collections.abc import Mapping, Sequence
 
 from robo_genesis.core import tables
 from robo_genesis.core.free_fall import ahead_of_continuous, continuous_drop, summed_drop
+from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block, signed
 from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l02 import spec, trials
 from robo_genesis.lessons.l02 import study as studies
 from robo_genesis.lessons.l02.metrics import DropMetrics
 from robo_genesis.lessons.l02.spec import (
@@ -16,6 +18,9 @@ from robo_genesis.lessons.l02.spec import (
 )
 from robo_genesis.lessons.l02.study import StepStudy
 from robo_genesis.sim.rigid_bodies import Drop
+
+TENTH, MILLIMETRE = 0.1, 1e-3
+"""Lengths below the first are written in mm, below the second in µm [m]."""
 
 INSPECT = "Check the times of the samples, the first state, gravity, and contacts first."
 TERM = "g h t / 2".replace(" ", "\N{NO-BREAK SPACE}")
@@ -29,7 +34,15 @@ def model_table(run: Experiment) -> str:
 
 def metric_table(run: Experiment) -> str:
     """Return the metrics of the baseline."""
-    return tables.six_digits({"baseline": run.metrics["baseline"]})
+    return tables.metric_table({"baseline": run.metrics["baseline"]}, readable)
+
+
+def readable(value: float | None, unit: str) -> str:
+    """Write a value with a unit of its size: `0.0689 µm`, `4.90 mm` and `0.2011 m`."""
+    if value is None or unit != "m" or value == 0 or abs(value) >= TENTH:
+        return format_value(value, unit).replace("-", "−")
+    size, name = (1e3, "mm") if abs(value) >= MILLIMETRE else (1e6, "µm")
+    return f"{size * value:.3g} {name}".replace("-", "−")
 
 
 def three_drops(run: Experiment) -> str:
@@ -46,13 +59,34 @@ def conclusions(run: Experiment) -> str:
 def substep_table(run: Experiment) -> str:
     """Return the drops of all solver steps."""
     study = studies.step_study(run.metrics, run.cases)
-    return tables.markdown(studies.rows(study, run.metrics))
+    return tables.markdown(studies.rows(study, run.metrics, run.cases))
 
 
 def substep_conclusions(run: Experiment) -> str:
     """Return the sentences about all solver steps."""
     sentences = convergence(studies.step_study(run.metrics, run.cases))
     return "\n".join(f"- {sentence}" for sentence in sentences)
+
+
+def falls_table(run: Experiment) -> str:
+    """Return the further falls beside the stepped formula."""
+    words = {
+        "higher": f"from {spec.HIGHER:g} m",
+        "thrown": f"thrown upwards at {spec.THROWN:g} m/s",
+        "heavier": f"{spec.HEAVIER:g} times as heavy",
+        "moon": f"on the Moon, g = {spec.MOON:g} m/s²",
+    }
+    found, expected = run.readings[trials.FURTHER], trials.expected_falls()
+    return tables.markdown(
+        [
+            {
+                "fall": words[name],
+                "measured [m]": f"{found[name]:.6f}",
+                "stepped formula [m]": f"{expected[name]:.6f}",
+            }
+            for name in trials.FALLS
+        ]
+    )
 
 
 def interpretation(found: DropMetrics, case: Drop) -> tuple[Block, ...]:
@@ -202,8 +236,17 @@ CLAIMS: dict[str, str] = {
     "sides_of_build": (
         "The engine accepts each call on its own side of build and refuses it on the other."
     ),
+    "two_geometries": (
+        "The box collides with what is drawn; the duck collides with fewer triangles than are "
+        "drawn, the tray with several pieces for one drawn mesh."
+    ),
+    "invisible_lid": (
+        "A ball rests on the floor of a tray of several collision pieces, and on the rim of a tray "
+        "with a single one."
+    ),
+    "further_falls": (
+        "After build, another height, speed, mass and gravity are accepted, and the stepped "
+        "formula holds with each."
+    ),
 }
 """What each named check of the pages requires, shown where it passed."""
-
-SAME_FALL = "Boxes of different colour or density fall alike, to the last bit."
-"""What the check of the lecture's boxes requires, which are in no bundle."""

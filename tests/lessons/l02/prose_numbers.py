@@ -1,11 +1,20 @@
 """The decimal numbers that prose of L02 may hold: configured inputs."""
 
 from robo_genesis.core.scene import DT
-from robo_genesis.lessons.l02.spec import BASELINE
+from robo_genesis.lessons.l02.spec import BALL, BASELINE, MOON, RIM
 
 CONFIGURED = {
     "outer step [s]": DT,
     "edge of the box [m]": BASELINE.size,
     "height of the box [m]": BASELINE.height,
     "length of the drop [s]": BASELINE.dt * BASELINE.steps,
+    "rim of the tray [m]": RIM,
+    "radius of the ball [m]": BALL,
+    "gravity of the Moon [m/s²]": MOON,
+    "height of the table in the third calculation [m]": 0.7,
+    "centre of the box on it [m]": 0.75,
+    "volume of the box [m³]": 0.001,
+    "mass of the box [kg]": BASELINE.mass,
+    "solver step with four substeps, and the gap [ms, mm]": 2.5,
+    "radius of the sphere of the task [m]": 0.05,
 }

@@ -1,0 +1,111 @@
+"""What the lecture measures beside its runs: geometry, balls in trays, falls after `build`."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.checks import Check, Finding, above, below, conclude, equal, within
+from robo_genesis.core.free_fall import summed_drop
+from robo_genesis.core.trace import BodyTrace
+from robo_genesis.lessons.experiment import Experiment, Readings, counts
+from robo_genesis.lessons.l02 import spec
+from robo_genesis.sim.end_state import usable_frame
+
+SHAPES, TRAYS, FURTHER = "shapes", "trays", "further"
+"""Groups of a bundle's metrics: counts of geometry, heights of balls, distances fallen."""
+
+COUNTED = ("seen", "felt", "pieces")
+"""Triangles that are drawn, triangles that collide, and the geoms that they belong to."""
+
+PIECES, HULL = "pieces", "hull"
+"""The two trays: several convex pieces, and one convex hull."""
+
+FALLS = ("higher", "thrown", "heavier", "moon")
+
+
+def readings() -> dict[str, Readings]:
+    """Return the groups of values that the lecture reads."""
+    return {
+        SHAPES: counts(f"{name}_{what}" for name in spec.SHAPES for what in COUNTED),
+        TRAYS: Readings(dict.fromkeys((PIECES, HULL), "m")),
+        FURTHER: Readings(dict.fromkeys(FALLS, "m")),
+    }
+
+
+def count_shapes(entities: Mapping[str, Any]) -> dict[str, int]:
+    """Return the counts of the visual and collision geometry of entities, by name."""
+    found: dict[str, int] = {}
+    for name, entity in entities.items():
+        seen, felt = (
+            sum(len(geom.get_trimesh().faces) for geom in geoms)
+            for geoms in (entity.vgeoms, entity.geoms)
+        )
+        values = (seen, felt, len(entity.geoms))
+        found |= {f"{name}_{what}": n for what, n in zip(COUNTED, values, strict=True)}
+    return found
+
+
+def shape_rows(entities: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return one row for each entity, for a table on the page."""
+    found = count_shapes(entities)
+    return [
+        {
+            "entity": name,
+            "made by": type(entity.morph).__name__,
+            "visual triangles": found[f"{name}_seen"],
+            "collision triangles": found[f"{name}_felt"],
+            "collision geoms": found[f"{name}_pieces"],
+            "mass [kg]": float(entity.get_mass()),
+            "DOFs": entity.n_dofs,
+            "qpos": entity.n_qs,
+        }
+        for name, entity in entities.items()
+    ]
+
+
+def two_geometries(run: Experiment) -> Iterator[Finding]:
+    """Check the counts of geometry; a named check of the lecture."""
+    found = run.readings[SHAPES]
+    yield equal("box_felt", found["box_felt"], found["box_seen"])
+    yield below("duck_felt", found["duck_felt"], found["duck_seen"])
+    yield above("tray_pieces", found["tray_pieces"], 1)
+    yield equal("hammer_pieces", found["hammer_pieces"], 2)
+
+
+def invisible_lid(run: Experiment) -> Iterator[Finding]:
+    """Check where both balls are; a named check of the lecture."""
+    found = run.readings[TRAYS]
+    yield within("ball_in_pieces_m", found[PIECES], spec.BALL, spec.RESTING)
+    yield within("ball_on_the_hull_m", found[HULL], spec.RIM + spec.BALL, spec.LID)
+    if run.rendered:
+        yield equal("frame", spec.TRAYS in run.frames, True)
+        yield usable_frame(spec.TRAYS, run.frames[spec.TRAYS])
+
+
+def expected_falls() -> dict[str, float]:
+    """Return the distance fallen by the stepped formula under each change [m]."""
+    case = spec.BASELINE
+    n = case.steps * case.substeps
+    drop, moon = (float(summed_drop(case.h, n, g)) for g in (case.gravity, spec.MOON))
+    seconds = case.steps * case.dt
+    return dict(zip(FALLS, (drop, drop - spec.THROWN * seconds, drop, moon), strict=True))
+
+
+def further_falls(run: Experiment) -> Iterator[Finding]:
+    """Check the distances fallen after `build`; a named check of the lecture."""
+    for name, expected in expected_falls().items():
+        yield within(f"{name}_m", run.readings[FURTHER][name], expected, spec.FURTHER_TOLERANCE)
+
+
+def same_heights(heights: Sequence[float], trace: BodyTrace) -> Check:
+    """Check that heights of a loop on the page are those of the recorded run."""
+    recorded = trace.link_pos[:, 0, 2]
+    same = [equal("states", len(heights), len(recorded))]
+    if len(heights) == len(recorded):
+        apart = float(np.abs(np.asarray(heights) - recorded).max())
+        same.append(equal("largest_difference_m", apart, 0.0))
+    return conclude("same_heights", "The loop's heights are those of the record.", same)
+
+
+CHECKS = (two_geometries, invisible_lid, further_falls)
