@@ -81,9 +81,9 @@ CLAIMS: dict[str, str] = {
     "the_cone_alone_hops": (
         "With the round cone and the pyramid's resolution cubes hop: the shape does not prevent it."
     ),
-    "stops_do_not_converge": (
-        "The stopping distance of the cube with the higher coefficient differs by more than 5 % of "
-        "Coulomb's between the smallest steps studied."
+    "half_the_step_contradicts": (
+        "The stopping distance of the cube with the higher coefficient changes by more than 5 % of "
+        "Coulomb's when the solver step of 5 ms is halved."
     ),
     "engines_land_alike": (
         "With equal settings, cubes land in MuJoCo as in the engine, at every shared sample."

@@ -139,6 +139,9 @@ STOP_CASES = {
 }
 """By solver step; `HOPPED` continues them at 5 ms."""
 
+HALF_THE_STEP = "stop_2500us_high"
+"""The push of the cube with the higher coefficient at half the solver step of `HOPPED`."""
+
 # The second engine
 
 COMPARED = ("baseline", "dt10_sub1", "dt20_sub1")
@@ -234,8 +237,8 @@ CLOSE = 0.01
 """Share of Coulomb's distance within which a stopping distance is close to it."""
 
 UNSETTLED = 0.05
-"""Spread of the stopping distances over the steps from which they do not converge, as a share of
-Coulomb's distance."""
+"""Change at half the step, or spread over the finest steps, from which a stopping distance depends
+on the step, as a share of Coulomb's distance."""
 
 RELEASE_SHARE = 0.1
 """Tolerance of the speed of release against e⁻² of the impact speed, as a share."""

@@ -104,7 +104,7 @@ def hop_conclusions(run: Experiment) -> str:
 
 def stop_conclusions(run: Experiment) -> str:
     """Say whether the stopping distances of both cubes converge with the step."""
-    sentences = []
+    sentences, unsettled = [], False
     for lane in ("low", "high"):
         found = study_contact.stops_of_lane(run, lane)
         case = run.cases[study_contact.LANES[lane]]
@@ -116,12 +116,19 @@ def stop_conclusions(run: Experiment) -> str:
             continue
         spread = 100 * float(np.ptp(fine)) / formula
         near = sum(abs(of - formula) <= study_spec.CLOSE * formula for of in fine)
-        verdict = "does not converge" if spread > 100 * study_spec.UNSETTLED else "varies little"
+        varies = spread > 100 * study_spec.UNSETTLED
+        unsettled |= varies
+        verdict = "does not converge" if varies else "varies little"
         sentences.append(
             f"With μ = {mu:g} the {len(fine)} steps of at most T / 10 give {metres(min(fine))} to "
             f"{metres(max(fine))}, a spread of {spread:.2g} % of v² / (2 μ g) = {metres(formula)}: "
             f"the distance {verdict} over these steps. {near} of them are within "
             f"{100 * study_spec.CLOSE:g} % of the formula."
+        )
+    if unsettled:
+        sentences.append(
+            "Some neighbouring steps agree, and the next one gives another distance. Two steps "
+            "alone could look like convergence."
         )
     return bullets(sentences)
 

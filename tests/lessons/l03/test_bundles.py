@@ -195,7 +195,7 @@ JUDGEMENTS = {
         ("NEARLY", -1.0, "stops_nearly_right"),
         ("BLOW", 1e9, "hop_is_paid_by_friction"),
         ("RATIO_TOLERANCE", -1.0, "hop_is_paid_by_friction"),
-        ("UNSETTLED", 1e9, "stops_do_not_converge"),
+        ("UNSETTLED", 1e9, "half_the_step_contradicts"),
         ("ENGINES_APART", -1.0, "engines_land_alike"),
         ("SAME_HOP", -1.0, "engines_hop_alike"),
     ],
