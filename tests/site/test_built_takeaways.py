@@ -30,7 +30,7 @@ def test_the_page_links_every_file_with_its_size(site, page):
     links = page.select("a.takeaway")
     files = {(site / LAB).parent.joinpath(link["href"]).resolve() for link in links}
     there = {path for path in (site / FOLDER).rglob("*") if path.is_file()}
-    there |= set((site / "takeaways").glob("*.whl"))
+    there |= {path for path in (site / "takeaways").iterdir() if path.is_file()}
     assert files == there
     for link in links:
         size = (site / LAB).parent.joinpath(link["href"]).stat().st_size
@@ -42,7 +42,9 @@ def test_the_box_names_the_files_that_are_there(site, page):
     commands = box.select_one("pre").get_text().split("\n")
     assert commands[0] == "python3 -m venv course"
     (wheel,) = (site / "takeaways").glob("*.whl")
-    assert f"./{wheel.name} jupyterlab" in commands[1]
+    assert f"install -c constraints.txt ./{wheel.name} jupyterlab" in commands[1]
+    constraints = (site / "takeaways" / "constraints.txt").read_text()
+    assert constraints == (project.ROOT / "requirements.lock").read_text()
     assert commands[2].endswith(" l04-lab.ipynb")
 
 

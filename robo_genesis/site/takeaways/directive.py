@@ -43,7 +43,7 @@ class TakeawaysBox(SphinxDirective):
             )  # fmt: skip
         except (LookupError, ProseError, bundle.BundleRefused) as error:
             raise self.error(f"takeaways: {error}") from error
-        note_files(self.env, found.wheel, *found.student.parent.iterdir())
+        note_files(self.env, found.wheel, found.constraints, *found.student.parent.iterdir())
         links = partial(link, relative_uri(f"{self.env.docname}.html", TAKEAWAYS), files)
         return [self.box(found, links), *self.downloads(found, links)]
 
@@ -59,10 +59,11 @@ class TakeawaysBox(SphinxDirective):
         """Return what to download and the commands that run the lab."""
         commands = "\n".join(found.commands)
         box = nodes.admonition("", nodes.title("", "Run it yourself"), classes=["run-it-yourself"])
-        box += self.prose(f"On {system()}: save these two files in one folder.")
+        box += self.prose(f"On {system()}: save these three files in one folder.")
         box += bullets(
             (links(found.student), ", the lab without outputs or solutions"),
             (links(found.wheel), ", the course's package, which brings the pinned engine"),
+            (links(found.constraints), ", the versions with which the course was built"),
         )
         box += self.prose("In that folder:")
         box += nodes.literal_block(commands, commands, language="bash")

@@ -24,6 +24,8 @@ from robo_genesis.site.takeaways.plain_markdown import Writer
 from robo_genesis.site.takeaways.wheel import build_wheel
 
 ENVIRONMENT = "course"
+CONSTRAINTS = "constraints.txt"
+"""The exact versions of the lock, for pip's option -c."""
 NOT_SHOWN = "*(your run measures it)*"
 """Replaces in the student notebook a value that the site measured."""
 
@@ -45,6 +47,7 @@ class Takeaways:
     student: Path
     executed: Path
     wheel: Path
+    constraints: Path
     units: Path
     arrays: tuple[tuple[str, Path, Path], ...]
     figures: tuple[Path, ...]
@@ -60,7 +63,7 @@ def write_takeaways(
         page: the lab.
         executed: its code cells with outputs.
         run: the accepted bundle of that run.
-        folder: gets the wheel, and a folder for the lab.
+        folder: gets the wheel, the constraints, and a folder for the lab.
         measured: returns a measured value as the site writes it.
     """
     name = f"{page.lesson}-{page.page}"
@@ -68,6 +71,7 @@ def write_takeaways(
     shutil.rmtree(own, ignore_errors=True)
     own.mkdir(parents=True)
     wheel = build_wheel(folder)
+    constraints = Path(shutil.copy(project.ROOT / "requirements.lock", folder / CONSTRAINTS))
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(wheel.name, student.name)
     origin = _origin(page, run, wheel.name, commands)
@@ -76,7 +80,7 @@ def write_takeaways(
     _write(ran, executed_notebook(page, executed, origin, writer))
     units = Path(shutil.copy(run / "arrays.json", own))
     arrays, figures = tuple(_arrays(run, own)), tuple(_figures(page, executed, own))
-    return Takeaways(student, ran, wheel, units, arrays, figures, commands)
+    return Takeaways(student, ran, wheel, constraints, units, arrays, figures, commands)
 
 
 def run_commands(wheel: str, notebook: str) -> tuple[str, ...]:
@@ -88,7 +92,7 @@ def run_commands(wheel: str, notebook: str) -> tuple[str, ...]:
     """
     return (
         f"python3 -m venv {ENVIRONMENT}",
-        f"{ENVIRONMENT}/bin/pip install ./{wheel} jupyterlab",
+        f"{ENVIRONMENT}/bin/pip install -c {CONSTRAINTS} ./{wheel} jupyterlab",
         f"{ENVIRONMENT}/bin/jupyter lab {notebook}",
     )
 

@@ -111,8 +111,8 @@ def _header(origin: Origin, kind: str) -> NotebookNode:
         f"> RoboGenesis, *{origin.title}*: {kind}. Written for Genesis {origin.engine}; the site "
         f"shows run {origin.run} of {origin.measured}.\n"
         "> © The RoboGenesis team. Code: MIT licence. Text and figures: CC BY 4.0.\n\n"
-        f"To run it on {origin.system}, put `{origin.wheel}` from the lab's page beside it, and in "
-        "that folder:\n\n"
+        f"To run it on {origin.system}, put `{origin.wheel}` and `constraints.txt` from the lab's "
+        "page beside it, and in that folder:\n\n"
         f"```console\n{commands}\n```"
     )
 
