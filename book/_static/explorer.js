@@ -81,12 +81,13 @@ document.addEventListener("DOMContentLoaded", () => {
       cells.forEach((cell, k) => {
         const n = Number(step.value) * SIZE + k;
         const [value, name] = [values[n], data.points[n].case];
-        cell.textContent = value === null ? "–" : write(value * format.factor, format.digits);
-        if (name) cell.prepend(make(cell, "b", name));
-        const which = `${gains(n)}${name ? `, the case ${name}` : ""}`;
+        const number = value === null ? "–" : write(value * format.factor, format.digits);
+        cell.textContent = number;
+        if (name) cell.prepend(make(cell, "b", name), " ");
         const state = n === compared ? ", the last run" : "";
-        cell.setAttribute(
-          "aria-label", `${which}: ${noun} ${written(data.measures[measure.value], n)}${state}`,
+        const said = value === null ? UNKNOWN : format.unit;
+        cell.setAttribute( // it begins with the text of the cell
+          "aria-label", `${name ? `${name} ` : ""}${number} ${said}: ${noun}, ${gains(n)}${state}`,
         );
         cell.setAttribute("aria-selected", n === chosen);
         cell.classList.toggle("last", n === compared);

@@ -31,8 +31,8 @@ def test_of_the_replay_picture_figures_and_table_remain(page):
     assert not page.locator(f"{REPLAY} .panel").is_visible()
     assert page.locator("#fig-l04-gains svg").is_visible()
     assert page.locator("#fig-l04-posture img").is_visible()
-    assert page.get_by_text("moves farthest").first.is_visible()
     page.locator(f"{BLOCK} summary").click()
+    assert page.get_by_text("moves farthest").first.is_visible()
     assert page.locator(f"{BLOCK} tbody tr").count() == 121
     assert page.locator(f"{BLOCK} table").is_visible()
 
