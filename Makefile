@@ -145,7 +145,7 @@ bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=
 
 .PHONY: has-packages
 has-packages:
-	@command -v "$(PY)" >/dev/null || { echo "PYTHON=$(PY) is not a Python command. Give the path of an" \
+	@"$(PY)" -c 'import sys' &>/dev/null || { echo "PYTHON=$(PY) is not a Python command. Give the path of an" \
 	  "interpreter with the packages of requirements.lock, or leave PYTHON out to use .venv." >&2; exit 1; }
 	@"$(PY)" -c 'import sys; from importlib.util import find_spec; \
 	  needed = "genesis jupyter_book pytest xdist ruff mypy importlinter codespell_lib check_jsonschema".split(); \

@@ -3,7 +3,7 @@
     python -m robo_genesis.compare outputs/l04/lab/cpu l04-lab-cpu-1a2b3c4d.zip
 
 Each is the folder of a bundle, or a bundle's archive as the ledger of the site offers it.
-Exit status: 0 they agree, 1 they differ, 2 they cannot be compared.
+Exit status: 0 they agree, 1 they differ or it is undecided, 2 they cannot be compared.
 """
 
 import argparse
@@ -18,7 +18,7 @@ from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison, compare
-from robo_genesis.evidence.findings import EQUAL, NOT_COMPARABLE, WITHIN
+from robo_genesis.evidence.findings import EQUAL, INCONCLUSIVE, NOT_COMPARABLE, WITHIN
 
 LARGEST = 500_000_000
 """Most bytes that an archive may hold; a bundle has a few hundred thousand."""
@@ -50,9 +50,13 @@ def bundle_folder(given: str, opened: ExitStack) -> Path:
 
 def reasons(mine: Predicate, other: Predicate) -> Iterator[str]:
     """Yield what differs between two runs and may explain different numbers."""
-    if mine.engine != other.engine:
-        versions = f"{mine.engine.version} and {other.engine.version}"
-        yield f"The engines differ: {versions}. Install the version that the site pins."
+    engines = [p.engine for p in (mine, other)]
+    versions = [f"{e.version} (quadrants {e.quadrants_version})" for e in engines]
+    if versions[0] != versions[1]:
+        found = " and ".join(versions)
+        yield f"The engines differ: {found}. Install the version that the site pins."
+    if mine.engine.files_match_wheel != other.engine.files_match_wheel:
+        yield "The installed files of one engine were changed. Install the engine again."
     if mine.backend.actual != other.backend.actual:
         backends = f"{mine.backend.actual} and {other.backend.actual}"
         yield f"The backends differ: {backends}. They round differently; orderings should agree."
@@ -69,7 +73,9 @@ def explained(comparison: BundleComparison) -> list[str]:
     if comparison.state in (EQUAL, WITHIN):
         lines.append("Your run agrees with the site's within the tolerances of the lesson.")
     elif comparison.state == NOT_COMPARABLE:
-        lines.append("The two runs answer different questions.")
+        lines.append("The two runs cannot be compared, for the reasons above.")
+    elif comparison.state == INCONCLUSIVE:
+        lines.append("Whether the runs agree is undecided: see the inconclusive lines above.")
     else:
         lines.append("Your run differs from the site's. An arrow leads from its value to yours.")
         found = found or [

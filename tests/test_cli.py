@@ -52,10 +52,12 @@ def test_a_python_without_the_packages_is_refused_with_their_names_and_the_fix(c
     assert str(checkout) not in done.stdout.splitlines()
 
 
-def test_a_python_that_is_none_is_refused_with_the_fix(checkout):
-    done = make(checkout, "serve", "PYTHON=nowhere/python")
+@pytest.mark.parametrize("given", ["nowhere/python", "bad", "/tmp", "ls"])
+def test_a_python_that_is_none_is_refused_with_the_fix(checkout, given):
+    done = make(checkout, "serve", f"PYTHON={given}")
     assert done.returncode != 0
-    assert "PYTHON=nowhere/python is not a Python command" in done.stderr
+    assert f"PYTHON={given} is not a Python command" in done.stderr
+    assert "cannot access" not in done.stderr
     assert "leave PYTHON out" in done.stderr
     assert "not found" not in done.stderr
 

@@ -1,12 +1,17 @@
 """`python -m robo_genesis.compare`: a student's run beside the site's."""
 
+import re
 import shutil
+import subprocess
+import sys
 from pathlib import Path
+from textwrap import dedent
 
 import pytest
 from spoilers import metrics, modules, part, predicate, seal
 
 from robo_genesis.compare import main
+from robo_genesis.core.project import ROOT
 
 
 @pytest.fixture
@@ -47,7 +52,9 @@ def test_another_value_is_named_with_both_values_and_the_usual_reason(mine, arch
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (part("engine", version="9.9.9"), "The engines differ: 9.9.9 and"),
+        (part("engine", version="9.9.9"), "The engines differ: 9.9.9 ("),
+        (part("engine", quadrants_version="9.9.9"), "(quadrants 9.9.9) and"),
+        (part("engine", files_match_wheel=False), "files of one engine were changed"),
         (modules(**{"core.trace": "0" * 64}), "The course's code differs"),
     ],
 )
@@ -62,7 +69,7 @@ def test_runs_of_different_questions_are_not_compared(mine, archive, change, cap
     spoil(mine, change)
     assert main([str(mine), archive]) == 2
     said = "".join(capsys.readouterr())
-    assert "Give two bundles of the same page" in said or "different questions" in said
+    assert "Give two bundles of the same page" in said or "cannot be compared" in said
 
 
 def test_a_file_that_is_no_bundle_is_refused_with_what_is_valid(mine, tmp_path, capsys):
@@ -70,3 +77,51 @@ def test_a_file_that_is_no_bundle_is_refused_with_what_is_valid(mine, tmp_path, 
     for given in ("nowhere", str(tmp_path / "notes.txt")):
         assert main([str(mine), given]) == 2
         assert "neither a folder nor a zip archive" in capsys.readouterr().err
+
+
+def test_an_undecided_ordering_is_not_called_a_difference(mine, folder, capsys):
+    def change(records):
+        for case, number in (("G1", 0.11), ("G2", 0.12)):
+            records[case]["rise_time"]["value"] = number
+
+    for side in (mine, folder):
+        spoil(side, metrics(change))
+    assert main([str(mine), str(folder)]) == 1
+    said = capsys.readouterr().out
+    assert "is undecided: see the inconclusive lines" in said
+    assert "Your run differs" not in said
+    assert "a changed cell" not in said
+
+
+def test_two_differing_axes_are_explained_by_both(mine, archive, capsys):
+    change_both = (part("engine", version="9.9.9"), part("backend", actual="cuda"))
+    for change in (*change_both, part("backend", actual_at_end="cuda")):
+        spoil(mine, change)
+    assert main([str(mine), archive]) == 2
+    said = capsys.readouterr().out
+    assert "cannot be compared" in said
+    assert "The engines differ: 9.9.9" in said
+    assert "The backends differ: cuda and cpu" in said
+
+
+def test_the_commands_for_teachers_grade_each_student_and_leave_the_bundles(mine, folder, tmp_path):
+    """The block of ADOPTING.md, run twice: its output must not become a part of a bundle."""
+    [block] = re.findall(
+        r"(?m)^    mkdir -p compared\n(?:    .*\n)+", (ROOT / "ADOPTING.md").read_text()
+    )
+    work = tmp_path / "course"
+    bundles = {"submitted/ada": mine, "book/_build/evidence/l04/cpu": folder}
+    for place, bundle in bundles.items():
+        shutil.copytree(bundle, work / place)
+    shutil.copytree(mine, work / "submitted/bob lee")
+    (work / "submitted/bob lee/notes.txt").write_text("not listed")
+    python = work / ".venv/bin/python"
+    python.parent.mkdir(parents=True)
+    python.write_text(f"#!/bin/sh\nPYTHONPATH='{ROOT}' exec '{sys.executable}' \"$@\"\n")
+    python.chmod(0o755)
+    for _ in range(2):
+        command = ["bash", "-c", dedent(block)]
+        done = subprocess.run(command, cwd=work, capture_output=True, text=True, check=True)
+        assert done.stdout.splitlines() == ["ada 0", "bob lee 2"]
+    assert "agrees with the site's" in (work / "compared/ada.txt").read_text()
+    assert "notes.txt" in (work / "compared/bob lee.txt").read_text()

@@ -26,6 +26,7 @@ def prose(source: str) -> str:
     source = re.sub(CODE_CELL, r"\1", source)
     source = re.sub(r"^```\{literalinclude\}.*?^```", "", source, flags=re.S | re.M)
     source = re.sub(r"\]\([^)\s]*\)", "]", source)  # addresses
+    source = re.sub(r"\bPython 3\.\d+(?: to 3\.\d+)?", "Python", source)
     return re.sub(r"\{[\w-]+\}`[^`\n]+`", "", source)
 
 
@@ -58,3 +59,8 @@ def test_captions_and_alt_texts_count_as_prose():
 def test_code_and_roles_are_not_prose():
     cell = "```{code-cell} ipython3\nx = 0.5\n```\n"
     assert typed_numbers(cell + "{measured}`l04/lab G2.overshoot 0.5`") == set()
+
+
+def test_a_version_of_python_is_not_a_measurement():
+    assert typed_numbers("Python 3.11 to 3.13. The fall takes 3.11 s.") == {"3.11"}
+    assert typed_numbers("Python 3.11 fell by 3.13 m.") == {"3.13"}
