@@ -185,8 +185,7 @@ document.addEventListener("DOMContentLoaded", () => {
       const own = data.points[shown].case;
       const mark = own ? `case-${own.toLowerCase()}` : "further";
       const time = (_, k) => (k + offset) * data.dt;
-      const visible = (values) => values.filter((_, k) => time(_, k) < data.until + data.dt / 2);
-      const [now, before] = [visible(of(shown)), last === null ? null : visible(of(last))];
+      const [now, before] = [of(shown), last === null ? null : of(last)];
       const ghost = before ? [{ times: before.map(time), values: before, mark: "ghost" }] : [];
       const run = { times: now.map(time), values: now, mark, chosen: true };
       const end = data.until;

@@ -110,10 +110,11 @@ def _measure(run: Experiment, name: str) -> dict[str, Any]:
 def _packed(run: Experiment, point: GridPoint, start: float) -> dict[str, Any]:
     """Return one run of the grid as JSON values; `start` [rad] is subtracted from positions."""
     trace, measured = run.traces[point.name], run.metrics[point.name]
+    drawn = round(UNTIL / trace.dt)
     return {
         "case": NAMES.get(point, ""),
-        "q": _integers(trace.q[:, ENTRY].astype(float) - start, PACKED["q"]),
-        "force": _integers(trace.control_force[:, ENTRY].astype(float), PACKED["force"]),
+        "q": _integers(trace.q[: drawn + 1, ENTRY].astype(float) - start, PACKED["q"]),
+        "force": _integers(trace.control_force[:drawn, ENTRY].astype(float), PACKED["force"]),
         "sentence": sentence(point, measured, trace.steps),
         "metrics": [v for n, v in _written(measured).items() if n in SHOWN],
     }

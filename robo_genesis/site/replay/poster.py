@@ -111,5 +111,7 @@ def packed(image: FloatArray) -> bytes:
     ground = np.array([*bytes.fromhex(GROUND[1:])])
     pixels = 255 * np.clip(srgb, 0, 1) * opacity + ground * (1 - opacity)
     content = BytesIO()
-    Image.fromarray(np.round(pixels).astype(np.uint8)).save(content, "JPEG", quality=70)
+    Image.fromarray(np.round(pixels).astype(np.uint8)).save(
+        content, "JPEG", quality=70, optimize=True, progressive=True
+    )
     return content.getvalue()
