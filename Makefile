@@ -1,6 +1,6 @@
 # `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
-# PORT=8000, EXECUTE=0|1 (live), BUNDLE=path (verify), GENESIS=version (repin), SITE_URL=address and EXECUTED=folder
-# (book), PAGE=page and TO=folder (execute), LESSON=name, BACKEND=name and TO=folder (evidence),
+# PORT=8000, EXECUTE=0|1 (live), BUNDLE=path (verify), GENESIS=version (repin), SITE_URL=address,
+# SOLUTIONS=0|1 (default 1) and EXECUTED=folder (book), PAGE=page and TO=folder (execute), LESSON=name, BACKEND=name and TO=folder (evidence),
 # OLD=path, NEW=path and REPORT=folder (compare), NEW=name (lesson), ROWS=names and RUNS=n (bench),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
 
@@ -13,7 +13,7 @@ MAKEFLAGS += --no-print-directory
 
 # Variables are in capitals: `jobs=2` would be ignored without a word.
 NAMED := $(foreach word,$(MAKEOVERRIDES),$(if $(findstring =,$(word)),$(firstword $(subst =, ,$(word)))))
-KNOWN := RENDER RELEASE JOBS PORT EXECUTE EXECUTED BUNDLE GENESIS SITE_URL PAGE TO LESSON BACKEND OLD NEW \
+KNOWN := RENDER RELEASE JOBS PORT EXECUTE EXECUTED BUNDLE GENESIS SITE_URL SOLUTIONS PAGE TO LESSON BACKEND OLD NEW \
   REPORT ROWS RUNS PYTHON BASE_PYTHON
 ifneq ($(filter-out $(KNOWN),$(NAMED)),)
   SMALL := $(foreach name,$(filter-out $(KNOWN),$(NAMED)),$(if $(filter $(KNOWN),$(shell echo '$(name)' | tr a-z A-Z)),$(name)))
@@ -41,6 +41,7 @@ export RELEASE
 export BUNDLE
 export GENESIS
 export SITE_URL
+export SOLUTIONS
 export EXECUTED
 
 .PHONY: help
@@ -76,12 +77,14 @@ TESTS = "$(PY)" build_scripts/book.py && "$(PY)" -m pytest --numprocesses 2 --di
 .PHONY: test
 test: export RENDER = 1
 test: export SITE_URL =
+test: export SOLUTIONS =
 test: $(ENVIRONMENT) ## build the site, and run the tests (needs Debian's chromium)
 	@$(TESTS)
 
 .PHONY: test-all
 test-all: export RENDER = 1
 test-all: export SITE_URL =
+test-all: export SOLUTIONS =
 test-all: $(ENVIRONMENT) ## run the slow tests too: empty environments, a changed pin (network; hours)
 	@$(TESTS) --slow
 

@@ -3,7 +3,8 @@
 Environment: RENDER=0|1 (default 1: the labs' camera is used), JOBS (pages at once; default one
 for each core), RELEASE=0|1 (1: this script runs again in a fresh checkout of HEAD, and all required
 evidence must be current),
-SITE_URL (the address of the published site) and EXECUTED (a folder with all pages as
+SITE_URL (the address of the published site), SOLUTIONS=0|1 (default 1; 0: the site has no solutions
+and answers) and EXECUTED (a folder with all pages as
 `make execute` exports them: then none is executed here).
 Backend is always the CPU; `make evidence` records accelerators.
 If nothing changed since the last build, it says so and ends, unless RELEASE=1.
@@ -25,7 +26,7 @@ from robo_genesis.build.command import (
 )
 from robo_genesis.build.site.sphinx_process import LOG, SphinxProcess
 from robo_genesis.build.up_to_date import nothing_changed
-from robo_genesis.core.project import BOOK, PUBLISHED, RENDER, ROOT
+from robo_genesis.core.project import BOOK, PUBLISHED, RENDER, ROOT, SOLUTIONS
 
 
 def main() -> int:
@@ -39,6 +40,7 @@ def main() -> int:
     args = arguments.parse_args()
     set_contract()
     release = choice("RELEASE", "0", ("0", "1")) == "1"
+    choice(SOLUTIONS, "1", ("0", "1"))
     executed, jobs = path("EXECUTED"), os.environ.get("JOBS") or None
     if release and os.environ[RENDER] == "0":
         sys.exit("RENDER='0' is not valid with RELEASE=1, which needs camera frames. Unset one.")

@@ -27,7 +27,7 @@ from robo_genesis.core.project import ROOT, ProjectError
 FOLDER = "release"
 """The fresh checkout in the folder of the caches. It stays if the release fails, with its log."""
 
-SETTINGS = ("RENDER", "JOBS", "SITE_URL", "SOURCE_DATE_EPOCH", "ROBO_GENESIS_BACKEND")
+SETTINGS = ("RENDER", "JOBS", "SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "ROBO_GENESIS_BACKEND")
 NETWORK = ("HTTP_PROXY", "HTTPS_PROXY", "NO_PROXY", "NODE_EXTRA_CA_CERTS")
 """What npm needs to fetch the locked packages; it compares them with the lock."""
 

@@ -32,7 +32,7 @@ FILES = (
 )  # fmt: skip
 """What a build reads of the checkout apart from the book."""
 
-VARIABLES = ("SITE_URL", "SOURCE_DATE_EPOCH", "LANG", "LC_ALL", "LC_TIME", "TZ")
+VARIABLES = ("SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "LANG", "LC_ALL", "LC_TIME", "TZ")
 """What a build reads of the environment apart from what decides the pages' measurements."""
 
 LEFT_OUT = ("__pycache__", ".ipynb_checkpoints")

@@ -41,6 +41,9 @@ the modules of the course that the page imports."""
 EXECUTED_PAGES = "ROBO_GENESIS_EXECUTED_PAGES"
 """What a build tells Sphinx: the file that lists the executed pages, see `build.built_pages`."""
 
+SOLUTIONS = "SOLUTIONS"
+"""0: the site has no solutions and answers, see `site.solutions`."""
+
 # Variables that switch the engine, its compiler and the drivers below it.
 ENGINE_PREFIXES = ("GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "HSA_", "CUDA_")
 SET_BY_ENGINE = ("QD_ENABLE_PYBUF",)
@@ -56,6 +59,11 @@ CACHE_FOLDERS = {
 }
 # With its default limit of 100 MB the engine removes kernels that it has just compiled.
 CACHE_LIMIT = {"QD_OFFLINE_CACHE_MAX_SIZE_OF_FILES": "2000000000"}
+
+
+def solutions_shown() -> bool:
+    """Whether the site that is built contains solutions and answers."""
+    return os.environ.get(SOLUTIONS) != "0"
 
 
 class ProjectError(Exception):

@@ -1,4 +1,5 @@
-"""The course rendered once more: with made-up runs of accelerators, and for another address.
+"""The course rendered once more: with made-up runs of accelerators, for another address, and
+without solutions.
 
 The runs show what lab and lecture say of each state. The address is below a server's root: it
 decides links, sitemap, cards and the page for lost readers.
@@ -6,8 +7,11 @@ decides links, sitemap, cards and the page for lost readers.
 
 import re
 import shutil
+import zipfile
 
+import nbformat
 import pytest
+from bs4 import BeautifulSoup
 from built_site import executed_pages, parsed
 from PIL import Image
 from spoilers import TORCH, edit, measured_elsewhere, own_run_id, part, predicate, seal
@@ -18,6 +22,7 @@ from robo_genesis.build.site.render import render
 from robo_genesis.build.site.sphinx_process import SphinxProcess
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence import bundle
+from robo_genesis.lessons.book_pages import find_pages
 
 pytestmark = pytest.mark.engine  # waits for the site
 
@@ -77,7 +82,7 @@ OTHERS = [run for run, (state, _) in RUNS.items() if state != "verified"]
 
 @pytest.fixture(scope="module")
 def html(site, tmp_path_factory):
-    """The course for this address, with the runs of `RUNS` in its folder of evidence."""
+    """The course for this address without solutions, with the runs of `RUNS` as its evidence."""
     folder, built = tmp_path_factory.mktemp("runs"), executed_pages()
     (folder / "robo_genesis").symlink_to(ROOT / "robo_genesis")  # pages include parts of files
     book = shutil.copytree(BOOK, folder / "book", ignore=shutil.ignore_patterns("_build*"))
@@ -91,6 +96,7 @@ def html(site, tmp_path_factory):
             on(backend, there)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SITE_URL", ADDRESS.rstrip("/"))
+        patch.setenv("SOLUTIONS", "0")
         html = render(SphinxProcess(book, folder / "render.log"), folder / "staging", built)
     pack(html)
     return html
@@ -173,3 +179,59 @@ def test_links_of_the_404_page_begin_at_the_site_s_root(html):
     inside = [tag["href"] for tag in page.select("a[href], link[href]") if tag["href"][0] != "#"]
     assert len(inside) > 10
     assert [href for href in inside if not href.startswith(("/robot/course/", ADDRESS))] == []
+
+
+def words(path):
+    """Return the text of each file of the site that is one, of those in archives too."""
+    if path.suffix in (".zip", ".whl"):
+        with zipfile.ZipFile(path) as archive:
+            for name in archive.namelist():
+                yield f"{path.name}/{name}", text_of(name, archive.read(name))
+    else:
+        yield path.name, text_of(path.name, path.read_bytes())
+
+
+def text_of(name, content):
+    """Return a text without the marks of its format, so that lines of code are in it as written."""
+    text = content.decode("utf8", "ignore")
+    if name.endswith(".html"):
+        return BeautifulSoup(text, "html.parser").get_text()
+    if name.endswith(".ipynb"):
+        return "\n".join(cell["source"] for cell in nbformat.reads(text, 4).cells)
+    return text
+
+
+def test_no_page_has_a_solution_or_an_answer(site, html):
+    folds = ".solution, .tag_solution"
+    for lesson in ("l02-life-cycle", "l03-rigid-bodies", "l04-joint-control"):
+        for page in ("lecture", "lab"):
+            name = f"lessons/{lesson}/{page}"
+            assert len(parsed(site, name).select(folds)) > 3
+            assert parsed(html, name).select(folds) == []
+
+
+def test_no_file_has_a_line_of_a_solution(site, html):
+    """Lines that pages also have outside of solutions, or that the package has, are no secret."""
+    cells = [cell for page in find_pages(BOOK) for cell in page.notebook.cells]
+    code, public = [], ""
+    for cell in cells:
+        is_solution = "solution" in cell.metadata.get("tags", [])
+        if is_solution:
+            code += [line.strip() for line in cell.source.splitlines()]
+        else:
+            public += cell.source
+    public += "".join(path.read_text("utf8") for path in (ROOT / "robo_genesis").rglob("*.py"))
+    secret = [line for line in code if len(line) > 30 and line not in public]
+    assert len(secret) > 20
+
+    def leaks(folder):
+        files = (path for path in folder.rglob("*") if path.is_file())
+        return {
+            name
+            for path in files
+            for name, text in words(path)
+            if any(line in text for line in secret)
+        }
+
+    assert leaks(html) == set()
+    assert leaks(site) >= {"lab.html", "lab.md", "l04-lab-executed.ipynb"}

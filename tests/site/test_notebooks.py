@@ -8,7 +8,12 @@ from nbformat.v4 import new_code_cell, new_notebook, new_output
 from tiny_book import LAB_FRONT, cell, make_book, notebook
 
 from robo_genesis.lessons.book_pages import find_pages
-from robo_genesis.site.takeaways.notebooks import Origin, executed_notebook, student_notebook
+from robo_genesis.site.takeaways.notebooks import (
+    Course,
+    Origin,
+    executed_notebook,
+    student_notebook,
+)
 from robo_genesis.site.takeaways.plain_markdown import Writer
 
 FOLD = "\n:::{dropdown} Answer\n:class-container: solution\nSECRET prose\n:::\n"
@@ -22,7 +27,15 @@ CELLS = (
 )
 COMMANDS = ("python3 -m venv course", "course/bin/pip install ./robo.whl jupyterlab")
 ORIGIN = Origin(
-    "A lab", "Linux with Python 3", "1.2.3", "0.1.0", "robo.whl", COMMANDS, "12345678", "2026-01-02"
+    Course("Course", "Its authors", "https://example.org/cpu"),
+    "A lab",
+    "Linux with Python 3",
+    "1.2.3",
+    "0.1.0",
+    "robo.whl",
+    COMMANDS,
+    "12345678",
+    "2026-01-02",
 )
 
 
@@ -48,7 +61,15 @@ def test_the_student_s_notebook_is_clean_and_valid(student):
     assert student.metadata.kernelspec.name == "python3"
     assert "*Drawn by plot.*" in [c.source for c in student.cells]
     first = student.cells[0].source
-    facts = (ORIGIN.title, ORIGIN.system, ORIGIN.engine, ORIGIN.run, ORIGIN.measured)
+    facts = (
+        ORIGIN.course.name,
+        ORIGIN.course.authors,
+        ORIGIN.title,
+        ORIGIN.system,
+        ORIGIN.engine,
+        ORIGIN.run,
+        ORIGIN.measured,
+    )
     assert [words for words in (*facts, *COMMANDS, "CC BY 4.0") if words not in first] == []
 
 
@@ -125,6 +146,18 @@ def test_the_executed_notebook_has_outputs_and_measured_values(page, tmp_path):
     assert [c.execution_count for c in cells] == [1, 2, 3]
     assert "It was 0.12 s." in text
     assert "Only on the site" not in text
+
+
+@pytest.mark.parametrize(("shown", "sources"), [("1", 3), ("0", 2)])
+def test_the_executed_notebook_has_the_solutions_only_if_the_site_has(
+    page, tmp_path, monkeypatch, shown, sources
+):
+    monkeypatch.setenv("SOLUTIONS", shown)
+    outputs = [new_output("stream", text=f"output {k}") for k in range(3)]
+    cells, text = executed(page, tmp_path, *outputs)
+    assert len(cells) == sources
+    assert ("SECRET code" in text) == (shown == "1")
+    assert cells[-1].outputs[0].text == "output 2"
 
 
 def test_notes_of_the_compiler_are_dropped_and_warnings_stay(page, tmp_path):

@@ -1,5 +1,6 @@
 """Files to download from a lab, and the commands that run it: ```` ```{takeaways} l04/lab ````.
 
+```` ```{run-commands} ```` shows the commands for any lab, `{run-commands} install` the first two.
 The files are written while the page is read, so that the page can show their sizes. They are copied
 into the site when it is complete.
 """
@@ -11,15 +12,18 @@ from pathlib import Path
 
 from docutils import nodes
 from sphinx.application import Sphinx
+from sphinx.config import Config
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
 from robo_genesis.build.built_pages import executed_notebook, page_outputs
+from robo_genesis.core.project import solutions_shown
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons.book_pages import Page, find_pages
 from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.page_files import TAKEAWAYS, note_files
-from robo_genesis.site.takeaways.files import Takeaways, system, write_takeaways
+from robo_genesis.site.takeaways.files import Takeaways, run_commands, system, write_takeaways
+from robo_genesis.site.takeaways.notebooks import Course
 from robo_genesis.site.takeaways.plain_markdown import ProseError
 
 Link = Callable[..., list[nodes.Node]]
@@ -40,6 +44,7 @@ class TakeawaysBox(SphinxDirective):
             found = write_takeaways(
                 page, executed_notebook(page.docname, page.notebook), run, files,
                 lambda value: measured(*value.split(" ", 1))[0],
+                course(self.config),
             )  # fmt: skip
         except (LookupError, ProseError, bundle.BundleRefused) as error:
             raise self.error(f"takeaways: {error}") from error
@@ -68,9 +73,9 @@ class TakeawaysBox(SphinxDirective):
         box += self.prose("In that folder:")
         box += nodes.literal_block(commands, commands, language="bash")
         box += self.prose(
-            "The second line downloads several gigabytes, mostly Torch. The notebook's first "
-            "cell checks the engine's version and says what to do if yours differs. In its first "
-            "run the engine compiles its kernels, which takes minutes."
+            "The second line downloads the engine and Torch, which takes minutes. The notebook's "
+            "first cell checks the engine's version and says what to do if yours differs. In its "
+            "first run the engine compiles its kernels, which takes minutes too."
         )
         return box
 
@@ -81,8 +86,9 @@ class TakeawaysBox(SphinxDirective):
         for case, table, archive in found.arrays:
             tables += [f"{case} ", links(table, "CSV"), " and ", links(archive, "npz"), "; "]
         figures = [part for path in found.figures for part in (links(path), ", ")]
+        left_out = "" if solutions_shown() else ", without the solutions"
         yield bullets(
-            (links(found.executed), ", the notebook as it ran"),
+            (links(found.executed), ", the notebook as it ran" + left_out),
             ("arrays of each case: ", *tables, "their units are in the CSV's head and in ",
              links(found.units)),
             ("figures: ", *figures[:-1]),
@@ -91,6 +97,28 @@ class TakeawaysBox(SphinxDirective):
     def prose(self, text: str) -> list[nodes.Node]:
         """Return Markdown as nodes."""
         return list(self.parse_text_to_nodes(text))
+
+
+class RunCommands(SphinxDirective):
+    """Show the commands that run a lab, for a page that belongs to no lab."""
+
+    optional_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return the block of code."""
+        lines = run_commands("robo_genesis-*.whl", self.config.torch_index)
+        match self.arguments:
+            case ["install"]:
+                lines = lines[:-1]
+            case [other]:
+                raise self.error(f"run-commands: {other!r} is not valid. Write nothing or install.")
+        text = "\n".join(lines)
+        return [nodes.literal_block(text, text, language="bash")]
+
+
+def course(config: Config) -> Course:
+    """Return what the book's configuration says of the course."""
+    return Course(config.html_title, config.author, config.torch_index)
 
 
 def link(base: str, files: Path, file: Path, text: str = "") -> list[nodes.Node]:
@@ -135,5 +163,7 @@ def copy_files(app: Sphinx, exception: Exception | None) -> None:
 
 def setup(app: Sphinx) -> None:
     """Register the directive and the copying of its files."""
+    app.add_config_value("torch_index", "", "env", str)
     app.add_directive("takeaways", TakeawaysBox)
+    app.add_directive("run-commands", RunCommands)
     app.connect("build-finished", copy_files)

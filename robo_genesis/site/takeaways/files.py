@@ -19,7 +19,12 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Variable
 from robo_genesis.evidence.trace_files import fields_of, read_any_trace
 from robo_genesis.lessons.book_pages import Page
-from robo_genesis.site.takeaways.notebooks import Origin, executed_notebook, student_notebook
+from robo_genesis.site.takeaways.notebooks import (
+    Course,
+    Origin,
+    executed_notebook,
+    student_notebook,
+)
 from robo_genesis.site.takeaways.plain_markdown import Writer
 from robo_genesis.site.takeaways.wheel import build_wheel
 
@@ -55,7 +60,12 @@ class Takeaways:
 
 
 def write_takeaways(
-    page: Page, executed: NotebookNode, run: Path, folder: Path, measured: Callable[[str], str]
+    page: Page,
+    executed: NotebookNode,
+    run: Path,
+    folder: Path,
+    measured: Callable[[str], str],
+    course: Course,
 ) -> Takeaways:
     """Write everything that a reader takes from a lab.
 
@@ -65,6 +75,7 @@ def write_takeaways(
         run: the accepted bundle of that run.
         folder: gets the wheel, the constraints, and a folder for the lab.
         measured: returns a measured value as the site writes it.
+        course: named in the notebooks.
     """
     name = f"{page.lesson}-{page.page}"
     own = folder / name
@@ -73,8 +84,8 @@ def write_takeaways(
     wheel = build_wheel(folder)
     constraints = Path(shutil.copy(project.ROOT / "requirements.lock", folder / CONSTRAINTS))
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
-    commands = run_commands(wheel.name, student.name)
-    origin = _origin(page, run, wheel.name, commands)
+    commands = run_commands(wheel.name, course.torch_index, student.name)
+    origin = _origin(page, run, wheel.name, commands, course)
     _write(student, student_notebook(page, origin, Writer(page.path.parent, lambda _: NOT_SHOWN)))
     writer = Writer(page.path.parent, measured)
     _write(ran, executed_notebook(page, executed, origin, writer))
@@ -83,17 +94,22 @@ def write_takeaways(
     return Takeaways(student, ran, wheel, constraints, units, arrays, figures, commands)
 
 
-def run_commands(wheel: str, notebook: str) -> tuple[str, ...]:
+def run_commands(wheel: str, torch_index: str, notebook: str = "") -> tuple[str, ...]:
     """Return the commands that run a student notebook in an environment of its own.
+
+    pip prefers a build of Torch for the CPU to that of PyPI, because its version has the suffix
+    `+cpu`. Where the index cannot be reached, pip says so and takes that of PyPI.
 
     Args:
         wheel: file name of the package, which pins the engine.
-        notebook: file name of the notebook; both are in the current folder.
+        torch_index: address of an index with builds of Torch for the CPU.
+        notebook: file name of the notebook; all files are in the current folder.
     """
+    packages = f"--extra-index-url {torch_index} -c {CONSTRAINTS} ./{wheel} jupyterlab"
     return (
         f"python3 -m venv {ENVIRONMENT}",
-        f"{ENVIRONMENT}/bin/pip install -c {CONSTRAINTS} ./{wheel} jupyterlab",
-        f"{ENVIRONMENT}/bin/jupyter lab {notebook}",
+        f"{ENVIRONMENT}/bin/pip install {packages}",
+        f"{ENVIRONMENT}/bin/jupyter lab {notebook}".rstrip(),
     )
 
 
@@ -108,11 +124,12 @@ def package_facts() -> dict[str, str]:
     return tomllib.loads((project.ROOT / "pyproject.toml").read_text("utf8"))["project"]
 
 
-def _origin(page: Page, run: Path, wheel: str, commands: tuple[str, ...]) -> Origin:
+def _origin(page: Page, run: Path, wheel: str, commands: tuple[str, ...], course: Course) -> Origin:
     predicate = bundle.read_manifest(run).predicate
     lines = (line for cell in page.notebook.cells for line in cell.source.splitlines())
     title = next((line[2:] for line in lines if line.startswith("# ")), page.docname)
     return Origin(
+        course=course,
         title=title,
         system=system(),
         engine=project.engine_pin(),

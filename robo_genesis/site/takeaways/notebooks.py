@@ -11,7 +11,7 @@ from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from robo_genesis.build.command import ANSI
-from robo_genesis.core.project import COURSE, ENGINE
+from robo_genesis.core.project import COURSE, ENGINE, solutions_shown
 from robo_genesis.lessons.book_pages import Page
 from robo_genesis.site.takeaways.plain_markdown import SOLUTION, ProseError, Writer, plain
 
@@ -48,9 +48,22 @@ print(*(f"{{package}} {{number}}" for package, number in NEEDED.items()), sep="\
 
 
 @dataclass(frozen=True, slots=True)
+class Course:
+    """What `_config.yml` says of the course: its name, its authors, and an index of packages.
+
+    `torch_index` is the address of an index with builds of Torch for the CPU alone.
+    """
+
+    name: str
+    authors: str
+    torch_index: str
+
+
+@dataclass(frozen=True, slots=True)
 class Origin:
     """The origin of a notebook: its lab, the versions that it needs, and the run on the site."""
 
+    course: Course
     title: str
     system: str
     engine: str
@@ -87,7 +100,7 @@ def student_notebook(page: Page, origin: Origin, writer: Writer) -> NotebookNode
 def executed_notebook(
     page: Page, executed: NotebookNode, origin: Origin, writer: Writer
 ) -> NotebookNode:
-    """Return the lab as it ran for the site, with its outputs.
+    """Return the lab as it ran for the site, with its outputs; without solutions if the site is.
 
     Args:
         page: the lab.
@@ -97,10 +110,13 @@ def executed_notebook(
     """
     ran = (cell for cell in executed.cells if cell.cell_type == "code")
     cells = [_header(origin, "executed notebook")]
+    left_out = set() if solutions_shown() else {SOLUTION}
     for cell in page.notebook.cells:
-        if cell.cell_type == "code":
-            cells += _code(cell, writer, next(ran))
-        elif SITE_ONLY not in cell.metadata.get("tags", []):
+        tags, is_code = set(cell.metadata.get("tags", [])), cell.cell_type == "code"
+        output = next(ran) if is_code else None
+        if is_code and not tags & left_out:
+            cells += _code(cell, writer, output)
+        elif not is_code and SITE_ONLY not in tags:
             cells += _sections(plain(cell.source, writer))
     return _notebook(cells)
 
@@ -108,9 +124,9 @@ def executed_notebook(
 def _header(origin: Origin, kind: str) -> NotebookNode:
     commands = "\n".join(origin.commands)
     return new_markdown_cell(
-        f"> RoboGenesis, *{origin.title}*: {kind}. Written for Genesis {origin.engine}; the site "
-        f"shows run {origin.run} of {origin.measured}.\n"
-        "> © The RoboGenesis team. Code: MIT licence. Text and figures: CC BY 4.0.\n\n"
+        f"> {origin.course.name}, *{origin.title}*: {kind}. Written for Genesis "
+        f"{origin.engine}; the site shows run {origin.run} of {origin.measured}.\n"
+        f"> © {origin.course.authors}. Code: MIT licence. Text and figures: CC BY 4.0.\n\n"
         f"To run it on {origin.system}, put `{origin.wheel}` and `constraints.txt` from the lab's "
         "page beside it, and in that folder:\n\n"
         f"```console\n{commands}\n```"
