@@ -6,7 +6,7 @@
 document.addEventListener("DOMContentLoaded", () => {
   const { add, draw, write } = globalThis.timePlot;
   const HEIGHT = 210;
-  const UNKNOWN = "this record cannot tell";
+  const UNKNOWN = "these runs cannot show it";
   const KEYS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
 
   const make = (parent, name, text = "", attributes = {}) => {

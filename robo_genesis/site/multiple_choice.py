@@ -41,9 +41,9 @@ from robo_genesis.lessons.registry import find_lesson
 from robo_genesis.site.evidence.measured import BACKEND, measured
 
 EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
-LOWER = {"lower": "less", "equal": "the same, within the lesson's resolution", "higher": "more"}
-CLOSE = "too close to call, within the margin of {} {}"
-UNDECIDED = "this record cannot tell"
+LOWER = {"lower": "less", "equal": "the same", "higher": "more"}
+CLOSE = "too close to call: less than {} {} apart"
+UNDECIDED = "these runs cannot show it"
 UNKNOWN = "unknown"
 """The key of the option that no order was observed."""
 JUDGED = ("right", "low", "high")

@@ -24,6 +24,10 @@ WORDS_A_MINUTE = 200
 LINES_A_MINUTE = 10
 """The pace of somebody who runs and changes visible code."""
 MINUTES_A_QUESTION = 2
+MINUTES_A_FUNCTION = 10
+"""An estimate for a function that the reader writes and tests."""
+TO_WRITE = "raise NotImplementedError"
+"""The line of code in the place of what the reader writes."""
 COMMITS = 6
 """Number of the latest commits of a page that are listed."""
 DESCRIPTION = 200
@@ -46,16 +50,17 @@ def count_words(document: nodes.document) -> int:
     )
 
 
-def count_work(document: nodes.document) -> tuple[int, int]:
-    """Return the number of visible code lines in cells, and that of questions."""
-    lines = 0
+def count_work(document: nodes.document) -> tuple[int, int, int]:
+    """Return how many visible lines of code, questions and functions to write there are."""
+    lines = functions = 0
     for part in document.findall(nodes.container):
         if part.get("nb_element") != SOURCE:
             continue
         cells = (node for node in above(part) if "cell_metadata" in node)
         if not any(HIDDEN.intersection(cell["cell_metadata"].get("tags", ())) for cell in cells):
             lines += sum(bool(line.strip()) for line in part.astext().splitlines())
-    return lines, len(list(document.findall(choice)))
+            functions += TO_WRITE in part.astext()
+    return lines, len(list(document.findall(choice))), functions
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,15 +75,17 @@ class Minutes:
         return f"{self.read} min to read{work}"
 
 
-def minutes(words: int, code_lines: int = 0, questions: int = 0) -> Minutes:
+def minutes(words: int, code_lines: int = 0, questions: int = 0, functions: int = 0) -> Minutes:
     """Return the time that a page takes.
 
     Args:
         words: of running text.
         code_lines: visible lines of code, which a reader runs and changes.
         questions: to be answered.
+        functions: to be written.
     """
-    work = round(code_lines / LINES_A_MINUTE + questions * MINUTES_A_QUESTION)
+    answers = questions * MINUTES_A_QUESTION + functions * MINUTES_A_FUNCTION
+    work = round(code_lines / LINES_A_MINUTE + answers)
     return Minutes(max(1, round(words / WORDS_A_MINUTE)), work)
 
 

@@ -13,12 +13,7 @@ from sphinx.directives.code import LiteralIncludeReader
 
 from robo_genesis.lessons.book_pages import Page
 from robo_genesis.site.excerpts import without_docstrings
-from robo_genesis.site.page_facts import (
-    HIDDEN,
-    LINES_A_MINUTE,
-    MINUTES_A_QUESTION,
-    WORDS_A_MINUTE,
-)
+from robo_genesis.site.page_facts import HIDDEN, TO_WRITE, minutes
 
 COLUMN = 80
 """Most characters in a line of an excerpt that the column shows without scrolling."""
@@ -74,13 +69,14 @@ def size(notebook: NotebookNode, folder: Path) -> Size:
     widths = (0, *(len(line) for cell in visible for line in cell.source.splitlines()))
     words = sum(len(line.split()) for text in texts for line in prose(text))
     questions = sum(len(QUESTION.findall(text)) for text in texts)
-    work = sum(lines) / LINES_A_MINUTE + questions * MINUTES_A_QUESTION
+    functions = sum(TO_WRITE in cell.source for cell in visible)
+    time = minutes(words, sum(lines), questions, functions)
     return Size(
         words=words,
         cells=len(visible),
         longest=max(lines, default=0),
         plots=sum(bool(PLOT.search(cell.source)) for cell in code),
-        minutes=round(words / WORDS_A_MINUTE + work),
+        minutes=time.read + time.work,
         widest=max((*widths, *(width for t in texts for width in excerpt_widths(t, folder)))),
     )
 

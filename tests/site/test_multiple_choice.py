@@ -39,8 +39,8 @@ def test_exactly_the_measured_option_is_right(unit, order, text):
 @pytest.mark.parametrize(
     ("metric", "unit", "text"),
     [
-        ("rise_time", "s", "too close to call, within the margin of 0.015 s"),
-        ("saturation_samples", "1", "too close to call, within the margin of 1.5 samples"),
+        ("rise_time", "s", "too close to call: less than 0.015 s apart"),
+        ("saturation_samples", "1", "too close to call: less than 1.5 samples apart"),
         ("settling_time", "s", "at the same sample"),
     ],
 )

@@ -45,6 +45,7 @@ def test_words_of_code_tables_and_formulas_do_not_count():
         ((0,), "1 min to read"),
         ((500,), "2 min to read"),
         ((9000, 104, 3), "45 min to read, 16 min to work"),
+        ((1000, 104, 0, 4), "5 min to read, 50 min to work"),
     ],
 )
 def test_minutes_follow_from_words_code_and_questions(counted, shown):
@@ -62,7 +63,8 @@ def code(text, *tags):
 def test_work_is_in_visible_code_and_questions():
     document = publish_doctree("Text.\n\n::\n\n  typed = 1\n")
     document += [code("a\n\nb"), code("c", "hide-input"), code("d", "inputs"), choice()]
-    assert facts.count_work(document) == (3, 1)
+    document += [code("def f():\n    raise NotImplementedError('write f')")]
+    assert facts.count_work(document) == (5, 1, 1)
 
 
 def test_history_lists_the_latest_commits_newest_first_and_uncommitted_changes(checkout):

@@ -61,14 +61,12 @@ BELONGS = {
 VIEW = CAMERA | {"pos": (0.65, -0.65, 0.45), "lookat": (0.0, 0.0, 0.32), "fov": 36}
 """The lesson's camera: closer than the robot's, with ground and box in the picture."""
 
-RIM, BALL = 0.15, 0.03
-"""Height of a tray's rim and radius of the ball that falls into it [m]."""
+RIM, BALL = 0.145, 0.03
+"""Height of a tray's rim and radius of the ball that falls into it [m]. The tray's mesh is 0.15 m
+high, and its URDF file places it 5 mm lower."""
 
 RESTING = 2e-3
 """How far a body at rest may be from where it just touches [m]."""
-
-LID = 0.01
-"""How far a ball on the hull of a tray may be from the height of the rim [m]: the hull slopes."""
 
 TRAYS = "trays"
 """The camera frame of both trays."""

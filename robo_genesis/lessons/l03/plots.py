@@ -120,12 +120,12 @@ def heights(
             traces[name].t,
             clear,
             marker=".",
-            label=f"{name}, h = {1000 * cases[name].h:g} ms",
+            label=f"{cases[name].substeps} × {1000 * cases[name].h:g} ms",
             **look(mark),
         )
     ax.axhline(0, **look("limit"))
     ax.set(xlim=window, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]")
-    legend_above(ax, "Below zero, the cube is in the surface")
+    legend_above(ax, "Solver steps in one outer step. Below zero, the cube is in the surface")
     return ax
 
 

@@ -57,12 +57,12 @@ RESOLVED = 4e-7
 """What float32 resolves of a rotation since the start, as a share."""
 
 GRAZE = 1e-5
-"""Depth [m] up to which the engine may miss the lowest corner of a tilted cube. Genesis 1.4.5
+"""Depth [m] up to which the engine may miss the lowest corner of a tilted cube. One version
 misses up to 6e-6."""
 
 ON_EDGE = 0.5
 """Share of the steps of a run that may end otherwise, because a cube that lands on an edge has
-other contact points in the two engines. Genesis 1.3.3 has at most 0.15, Genesis 1.4.5 0.39. Of
+other contact points in the two engines. The versions tried have at most 0.15 and 0.39. Of
 such a step, the impulse is judged."""
 
 IMPULSE = 5e-5

@@ -162,7 +162,6 @@ JUDGEMENTS = [
     ("EXPECTED_MODEL", spec.EXPECTED_MODEL | {"links": 2}, "structure"),
     ("FURTHER_TOLERANCE", -1.0, "further_falls"),
     ("RESTING", 0.0, "invisible_lid"),
-    ("LID", 0.0, "invisible_lid"),
     ("BELONGS", spec.BELONGS | {"scene.step": spec.BEFORE}, "sides_of_build"),
 ]
 

@@ -213,8 +213,8 @@ def test_where_neither_run_has_a_rise_time_the_record_cannot_tell(page):
     cell(page, 3500, 300).tap()
     page.get_by_label("Predict first").check()
     cell(page, 3500, 250).tap()
-    answer(page, "this record cannot tell")
-    assert shown(page)[0].startswith("Yes. The rise time: this record cannot tell, first not obs")
+    answer(page, "these runs cannot show it")
+    assert shown(page)[0].startswith("Yes. The rise time: these runs cannot show it, first not obs")
 
 
 def test_the_last_run_stays_as_a_labelled_grey_line_with_its_metrics(page, data):
