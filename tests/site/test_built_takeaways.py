@@ -39,10 +39,11 @@ def test_the_page_links_every_file_with_its_size(site, page):
 
 def test_the_box_names_the_files_that_are_there(site, page):
     box = page.select_one(".run-it-yourself")
-    commands = box.select_one("pre").get_text().split("\n")
+    commands = box.select_one("pre").get_text().replace(" \\\n ", "").split("\n")
     assert commands[0] == "python3 -m venv course"
     (wheel,) = (site / "takeaways").glob("*.whl")
-    assert commands[1].endswith(f" -c constraints.txt ./{wheel.name} jupyterlab")
+    assert " install -c constraints.txt --extra-index-url https://" in commands[1]
+    assert commands[1].endswith(f" ./{wheel.name} jupyterlab")
     constraints = (site / "takeaways" / "constraints.txt").read_text()
     assert constraints == (project.ROOT / "requirements.lock").read_text()
     assert commands[2].endswith(" l04-lab.ipynb")

@@ -42,7 +42,7 @@ def taken(site: Path, lab: str, home: Path) -> list[str]:
     box = parsed(site, lab).select_one(".run-it-yourself")
     for link in box.select("a.takeaway"):
         shutil.copy((site / lab).parent / link["href"], home)
-    return box.select_one("pre").get_text().strip().splitlines()
+    return box.select_one("pre").get_text().strip().replace("\\\n", " ").splitlines()
 
 
 def write_solutions(notebook: Path, lesson: str) -> None:

@@ -78,8 +78,9 @@ def test_a_package_that_cannot_be_built_says_why(tmp_path):
 def test_the_commands_install_the_wheel_and_open_the_notebook():
     assert run_commands("robo.whl", "https://example.org/cpu", "lab.ipynb") == (
         "python3 -m venv course",
-        "course/bin/pip install --extra-index-url https://example.org/cpu -c constraints.txt "
-        "./robo.whl jupyterlab",
+        "course/bin/pip install -c constraints.txt \\\n"
+        "  --extra-index-url https://example.org/cpu \\\n"
+        "  ./robo.whl jupyterlab",
         "course/bin/jupyter lab lab.ipynb",
     )
 

@@ -125,7 +125,7 @@ def heights(
         )
     ax.axhline(0, **look("limit"))
     ax.set(xlim=window, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]")
-    legend_above(ax, "Solver steps in one outer step. Below zero, the cube is in the surface")
+    legend_above(ax, "Below zero, the cube is in the surface")
     return ax
 
 

@@ -105,10 +105,10 @@ def run_commands(wheel: str, torch_index: str, notebook: str = "") -> tuple[str,
         torch_index: address of an index with builds of Torch for the CPU.
         notebook: file name of the notebook; all files are in the current folder.
     """
-    packages = f"--extra-index-url {torch_index} -c {CONSTRAINTS} ./{wheel} jupyterlab"
+    packages = (f"-c {CONSTRAINTS}", f"--extra-index-url {torch_index}", f"./{wheel} jupyterlab")
     return (
         f"python3 -m venv {ENVIRONMENT}",
-        f"{ENVIRONMENT}/bin/pip install {packages}",
+        " \\\n  ".join((f"{ENVIRONMENT}/bin/pip install {packages[0]}", *packages[1:])),
         f"{ENVIRONMENT}/bin/jupyter lab {notebook}".rstrip(),
     )
 

@@ -86,7 +86,7 @@ def student_notebook(page: Page, origin: Origin, writer: Writer) -> NotebookNode
         writer: of its prose; it must not return measured values.
     """
     needed = {ENGINE: origin.engine, COURSE: origin.package}
-    install = next(line for line in origin.commands if " install " in line)
+    install = next(line for line in origin.commands if " install " in line).replace("\\\n  ", "")
     check = CHECK.format(needed=needed, wheel=origin.wheel, install=install)
     cells = [_header(origin, "student notebook"), new_code_cell(check)]
     for cell in page.notebook.cells:
