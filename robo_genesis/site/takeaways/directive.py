@@ -73,9 +73,9 @@ class TakeawaysBox(SphinxDirective):
         box += self.prose("In that folder:")
         box += nodes.literal_block(commands, commands, language="bash")
         box += self.prose(
-            "The second command downloads the engine and Torch, which takes minutes. The first cell "
-            "of the notebook checks the engine's version and says what to do if yours differs. In "
-            "its first run the engine compiles its kernels, which takes minutes too."
+            "The second command downloads the engine and Torch, which takes minutes. The first "
+            "cell checks the engine's version and says what to do if yours differs. In its first "
+            "run the engine compiles its kernels, which takes minutes too."
         )
         return box
 
