@@ -12,6 +12,9 @@ A page depends on its own source, on what is the same for all pages, and on this
 | the commit, for the history | all are written again |
 | whether its source is committed | it is written again |
 
+A page does not depend on the pictures that Sphinx itself writes while it reads: they follow from
+runs, whose change empties the folder. Reading another page may write an equal picture again.
+
 Files that pages leave beside the HTML are removed with the last page that left them.
 """
 
@@ -46,6 +49,16 @@ def including_pages(
     """Return the pages that read the source of a changed page."""
     sources = {str(env.doc2path(name, base=False)) for name in (*added, *changed)}
     return [name for name, files in env.dependencies.items() if sources & files]
+
+
+def forget_own_pictures(app: Sphinx, doctree: nodes.document) -> None:
+    """Forget that a page depends on files that Sphinx wrote while it read the page."""
+    folder, files = os.path.dirname(app.outdir), app.env.dependencies[app.env.docname]
+    files -= {
+        file
+        for file in files
+        if os.path.normpath(os.path.join(app.srcdir, file)).startswith(folder + os.sep)
+    }
 
 
 def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
@@ -127,6 +140,7 @@ def setup(app: Sphinx) -> None:
     app.setup_extension("robo_genesis.site.page_files")
     app.connect("builder-inited", drop_static_files, priority=0)
     app.connect("env-get-outdated", including_pages)
+    app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected
     app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)
     app.connect("write-started", leave_out_parents)
