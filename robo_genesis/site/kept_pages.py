@@ -61,6 +61,11 @@ def forget_own_pictures(app: Sphinx, doctree: nodes.document) -> None:
     }
 
 
+def note_reading(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
+    """Note whether any page is read in this build."""
+    vars(app.builder)["robo_genesis_reads"] = bool(names)
+
+
 def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
     """Return the pages that must be written again, beside those that were read again."""
     commit, status = history(Path(env.srcdir))
@@ -73,7 +78,9 @@ def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
     changed = tuple(before[1] ^ entries)
     names = {name: str(env.doc2path(name, base=False)) for name in env.found_docs}
     edited = [name for name, file in names.items() if any(e.endswith(file) for e in changed)]
-    return [env.config.root_doc, *edited]  # without any page, Sphinx would write no style sheet
+    if not edited and not vars(app.builder)["robo_genesis_reads"]:
+        return [env.config.root_doc]  # without any page, Sphinx would write no style sheet
+    return edited
 
 
 def _shown(env: BuildEnvironment) -> Iterator[tuple[str, Any]]:
@@ -140,6 +147,7 @@ def setup(app: Sphinx) -> None:
     app.setup_extension("robo_genesis.site.page_files")
     app.connect("builder-inited", drop_static_files, priority=0)
     app.connect("env-get-outdated", including_pages)
+    app.connect("env-before-read-docs", note_reading)
     app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected
     app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)

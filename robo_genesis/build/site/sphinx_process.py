@@ -98,10 +98,10 @@ def complaints(log: Path) -> str:
 
 def main() -> None:
     """Load Jupyter Book and the book's extensions, then wait for arguments and variables."""
+    collect_rarely()
     import yaml
     from jupyter_book.cli.main import main as jupyter_book
 
-    collect_rarely()
     with suppress(Exception):  # Jupyter Book reports it
         config = yaml.safe_load(Path(sys.argv[1], "_config.yml").read_text("utf8"))
         for extension in config["sphinx"]["config"]["extensions"]:
