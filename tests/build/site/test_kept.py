@@ -134,6 +134,19 @@ def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
     assert "2 added, 0 changed" in (tmp_path / "log").read_text()
 
 
+def test_a_refusal_beside_sphinx_ends_it_and_a_render_without_changes_is_complete(tmp_path):
+    def refuse() -> None:
+        raise ValueError("refused")
+
+    sphinx = SphinxProcess(make_book(tmp_path, text="# Text\n"), tmp_path / "log")
+    with pytest.raises(ValueError, match="refused"):
+        render(sphinx, tmp_path / "staging", BuiltPages(), tmp_path / "kept", refuse)
+    assert sphinx.process.poll() is not None
+    assert not (tmp_path / "kept" / kept.STATE).exists()
+    assert publish(tmp_path, BuiltPages()) == publish(tmp_path, BuiltPages())
+    assert "0 added, 0 changed" in (tmp_path / "log").read_text()
+
+
 def test_equal_names_of_pictures_make_a_folder_unfit(tmp_path):
     """Sphinx gives them numbers in the order of reading."""
     book = make_book(tmp_path, one="# One\n\nWords.\n", two="# Two\n\n![Two](b/a.svg)\n")
