@@ -58,10 +58,10 @@ def main() -> int:
         print("\n".join(lines))
         return 0
     sphinx = SphinxProcess(args.book, args.cache / LOG)
+    collect_rarely()
     # Jupyter's packages are loaded only now, beside those of Sphinx.
     from robo_genesis.build.stages import Build, run_build
 
-    collect_rarely()
     settings = {"jobs": int(jobs) if jobs else None, "release": release, "executed": executed}
     build = Build(**vars(args), **settings, sphinx=sphinx)
     return run(lambda: run_build(build), "published")

@@ -24,7 +24,7 @@ from robo_genesis.core.project import ENGINE, ProjectError, installed_version
 from robo_genesis.evidence.bundle import sha256
 from robo_genesis.evidence.fields import RunId, Sha256, Strict
 from robo_genesis.lessons.book_pages import Page, code_digest, plain_python
-from robo_genesis.lessons.sources import cell_digest
+from robo_genesis.lessons.sources import cell_digests
 
 RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
 SIZE_LIMIT = 64 * 2**20
@@ -216,7 +216,7 @@ def code_and_kernel(notebook: NotebookNode) -> tuple[list[str], str | None]:
 
     Comments and layout of the cells do not count.
     """
-    cells = [cell_digest(source) for source in plain_python(notebook)]
+    cells = cell_digests(plain_python(notebook))
     return cells, notebook.metadata.get("kernelspec", {}).get("name")
 
 

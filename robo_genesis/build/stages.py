@@ -1,4 +1,4 @@
-"""The stages of `make book`: execute, verify, render, pack, sums, check, publish.
+"""The stages of `make book`: execute, render and verify, pack, sums, check, publish.
 
 `make execute` is the first of them, for one page.
 """
@@ -111,17 +111,14 @@ def run_build(build: Build) -> list[str]:
             for record in import_pages(build.executed, pages, into, verify):
                 progress("import", record.docname, f"run {record.run_id[:8]}")
         results = _execute(build, pages, into, progress)
-        manifests, refused = verify_results(verify, results, progress)
-        if refused := refused + refused_records(build.book, _labs(results)):
-            raise BuildError("\n".join(refused))
-        if build.release:
-            problems = missing_for_release(build.book, _labs(results), manifests, build.root)
-            _require_for_release([*unclean(build.root), *problems])
-            progress("release", "clean tree, current evidence")
+        manifests: dict[str, Any] = {}
+
+        def accept() -> None:  # beside Sphinx, whose pages are published only after it
+            manifests.update(_accepted(build, verify, results, progress))
+
         progress("render", "all pages")
-        built = BuiltPages.of(results)
         kept = None if from_nothing else build.cache / project.KEPT
-        html = render(sphinx, staging, built, kept)
+        html = render(sphinx, staging, BuiltPages.of(results), kept, meanwhile=accept)
         with ThreadPoolExecutor(1) as beside:  # compression runs beside Python
             packing = beside.submit(pack, html)
             site = Site(html, site_root())
@@ -237,6 +234,24 @@ def _execute(
     if any(result.failure for result in results):
         raise BuildError(failure_report(results))
     return results
+
+
+def _accepted(
+    build: Build, verify: Verify, results: Sequence[PageResult], progress: Progress
+) -> dict[str, Any]:
+    """Return the accepted manifests by page name.
+
+    Raises:
+        BuildError: a bundle of this build or a recorded one is refused, or a release lacks one.
+    """
+    manifests, refused = verify_results(verify, results, progress)
+    if refused := refused + refused_records(build.book, _labs(results)):
+        raise BuildError("\n".join(refused))
+    if build.release:
+        problems = missing_for_release(build.book, _labs(results), manifests, build.root)
+        _require_for_release([*unclean(build.root), *problems])
+        progress("release", "clean tree, current evidence")
+    return manifests
 
 
 def _check(site: Site, progress: Progress) -> int:

@@ -131,8 +131,8 @@ def derived(
 
 
 @lru_cache(maxsize=1)
-def _installed() -> list[tuple[str, str, int]]:
-    return installed(sys.path)
+def _installed() -> str:
+    return hashlib.sha256(json.dumps(installed(sys.path)).encode()).hexdigest()
 
 
 def _get(file: Path) -> bytes | None:

@@ -1,9 +1,9 @@
 """The evidence key of the current checkout, and whether a bundle still has it."""
 
 import json
+import os
 import re
 from functools import lru_cache, partial
-from glob import glob
 from pathlib import Path
 from typing import Any
 
@@ -88,9 +88,12 @@ def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:
 
 def _page_files(book: Path) -> list[Path]:
     """Return the table of contents and every file that may be a page, also in linked folders."""
-    names = glob("**/*.md", root_dir=book, recursive=True)  # unlike rglob, it follows links
-    pages = sorted(name for name in names if Path(name).parts[0] != PUBLISHED)
-    return [*book.glob("_toc.yml"), *(book / name for name in pages)]
+    pages: list[str] = []
+    for here, folders, files in os.walk(book, followlinks=True):
+        skipped = PUBLISHED if here == os.fspath(book) else None
+        folders[:] = [name for name in folders if name[0] != "." and name != skipped]
+        pages += (os.path.join(here, n) for n in files if n.endswith(".md") and n[0] != ".")
+    return [*book.glob("_toc.yml"), *map(Path, sorted(pages))]
 
 
 @lru_cache(maxsize=8)

@@ -18,7 +18,7 @@ from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
 from robo_genesis.core.files import derived
 from robo_genesis.core.project import ProjectError
-from robo_genesis.lessons.sources import PACKAGE, cell_digest
+from robo_genesis.lessons.sources import PACKAGE, cell_digests
 
 
 class PageError(ProjectError):
@@ -146,10 +146,13 @@ def cell_sources(page: Page) -> list[str]:
 
 def plain_python(notebook: NotebookNode) -> list[str]:
     """Return the code cells of a notebook as plain Python; magics of IPython are translated."""
-    return [_plain_python(cell.source) for cell in notebook.cells if cell.cell_type == "code"]
+    cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    inputs = [json.dumps(cells).encode(), Path(__file__).read_bytes()]
+    made = derived("plain", inputs, lambda: json.dumps([*map(_plain_python, cells)]).encode())
+    plain: list[str] = json.loads(made)
+    return plain
 
 
-@lru_cache(maxsize=1024)
 def _plain_python(cell: str) -> str:
     try:
         return TransformerManager().transform_cell(cell)
@@ -159,5 +162,5 @@ def _plain_python(cell: str) -> str:
 
 def code_digest(page: Page) -> str:
     """Return the sha256 of the syntax of a page's code cells; text and comments do not count."""
-    cells = [cell_digest(source) for source in cell_sources(page)]
+    cells = cell_digests(cell_sources(page))
     return hashlib.sha256(json.dumps(cells).encode()).hexdigest()

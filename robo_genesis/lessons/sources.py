@@ -12,7 +12,7 @@ import json
 import os
 import platform
 import tokenize
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from importlib.util import resolve_name
 from itertools import accumulate
@@ -71,7 +71,14 @@ def syntax_digest(source: str) -> str:
     return derived("syntax", [source.encode(), _own_source()], make).decode()
 
 
-@lru_cache(maxsize=1024)
+def cell_digests(cells: Sequence[str]) -> list[str]:
+    """Return the digest of each code cell of a page; see `cell_digest`."""
+    inputs = [json.dumps(cells).encode(), _own_source()]
+    made = derived("cells", inputs, lambda: json.dumps([*map(cell_digest, cells)]).encode())
+    digests: list[str] = json.loads(made)
+    return digests
+
+
 def cell_digest(source: str) -> str:
     """Return the sha256 of the syntax of one code cell, in which IPython's magics are translated.
 
@@ -154,27 +161,33 @@ def imported_names(source: str, package: str = "") -> tuple[str, ...]:
         source: Python. One that does not parse imports nothing: its page fails when it is executed.
         package: the package of the source, to which relative imports refer.
     """
-
-    def make() -> bytes:
-        names: list[str] = []
-        try:
-            for node in ast.walk(ast.parse(source)):
-                if isinstance(node, ast.Import):
-                    names += [alias.name for alias in node.names]
-                elif isinstance(node, ast.ImportFrom):
-                    base = resolve_name("." * node.level + (node.module or ""), package)
-                    names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
-        except (SyntaxError, ValueError, ImportError):
-            return b""
-        return " ".join(name for name in names if name.split(".")[0] == PACKAGE).encode()
-
     inputs = [source.encode(), package.encode(), _own_source()]
-    return tuple(derived("imports", inputs, make).decode().split())
+    made = derived("imports", inputs, lambda: " ".join(_names(source, package)).encode())
+    return tuple(made.decode().split())
 
 
-def imports_of(sources: Iterable[str]) -> list[str]:
-    """Return the dotted names below the course package that some sources import themselves."""
-    return sorted({name for source in sources for name in imported_names(source)})
+def _names(source: str, package: str) -> list[str]:
+    names: list[str] = []
+    try:
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.Import):
+                names += [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                base = resolve_name("." * node.level + (node.module or ""), package)
+                names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
+    except (SyntaxError, ValueError, ImportError):
+        return []
+    return [name for name in names if name.split(".")[0] == PACKAGE]
+
+
+def imports_of(cells: Sequence[str]) -> list[str]:
+    """Return the dotted names below the course package that the code cells of a page import."""
+    found = derived(
+        "cell-imports",
+        [json.dumps(cells).encode(), _own_source()],
+        lambda: " ".join(sorted({n for cell in cells for n in _names(cell, "")})).encode(),
+    )
+    return found.decode().split()
 
 
 def import_closure(
@@ -286,7 +299,7 @@ def page_fingerprint(
         "installed": _installed(),
         "python": platform.python_version(),
         "environment": environment_contract(environment),
-        "cells": [cell_digest(cell) for cell in cells],
+        "cells": cell_digests(cells),
         "modules": {name: syntax_digest(path.read_text("utf8")) for name, path in modules.items()},
         "data": {
             path.relative_to(root).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()

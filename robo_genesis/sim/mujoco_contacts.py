@@ -1,6 +1,8 @@
 """Contact cases in MuJoCo with the contact parameters of Genesis, for comparison."""
 
-import mujoco
+from importlib.metadata import version
+from typing import Any
+
 import numpy as np
 
 from robo_genesis.core.trace import ContactTrace
@@ -8,7 +10,7 @@ from robo_genesis.sim.contacts import SURFACE_SIZE, TOP, ContactCase
 from robo_genesis.sim.rigid_bodies import record_states, stacked, times
 from robo_genesis.sim.visual_shape import rotate
 
-VERSION = str(mujoco.__version__)
+VERSION = version("mujoco")
 
 DEFAULT_TIME_CONSTANT = 0.01
 """Default of Genesis for contacts, unless two solver steps are longer [s]."""
@@ -30,13 +32,15 @@ def time_constant(h: float, requested: float | None = None) -> float:
     return max(DEFAULT_TIME_CONSTANT if requested is None else requested, 2 * h)
 
 
-def load(case: ContactCase, own_defaults: bool = False) -> mujoco.MjModel:
+def load(case: ContactCase, own_defaults: bool = False) -> Any:
     """Compile the surface and one free body with the case's step, friction, cone and spring.
 
     Args:
         case: of a cube or a ball.
         own_defaults: use the default time constant of MuJoCo instead of that of Genesis.
     """
+    import mujoco
+
     spec = mujoco.MjSpec()
     spec.option.timestep = case.h
     spec.option.gravity = (0, 0, -case.gravity)
@@ -78,6 +82,8 @@ def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
         case: of a cube or a ball.
         own_defaults: as in `load`.
     """
+    import mujoco
+
     model = load(case, own_defaults)
     data = mujoco.MjData(model)
     settle = round(case.settle / case.h)
@@ -90,7 +96,7 @@ def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
     return ContactTrace(times(case), *stacked(states))
 
 
-def _state(data: mujoco.MjData) -> tuple[np.ndarray, ...]:
+def _state(data: Any) -> tuple[np.ndarray, ...]:
     """Return position, orientation, velocity, angular velocity in the world's axes, contacts."""
     quat = data.qpos[3:7]
     angular_velocity = rotate(quat, data.qvel[None, 3:6])  # MuJoCo has it in the body's axes

@@ -1,9 +1,9 @@
 """Control cases in MuJoCo, on the model file that Genesis bundles, for comparison."""
 
 from collections.abc import Sequence
+from importlib.metadata import version
 from typing import Any
 
-import mujoco
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
@@ -12,12 +12,10 @@ from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import CaseError, ControlCase, assemble
 from robo_genesis.sim.session import asset
 
-VERSION = str(mujoco.__version__)
+VERSION = version("mujoco")
 
-INTEGRATORS = {
-    "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
-    "Euler": mujoco.mjtIntegrator.mjINT_EULER,
-}
+INTEGRATORS = {"implicitfast": "mjINT_IMPLICITFAST", "Euler": "mjINT_EULER"}
+"""Names of integrators, and what MuJoCo calls them."""
 
 
 def load(case: ControlCase, timestep: float, integrator: str) -> Any:
@@ -32,12 +30,18 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
     Raises:
         CaseError: the integrator is unknown, or the time step does not divide the dt of the case.
     """
+    import mujoco
+
     substeps = round(case.dt / timestep)
     if integrator not in INTEGRATORS or not np.isclose(substeps * timestep, case.dt, rtol=1e-9):
         raise CaseError(
             f"integrator={integrator!r}, timestep={timestep:g} s: expected one of "
             f"{', '.join(INTEGRATORS)}, and a time step that divides dt={case.dt:g} s."
         )
+
+    def padded(*values: float) -> FloatArray:  # MuJoCo has ten parameters
+        return np.pad(np.array(values, dtype=np.float64), (0, mujoco.mjNGAIN - len(values)))
+
     spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
     for part in (*spec.actuators, *spec.keys, *spec.geoms, *spec.meshes):
         spec.delete(part)
@@ -47,20 +51,15 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
             target=name,
             trntype=mujoco.mjtTrn.mjTRN_JOINT,
             gaintype=mujoco.mjtGain.mjGAIN_FIXED,
-            gainprm=_padded(case.kp[k]),
+            gainprm=padded(case.kp[k]),
             biastype=mujoco.mjtBias.mjBIAS_AFFINE,
-            biasprm=_padded(0, -case.kp[k], -case.kv[k]),
+            biasprm=padded(0, -case.kp[k], -case.kv[k]),
             forcelimited=True,
             forcerange=[-case.effort_limit[k], case.effort_limit[k]],
         )
     spec.option.timestep = timestep
-    spec.option.integrator = INTEGRATORS[integrator]
+    spec.option.integrator = getattr(mujoco.mjtIntegrator, INTEGRATORS[integrator])
     return spec.compile()
-
-
-def _padded(*values: float) -> FloatArray:
-    """Return actuator parameters with MuJoCo's ten entries, the rest zero."""
-    return np.pad(np.array(values, dtype=np.float64), (0, mujoco.mjNGAIN - len(values)))
 
 
 def run_case(
@@ -78,6 +77,8 @@ def run_case(
         timestep: length of one solver step [s].
         integrator: one of `INTEGRATORS`.
     """
+    import mujoco
+
     model = load(case, timestep, integrator)
     data = mujoco.MjData(model)
     q_at, dof_at = _addresses(model)
@@ -110,6 +111,8 @@ def each_step(
         Position and velocity after one outer step from each state but the last, and the net force
         at each state but the first; each (n, d).
     """
+    import mujoco
+
     model = load(case, timestep, integrator)
     data = mujoco.MjData(model)
     q_at, dof_at = _addresses(model)
@@ -137,6 +140,8 @@ def at_rest(case: ControlCase, q: FloatArray) -> tuple[FloatArray, FloatArray]:
 
     Diagonal: [kg·m² or kg]; effort: [N·m or N]. Neither contains a term of the integrator.
     """
+    import mujoco
+
     model = load(case, case.dt, "implicitfast")
     data = mujoco.MjData(model)
     q_at, dof_at = _addresses(model)

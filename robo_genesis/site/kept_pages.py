@@ -12,6 +12,9 @@ A page depends on its own source, on what is the same for all pages, and on this
 | the commit, for the history | all are written again |
 | whether its source is committed | it is written again |
 
+A page does not depend on the pictures that Sphinx itself writes while it reads: they follow from
+runs, whose change empties the folder. Reading another page may write an equal picture again.
+
 Files that pages leave beside the HTML are removed with the last page that left them.
 """
 
@@ -48,6 +51,21 @@ def including_pages(
     return [name for name, files in env.dependencies.items() if sources & files]
 
 
+def forget_own_pictures(app: Sphinx, doctree: nodes.document) -> None:
+    """Forget that a page depends on files that Sphinx wrote while it read the page."""
+    folder, files = os.path.dirname(app.outdir), app.env.dependencies[app.env.docname]
+    files -= {
+        file
+        for file in files
+        if os.path.normpath(os.path.join(app.srcdir, file)).startswith(folder + os.sep)
+    }
+
+
+def note_reading(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
+    """Note whether any page is read in this build."""
+    vars(app.builder)["robo_genesis_reads"] = bool(names)
+
+
 def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
     """Return the pages that must be written again, beside those that were read again."""
     commit, status = history(Path(env.srcdir))
@@ -60,7 +78,9 @@ def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
     changed = tuple(before[1] ^ entries)
     names = {name: str(env.doc2path(name, base=False)) for name in env.found_docs}
     edited = [name for name, file in names.items() if any(e.endswith(file) for e in changed)]
-    return [env.config.root_doc, *edited]  # without any page, Sphinx would write no style sheet
+    if not edited and not vars(app.builder)["robo_genesis_reads"]:
+        return [env.config.root_doc]  # without any page, Sphinx would write no style sheet
+    return edited
 
 
 def _shown(env: BuildEnvironment) -> Iterator[tuple[str, Any]]:
@@ -127,6 +147,8 @@ def setup(app: Sphinx) -> None:
     app.setup_extension("robo_genesis.site.page_files")
     app.connect("builder-inited", drop_static_files, priority=0)
     app.connect("env-get-outdated", including_pages)
+    app.connect("env-before-read-docs", note_reading)
+    app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected
     app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)
     app.connect("write-started", leave_out_parents)

@@ -104,7 +104,7 @@ def test_a_build_publishes_site_and_evidence_and_says_with_what(built):
         "Checks passed: 3 on what was measured, 5 on the site.",
     ]
     stages = list(dict.fromkeys(line.split("] ")[1].split()[0] for line in built.said))
-    assert stages == ["execute", "verify", "render", "pack", "sums", "check", "publish"]
+    assert stages == ["execute", "render", "verify", "pack", "sums", "check", "publish"]
     assert "Pages: 0 executed, 2 reused." in built.again
 
 

@@ -5,6 +5,8 @@ from pathlib import Path
 
 from bs4 import BeautifulSoup
 
+from robo_genesis.core.files import derived
+
 ARCHIVE = "offline/robo-genesis-site.zip"
 """The archive's place in the site, for the link of the home page."""
 FOLDER = "robo-genesis-site"
@@ -43,7 +45,11 @@ def content(path: Path) -> bytes:
     data = path.read_bytes()
     if path.suffix != ".html" or OFFER[1:].encode() not in data:
         return data
-    page = BeautifulSoup(data, "html.parser")
-    for offer in page.select(OFFER):
-        offer.decompose()
-    return page.encode()
+
+    def without_offer() -> bytes:
+        page = BeautifulSoup(data, "html.parser")
+        for offer in page.select(OFFER):
+            offer.decompose()
+        return page.encode()
+
+    return derived("offline", [data, Path(__file__).read_bytes()], without_offer)

@@ -4,6 +4,7 @@ A kept folder saves Sphinx from reading and writing unchanged pages; the site is
 """
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 from robo_genesis.build.built_pages import BuiltPages
@@ -15,7 +16,11 @@ BUILD_INFO = ".buildinfo"
 
 
 def render(
-    sphinx: SphinxProcess, staging: Path, built: BuiltPages, kept_folder: Path | None = None
+    sphinx: SphinxProcess,
+    staging: Path,
+    built: BuiltPages,
+    kept_folder: Path | None = None,
+    meanwhile: Callable[[], None] = lambda: None,
 ) -> Path:
     """Render every page of a book.
 
@@ -25,6 +30,8 @@ def render(
         built: the executed pages.
         kept_folder: has the doctrees and pages of the last render and gets those of this one. None
             renders from nothing.
+        meanwhile: called once, while Sphinx works. What it raises is raised here; the next render
+            then starts from nothing.
 
     Returns:
         The folder with the site's HTML.
@@ -35,17 +42,22 @@ def render(
     shutil.rmtree(staging, ignore_errors=True)
     staging.mkdir(parents=True)
     if kept_folder is None:
-        rendered = sphinx.render(staging, built)
+        rendered = sphinx.render(staging, built, meanwhile)
     else:
-        rendered = _render_changes(sphinx, kept_folder, built)
+        rendered = _render_changes(sphinx, kept_folder, built, meanwhile)
     return copy_site(rendered, staging / "html", (BUILD_INFO,))
 
 
-def _render_changes(sphinx: SphinxProcess, folder: Path, built: BuiltPages) -> Path:
+def _render_changes(
+    sphinx: SphinxProcess,
+    folder: Path,
+    built: BuiltPages,
+    meanwhile: Callable[[], None] = lambda: None,
+) -> Path:
     """Render what changed since the last render in a folder; return the folder of the pages."""
     before = read_state(sphinx.book, built)
     was_kept = prepare(folder, before)
-    rendered = sphinx.render(folder, built)
+    rendered = sphinx.render(folder, built, meanwhile)
     if was_kept and not fit(folder):  # the state is gone, so this one starts from nothing
         with SphinxProcess(sphinx.book, sphinx.log) as another:
             return _render_changes(another, folder, built)

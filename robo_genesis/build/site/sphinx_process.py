@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -58,13 +59,16 @@ class SphinxProcess:
         self.process.kill()
         self.process.communicate()
 
-    def render(self, folder: Path, built: "BuiltPages") -> Path:
+    def render(
+        self, folder: Path, built: "BuiltPages", meanwhile: Callable[[], None] = lambda: None
+    ) -> Path:
         """Render the book and return the folder with its pages; this can be done once.
 
         Args:
             folder: of Sphinx's output. What is there is taken for current, unless Sphinx finds it
                 outdated.
             built: the executed pages.
+            meanwhile: called while Sphinx works. What it raises ends Sphinx and is raised here.
 
         Raises:
             RenderError: Sphinx failed or gave a warning.
@@ -73,7 +77,12 @@ class SphinxProcess:
         variables = built.write(folder / "executed-pages.json")
         self.log.parent.mkdir(parents=True, exist_ok=True)
         self.log.write_text("Sphinx ended before it began.\n", "utf8")
-        self.process.communicate(json.dumps([str(self.log), arguments, variables]))
+        assert self.process.stdin is not None
+        with suppress(BrokenPipeError), self.process.stdin as order:  # its status is reported below
+            order.write(json.dumps([str(self.log), arguments, variables]))
+        with self:  # nothing writes into the folder after an interrupt, or a refusal meanwhile
+            meanwhile()
+            self.process.wait()
         html = folder / "_build" / "html"
         if self.process.returncode != 0 or not (html / "index.html").is_file():
             raise RenderError(f"{complaints(self.log)}\nThe complete log is in {self.log}")
@@ -89,10 +98,10 @@ def complaints(log: Path) -> str:
 
 def main() -> None:
     """Load Jupyter Book and the book's extensions, then wait for arguments and variables."""
+    collect_rarely()
     import yaml
     from jupyter_book.cli.main import main as jupyter_book
 
-    collect_rarely()
     with suppress(Exception):  # Jupyter Book reports it
         config = yaml.safe_load(Path(sys.argv[1], "_config.yml").read_text("utf8"))
         for extension in config["sphinx"]["config"]["extensions"]:

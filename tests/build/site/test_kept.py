@@ -4,6 +4,7 @@ import json
 import os
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import nbformat
 import pytest
@@ -17,6 +18,7 @@ from robo_genesis.build.site.kept import State
 from robo_genesis.build.site.render import render
 from robo_genesis.build.site.sphinx_process import RenderError, SphinxProcess
 from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.site.kept_pages import forget_own_pictures
 
 GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
 LAW = "# Law\n\n(spring)=\n## The spring\n\nA gain of two, and a rareword.\n\n{ref}`text <there>`\n"
@@ -109,6 +111,16 @@ def test_each_edit_publishes_the_same_bytes_as_a_render_from_nothing(tmp_path):
     ]
 
 
+def test_a_page_does_not_depend_on_pictures_that_reading_another_page_writes_again(tmp_path):
+    written = "../.cache/render/_build/jupyter_execute/71f4.svg"
+    files = {written, "a.svg", "text.md", str(tmp_path / "book/map.yml"), "../.cache/other.svg"}
+    env = SimpleNamespace(docname="text", dependencies={"text": set(files), "law": {written}})
+    html = str(tmp_path / ".cache/render/_build/html")
+    app = SimpleNamespace(outdir=html, srcdir=str(tmp_path / "book"), env=env)
+    forget_own_pictures(app, None)
+    assert env.dependencies == {"text": files - {written}, "law": {written}}
+
+
 def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
     book = make_book(tmp_path, text="# Text\n\n{doc}`nowhere`\n")
     for _ in range(2):
@@ -120,6 +132,19 @@ def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
     (tmp_path / "kept" / kept.STATE).unlink()  # as after a kill
     publish(tmp_path, BuiltPages())
     assert "2 added, 0 changed" in (tmp_path / "log").read_text()
+
+
+def test_a_refusal_beside_sphinx_ends_it_and_a_render_without_changes_is_complete(tmp_path):
+    def refuse() -> None:
+        raise ValueError("refused")
+
+    sphinx = SphinxProcess(make_book(tmp_path, text="# Text\n"), tmp_path / "log")
+    with pytest.raises(ValueError, match="refused"):
+        render(sphinx, tmp_path / "staging", BuiltPages(), tmp_path / "kept", refuse)
+    assert sphinx.process.poll() is not None
+    assert not (tmp_path / "kept" / kept.STATE).exists()
+    assert publish(tmp_path, BuiltPages()) == publish(tmp_path, BuiltPages())
+    assert "0 added, 0 changed" in (tmp_path / "log").read_text()
 
 
 def test_equal_names_of_pictures_make_a_folder_unfit(tmp_path):
