@@ -49,7 +49,7 @@ print(*(f"{{package}} {{number}}" for package, number in NEEDED.items()), sep="\
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """What `_config.yml` says of the course: its name, its authors, and an index of packages.
+    """What `_config.yml` states about the course: its name, its authors, and an index of packages.
 
     `torch_index` is the address of an index with builds of Torch for the CPU alone.
     """
