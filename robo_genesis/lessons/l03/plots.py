@@ -35,7 +35,7 @@ SLIDE_MARKS = {
     "low_on_030": "third",
     "high_on_030": "other",
 }
-EQUAL_BELOW = {"high_on_050": {"linewidth": 4.0, "alpha": 0.45}}
+EQUAL_BELOW = {"linewidth": 4.0, "alpha": 0.45}
 """Style of a curve that lies below an equal one."""
 
 BOUNCES_SHOWN = ("bounce_sub1", "bounce_sub2", "bounce_sub100")
@@ -87,7 +87,7 @@ def pushed(run: Experiment) -> Figure:
     """Draw speed, clearance and angular speed of the lab's pushed cubes."""
     figure = plotting.figure(7)
     axes = figure.subplots(3, 1, sharex=True)
-    slides(axes, run.traces, spec.SLIDES, SLIDE_MARKS, spec.LABELS)
+    slides(axes, run.traces, spec.SLIDES, SLIDE_MARKS, spec.LABELS, below="high_on_050")
     legend_below(figure)
     return figure
 
@@ -171,6 +171,7 @@ def slides(
     cases: Cases,
     marks: Mapping[str, str],
     labels: Mapping[str, str],
+    below: str = "",
 ) -> None:
     """Draw speed along x, clearance and angular speed of each pushed cube.
 
@@ -180,9 +181,10 @@ def slides(
         cases: the cases to draw.
         marks: of the palette, by case.
         labels: by case; the caller puts the legend.
+        below: a case whose curves are equal to later ones and are drawn wider below them.
     """
     for name, case in cases.items():
-        trace, style = traces[name], solid(marks[name], **EQUAL_BELOW.get(name, {}))
+        trace, style = traces[name], solid(marks[name], **EQUAL_BELOW if name == below else {})
         axes[0].plot(trace.t, trace.link_vel[:, 0, 0], label=labels[name], **style)
         axes[1].plot(trace.t, 1000 * clearance(trace, case), **style)
         axes[2].plot(trace.t, trace.link_ang[:, 0, 1], **style)
