@@ -38,6 +38,7 @@ from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.core.comparison import compare_values, comparison_sentence
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons.registry import find_lesson
+from robo_genesis.site.case_labels import label
 from robo_genesis.site.evidence.measured import BACKEND, measured
 
 EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
@@ -178,11 +179,13 @@ def measured_order(
     _, origin = (measured(lesson_page, f"{case}.{metric}")[1] for case in cases)
     records = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)
     first, second = (records[case][metric] for case in cases)
-    lesson = find_lesson(lesson_page.split("/")[0])
+    lesson_name = lesson_page.split("/")[0]
+    lesson = find_lesson(lesson_name)
     noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION
-    values, margin = (first.value, second.value), declared_margin(lesson_page.split("/")[0], metric)
+    values, margin = (first.value, second.value), declared_margin(lesson_name, metric)
     found = compare_values(noun, first.unit, *values, resolution, margin)
-    return found.order, found.unit, comparison_sentence((cases[0], cases[1]), found), origin
+    names = (label(lesson_name, cases[0]), label(lesson_name, cases[1]))
+    return found.order, found.unit, comparison_sentence(names, found), origin
 
 
 def declared_margin(lesson: str, metric: str) -> float:

@@ -24,7 +24,7 @@ CLAIMS: dict[str, str] = {
         "With less friction a cube travels farther; the smaller coefficient changes nothing."
     ),
     "near_coulomb": (
-        "Each stopping distance is near v² / (2 μ g) with the larger coefficient, despite the hops."
+        "Each stopping distance is within 20 % of v² / (2 μ g) with the larger coefficient."
     ),
     "level_in_flight": (
         "In the air, the energy that semi-implicit Euler conserves is constant to within float32."

@@ -34,7 +34,7 @@ class LandingMetrics(CaseMetrics):
     """How a dropped body lands and rests; `resting_offset` is negative where it sinks in."""
 
     touchdown: float | None = metric("s", "first sample at the surface", *POSE, "t_s")
-    penetration: float = metric("m", "penetration proxy", *POSE)
+    penetration: float = metric("m", "depth", *POSE)
     rebound: float = metric("m", "rebound", *POSE)
     separated: float = metric("s", "time separated after touchdown", *FLIGHT)
     upward_speed: float = metric(
@@ -89,7 +89,7 @@ def landing_metrics(trace: ContactTrace, case: ContactCase) -> LandingMetrics:
     """Measure how a dropped body lands.
 
     touchdown    first sample at or below the surface
-    penetration  max(0, −min clearance): a proxy, since only samples are known
+    penetration  max(0, −min clearance): the depth, of samples alone
     separated    samples after touchdown without contact points and with clearance, times dt
     """
     clear = clearance(trace, case)

@@ -100,7 +100,7 @@ def unused_stiffness(gs: Any, case: ContactCase, seconds: float, default: Contac
         "unused_stiffness",
         shown=bool(difference < 1e-6 and abs(found - seconds) < 1e-9),
         evidence=(
-            f"{1000 * seconds:g} ms were set at a solver step of {1000 * case.h:g} ms, and the "
+            f"{1000 * seconds:g} ms was set at a solver step of {1000 * case.h:g} ms, and the "
             f"geom returns {1000 * found:g} ms. The motion differs by {1e6 * difference:.2g} µm "
             f"from that with the engine's default of {2000 * case.h:g} ms."
         ),

@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
-from robo_genesis.core.plotting import legend_above, look
+from robo_genesis.core.plotting import LINE, legend_above, look
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, plots, study, study_contact, study_spec, theory
 from robo_genesis.lessons.l03.energy import clearance
@@ -45,8 +45,8 @@ def landings_by_step(run: Experiment) -> Figure:
         label = f"h = {1000 * case.h:g} ms"
         dots = "." if case.h > 0.002 else ""
         clear = 1000 * clearance(trace, case)[::every]
-        ax.plot(trace.t[::every], clear, marker=dots, label=label, **look(mark))
-    ax.axhline(0, **look("limit"))
+        ax.plot(trace.t[::every], clear, marker=dots, label=label, **plots.solid(mark))
+    ax.axhline(0, **LINE)
     ax.set(xlim=(0.2, 0.34), ylim=(-26, 14), xlabel="time [s]", ylabel="clearance [mm]")
     ax.set_title("Below zero: overlap", loc="left")
     ax.legend(loc="lower right")
@@ -123,10 +123,11 @@ def hops(run: Experiment) -> Figure:
 
 def cones(run: Experiment) -> Figure:
     """Draw speed, clearance and angular speed with both friction models."""
-    figure = plotting.figure(6.4)
+    figure = plotting.figure(7)
     cases = {name: run.cases[name] for name in CONE_MARKS}
     axes = figure.subplots(3, 1, sharex=True)
     plots.slides(axes, run.traces, cases, CONE_MARKS, CONE_LABELS)
+    plots.legend_below(figure)
     return figure
 
 
@@ -168,7 +169,7 @@ def releases(run: Experiment) -> Figure:
         depth = theory.impact_speed(case) * ideal * np.exp(-ideal / seconds)
         ax.plot(1000 * ideal, -1000 * depth, color=colour, linestyle=":", linewidth=1.4)
         ax.plot(2000 * seconds, -1000 * depth[-1], "o", color=colour, markersize=5)
-    ax.axhline(0, **look("limit"))
+    ax.axhline(0, **LINE)
     ax.set(xlim=(-5, 55), ylim=(-9, 4), xlabel="time after touchdown [ms]")
     ax.set_ylabel("clearance [mm]")
     legend_above(ax, "Dotted: linear contact")

@@ -6,8 +6,8 @@ from typing import Any
 from robo_genesis.lessons.l03.spec import BASELINE, BESIDE, BOUNCES, LANDINGS, PUSHED, SLIDES
 from robo_genesis.sim.contacts import ContactCase
 
-DROPPED = {name: LANDINGS[name] for name in ("baseline", "dt10_sub1")}
-"""The landings of the lecture's first replay."""
+DROPPED = {name: replace(LANDINGS[name], duration=0.5) for name in ("baseline", "dt10_sub1")}
+"""The landings of the lecture's first replay; the cubes have settled at its end."""
 
 HOPPED = {name: SLIDES[name] for name in ("low_on_050", "high_on_050")}
 """The slides of the lecture's second replay, with the engine's default friction model."""

@@ -4,11 +4,18 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from robo_genesis.core import tables
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l03 import friction, spec, study, study_contact, study_spec, theory
+from robo_genesis.lessons.l03 import (
+    friction,
+    spec,
+    study,
+    study_contact,
+    study_spec,
+    tables,
+    theory,
+)
 from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics
 from robo_genesis.lessons.l03.study import slide
 
@@ -41,7 +48,7 @@ def steps(run: Experiment) -> str:
         rows.append(
             {
                 "h": milliseconds(case.h),
-                "T, read": milliseconds(run.readings[study.GROUP][name]),
+                "T in force": milliseconds(run.readings[study.GROUP][name]),
                 "h / T": f"{study.share_of_step(name):.3g}",
                 "depth": f"{span([1000 * of.penetration for of in found], 1)} mm",
                 "depth / (v T / e)": span(study.depth_shares(run.metrics, name)),
@@ -81,11 +88,11 @@ def before_after(run: Experiment) -> str:
         before, after = (f"{of.surface_friction:g}" for of in cases)
         rows.append(
             {
-                "cube": f"{cases[0].friction:g}",
-                f"on {before}": metres(found[0]),
-                f"on {after}": metres(found[1]),
-                "larger, before": f"{friction.pair_friction(cases[0]):g}",
-                "larger, after": f"{friction.pair_friction(cases[1]):g}",
+                "friction of the cube": f"{cases[0].friction:g}",
+                f"stops after (table {before})": metres(found[0]),
+                f"stops after (table {after})": metres(found[1]),
+                f"μ of the pair, table {before}": f"{friction.pair_friction(cases[0]):g}",
+                f"μ of the pair, table {after}": f"{friction.pair_friction(cases[1]):g}",
             }
         )
     return tables.markdown(rows)
@@ -109,7 +116,7 @@ def clean_slides(run: Experiment) -> str:
                 "h": milliseconds(case.h),
                 "measured": metres(found.stop_distance),
                 "v² / (2 μ g)": metres(continuous),
-                "less v h / 2": metres(continuous - case.speed * case.h / 2),
+                "v² / (2 μ g) − v h / 2": metres(continuous - case.speed * case.h / 2),
                 "hop": millimetres(found.hop),
             }
         )

@@ -85,7 +85,9 @@ def hop_conclusions(run: Experiment) -> str:
         if case.speed <= study_spec.SLOW
     ]
     fine = [step for step in study_spec.HOP_STEPS if step not in study_spec.HOP_APPLIES]
-    left = [slide(run.metrics, f"{step}_{lane}").hop for step in fine for lane in found]
+    cases = [(f"{step}_{lane}", study_spec.HOP_STEP_CASES[step]) for step in fine for lane in found]
+    left = [slide(run.metrics, name).hop for name, _ in cases]
+    ratios = [hop / theory.hop(of[name]) for hop, (name, of) in zip(left, cases, strict=True)]
     sentences = [
         f"At 2 m/s and solver steps of 10 ms and 5 ms the cubes hop by {millimetres(min(of))} to "
         f"{millimetres(max(of))}: the step is T / 2 in both."
@@ -93,7 +95,7 @@ def hop_conclusions(run: Experiment) -> str:
     ]
     sentences.append(
         f"At 1 ms and below, hops of {millimetres(min(left))} to {millimetres(max(left))} are "
-        "left. They do not follow the formula."
+        f"left, {min(ratios):.2g} to {max(ratios):.2g} times the formula."
     )
     sentences.append(
         f"At {study_spec.SLOW:g} m/s or less, with a step of 5 ms, the highest hop is "

@@ -46,9 +46,9 @@ def interpretation(run: Experiment) -> tuple[Block, ...]:
 def landing_sentence(name: str, found: LandingMetrics) -> str:
     """Say how deep a dropped cube sank in, whether it rebounded, and when it settled."""
     if found.touchdown is None:
-        return f"`{name}` did not reach the surface within the window."
+        return f"{titled(name)} The cube did not reach the surface within the window."
     landing = (
-        f"`{name}` first touches the surface at {found.touchdown:.2f} s; maximum penetration "
+        f"{titled(name)} The cube first touches the surface at {found.touchdown:.2f} s; depth "
         f"{mm(found.penetration)}. It "
     )
     rebounds = f"rebounds by {mm(found.rebound)}, for {1000 * found.separated:.0f} ms"
@@ -71,12 +71,12 @@ def step_sentences(
         a, b = landings[coarse].penetration, landings[fine].penetration
         verb = "less deeply than" if b < a else "as deeply as or more deeply than"
         yield (
-            f"`{fine}` sinks in {verb} `{coarse}`, which has fewer substeps: {mm(b)} instead of "
-            f"{mm(a)}."
+            f"With {label(fine)} the cube sinks in {verb} with {label(coarse)}: {mm(b)} instead "
+            f"of {mm(a)}."
         )
     short, long = (traces[name] for name in spec.EQUAL_STEP)
     difference = np.abs(short.link_pos[:: round(long.dt / short.dt)] - long.link_pos).max()
-    names = listed([f"`{name}`" for name in spec.EQUAL_STEP])
+    names = f"the runs with {listed([label(name) for name in spec.EQUAL_STEP])}"
     why = "Their solver steps are equal; the outer step only sets how often the state is read."
     shared = f"At shared times {names}"
     if difference == 0:
@@ -85,12 +85,11 @@ def step_sentences(
         yield f"{shared} are {1e6 * difference:.2g} µm apart, which is float32 rounding. {why}"
     else:
         yield f"{shared} are up to {mm(difference)} apart. {INSPECT}"
-    rebounding = [f"`{name}`" for name, of in landings.items() if of.rebound > CLEAR]
+    rebounding = [label(name) for name, of in landings.items() if of.rebound > CLEAR]
     if rebounding:
         yield (
-            f"{listed(rebounding)} {'rebounds' if len(rebounding) == 1 else 'rebound'}. These runs "
-            "cannot show whether that is physics or numerical error: the lecture tests smaller "
-            "steps and other heights."
+            f"With {listed(rebounding)} the cube rebounds. These runs cannot show whether that is "
+            "physics or numerical error: the lecture tests smaller steps and other heights."
         )
     else:
         yield "None of the cubes rebounds."
@@ -99,16 +98,17 @@ def step_sentences(
 def slide_sentence(name: str, found: SlideMetrics, case: ContactCase) -> str:
     """Say where a pushed cube stopped, Coulomb's distance, and whether it stayed down."""
     if found.stop_distance is None or found.stop_time is None:
-        slide = f"`{name}` did not stop in the window; it travelled {found.final_distance:.4f} m"
+        travelled = f"it travelled {found.final_distance:.4f} m"
+        slide = f"{titled(name)} It did not stop in the window; {travelled}"
     else:
         mu = friction.pair_friction(case)
         expected = friction.coulomb_distance(case.speed, mu, case.gravity)
         seconds = friction.coulomb_time(case.speed, mu, case.gravity)
         difference = signed(100 * (found.stop_distance / expected - 1), 1)
         slide = (
-            f"`{name}` stops after {found.stop_time:.2f} s and {found.stop_distance:.4f} m. With "
-            f"μ = {mu:g}, v / (μ g) is {seconds:.2f} s and v² / (2 μ g) is {expected:.4f} m; "
-            f"the distance differs from it by {difference} %"
+            f"{titled(name)} It stops after {found.stop_time:.2f} s and {found.stop_distance:.4f} "
+            f"m. With μ = {mu:g}, v / (μ g) is {seconds:.2f} s and v² / (2 μ g) is {expected:.4f} "
+            f"m; the distance differs from it by {difference} %"
         )
     if found.hop > CLEAR:
         return (
@@ -129,13 +129,14 @@ def friction_sentences(
             larger = friction.pair_friction(case)
             apparent = friction.apparent_friction(case.speed, found.stop_distance, case.gravity)
             yield (
-                f"`{name}` has {case.friction:g} on {case.surface_friction:g}. Its distance "
-                f"corresponds to μ = {apparent:.3f}; the larger of the two is {larger:g}."
+                f"{titled(name)} Its distance corresponds to μ = {apparent:.3f}; the larger "
+                f"coefficient is {larger:g}."
             )
     for lane in ("low", "high"):
         one, other = (slides[f"{lane}_on_{of}"].stop_distance for of in ("050", "030"))
+        own = f"a friction of {cases[f'{lane}_on_050'].friction:g}"
         if one is None or other is None:
-            yield f"One of the cubes with {lane} friction did not stop."
+            yield f"One of the cubes with {own} did not stop."
             continue
         difference = abs(other - one)
         if difference <= spec.SAME_SLIDE:
@@ -143,7 +144,7 @@ def friction_sentences(
         else:
             direction = "farther" if other > one else "less far"
             effect = f"lets it travel {100 * difference:.1f} cm {direction}"
-        yield f"For the cube with {lane} friction, the other surface {effect}."
+        yield f"For the cube with {own}, the other table {effect}."
 
 
 def bounce_sentence(found: BounceMetrics, case: ContactCase) -> str:
@@ -187,6 +188,17 @@ def energy_sentences(
             f"and by {min(bounded):.2f} mJ at another. This error is bounded: without m g h v / 2 "
             f"the energy changes by at most {1e6 * max(drift):.1f} millionths of the start."
         )
+
+
+def label(run: str) -> str:
+    """Return a reader's words for a run."""
+    return spec.LABELS.get(run, run)
+
+
+def titled(run: str) -> str:
+    """Return these words as the title of a sentence: `**Two steps in 10 ms.**`."""
+    words = label(run)
+    return f"**{words[0].upper()}{words[1:]}.**"
 
 
 def mm(value: float) -> str:

@@ -130,10 +130,10 @@ def _cases(name: str, runs: Runs) -> str:
     """Return one radio button per case, with its mark and the levels of its run as JSON."""
     marks = marks_of(list(runs.traces), COURSE_MARKS)
     return "".join(
-        f'<span><input type="radio" name="{name}" id="{name}-{case}" value="{case}" '
+        f'<span><input type="radio" name="{name}" id="{name}-{number}" value="{case}" '
         f'data-mark="{css_name(mark)}" data-levels="{escape(_levels(runs, case))}"'
         f"{' checked' * (number == 0)}>"
-        f'<label for="{name}-{case}" class="case-mark {css_name(mark)}">{case}</label></span>'
+        f'<label for="{name}-{number}" class="case-mark {css_name(mark)}">{case}</label></span>'
         for number, (case, mark) in enumerate(marks.items())
     )
 

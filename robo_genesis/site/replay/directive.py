@@ -26,6 +26,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons.registry import drawn_cases
 from robo_genesis.sim import visual_shape
+from robo_genesis.site.case_labels import labelled
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import image, marked
@@ -79,7 +80,7 @@ def replay_block(
     env, lesson = directive.env, key.split("/")[0]
     name = "-".join(("replay", *key.split("/"), *filter(None, [further])))
     try:
-        runs = read_runs(folder, drawn_cases(lesson, further))
+        runs = labelled(read_runs(folder, drawn_cases(lesson, further)), lesson)
         shape = shape_file(lesson, runs.view.thing)
         around = scenery(visual_shape.load_shape(shape), runs)
         inputs = [*model_inputs(shape, folder, runs)]

@@ -4,7 +4,7 @@ import numpy as np
 
 from robo_genesis.lessons.l03 import spec, study_spec
 from robo_genesis.lessons.l03.metrics import CLEAR, STOP_HOLD, STOP_SPEED
-from robo_genesis.sim import contacts
+from robo_genesis.sim import contacts, mujoco_contacts
 
 LOW, HIGH = spec.PUSHED.friction, spec.PUSHED.surface_friction
 CONFIGURED = {
@@ -30,7 +30,8 @@ CONFIGURED = {
     "step of T / 4 [ms]": 2.5,
     "height of the fixed step [m]": 0.02,
     "fall in the first calculation [m]": 0.05,
-    "e, to one digit": round(float(np.e), 1),
+    "e, to one digit, and the speed [m/s] of v T / e = 2 mm with T = 2 ms": round(float(np.e), 1),
+    "largest impedance": mujoco_contacts.IMPEDANCE[1],
     "1 + μ² in the third calculation": 1 + HIGH**2,
     "T / 10 in the second calculation [ms], speed in the third [m/s]": 0.4,
     "difference of a depth and v T / e that counts as small [mm]": 0.05,

@@ -7,6 +7,7 @@ import pytest
 from lessons.body_runs import body_at, slide_on_corners
 from lessons.l03.conftest import MASSES, READINGS
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from robo_genesis.core import plotting
 from robo_genesis.core.checks import require
@@ -364,9 +365,9 @@ def test_the_exercise_fails_what_the_lecture_says(experiment):
 
 def test_sentences_of_the_lab(experiment):
     found = "\n".join(block.markdown() for block in text.interpretation(experiment))
-    assert "`baseline` rebounds. These runs cannot show whether that is physics" in found
-    assert "`low_on_050` has 0.1 on 0.5. Its distance corresponds to μ = 0.5" in found
-    assert "For the cube with high friction, the other surface changes its distance by 0" in found
+    assert "With two steps in 10 ms the cube rebounds. These runs cannot show whether that" in found
+    assert "**Cube 0.1 on table 0.5.** Its distance corresponds to μ = 0.5" in found
+    assert "For the cube with a friction of 0.8, the other table changes its distance by 0" in found
     assert "has 101.7 % of its energy after the first bounce, more than before" in found
 
 
@@ -388,9 +389,10 @@ def test_figures_are_drawn_with_labelled_axes(experiment):
     assert ax.get_ylabel()
     four = Figure().subplots(4, 1)
     plots.counted(four, experiment.traces, (0.1, 0.5))
-    assert [ax.get_title(loc="left") for ax in four] == list(spec.LANDINGS)
+    heads = [ax.get_title(loc="left").partition(" (")[0] for ax in four]
+    assert heads == [spec.LABELS[name] for name in spec.LANDINGS]
     three = Figure().subplots(3, 1)
-    plots.slides(three, experiment.traces, spec.SLIDES, plots.SLIDE_MARKS)
+    plots.slides(three, experiment.traces, spec.SLIDES, plots.SLIDE_MARKS, spec.LABELS)
     assert len(three[0].lines) == 5  # four cubes and the zero
     two = Figure().subplots(2, 1)
     plots.energies(two, experiment.traces, {n: spec.BOUNCES[n] for n in THREE})
@@ -400,6 +402,28 @@ def test_figures_are_drawn_with_labelled_axes(experiment):
     assert len(one.patches) == 0  # a cube that did not stop has no bar
     plots.kept(Figure().subplots(), {0.01: 90.0, 0.001: None}, 94)
     plotting.body_schematic(Figure().subplots(), experiment.traces["baseline"], 0.08, contacts.TOP)
+
+
+def test_readers_see_words_instead_of_names(experiment):
+    shown = [text.conclusions(experiment), tables.landings(experiment), tables.slides(experiment)]
+    shown += [tables.bounces(experiment), str(tables.landing_rows(spec.LANDINGS))]
+    for figure in (plots.landings, plots.contact_counts, plots.pushed, plots.stopping_distances):
+        drawn = figure(experiment)
+        shown += [found.get_text() for found in drawn.findobj(Text)]
+    names = [name for name in spec.CASES if any(name in part for part in shown)]
+    assert names == []
+    assert set(spec.CASES) <= set(spec.LABELS)
+
+
+def test_measured_curves_are_solid(experiment):
+    for figure in (plots.landings, plots.contact_counts, plots.pushed, plots.ball_energies):
+        lines = [line for ax in figure(experiment).axes for line in ax.lines]
+        assert {line.get_linestyle() for line in lines} == {"-"}
+
+
+def test_a_number_keeps_its_unit_in_a_line():
+    table = tables.markdown([{"h": "2.5 ms", "depth": "0.9 to 1.2 mm", "run": "one step in 10 ms"}])
+    assert "| 2.5\u00a0ms | 0.9 to 1.2\u00a0mm | one step in 10\u00a0ms |" in table
 
 
 def test_rows_say_how_many_steps():

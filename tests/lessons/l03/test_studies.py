@@ -241,14 +241,14 @@ def test_a_distance_between_runs_takes_shared_times_and_no_lanes(experiments):
 def test_the_step_decides_the_table_of_depths(experiments):
     table = study_tables.steps(experiments["lecture"])
     assert len(table.strip().splitlines()) == 2 + len(study_spec.STEP_CASES)
-    assert "| 20 ms | 40 ms | 0.5 |" in table
-    assert "| 0.125 ms | 10 ms | 0.0125 |" in table
+    assert "| 20\u00a0ms | 40\u00a0ms | 0.5 |" in table
+    assert "| 0.125\u00a0ms | 10\u00a0ms | 0.0125 |" in table
 
 
 def test_slides_on_corners_have_the_distances_of_the_formula(experiments):
     table = study_tables.clean_slides(experiments["lecture"])
     distance = friction.stepped_distance(2.0, 0.3, 0.005)
-    assert f"| {distance:.4f} m |" in table
+    assert f"| {distance:.4f}\u00a0m |" in table
     rows = study_tables.before_after(experiments["lecture"]).splitlines()
     high = next(row for row in rows if row.startswith("| 0.8"))
     assert len({cell.strip() for cell in high.split("|")[2:4]}) == 1  # both tables

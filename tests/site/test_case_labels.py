@@ -1,0 +1,42 @@
+"""Readers see words in place of the names of runs."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from robo_genesis.core.channels import Channel, Level, Runs, View
+from robo_genesis.core.palette import MARKS
+from robo_genesis.site.case_labels import label, labelled
+
+CASES = ("dt10_sub1", "baseline")
+WORDS = ["one step in 10 ms", "two steps in 10 ms"]
+
+
+def runs() -> Runs:
+    trace = SimpleNamespace(t=np.arange(3.0), steps=2, dt=1.0)
+    by_case = dict.fromkeys(CASES, trace.t)
+    return Runs(
+        subject="the cube",
+        traces=dict.fromkeys(CASES, trace),
+        links=("body",),
+        channels=(Channel("height", "z", "m", 4, by_case),),
+        levels=(Level("target", "height", next(iter(MARKS)), "", by_case, by_case),),
+        moves={case: f"**{case}**: the cube falls." for case in CASES},
+        view=View("cube", "The cube."),
+        alt="",
+        caption="",
+    )
+
+
+def test_a_run_without_words_keeps_its_name():
+    assert label("l03", "dt10_sub1") == WORDS[0]
+    assert label("l03", "h_5000us_10000") == "h_5000us_10000"
+    assert label("l04", "G1") == "G1"
+
+
+def test_runs_are_shown_by_their_words_everywhere():
+    shown = labelled(runs(), "l03")
+    (channel,), (level,) = shown.channels, shown.levels
+    for by_case in (shown.traces, channel.values, level.values, level.texts, shown.moves):
+        assert list(by_case) == WORDS
+    assert shown.moves[WORDS[0]] == "**one step in 10 ms**: the cube falls."
