@@ -13,12 +13,12 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from robo_genesis.build.command import ANSI
 from robo_genesis.core.project import COURSE, ENGINE, solutions_shown
 from robo_genesis.lessons.book_pages import Page
+from robo_genesis.site.page_facts import WORK_SHEET
 from robo_genesis.site.takeaways.plain_markdown import SOLUTION, ProseError, Writer, plain
 
 SITE_ONLY = "site-only"
 """The tag of a cell that makes sense only on the site."""
 
-WORK_SHEET = "worksheet.md"
 BEFORE = "before the run"
 """Words in the heading of each part of the work sheet that comes first."""
 
