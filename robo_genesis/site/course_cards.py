@@ -11,9 +11,7 @@ from sphinx.environment import BuildEnvironment
 from robo_genesis.core.text import listed
 from robo_genesis.site.course_map import Lesson, MapDirective, lesson_pages, page_link
 from robo_genesis.site.evidence.plain_nodes import marked
-from robo_genesis.site.page_facts import Minutes, minutes_of
-
-LAB = "lab"
+from robo_genesis.site.page_facts import LAB, Minutes, minutes_of
 
 
 class page_minutes(nodes.inline):  # noqa: N801 - docutils names nodes in lower case

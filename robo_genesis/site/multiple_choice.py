@@ -35,16 +35,20 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.build.built_pages import page_outputs
-from robo_genesis.core.comparison import compare_values, comparison_sentence
+from robo_genesis.core.comparison import Comparison, compare_values, comparison_sentence
+from robo_genesis.core.quantities import format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons.registry import find_lesson
 from robo_genesis.site.case_labels import label
 from robo_genesis.site.evidence.measured import BACKEND, measured
 
-EARLIER = {"lower": "earlier", "equal": "at the same sample", "higher": "later"}
-LOWER = {"lower": "less", "equal": "the same", "higher": "more"}
-CLOSE = "too close to call: less than {} {} apart"
-UNDECIDED = "these runs cannot show it"
+EARLIER = {"lower": "earlier", "equal": "at the same time", "higher": "later"}
+LOWER = {"lower": "less", "equal": "the same (to {})", "higher": "more"}
+"""The options by order; `{}` is the smallest difference that counts."""
+CLOSE = "about the same (less than {} apart)"
+UNDECIDED = "these two runs cannot show it"
+SCALED = {"m": "mm", "s": "ms", "rad": "mrad", "m/s": "mm/s", "rad/s": "mrad/s", "J": "mJ"}
+"""The thousandth of a unit, in which small values are easier to read."""
 UNKNOWN = "unknown"
 """The key of the option that no order was observed."""
 JUDGED = ("right", "low", "high")
@@ -118,7 +122,7 @@ class Choice(Question):
         text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
         order, unit, answer, origin = measured_order(lesson_page, metric, cases)
         margin = declared_margin(lesson_page.split("/")[0], metric)
-        shown = options(unit, order, causes, margin)
+        shown = options(unit, order, smallest_difference(lesson_page, unit), causes, margin)
         return text, choice(options=shown, answer=answer, origin=origin)
 
 
@@ -184,8 +188,34 @@ def measured_order(
     noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION
     values, margin = (first.value, second.value), declared_margin(lesson_name, metric)
     found = compare_values(noun, first.unit, *values, resolution, margin)
-    names = (label(lesson_name, cases[0]), label(lesson_name, cases[1]))
-    return found.order, found.unit, comparison_sentence(names, found), origin
+    return found.order, found.unit, measured_sentence((cases[0], cases[1]), found), origin
+
+
+def measured_sentence(names: tuple[str, str], found: Comparison) -> str:
+    """Return a sentence with the values of one metric in two cases."""
+    if found.first is None or found.second is None:
+        return comparison_sentence(names, found)
+    values, unit = (found.first, found.second), found.unit
+    texts = [format_value(value, unit) for value in values]
+    if unit == "m" and all(0 < abs(value) < 0.1 for value in values):
+        texts = [f"{1000 * value:.3g} mm" for value in values]
+    pairs = ", ".join(f"{name} {text}" for name, text in zip(names, texts, strict=True))
+    sentence = f"{found.label[0].upper()}{found.label[1:]}: {pairs}."
+    if found.order == "equal" and found.margin and found.first != found.second:
+        sentence += f" A difference below {small(found.margin, unit)} does not count."
+    return sentence
+
+
+def small(value: float, unit: str) -> str:
+    """Return a margin or a resolution with its unit, in thousandths where it is small."""
+    if unit in SCALED and value < 0.1:
+        value, unit = 1000 * value, SCALED[unit]
+    return f"{value:g} {'samples' if unit == '1' else unit}"
+
+
+def smallest_difference(lesson_page: str, unit: str) -> str:
+    """Return the resolution of a unit that a lesson declares, as text."""
+    return small(find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[unit], unit)
 
 
 def declared_margin(lesson: str, metric: str) -> float:
@@ -197,13 +227,25 @@ def declared_margin(lesson: str, metric: str) -> float:
 def options(
     unit: str,
     order: str | None,
+    resolution: str,
     causes: Mapping[str, str] = MappingProxyType({}),
     margin: float = 0.0,
 ) -> list[tuple[str, bool, str]]:
-    """Return each option, whether it was measured, and its cause; exactly one is true."""
+    """Return each option, whether it was measured, and its cause; exactly one is true.
+
+    Args:
+        unit: of the metric.
+        order: the order that was measured, None where no order was observed.
+        resolution: the smallest difference that counts, as text.
+        causes: the cause of each answer by its key, or a part of them.
+        margin: that the lesson declares for this metric, 0 for none.
+    """
     words = dict(EARLIER if unit == "s" else LOWER)
+    words["equal"] = words["equal"].format(resolution)
+    if unit == "1":
+        words["equal"] = "the same"
     if margin:
-        words["equal"] = CLOSE.format(f"{margin:g}", "samples" if unit == "1" else unit)
+        words["equal"] = CLOSE.format(small(margin, unit))
     told = [(text, order == name, causes.get(name, "")) for name, text in words.items()]
     return [*told, (UNDECIDED, order is None, causes.get(UNKNOWN, ""))]
 

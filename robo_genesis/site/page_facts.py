@@ -25,9 +25,13 @@ LINES_A_MINUTE = 10
 """The pace of somebody who runs and changes visible code."""
 MINUTES_A_QUESTION = 2
 MINUTES_A_FUNCTION = 10
-"""An estimate for a function that the reader writes and tests."""
-TO_WRITE = "raise NotImplementedError"
-"""The line of code in the place of what the reader writes."""
+"""An estimate of the time to write a function until its test passes."""
+MINUTES_A_RUN = 5
+"""An estimate of the time of one run of a lab, in which the engine compiles its kernels."""
+MINUTES_A_SHEET = 10
+"""An estimate of the time to fill in a work sheet."""
+STUB = "raise NotImplementedError"
+"""Occurs in a cell with a function that the reader writes."""
 COMMITS = 6
 """Number of the latest commits of a page that are listed."""
 DESCRIPTION = 200
@@ -36,6 +40,8 @@ SOURCE = "cell_code_source"
 """What MyST-NB calls the code of a cell."""
 HIDDEN = {"hide-cell", "hide-input", "remove-cell", "remove-input"}
 """Tags of cells whose code is not visible."""
+LAB, WORK_SHEET = "lab", "worksheet.md"
+"""The name of a lesson's lab, and the file with its work sheet."""
 MINUTES = "minutes"
 """The name of the time in a page's metadata."""
 UNCOUNTED = (nodes.literal_block, nodes.table, nodes.math, nodes.math_block, nodes.raw)
@@ -50,8 +56,39 @@ def count_words(document: nodes.document) -> int:
     )
 
 
-def count_work(document: nodes.document) -> tuple[int, int, int]:
-    """Return how many visible lines of code, questions and functions to write there are."""
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What a reader does on a page besides reading it.
+
+    `lines` are visible lines of code, which a reader runs and changes; `functions` those that a
+    reader writes. `sheet` is true for a page with a work sheet.
+    """
+
+    lines: int = 0
+    questions: int = 0
+    functions: int = 0
+    sheet: bool = False
+
+    @property
+    def minutes(self) -> float:
+        """The time that this takes; a page with functions to write is also run."""
+        written = self.functions * MINUTES_A_FUNCTION + bool(self.functions) * MINUTES_A_RUN
+        asked = self.questions * MINUTES_A_QUESTION + self.sheet * MINUTES_A_SHEET
+        return self.lines / LINES_A_MINUTE + written + asked
+
+
+def has_sheet(page: Path) -> bool:
+    """Return whether a page is a lab with a work sheet in its folder."""
+    return page.stem == LAB and page.with_name(WORK_SHEET).is_file()
+
+
+def count_work(document: nodes.document, page: Path) -> Work:
+    """Return what there is to do on a page.
+
+    Args:
+        document: the page as it was read.
+        page: its source file.
+    """
     lines = functions = 0
     for part in document.findall(nodes.container):
         if part.get("nb_element") != SOURCE:
@@ -59,34 +96,39 @@ def count_work(document: nodes.document) -> tuple[int, int, int]:
         cells = (node for node in above(part) if "cell_metadata" in node)
         if not any(HIDDEN.intersection(cell["cell_metadata"].get("tags", ())) for cell in cells):
             lines += sum(bool(line.strip()) for line in part.astext().splitlines())
-            functions += TO_WRITE in part.astext()
-    return lines, len(list(document.findall(choice))), functions
+            functions += STUB in part.astext()
+    return Work(lines, len(list(document.findall(choice))), functions, has_sheet(page))
 
 
 @dataclass(frozen=True, slots=True)
 class Minutes:
-    """The time that a page takes, in whole minutes: to read it, and to work with its code."""
+    """The time that a page takes, in whole minutes: to read it, and for its code and questions.
+
+    `sheet` is true if the work includes a work sheet.
+    """
 
     read: int
     work: int
+    sheet: bool = False
 
     def __str__(self) -> str:
-        work = f", {self.work} min to work" if self.work else ""
-        return f"{self.read} min to read{work}"
+        total = self.read + self.work
+        if self.sheet:
+            return f"{5 * round(total / 5)} min with the work sheet"
+        if self.work:
+            return f"{total} min ({self.read} to read, {self.work} for code and questions)"
+        return f"{total} min to read"
 
 
-def minutes(words: int, code_lines: int = 0, questions: int = 0, functions: int = 0) -> Minutes:
+def minutes(words: int, work: Work) -> Minutes:
     """Return the time that a page takes.
 
     Args:
         words: of running text.
-        code_lines: visible lines of code, which a reader runs and changes.
-        questions: to be answered.
-        functions: to be written.
+        work: what there is to do.
     """
-    answers = questions * MINUTES_A_QUESTION + functions * MINUTES_A_FUNCTION
-    work = round(code_lines / LINES_A_MINUTE + answers)
-    return Minutes(max(1, round(words / WORDS_A_MINUTE)), work)
+    read = max(1, round(words / WORDS_A_MINUTE))
+    return Minutes(read, round(work.minutes), work.sheet)
 
 
 def minutes_of(env: BuildEnvironment, docname: str) -> Minutes:
@@ -138,7 +180,8 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
 
 def keep_minutes(app: Sphinx, document: nodes.document) -> None:
     """Keep the time that a page takes, before lines of provenance are added to its text."""
-    counted = minutes(count_words(document), *count_work(document))
+    work = count_work(document, Path(app.env.doc2path(app.env.docname)))
+    counted = minutes(count_words(document), work)
     app.env.metadata[app.env.docname][MINUTES] = counted
 
 

@@ -13,7 +13,13 @@ from sphinx.directives.code import LiteralIncludeReader
 
 from robo_genesis.lessons.book_pages import Page
 from robo_genesis.site.excerpts import without_docstrings
-from robo_genesis.site.page_facts import HIDDEN, TO_WRITE, minutes
+from robo_genesis.site.page_facts import (
+    HIDDEN,
+    STUB,
+    WORDS_A_MINUTE,
+    Work,
+    has_sheet,
+)
 
 COLUMN = 80
 """Most characters in a line of an excerpt that the column shows without scrolling."""
@@ -55,12 +61,12 @@ class Size:
     widest: int
 
 
-def size(notebook: NotebookNode, folder: Path) -> Size:
+def size(notebook: NotebookNode, file: Path) -> Size:
     """Return the size of a page.
 
     Args:
         notebook: the page's source.
-        folder: of the page, from which its excerpts are read.
+        file: of the page; its excerpts are relative to its folder.
     """
     texts = [cell.source for cell in notebook.cells if cell.cell_type == "markdown"]
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
@@ -69,15 +75,15 @@ def size(notebook: NotebookNode, folder: Path) -> Size:
     widths = (0, *(len(line) for cell in visible for line in cell.source.splitlines()))
     words = sum(len(line.split()) for text in texts for line in prose(text))
     questions = sum(len(QUESTION.findall(text)) for text in texts)
-    functions = sum(TO_WRITE in cell.source for cell in visible)
-    time = minutes(words, sum(lines), questions, functions)
+    functions = sum(STUB in cell.source for cell in visible)
+    work = Work(sum(lines), questions, functions, has_sheet(file))
     return Size(
         words=words,
         cells=len(visible),
         longest=max(lines, default=0),
         plots=sum(bool(PLOT.search(cell.source)) for cell in code),
-        minutes=time.read + time.work,
-        widest=max((*widths, *(width for t in texts for width in excerpt_widths(t, folder)))),
+        minutes=round(words / WORDS_A_MINUTE + work.minutes),
+        widest=max((*widths, *(width for t in texts for width in excerpt_widths(t, file.parent)))),
     )
 
 
@@ -128,7 +134,7 @@ def report(pages: Iterable[Page]) -> tuple[list[str], list[str]]:
     """
     lines, problems = [], []
     for page in pages:
-        found = size(page.notebook, page.path.parent)
+        found = size(page.notebook, page.path)
         numbers = ", ".join(f"{getattr(found, name):,} {what}" for name, what in MEASURES.items())
         lines.append(f"{page.docname}: {numbers}")
         if over := excess(found, page.path.stem.partition("-")[0]):

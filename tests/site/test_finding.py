@@ -147,7 +147,7 @@ def test_pages_tell_their_reading_time_and_history(site):
     page = parsed(site, LECTURE)
     facts = page.select_one(".page-facts").get_text()
     assert all(int(minutes) > 10 for minutes in re.findall(r"\d+", facts))
-    assert re.fullmatch(r"About \d+ min to read, \d+ min to work\.", facts)
+    assert re.fullmatch(r"About \d+ min \(\d+ to read, \d+ for code and questions\)\.", facts)
     history = [item.get_text() for item in page.select("details.page-history li")]
     if git_or_none(BOOK, "rev-parse", "--is-shallow-repository") == "false\n":
         last = git_or_none(BOOK, "log", "-n1", "--format=%cs %s", "--", f"{LECTURE}.md")

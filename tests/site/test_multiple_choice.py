@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from robo_genesis.core.comparison import compare_values
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.site import multiple_choice
@@ -17,6 +18,7 @@ from robo_genesis.site.multiple_choice import (
     asked_number,
     declared_margin,
     measured_order,
+    measured_sentence,
     options,
     split_causes,
 )
@@ -30,22 +32,24 @@ from robo_genesis.site.multiple_choice import (
         ("rad", "higher", "more"),
         ("rad/s", "lower", "less"),
         ("1", None, UNDECIDED),
+        ("m", "equal", "the same (to 0.1 mm)"),
+        ("1", "equal", "the same"),
     ],
 )
 def test_exactly_the_measured_option_is_right(unit, order, text):
-    assert [name for name, right, _ in options(unit, order) if right] == [text]
+    assert [name for name, right, _ in options(unit, order, "0.1 mm") if right] == [text]
 
 
 @pytest.mark.parametrize(
     ("metric", "unit", "text"),
     [
-        ("rise_time", "s", "too close to call: less than 0.015 s apart"),
-        ("saturation_samples", "1", "too close to call: less than 1.5 samples apart"),
-        ("settling_time", "s", "at the same sample"),
+        ("rise_time", "s", "about the same (less than 15 ms apart)"),
+        ("saturation_samples", "1", "about the same (less than 1.5 samples apart)"),
+        ("settling_time", "s", "at the same time"),
     ],
 )
-def test_a_difference_within_the_declared_margin_is_too_close_to_call(metric, unit, text):
-    shown = options(unit, "equal", margin=declared_margin("l04", metric))
+def test_a_difference_within_the_declared_margin_is_about_the_same(metric, unit, text):
+    shown = options(unit, "equal", "0.1 mm", margin=declared_margin("l04", metric))
     assert [name for name, right, _ in shown if right] == [text]
 
 
@@ -66,6 +70,22 @@ def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
 def test_an_unknown_metric_or_case_names_those_there_are(outputs, metric, case):
     with pytest.raises(LookupError, match=r"Known: .*G2\.overshoot"):
         measured_order("l04/lab", metric, ["G1", case])
+
+
+@pytest.mark.parametrize(
+    ("unit", "values", "margin", "said"),
+    [
+        ("m", (0.01316, 0.00781), 0.0, "Depth: A 13.2 mm, B 7.81 mm."),
+        ("m", (0.2011, 0.1971), 0.0, "Depth: A 0.2011 m, B 0.1971 m."),
+        ("s", (0.14, 0.15), 0.015,
+         "Depth: A 0.14 s, B 0.15 s. A difference below 15 ms does not count."),
+        ("s", (0.14, None), 0.0, "The depth was observed for A alone"),
+    ],
+)  # fmt: skip
+def test_the_answer_has_both_values_in_a_readable_unit(unit, values, margin, said):
+    resolution = {"m": 1e-5, "s": 0.005}
+    found = compare_values("depth", unit, *values, resolution, margin)
+    assert measured_sentence(("A", "B"), found).startswith(said)
 
 
 KEYS = [*LOWER, UNKNOWN]
@@ -112,7 +132,9 @@ SHOWN = {"number": 3, "answer": "G1 < G2", "origin": "Measured"}
 
 
 def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
-    node = multiple_choice.choice("", options=options("s", "higher", {"lower": "F < 9"}), **SHOWN)
+    node = multiple_choice.choice(
+        "", options=options("s", "higher", "5 ms", {"lower": "F < 9"}), **SHOWN
+    )
     html = written(node)
     assert re.findall(r'feedback (\w+)">(\w+)\. (.*?)</p>', html) == [
         ("wrong", "No", "F &lt; 9 G1 &lt; G2"),
@@ -145,7 +167,9 @@ FEEDBACK += [("x57.3", "No. In degrees.")]
 @pytest.fixture
 def asked(browser):
     """A page with a choice and a number, and the course's script and style."""
-    first = multiple_choice.choice("", options=options("s", None, {"lower": "Why"}), **SHOWN)
+    first = multiple_choice.choice(
+        "", options=options("s", None, "5 ms", {"lower": "Why"}), **SHOWN
+    )
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
     second = multiple_choice.number("", **SHOWN | {"number": 4}, **given)
     script, style = (BOOK / "_static" / name for name in ("choice.js", "course.css"))

@@ -14,7 +14,7 @@ from robo_genesis.site.takeaways.notebooks import (
     executed_notebook,
     student_notebook,
 )
-from robo_genesis.site.takeaways.plain_markdown import Writer
+from robo_genesis.site.takeaways.plain_markdown import ProseError, Writer
 
 FOLD = "\n:::{dropdown} Answer\n:class-container: solution\nSECRET prose\n:::\n"
 PROSE = "\nIt was {measured}`l04/lab G1.rise_time`.\n" + FOLD
@@ -74,27 +74,64 @@ def test_the_student_s_notebook_is_clean_and_valid(student):
 
 
 SHEET = """\
-# Work sheet
+# Work sheet: fall
 
 ## 1. Predictions, before the run
 
 Earlier or later?
 
-## 2. Measured
+## 2. The scene
+
+Its mass:
+
+## 3. Results
+
+## 4. Measured
 
 ```python
 ## no heading
 ```
 """
+SECTIONS = (
+    "\n## 2. The scene\n\nA box.\n",
+    cell("y = 2"),
+    "\n## 3. Run\n\nWrite parts 3 to\n3 of the work\nsheet now.\n",
+    cell("z = 3"),
+)
 
 
-def test_a_work_sheet_is_filled_in_before_and_after_the_run(page, tmp_path):
-    page.path.with_name("worksheet.md").write_text(SHEET)
-    found = student_notebook(page, ORIGIN, Writer(tmp_path, lambda _: "(yours)"))
-    sources = [cell.source for cell in found.cells]
-    asked = sources.index("## 1. Predictions, before the run\n\nEarlier or later?")
-    assert asked < sources.index("x = 1") < sources.index("# Work sheet")
-    assert sources[-1] == "## 2. Measured\n\n```python\n## no heading\n```"
+def sheet_of(folder, sheet, *cells):
+    """The cells of a student's notebook of a lab with a work sheet."""
+    (found,) = find_pages(make_book(folder, lab=notebook(*cells, front=LAB_FRONT)))
+    found.path.with_name("worksheet.md").write_text(sheet)
+    made = student_notebook(found, ORIGIN, Writer(folder, lambda _: "(yours)"))
+    return [cell.source for cell in made.cells]
+
+
+def test_each_part_of_a_work_sheet_follows_what_it_belongs_to(tmp_path):
+    sources = sheet_of(tmp_path, SHEET, cell("x = 1"), *SECTIONS)
+    heads = [source.split("\n")[0] for source in sources]
+    first = heads.index("## Work sheet: fall")
+    assert heads[first:] == [
+        "## Work sheet: fall", "## Work sheet, part 1: Predictions, before the run", "x = 1",
+        "## 2. The scene", "y = 2", "## Work sheet, part 2: The scene",
+        "## 3. Run", "## Work sheet, part 3: Results", "z = 3", "## Work sheet, part 4: Measured",
+    ]  # fmt: skip
+    assert len(heads) == len(set(heads))
+    assert sources[first + 1].endswith("\n\nEarlier or later?")
+    assert sources[-1].endswith("```python\n## no heading\n```")
+
+
+@pytest.mark.parametrize(
+    ("sheet", "said"),
+    [
+        ("# Sheet\n\n## 1. Measured\n", "no part to fill in before the run"),
+        ("# Sheet\n\n## Guess, before the run\n", "Number it, as in"),
+    ],
+)
+def test_a_work_sheet_without_predictions_or_numbers_is_refused(tmp_path, sheet, said):
+    with pytest.raises(ProseError, match=said):
+        sheet_of(tmp_path, sheet, cell("x = 1"))
 
 
 def run_check(student, monkeypatch, **installed: str) -> None:

@@ -42,10 +42,11 @@ def test_words_of_code_tables_and_formulas_do_not_count():
 @pytest.mark.parametrize(
     ("counted", "shown"),
     [
-        ((0,), "1 min to read"),
-        ((500,), "2 min to read"),
-        ((9000, 104, 3), "45 min to read, 16 min to work"),
-        ((1000, 104, 0, 4), "5 min to read, 50 min to work"),
+        ((0, facts.Work()), "1 min to read"),
+        ((500, facts.Work()), "2 min to read"),
+        ((9000, facts.Work(104, 3)), "61 min (45 to read, 16 for code and questions)"),
+        ((1200, facts.Work(60, 0, 4)), "57 min (6 to read, 51 for code and questions)"),
+        ((1200, facts.Work(60, 0, 4, sheet=True)), "65 min with the work sheet"),
     ],
 )
 def test_minutes_follow_from_words_code_and_questions(counted, shown):
@@ -60,11 +61,15 @@ def code(text, *tags):
     return cell
 
 
-def test_work_is_in_visible_code_and_questions():
+def test_work_is_in_visible_code_questions_functions_and_a_lab_s_work_sheet(tmp_path):
     document = publish_doctree("Text.\n\n::\n\n  typed = 1\n")
     document += [code("a\n\nb"), code("c", "hide-input"), code("d", "inputs"), choice()]
-    document += [code("def f():\n    raise NotImplementedError('write f')")]
-    assert facts.count_work(document) == (5, 1, 1)
+    document += code("def f():\n    raise NotImplementedError")
+    lab = tmp_path / "lab.md"
+    assert facts.count_work(document, lab) == facts.Work(5, 1, 1)
+    (tmp_path / "worksheet.md").touch()
+    assert facts.count_work(document, lab) == facts.Work(5, 1, 1, sheet=True)
+    assert not facts.count_work(document, tmp_path / "lecture.md").sheet
 
 
 def test_history_lists_the_latest_commits_newest_first_and_uncommitted_changes(checkout):

@@ -38,8 +38,18 @@ def test_a_page_s_size(tmp_path):
         new_code_cell("page.show(l04.study_plots.theory)", metadata={"tags": ["hide-input"]}),
         new_code_cell("c = 3"),
     ]
-    found = size(new_notebook(cells=cells), tmp_path)
+    found = size(new_notebook(cells=cells), tmp_path / "lecture.md")
     assert found == Size(words=400, cells=2, longest=3, plots=2, minutes=4, widest=81)
+
+
+def test_the_minutes_of_a_lab_contain_its_functions_a_run_and_the_work_sheet(tmp_path):
+    stubs = [new_code_cell(f"def f{k}(x):\n    raise NotImplementedError") for k in range(3)]
+    solution = new_code_cell("def f0(x):\n    return x", metadata={"tags": ["hide-cell"]})
+    lab = new_notebook(cells=[new_markdown_cell("word " * 400), *stubs, solution])
+    assert size(lab, tmp_path / "lab.md").minutes == round(2 + 0.6 + 3 * 10 + 5)
+    (tmp_path / "worksheet.md").touch()
+    assert size(lab, tmp_path / "lab.md").minutes == round(2 + 0.6 + 3 * 10 + 5 + 10)
+    assert size(lab, tmp_path / "lecture.md").minutes == round(2 + 0.6 + 3 * 10 + 5)
 
 
 def page_of(**numbers):

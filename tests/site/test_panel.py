@@ -35,9 +35,10 @@ FILMED = Filmed("the box", "the first run")
 def test_a_missing_run_is_named_with_its_command(tmp_path, built):
     built({})
     (missing,) = measured.recorded_runs(tmp_path, "l04")
-    text = " ".join(node.astext() for node in sphinx_panel.withheld(missing))
-    assert f"No figures from amdgpu for Genesis {project.engine_pin()} (amdgpu-missing)." in text
-    assert "$ make evidence LESSON=l04 BACKEND=amdgpu" in text
+    assert sphinx_panel.not_recorded(missing).astext() == (
+        f"No run on AMD GPU is recorded for Genesis {project.engine_pin()} yet; this command "
+        "records one on such a machine: make evidence LESSON=l04 BACKEND=amdgpu."
+    )
 
 
 @pytest.mark.parametrize(
@@ -335,7 +336,16 @@ def test_a_lecture_shows_the_compared_metrics_and_no_picture(tmp_path, record, m
     assert not list(panel.findall(nodes.image)) + list(panel.findall(nodes.table))
 
 
-@pytest.mark.parametrize("state", ["inconclusive", "stale", "failed", "refused", "missing"])
+@pytest.mark.parametrize("options", [{}, {"table": None}])
+def test_a_backend_without_a_run_is_one_sentence(tmp_path, record, options):
+    status = Status("missing", "cuda", "Nothing is recorded.", None)
+    run = Run("l04/lab", record().folder, status, True)
+    panel = Panel(tmp_path / "book", **options).panel(run)
+    (paragraph,) = panel.children
+    assert paragraph.astext().startswith("No run on CUDA GPU is recorded for Genesis")
+
+
+@pytest.mark.parametrize("state", ["inconclusive", "stale", "failed", "refused"])
 @pytest.mark.parametrize("options", [{}, {"table": None}])
 def test_a_run_that_is_not_verified_shows_its_state_alone(tmp_path, record, state, options):
     run = record()

@@ -149,14 +149,18 @@ def state_words(status: Status) -> str:
 
 
 class LessonStatus(SphinxDirective):
-    """Show the states of a lesson's runs in one line, and a sentence on each behind it."""
+    """Show the states of a lesson's runs in one line, and a sentence on each behind it.
+
+    The line leaves out missing runs unless all are missing.
+    """
 
     required_arguments = 1
 
     def run(self) -> list[nodes.Node]:
         """Return the fold; inside it is one line per backend."""
         statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
-        words = [(status.state, state_words(status)) for status in statuses]
+        known = [status for status in statuses if status.state != "missing"] or statuses
+        words = [(status.state, state_words(status)) for status in known]
         return [status_fold("", status_list(statuses), line=words)]
 
 

@@ -28,7 +28,7 @@ from robo_genesis.lessons.declaration import Compared, Filmed, Moving
 from robo_genesis.lessons.registry import COURSE_MARKS, compared_cases, filmed, find_lesson
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import Run
-from robo_genesis.site.evidence.measured import BACKEND
+from robo_genesis.site.evidence.measured import BACKEND, READABLE
 from robo_genesis.site.evidence.plain_nodes import image, marked, text_table
 from robo_genesis.site.replay.directive import replay_block
 
@@ -63,6 +63,9 @@ class Evidence(SphinxDirective):
         """Return the panel of one backend."""
         lesson, folder, status = run.lesson, run.folder, run.status
         panel = nodes.container(classes=["evidence-panel", f"status-{status.state}"])
+        if status.state == "missing":
+            panel += not_recorded(run)
+            return panel
         if run.predicate is None or status.state != "verified":
             panel += withheld(run)
             panel += self.parse_text_to_nodes(RECORDING)
@@ -90,6 +93,15 @@ def figure(directive: SphinxDirective, anchor: str, picture: Picture) -> nodes.N
     name = f"{anchor}{picture.suffix}"
     shown = image(directive.env, name, picture.content, picture.alt)
     return nodes.figure("", shown, nodes.caption("", picture.caption), ids=[anchor])
+
+
+def not_recorded(run: Run) -> nodes.Node:
+    """Return one sentence for a backend without a run, with the command that records one."""
+    backend = READABLE.get(run.status.backend, run.status.backend)
+    what = f"No run on {backend} is recorded for Genesis {project.engine_pin()} yet; this command "
+    command = nodes.literal("", run.command.removeprefix("$ "))
+    where = nodes.Text("records one on such a machine: ")
+    return nodes.paragraph("", "", nodes.Text(what), where, command, nodes.Text("."))
 
 
 def withheld(run: Run) -> list[nodes.Node]:

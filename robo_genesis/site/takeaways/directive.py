@@ -117,7 +117,7 @@ class RunCommands(SphinxDirective):
 
 
 def course(config: Config) -> Course:
-    """Return what the configuration of the book states about the course."""
+    """Return what the book's configuration states about the course."""
     return Course(config.html_title, config.author, config.torch_index)
 
 

@@ -13,17 +13,24 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from robo_genesis.build.command import ANSI
 from robo_genesis.core.project import COURSE, ENGINE, solutions_shown
 from robo_genesis.lessons.book_pages import Page
+from robo_genesis.site.page_facts import WORK_SHEET
 from robo_genesis.site.takeaways.plain_markdown import SOLUTION, ProseError, Writer, plain
 
 SITE_ONLY = "site-only"
 """The tag of a cell that makes sense only on the site."""
 
-WORK_SHEET = "worksheet.md"
 BEFORE = "before the run"
 """Words in the heading of each part of the work sheet that comes first."""
+PART = re.compile(r"## (?P<number>\d+)\. (?P<title>.+)")
+"""The heading of a part of the work sheet."""
+NAMED = re.compile(r"\bparts?\s+(\d+)(?:\s+(?:to|and)\s+(\d+))?\s+of\s+the\s+work\s+sheet")
+"""Words of a lab that name parts of its work sheet."""
 
 OWN_NOTE = re.compile(r"^\[I \d\d/\d\d/\d\d [\d:.]+ \d+\] .*\n?", re.MULTILINE)
 """A note of the engine's compiler on its own process: date, time and process number."""
+
+INTRODUCTION = 2
+"""The index of the lab's introduction, after the origin and the check of the versions."""
 
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
@@ -77,8 +84,7 @@ class Origin:
 def student_notebook(page: Page, origin: Origin, writer: Writer) -> NotebookNode:
     """Return the lab to work in: no outputs, no solutions, and a first check of the versions.
 
-    The parts of a work sheet in the page's folder become cells to fill in: the parts before the run
-    follow the lab's introduction, the others are at the end.
+    The parts of a work sheet in the page's folder become cells to fill in; see `_with_work_sheet`.
 
     Args:
         page: the lab.
@@ -93,8 +99,7 @@ def student_notebook(page: Page, origin: Origin, writer: Writer) -> NotebookNode
         if not {SOLUTION, SITE_ONLY} & set(cell.metadata.get("tags", [])):
             is_prose = cell.cell_type == "markdown"
             cells += _sections(plain(cell.source, writer)) if is_prose else _code(cell, writer)
-    before, after = _work_sheet(page)
-    return _notebook([*cells[:3], *before, *cells[3:], *after])
+    return _notebook(_with_work_sheet(cells, page))
 
 
 def executed_notebook(
@@ -142,17 +147,56 @@ def _sections(text: str) -> list[NotebookNode]:
     return [new_markdown_cell(part) for part in parts if part]
 
 
-def _work_sheet(page: Page) -> tuple[list[NotebookNode], list[NotebookNode]]:
-    """Return the parts of the page's work sheet before the run, and those after it."""
+def _with_work_sheet(cells: list[NotebookNode], page: Page) -> list[NotebookNode]:
+    """Return a student notebook with the parts of the page's work sheet among its cells.
+
+    The sheet's beginning follows the lab's introduction. A part follows the cell that names it, or
+    the section with its heading. Of the others, those before the run follow the introduction, and
+    the rest is at the end.
+
+    Raises:
+        ProseError: the heading of a part has no number, or no part is to be filled in before the
+            run.
+    """
     sheet = page.path.with_name(WORK_SHEET)
-    cells = _sections(sheet.read_text("utf8")) if sheet.is_file() else []
-    before = [cell for cell in cells if BEFORE in cell.source.splitlines()[0]]
-    if cells and not before:
+    if not sheet.is_file():
+        return cells
+    follow: dict[int, list[NotebookNode]] = {}
+    found_before = False
+    for cell in _sections(sheet.read_text("utf8")):
+        heading, _, rest = cell.source.partition("\n")
+        found_before |= BEFORE in heading
+        place = INTRODUCTION
+        if heading.startswith("# "):
+            title = f"#{heading}"
+        elif part := PART.fullmatch(heading):
+            title = f"## Work sheet, part {part['number']}: {part['title']}"
+            place = _place(cells, heading, int(part["number"]))
+        else:
+            raise ProseError(
+                f"{sheet} has the part {heading!r}. Number it, as in `## 2. Measured`."
+            )
+        follow.setdefault(place, []).append(new_markdown_cell(f"{title}\n{rest}".rstrip()))
+    if not found_before:
         raise ProseError(
             f"{sheet} has no part to fill in {BEFORE}: end the heading of its predictions with "
             "these words."
         )
-    return before, [cell for cell in cells if cell not in before]
+    return [part for k, cell in enumerate(cells) for part in (cell, *follow.get(k, ()))]
+
+
+def _place(cells: Sequence[NotebookNode], heading: str, number: int) -> int:
+    """Return the index of the cell that a part of the work sheet follows."""
+    heads = {k: c.source.split("\n")[0] for k, c in enumerate(cells) if c.cell_type == "markdown"}
+    for k in heads:
+        for first, last in NAMED.findall(cells[k].source):
+            if int(first) <= number <= int(last or first):
+                return k
+    starts = [k for k, head in heads.items() if head.startswith("## ")]
+    for start, end in pairwise([*starts, len(cells)]):
+        if heads[start] == heading:
+            return end - 1
+    return min(INTRODUCTION, len(cells) - 1) if BEFORE in heading else len(cells) - 1
 
 
 def _code(
