@@ -188,7 +188,8 @@ def measured_order(
     noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION
     values, margin = (first.value, second.value), declared_margin(lesson_name, metric)
     found = compare_values(noun, first.unit, *values, resolution, margin)
-    return found.order, found.unit, measured_sentence((cases[0], cases[1]), found), origin
+    names = (label(lesson_name, cases[0]), label(lesson_name, cases[1]))
+    return found.order, found.unit, measured_sentence(names, found), origin
 
 
 def measured_sentence(names: tuple[str, str], found: Comparison) -> str:
