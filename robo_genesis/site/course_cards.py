@@ -88,7 +88,8 @@ def anchor(lesson: str) -> str:
 def total_minutes(env: BuildEnvironment, pages: list[str]) -> Minutes:
     """Return the time that some pages take together."""
     found = [minutes_of(env, page) for page in pages]
-    return Minutes(sum(time.read for time in found), sum(time.work for time in found))
+    read, work = sum(time.read for time in found), sum(time.work for time in found)
+    return Minutes(read, work, sheet=any(time.sheet for time in found))
 
 
 def fill_in(app: Sphinx, document: nodes.document, docname: str) -> None:

@@ -102,6 +102,7 @@ def html(tmp_path_factory):
     folder = tmp_path_factory.mktemp("map")
     for name in ("l02-two", "l06-six"):
         (folder / "book" / "lessons" / name).mkdir(parents=True)
+    (folder / "book" / "lessons" / "l06-six" / "worksheet.md").touch()
     pages = {"page": "Page", "lessons/l02-two/lecture": "Two", "cards": f"Map\n\n{CARDS}"}
     pages |= {"featured": f"Map\n\n{FEATURED}", "lessons/l06-six/lecture": f"Six\n\n{WORDS}"}
     pages |= {f"lessons/l06-six/{name}": f"Six\n\n{WORDS}" for name in ("lab", "deeper", "more")}
@@ -115,7 +116,7 @@ def test_a_published_lesson_is_a_card_with_outcomes_prerequisites_and_minutes(ht
     assert [[p.get_text() for p in card.select("p")] for card in cards] == [
         ["L04 Four", "read a qpos", "stop", "Builds on L01 and L02.", "Lecture: 1 min to read"],
         [
-            "L06 Six", "walk", "Lecture: 3 min to read", "Lab: 3 min to read",
+            "L06 Six", "walk", "Lecture: 3 min to read", "Lab: 15 min with the work sheet",
             "2 more pages: 6 min to read",
         ],
     ]  # fmt: skip
