@@ -5,13 +5,27 @@ from dataclasses import replace
 from typing import Any
 
 from robo_genesis.core.channels import Runs
-from robo_genesis.lessons.registry import find_lesson
+from robo_genesis.lessons.registry import COURSE_MARKS, LESSONS, find_lesson
+
+
+def labels_of(lesson: str) -> Mapping[str, str]:
+    """Return `LABELS` in a lesson's `spec`: words by the name of a run, for some runs."""
+    found: Mapping[str, str] = getattr(find_lesson(lesson).spec, "LABELS", {})
+    return found
 
 
 def label(lesson: str, case: str) -> str:
-    """Return the words that `LABELS` in a lesson's `spec` has for a run, else its name."""
-    labels: Mapping[str, str] = getattr(find_lesson(lesson).spec, "LABELS", {})
-    return labels.get(case, case)
+    """Return the words of a lesson for a run, else its name."""
+    return labels_of(lesson).get(case, case)
+
+
+MARKS = COURSE_MARKS | {
+    words: COURSE_MARKS[case]
+    for lesson in LESSONS
+    for case, words in labels_of(lesson).items()
+    if case in COURSE_MARKS
+}
+"""The palette's mark of each case that has one of its own, also by its words."""
 
 
 def labelled(runs: Runs, lesson: str) -> Runs:

@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from robo_genesis.core import palette
 from robo_genesis.core.channels import Channel, Level, Runs, View
-from robo_genesis.core.palette import MARKS
-from robo_genesis.site.case_labels import label, labelled
+from robo_genesis.site.case_labels import MARKS, label, labelled
 
 CASES = ("dt10_sub1", "baseline")
 WORDS = ["one step in 10 ms", "two steps in 10 ms"]
@@ -20,7 +20,7 @@ def runs() -> Runs:
         traces=dict.fromkeys(CASES, trace),
         links=("body",),
         channels=(Channel("height", "z", "m", 4, by_case),),
-        levels=(Level("target", "height", next(iter(MARKS)), "", by_case, by_case),),
+        levels=(Level("target", "height", next(iter(palette.MARKS)), "", by_case, by_case),),
         moves={case: f"**{case}**: the cube falls." for case in CASES},
         view=View("cube", "The cube."),
         alt="",
@@ -40,3 +40,8 @@ def test_runs_are_shown_by_their_words_everywhere():
     for by_case in (shown.traces, channel.values, level.values, level.texts, shown.moves):
         assert list(by_case) == WORDS
     assert shown.moves[WORDS[0]] == "**one step in 10 ms**: the cube falls."
+
+
+def test_a_run_keeps_its_mark_with_its_words():
+    assert palette.marks_of(WORDS, MARKS) == {WORDS[0]: "first", WORDS[1]: "baseline"}
+    assert MARKS["G1"] == palette.marks_of(["G1"], MARKS)["G1"]

@@ -36,10 +36,8 @@ class LandingMetrics(CaseMetrics):
     touchdown: float | None = metric("s", "first sample at the surface", *POSE, "t_s")
     penetration: float = metric("m", "depth", *POSE)
     rebound: float = metric("m", "rebound", *POSE)
-    separated: float = metric("s", "time separated after touchdown", *FLIGHT)
-    upward_speed: float = metric(
-        "m/s", "largest upward speed after touchdown", *POSE, "link_vel_m_s"
-    )
+    separated: float = metric("s", "time separated", *FLIGHT)
+    upward_speed: float = metric("m/s", "largest upward speed", *POSE, "link_vel_m_s")
     resting_time: float | None = metric("s", "settled at", "link_pos_m", "t_s")
     resting_offset: float = metric("m", "height at the end against the ideal one", "link_pos_m")
 

@@ -9,7 +9,7 @@ from robo_genesis.core import tables
 from robo_genesis.core.channels import Runs
 from robo_genesis.core.palette import css_name, marks_of
 from robo_genesis.core.text import time_digits
-from robo_genesis.lessons.registry import COURSE_MARKS
+from robo_genesis.site.case_labels import MARKS
 
 if TYPE_CHECKING:
     from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
@@ -128,7 +128,7 @@ def _data(name: str, runs: Runs, camera: "Camera") -> str:
 
 def _cases(name: str, runs: Runs) -> str:
     """Return one radio button per case, with its mark and the levels of its run as JSON."""
-    marks = marks_of(list(runs.traces), COURSE_MARKS)
+    marks = marks_of(list(runs.traces), MARKS)
     return "".join(
         f'<span><input type="radio" name="{name}" id="{name}-{number}" value="{case}" '
         f'data-mark="{css_name(mark)}" data-levels="{escape(_levels(runs, case))}"'
