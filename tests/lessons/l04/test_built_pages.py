@@ -118,9 +118,7 @@ def test_a_number_in_prose_is_the_bundle_s_and_says_where_it_comes_from(site):
 
 def test_the_missing_reference_run_has_a_panel_with_its_command(lecture):
     panel = lecture.select_one(".evidence-panel.status-missing")
-    assert (
-        f"No run on this backend is recorded for Genesis {project.engine_pin()}" in panel.get_text()
-    )
+    assert f"No run on AMD GPU is recorded for Genesis {project.engine_pin()}" in panel.get_text()
     assert "make evidence LESSON=l04 BACKEND=amdgpu" in panel.get_text()
     assert not panel.select("img, svg.drawing")
 
