@@ -105,6 +105,9 @@ def compared_metrics(run: Experiment) -> str:
     return tables.metric_table({name: run.metrics[name] for name in study_spec.COMPARED})
 
 
+CLOSE = "too close to call"
+
+
 def outcomes_of_predictions(run: Experiment) -> str:
     """Return the outcome of each prediction of the lesson; a close one is too close to call."""
     rows = []
@@ -113,13 +116,13 @@ def outcomes_of_predictions(run: Experiment) -> str:
         values = (format_value(v, found.unit) for v in (found.first, found.second))
         close = found.order == "equal" and found.first != found.second
         orders = {found.order, order(found.first, found.second, 0)}
-        held = "held" if orders <= {*HELD_BY[claim]} else "" if close else "**did not hold**"
+        held = "held" if orders <= {*HELD_BY[claim]} else CLOSE if close else "**did not hold**"
         rows.append(
             {
                 "prediction": f"{found.label}: {other} {claim} than {one}",
                 "measured": " → ".join(values),
                 "margin": format_margin(margin, found.unit),
-                "outcome": f"{held}, too close to call".strip(", ") if close else held,
+                "outcome": f"{held} ({CLOSE})" if close and held != CLOSE else held,
             }
         )
     return tables.markdown(rows)

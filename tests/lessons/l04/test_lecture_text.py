@@ -136,7 +136,7 @@ def test_the_outcome_of_each_prediction_is_given_with_its_margin(study_runs):
     near = replace(late, rise_time=0.11)
     run = replace(run, accepted=dict(run.metrics) | {"G2": near})
     row = lecture_text.outcomes_of_predictions(run).splitlines()[2]
-    assert row.endswith("| 0.015 s | held, too close to call |")
+    assert row.endswith("| 0.015 s | held (too close to call) |")
     late = replace(late, rise_time=0.14)
     run = replace(run, accepted=dict(run.metrics) | {"G2": late})
     assert lecture_text.outcomes_of_predictions(run).splitlines()[2].endswith("**did not hold** |")
