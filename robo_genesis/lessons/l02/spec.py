@@ -24,6 +24,12 @@ SUBSTEP_CASES = {
 }
 """These cases differ from the baseline in the solver step alone; each needs its own scene."""
 
+LABELS = {
+    name: f"{case.substeps} substep{'s' * (case.substeps > 1)} of {1000 * case.h:g} ms"
+    for name, case in (CASES | SUBSTEP_CASES).items()
+}
+"""Words of a reader for runs: number and length of the solver steps in an outer step."""
+
 LINK = "box_baselink"
 """The engine's name of the box's only link."""
 

@@ -34,7 +34,7 @@ def model_table(run: Experiment) -> str:
 
 def metric_table(run: Experiment) -> str:
     """Return the metrics of the baseline."""
-    return tables.metric_table({"baseline": run.metrics["baseline"]}, readable)
+    return tables.metric_table({spec.LABELS["baseline"]: run.metrics["baseline"]}, readable)
 
 
 def readable(value: float | None, unit: str) -> str:

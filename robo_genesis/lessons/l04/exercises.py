@@ -45,9 +45,10 @@ def resolver(resolve: Callable[..., Any], robot: Any, joints: JointMap) -> list[
         yield equal("dofs_of_a_shifted_robot", list(resolve(shifted, names)), expected)
         ball = SimpleNamespace(get_joint=lambda name: _joint(0, 1, 2))
         error = refused(lambda: resolve(ball, ["ball"]))
-        yield equal("error_for_a_ball_joint_names_it", "ball" in str(error or ""), True)
+        named = isinstance(error, ValueError) and "ball" in str(error)
+        yield equal("value_error_for_a_ball_joint_names_it", named, True)
         twice = refused(lambda: resolve(robot, [names[3], names[3]]))
-        yield equal("error_for_one_joint_twice", twice is not None, True)
+        yield equal("value_error_for_one_joint_twice", isinstance(twice, ValueError), True)
 
     return outcome("resolver", findings)
 
@@ -61,6 +62,23 @@ def _joint(*dofs: int) -> SimpleNamespace:
     )  # fmt: skip
 
 
+class Counted:
+    """A robot that counts its position commands."""
+
+    def __init__(self, robot: Any):
+        """Wrap an entity of the engine."""
+        self.robot, self.commands = robot, 0
+
+    def control_dofs_position(self, *arguments: Any, **named: Any) -> None:
+        """Count the command, and give it to the robot."""
+        self.commands += 1
+        self.robot.control_dofs_position(*arguments, **named)
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what the robot has."""
+        return getattr(self.robot, name)
+
+
 def control_loop(
     record: Callable[..., Any], scene: Any, robot: Any, joints: JointMap, case: ControlCase,
     trace: Trace,
@@ -72,9 +90,10 @@ def control_loop(
     """
 
     def findings(_: None) -> Iterator[Finding]:
-        dofs = joints.dofs_idx_local.tolist()
+        dofs, counted = joints.dofs_idx_local.tolist(), Counted(robot)
         target = case.q_target.copy()
-        found = [np.asarray(part) for part in record(scene, robot, dofs, target, case.steps)]
+        found = [np.asarray(part) for part in record(scene, counted, dofs, target, case.steps)]
+        yield equal("number_of_commands", counted.commands, case.steps)
         expected = trace.t, trace.q, trace.qd, trace.control_force
         yield equal("number_of_arrays", len(found), len(expected))
         for name, values, right in zip(("t", "q", "qd", "force"), found, expected, strict=True):

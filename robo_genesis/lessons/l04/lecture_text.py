@@ -8,7 +8,7 @@ import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.comparison import compare
-from robo_genesis.core.orderings import HELD_BY
+from robo_genesis.core.orderings import HELD_BY, order
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import bullets, listed
 from robo_genesis.core.trace import Trace
@@ -105,6 +105,9 @@ def compared_metrics(run: Experiment) -> str:
     return tables.metric_table({name: run.metrics[name] for name in study_spec.COMPARED})
 
 
+CLOSE = "too close to call"
+
+
 def outcomes_of_predictions(run: Experiment) -> str:
     """Return the outcome of each prediction of the lesson; a close one is too close to call."""
     rows = []
@@ -112,13 +115,14 @@ def outcomes_of_predictions(run: Experiment) -> str:
         found = compare(metric, run.metrics[one], run.metrics[other], spec.RESOLUTION, margin)
         values = (format_value(v, found.unit) for v in (found.first, found.second))
         close = found.order == "equal" and found.first != found.second
-        held = "held" if found.order in HELD_BY[claim] else "**did not hold**"
+        orders = {found.order, order(found.first, found.second, 0)}
+        held = "held" if orders <= {*HELD_BY[claim]} else CLOSE if close else "**did not hold**"
         rows.append(
             {
                 "prediction": f"{found.label}: {other} {claim} than {one}",
                 "measured": " → ".join(values),
                 "margin": format_margin(margin, found.unit),
-                "outcome": f"{held} (too close to call)" if close else held,
+                "outcome": f"{held} ({CLOSE})" if close and held != CLOSE else held,
             }
         )
     return tables.markdown(rows)
@@ -217,7 +221,9 @@ def gravity_sentences(
 
 def saturation_of_g2(run: Experiment) -> str:
     """Describe each stretch of saturated samples of G2."""
-    return bullets(saturated_stretches(run.traces["G2"], spec.ENTRY))
+    return "The saturated samples of G2:\n\n" + bullets(
+        saturated_stretches(run.traces["G2"], spec.ENTRY)
+    )
 
 
 def longer_window(run: Experiment) -> str:

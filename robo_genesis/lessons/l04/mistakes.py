@@ -118,7 +118,7 @@ def lengths_differ(
         evidence=(
             f"- Seven values for nine joints: {quoted(seven)}\n"
             f"- One value for nine joints: {quoted(one)} The value was meant for `{joint}`. "
-            f"Other joints that moved: {', '.join(f'`{name}`' for name in others) or 'none'}.\n"
+            f"Other arm joints that moved: {', '.join(f'`{name}`' for name in others) or 'none'}.\n"
             f"- The course's validation before a run: {quoted(refusal)}"
         ),
     )

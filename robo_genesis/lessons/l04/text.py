@@ -155,7 +155,9 @@ def cost_sentence(
     names: tuple[str, str], metrics: Mapping[str, StepMetrics], resolution: Mapping[str, float]
 ) -> str:
     """State the second case's cost in response time, if there is one."""
-    comparison = compare("rise_time", metrics[names[0]], metrics[names[1]], resolution)
+    comparison = compare(
+        "rise_time", metrics[names[0]], metrics[names[1]], resolution, spec.MARGINS["rise_time"]
+    )
     first, second = comparison.first, comparison.second
     if first is None and second is None:
         return "The cost in response time is unknown: no rise was observed."
@@ -164,7 +166,7 @@ def cost_sentence(
     if first is None:
         return f"No cost in response time here: {names[1]} reaches 90 %, {names[0]} does not."
     if comparison.order == "equal":
-        return "No cost in response time is visible at this sampling: both rise at the same sample."
+        return "No cost in response time is visible: the rise times are within the margin."
     delay = format_value(abs(second - first), "s")
     if second > first:
         return f"The change costs response time: {names[1]} reaches 90 % {delay} later."

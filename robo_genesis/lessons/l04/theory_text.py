@@ -121,7 +121,7 @@ def parting_sentence(case: str, ideal: IdealJoint, found: Parting) -> str:
             "not the reason. Look at gravity, coupling and the solver's step."
         )
     clipped = (
-        "The only effort before that was clipped."
+        "The first effort, at t = 0, was clipped."
         if found.efforts == 1
         else f"Before that, {found.clipped} of {found.efforts} efforts were clipped."
     )

@@ -96,6 +96,15 @@ def test_a_sound_experiment_passes_every_check(experiment):
     assert require("l02", experiment.outcomes()) == "L02 CHECK: PASSED"
 
 
+def test_readers_see_words_instead_of_names(experiment):
+    shown = "".join(show(experiment) for show in (text.metric_table, text.substep_table))
+    assert [name for name in ALL_CASES if name in shown] == []
+    assert spec.LABELS["baseline"] in shown
+    assert spec.LABELS.keys() == ALL_CASES.keys()
+    assert (spec.LABELS["substeps_1"], spec.LABELS["baseline"], spec.LABELS["substeps_20"]) == (
+        "1 substep of 10 ms", "2 substeps of 5 ms", "20 substeps of 0.5 ms")  # fmt: skip
+
+
 def changed(field, where, values):
     """Return a function that assigns values to some states of one array of the baseline."""
 

@@ -31,7 +31,6 @@ class Playback:
         self.trace, self.now, self.commands = trace, 0, []
 
     def step(self):
-        assert len(self.commands) > self.now, "a step without a command"
         self.now += 1
 
     def control_dofs_position(self, target, dofs):
@@ -58,15 +57,16 @@ def robot_of(joints):
     return SimpleNamespace(get_joint=get_joint)
 
 
-def reset_and_record(steps, shift=0, dt=0.01, getter="get_dofs_control_force"):
+def reset_and_record(steps, shift=0, dt=0.01, getter="get_dofs_control_force", once=False):
     """Return a loop with one mistake."""
 
     def record(scene, robot, dofs, q_target, n):
         q, qd, force = [], [], []
         if not shift:
             q.append(robot.get_dofs_position(dofs).numpy())
-        for _ in range(n + steps):
-            robot.control_dofs_position(q_target, dofs)
+        for k in range(n + steps):
+            if not (once and k):
+                robot.control_dofs_position(q_target, dofs)
             scene.step()
             q.append(robot.get_dofs_position(dofs).numpy())
             qd.append(robot.get_dofs_velocity(dofs).numpy())
@@ -74,6 +74,14 @@ def reset_and_record(steps, shift=0, dt=0.01, getter="get_dofs_control_force"):
         return np.arange(len(q)) * dt, np.stack(q), np.stack(qd), np.stack(force)
 
     return record
+
+
+def other_exception(robot, names):
+    """Refuse with an exception of another type."""
+    try:
+        return SOLVED["resolve"](robot, names)
+    except ValueError as error:
+        raise KeyError(*error.args) from error
 
 
 def law(error, qd, kp, kv, limit):
@@ -98,6 +106,7 @@ WRONG = {
         "no refusal": lambda robot, names: [
             d for n in names for d in robot.get_joint(n).dofs_idx_local
         ],
+        "another exception": other_exception,
         "sorted": lambda robot, names: sorted(SOLVED["resolve"](robot, names)),
         "not written": lambda robot, names: (_ for _ in ()).throw(NotImplementedError("write it")),
     },
@@ -105,6 +114,7 @@ WRONG = {
         "first state missing": reset_and_record(0, shift=1),
         "one step less": reset_and_record(-1),
         "another time step": reset_and_record(0, dt=0.005),
+        "commanded once": reset_and_record(0, once=True),
         "net force": reset_and_record(0, getter="get_dofs_force"),
     },
     "pd_law": {

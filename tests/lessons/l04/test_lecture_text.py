@@ -132,7 +132,11 @@ def test_the_outcome_of_each_prediction_is_given_with_its_margin(study_runs):
     late = replace(study_runs.metrics["G2"], rise_time=0.13)
     run = replace(study_runs, accepted=dict(study_runs.metrics) | {"G1": early, "G2": late})
     row = lecture_text.outcomes_of_predictions(run).splitlines()[2]
-    assert row.endswith("| 0.12 s → 0.13 s | 0.015 s | held (too close to call) |")
+    assert row.endswith("| 0.12 s → 0.13 s | 0.015 s | too close to call |")
+    near = replace(late, rise_time=0.11)
+    run = replace(run, accepted=dict(run.metrics) | {"G2": near})
+    row = lecture_text.outcomes_of_predictions(run).splitlines()[2]
+    assert row.endswith("| 0.015 s | held (too close to call) |")
     late = replace(late, rise_time=0.14)
     run = replace(run, accepted=dict(run.metrics) | {"G2": late})
     assert lecture_text.outcomes_of_predictions(run).splitlines()[2].endswith("**did not hold** |")

@@ -138,7 +138,7 @@ UNDER = IdealJoint(1.077, 101.0, 3500.0)
     [
         (PARTED, "0.01 rad at 0.03 s. The largest distance in this window is 0.1200 rad", "reason"),
         (PARTED, "2 of 3 efforts were clipped.", "stays within"),
-        (replace(PARTED, clipped=1, efforts=1), "The only effort before that was clipped.", "of 1"),
+        (replace(PARTED, clipped=1, efforts=1), "The first effort, at t = 0, was clipped.", "of 1"),
         (replace(PARTED, clipped=0), "saturation is not the reason. Look", "higher gain could"),
         (replace(PARTED, time=None, distance=0.004), "stays within 0.01 rad", "clipped"),
     ],

@@ -143,7 +143,8 @@ def test_the_factor_is_one_entry_or_none(changed, says):
     [
         ((0.11, 0.17), "The change costs response time: G2 reaches 90 % 0.06 s later."),
         ((0.17, 0.11), "No cost in response time here: G2 is 0.06 s earlier."),
-        ((0.17, 0.17), "No cost in response time is visible at this sampling"),
+        ((0.17, 0.17), "No cost in response time is visible"),
+        ((0.17, 0.18), "No cost in response time is visible"),
         ((0.17, None), "The change costs response time: G2 did not reach 90 % in this window."),
         ((None, 0.17), "No cost in response time here: G2 reaches 90 %, G1 does not."),
         ((None, None), "The cost in response time is unknown: no rise was observed."),
