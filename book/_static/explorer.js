@@ -85,7 +85,7 @@ document.addEventListener("DOMContentLoaded", () => {
         cell.textContent = number;
         if (name) cell.prepend(make(cell, "b", name), " ");
         const state = n === compared ? ", the last run" : "";
-        const said = value === null ? UNKNOWN : format.unit;
+        const said = value === null ? "not observed" : format.unit;
         cell.setAttribute( // it begins with the text of the cell
           "aria-label", `${name ? `${name} ` : ""}${number} ${said}: ${noun}, ${gains(n)}${state}`,
         );
