@@ -8,6 +8,8 @@ decides links, sitemap, cards and the page for lost readers.
 import re
 import shutil
 import zipfile
+from contextlib import suppress
+from pathlib import Path
 
 import nbformat
 import pytest
@@ -100,6 +102,15 @@ def html(site, tmp_path_factory):
         html = render(SphinxProcess(book, folder / "render.log"), folder / "staging", built)
     pack(html)
     return html
+
+
+def test_a_render_leaves_no_process(html):
+    book = f"{html.parent.parent / 'book'}\0".encode()
+    commands = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        with suppress(OSError):  # it has ended
+            commands.append(path.read_bytes())
+    assert [command for command in commands if book in command] == []
 
 
 def panels(html, lesson, page):

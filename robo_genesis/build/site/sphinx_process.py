@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import multiprocessing
 import os
 import re
 import subprocess
@@ -119,6 +120,8 @@ def main() -> None:
             status = end.code
         sys.stdout.flush()
         sys.stderr.flush()
+        for child in multiprocessing.active_children():  # the sitemap's, which ends at a usual exit
+            child.kill()
         os._exit(0 if status in (None, 0) else 1)  # freeing all doctrees takes half a second
 
 
