@@ -1,5 +1,7 @@
 """What the named checks of lesson L03 require."""
 
+from robo_genesis.lessons.l03 import spec
+
 CLAIMS: dict[str, str] = {
     "structure": (
         "The scene has two entities; the cube is one link, one geom, one joint, 6 DOFs and 7 qpos."
@@ -24,7 +26,8 @@ CLAIMS: dict[str, str] = {
         "With less friction a cube travels farther; the smaller coefficient changes nothing."
     ),
     "near_coulomb": (
-        "Each stopping distance is within 20 % of v² / (2 μ g) with the larger coefficient."
+        f"Each stopping distance is within {100 * spec.COULOMB_SHARE:g} % of v² / (2 μ g) with the "
+        "larger coefficient."
     ),
     "level_in_flight": (
         "In the air, the energy that semi-implicit Euler conserves is constant to within float32."

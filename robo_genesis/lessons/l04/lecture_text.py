@@ -106,6 +106,7 @@ def compared_metrics(run: Experiment) -> str:
 
 
 CLOSE = "too close to call"
+"""The outcome where two values differ by less than the margin."""
 
 
 def outcomes_of_predictions(run: Experiment) -> str:
@@ -116,13 +117,19 @@ def outcomes_of_predictions(run: Experiment) -> str:
         values = (format_value(v, found.unit) for v in (found.first, found.second))
         close = found.order == "equal" and found.first != found.second
         orders = {found.order, order(found.first, found.second, 0)}
-        held = "held" if orders <= {*HELD_BY[claim]} else CLOSE if close else "**did not hold**"
+        held = orders <= {*HELD_BY[claim]}
+        if found.order is None:
+            outcome = "cannot be judged"
+        elif close:
+            outcome = f"held ({CLOSE})" if held else CLOSE
+        else:
+            outcome = "held" if held else "**did not hold**"
         rows.append(
             {
                 "prediction": f"{found.label}: {other} {claim} than {one}",
                 "measured": " → ".join(values),
                 "margin": format_margin(margin, found.unit),
-                "outcome": f"{held} ({CLOSE})" if close and held != CLOSE else held,
+                "outcome": outcome,
             }
         )
     return tables.markdown(rows)

@@ -140,6 +140,9 @@ def test_the_outcome_of_each_prediction_is_given_with_its_margin(study_runs):
     late = replace(late, rise_time=0.14)
     run = replace(run, accepted=dict(run.metrics) | {"G2": late})
     assert lecture_text.outcomes_of_predictions(run).splitlines()[2].endswith("**did not hold** |")
+    unseen = {name: replace(run.metrics[name], rise_time=None) for name in ("G1", "G2")}
+    run = replace(run, accepted=dict(run.metrics) | unseen)
+    assert lecture_text.outcomes_of_predictions(run).splitlines()[2].endswith("cannot be judged |")
 
 
 def test_the_longer_window_is_that_of_the_recorded_run(study_runs):
