@@ -76,8 +76,10 @@ document.addEventListener("DOMContentLoaded", () => {
       const [low, high] = [Math.min(...seen), Math.max(...seen)];
       const compared = chosen === shown ? last : shown;
       step.value = Math.floor(chosen / SIZE);
+      const here = values.slice(step.value * SIZE, (Number(step.value) + 1) * SIZE);
       map.caption.textContent =
-        `Map of the runs: ${data.labels[label]} [${format.unit}]. KP upwards, KV to the right.`;
+        `Map of the runs: ${data.labels[label]} [${format.unit}]. KP upwards, KV to the right.` +
+        (here.includes(null) ? " A dash: not observed." : "");
       cells.forEach((cell, k) => {
         const n = Number(step.value) * SIZE + k;
         const [value, name] = [values[n], data.points[n].case];

@@ -121,6 +121,7 @@ def convergence_sentences(
         )
         yield (
             f"{ENGINE_LABELS[engine]}: from {declared} to {finest} substeps the overshoot {change}."
+            + last_change(values, declared)
         )
     columns = ([v[n] for v in overshoot.values() if n in v] for n in (declared, finest))
     before, after = (max(column) - min(column) for column in columns)
@@ -131,6 +132,21 @@ def convergence_sentences(
         if after <= study_spec.SPREAD_SHARE * before
         else f"The spread of the stable runs changes {spread}. A finer step does not bring them "
         "together, so look for a difference between the models as well."
+    )
+
+
+def last_change(values: Mapping[int, float], declared: int) -> str:
+    """Say if the last refinement still changes the overshoot; the sentence has a space in front.
+
+    `values` are overshoots by number of substeps [rad], `declared` are the lesson's own substeps.
+    """
+    finer, finest = sorted(values)[-2:]
+    change = abs(values[finest] - values[finer])
+    if finer <= declared or change <= spec.MARGINS["overshoot"]:
+        return ""
+    return (
+        f" From {finer} to {finest} substeps it still changes by {format_value(change, 'rad')}, "
+        "more than the margin, so it has not converged."
     )
 
 

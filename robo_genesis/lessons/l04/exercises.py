@@ -43,21 +43,23 @@ def resolver(resolve: Callable[..., Any], robot: Any, joints: JointMap) -> list[
         shifted = SimpleNamespace(get_joint=lambda name: _joint(5 + names.index(name)))
         expected = [5 + n for n in range(len(names))]
         yield equal("dofs_of_a_shifted_robot", list(resolve(shifted, names)), expected)
-        ball = SimpleNamespace(get_joint=lambda name: _joint(0, 1, 2))
-        error = refused(lambda: resolve(ball, ["ball"]))
-        named = isinstance(error, ValueError) and "ball" in str(error)
-        yield equal("value_error_for_a_ball_joint_names_it", named, True)
+        odd = {"ball": _joint(0, 1, 2), "one DOF, two qpos": _joint(0, qpos=2)}
+        for label, joint in odd.items():
+            one = SimpleNamespace(get_joint=lambda name, joint=joint: joint)
+            error = refused(lambda one=one: resolve(one, ["wrist"]))
+            named = isinstance(error, ValueError) and "wrist" in str(error)
+            yield equal(f"value_error_names_the_joint ({label})", named, True)
         twice = refused(lambda: resolve(robot, [names[3], names[3]]))
         yield equal("value_error_for_one_joint_twice", isinstance(twice, ValueError), True)
 
     return outcome("resolver", findings)
 
 
-def _joint(*dofs: int) -> SimpleNamespace:
+def _joint(*dofs: int, qpos: int | None = None) -> SimpleNamespace:
     """Return a joint with these local DOFs, and other solver-level ones."""
     count = len(dofs)
     return SimpleNamespace(
-        n_dofs=count, n_qs=count + (count > 1), dofs_idx_local=list(dofs),
+        n_dofs=count, n_qs=qpos or count + (count > 1), dofs_idx_local=list(dofs),
         dofs_idx=[dof + 7 for dof in dofs], qs_idx_local=list(dofs),
     )  # fmt: skip
 

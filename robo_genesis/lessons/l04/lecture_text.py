@@ -14,7 +14,7 @@ from robo_genesis.core.text import bullets, listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study, study_spec, text
-from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated
+from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics, is_saturated
 from robo_genesis.lessons.l04.study import same_beginning
 from robo_genesis.lessons.l04.theory_text import share_text
 
@@ -207,6 +207,12 @@ def gravity_sentences(
         yield (
             f"{listed(agree)} ended nearly at rest, and KP × error is within {limit} of the "
             "gravity effort. A balance between the motor and gravity gives this result."
+        )
+    for name in agree[:1]:
+        error = metrics[name].final_error
+        yield (
+            f"The final error of {name}, {format_value(error, 'rad')}, takes "
+            f"{100 * abs(error) / SETTLING_BAND:.0f} % of the settling band, {SETTLING_BAND:g} rad."
         )
     if differ:
         yield (

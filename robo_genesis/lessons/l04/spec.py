@@ -78,7 +78,13 @@ PREDICTIONS = {
 }
 """Written down before the runs: how the second case of a pair compares with the first."""
 
-MARGINS = {"rise_time": 1.5 * DT, "peak_speed": 0.05, "overshoot": 1e-3, "saturation_samples": 1.5}
+MARGINS = {
+    "rise_time": 1.5 * DT,
+    "settling_time": 1.5 * DT,
+    "peak_speed": 0.05,
+    "overshoot": 1e-3,
+    "saturation_samples": 1.5,
+}
 """An order counts as shown when the difference exceeds this margin. The margins are above
 `RESOLUTION`, because a time or a count may fall one sample to either side."""
 

@@ -82,7 +82,7 @@ def pair_sentences(
     """
     of_metric = {
         metric: compare(
-            metric, metrics[names[0]], metrics[names[1]], resolution, spec.MARGINS.get(metric, 0.0)
+            metric, metrics[names[0]], metrics[names[1]], resolution, spec.MARGINS[metric]
         )
         for metric in (*COMPARED_METRICS, *(metric for metric, _ in predictions))
     }
@@ -141,11 +141,11 @@ def start_sentence(
             f"{lead}, and both moved at the same speed ({values}): up to there, the change of "
             f"{what} had no visible effect."
         )
-    lead += f", but their speeds differ there ({values}). The effort cannot be the reason"
+    lead += f", but their speeds differ there ({values}), so the effort is not the reason"
     if not (len(changed) == 1 and changed[0].startswith("kv[")):
-        return f"{lead}, and KV is not the only entry that changed. {INSPECT}"
+        return f"{lead}. KV is not the only entry that changed. {INSPECT}"
     return (
-        f"{lead}: the engine's implicit integrator adds substep length × KV to the inertia of a "
+        f"{lead}. The engine's implicit integrator adds substep length × KV to the inertia of a "
         "position-controlled DOF, even while its effort is clipped. This part of the difference is "
         "numerical, and a smaller substep would shrink it."
     )

@@ -112,7 +112,7 @@ def parting_sentence(case: str, ideal: IdealJoint, found: Parting) -> str:
     if found.time is None:
         return f"{lead} stays within {within} of the ideal joint. {largest}"
     lead = (
-        f"{lead} first leaves the ideal joint by more than {within} at "
+        f"{lead} first differs from the ideal joint by more than {within} at "
         f"{format_value(found.time, 's')}. {largest}"
     )
     if found.clipped == 0:

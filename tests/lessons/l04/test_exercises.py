@@ -76,6 +76,15 @@ def reset_and_record(steps, shift=0, dt=0.01, getter="get_dofs_control_force", o
     return record
 
 
+def qpos_not_counted(robot, names):
+    """Refuse a joint with several DOFs only."""
+    joints = [robot.get_joint(name) for name in names]
+    for name, joint in zip(names, joints, strict=True):
+        if joint.n_dofs != 1 or len(set(names)) < len(names):
+            raise ValueError(name)
+    return [dof for joint in joints for dof in joint.dofs_idx_local]
+
+
 def other_exception(robot, names):
     """Refuse with an exception of another type."""
     try:
@@ -107,6 +116,7 @@ WRONG = {
             d for n in names for d in robot.get_joint(n).dofs_idx_local
         ],
         "another exception": other_exception,
+        "qpos not counted": qpos_not_counted,
         "sorted": lambda robot, names: sorted(SOLVED["resolve"](robot, names)),
         "not written": lambda robot, names: (_ for _ in ()).throw(NotImplementedError("write it")),
     },

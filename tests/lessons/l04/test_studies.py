@@ -172,6 +172,7 @@ def test_step_sizes_are_compared_with_theory(small, large, says):
     ("effort", "velocity", "says", "not_said"),
     [
         (21.5, 0.0, "A balance between the motor and gravity", "does not explain"),
+        (21.5, 0.0, "0.0062 rad, takes 62 % of the settling band, 0.01 rad.", "does not explain"),
         (30.0, 0.0, "Gravity alone does not explain the error", "balance"),
         (21.5, 0.5, "G1 still moved at the last sample.", "does not prove"),
     ],
@@ -204,6 +205,18 @@ def test_convergence_is_read_from_the_spread(fine, says):
     assert told[1].endswith("the overshoot does not change measurably.")
     assert told[2].startswith("MuJoCo Euler is unstable at 2 substeps.")
     assert says in told[-1]
+
+
+@pytest.mark.parametrize(
+    ("finer", "says"),
+    [(0.0253, "From 20 to 50 substeps it still changes by 0.0030 rad"), (0.0225, "")],
+)
+def test_a_method_that_the_last_refinement_changes_has_not_converged(finer, says):
+    values = {2: 0.0447, 20: finer, 50: 0.0223}
+    text = engine_comparison.last_change(values, 2)
+    assert says in text
+    assert bool(says) == ("has not converged" in text)
+    assert engine_comparison.last_change({2: 0.0447, 50: 0.0223}, 2) == ""
 
 
 def test_the_first_step_tells_engines_whose_kv_acts_while_clipped(study_runs):

@@ -80,6 +80,7 @@ def test_a_comparison_says_what_was_measured_or_not_observed(metric, values, say
     assert sentence == f"The {LABELS[metric]} {says}"
 
 
+@pytest.mark.parametrize("metric", ["rise_time", "settling_time"])
 @pytest.mark.parametrize(
     ("values", "order", "says"),
     [
@@ -89,10 +90,10 @@ def test_a_comparison_says_what_was_measured_or_not_observed(metric, values, say
         ((0.13, 0.11), "lower", "goes down (G1 0.13 s, G2 0.11 s)."),
     ],
 )  # fmt: skip
-def test_a_difference_within_the_margin_is_too_close_to_call(values, order, says):
-    found = compare("rise_time", *pair("rise_time", values), RESOLUTION, MARGINS["rise_time"])
+def test_a_difference_within_the_margin_is_too_close_to_call(metric, values, order, says):
+    found = compare(metric, *pair(metric, values), RESOLUTION, MARGINS[metric])
     assert found.order == order
-    assert comparison_sentence(NAMES, found) == f"The rise time {says}"
+    assert comparison_sentence(NAMES, found) == f"The {LABELS[metric]} {says}"
 
 
 CONFIRMED = {
