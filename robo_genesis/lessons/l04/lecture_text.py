@@ -208,7 +208,7 @@ def gravity_sentences(
             f"{listed(agree)} ended nearly at rest, and KP × error is within {limit} of the "
             "gravity effort. A balance between the motor and gravity gives this result."
         )
-    for name in agree[:1]:
+    for name in [name for name in agree if name in study_spec.COMPARED][:1]:
         error = metrics[name].final_error
         yield (
             f"The final error of {name}, {format_value(error, 'rad')}, takes "
