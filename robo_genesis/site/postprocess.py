@@ -16,6 +16,7 @@ from robo_genesis.site.accessibility import make_accessible
 from robo_genesis.site.drawings import inline_drawings
 from robo_genesis.site.page_weight import drop_unused_files, reduce_weight
 from robo_genesis.site.stacked_tables import stack_tables
+from robo_genesis.site.style_sheets import trim_sheets
 
 CHANGES = (accessibility, stacked_tables, drawings, page_weight, palette)
 """The modules that change a page, and the colours that they use."""
@@ -41,6 +42,7 @@ def finish_site(app: Sphinx, error: Exception | None) -> None:
         for page in sorted(written(app)):
             path = Path(app.builder.get_outfilename(page))  # type: ignore[attr-defined]
             path.write_text(finish_page(path.read_text("utf8"), path.parent), "utf8")
+        trim_sheets(Path(app.outdir))  # it looks for the names in all finished pages
     written(app).clear()
 
 

@@ -7,6 +7,7 @@ from importlib import import_module
 import pytest
 from built_site import LESSON_PAGES, MEASURING_PAGES, parsed
 
+from robo_genesis.build import npm
 from robo_genesis.build.site.sums import SUMS
 from robo_genesis.core import project
 from robo_genesis.evidence.verify import verify_bundle
@@ -50,6 +51,25 @@ def test_the_lab_s_bundle_stands_beside_the_site_and_is_accepted(site, lesson):
     assert manifest.predicate.page == "lab"
     declared = LESSONS[lesson].pages["lab"].parameters()
     assert manifest.predicate.parameters == json.loads(json.dumps(declared))  # tuples are lists
+
+
+def test_every_page_is_valid_html(site, tmp_path):
+    """By the rules of the HTML standard, as html-validate knows them, at once for all pages."""
+    settings = tmp_path / "settings.json"
+    settings.write_text('{"root": true, "extends": ["html-validate:standard"]}')
+    program = npm.packages() / "html-validate/bin/html-validate.mjs"
+    command = [npm.node(), program, "--formatter", "json", "--config", settings]
+    pages = sorted(site.parent.rglob("*.html"))
+
+    def found(*files):
+        done = subprocess.run([*command, *files], capture_output=True, text=True, check=False)
+        reports = json.loads(done.stdout)
+        return {r["filePath"]: [(m["line"], m["message"]) for m in r["messages"]] for r in reports}
+
+    spoiled = tmp_path / "spoiled.html"
+    spoiled.write_text(pages[0].read_text("utf8").replace("</body>", "<ul><p>a</p></ul></body>"))
+    assert "<p>" in found(spoiled)[str(spoiled)][0][1]
+    assert found(*pages) == {}
 
 
 def test_nothing_published_names_a_path_of_the_builder(site):

@@ -4,6 +4,7 @@ See `core/exercises.py`.
 """
 
 from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -45,8 +46,8 @@ def resolver(resolve: Callable[..., Any], robot: Any, joints: JointMap) -> list[
         yield equal("dofs_of_a_shifted_robot", list(resolve(shifted, names)), expected)
         odd = {"ball": _joint(0, 1, 2), "one DOF, two qpos": _joint(0, qpos=2)}
         for label, joint in odd.items():
-            one = SimpleNamespace(get_joint=lambda name, joint=joint: joint)
-            error = refused(lambda one=one: resolve(one, ["wrist"]))
+            one = SimpleNamespace(get_joint={"wrist": joint}.__getitem__)
+            error = refused(partial(resolve, one, ["wrist"]))
             named = isinstance(error, ValueError) and "wrist" in str(error)
             yield equal(f"value_error_names_the_joint ({label})", named, True)
         twice = refused(lambda: resolve(robot, [names[3], names[3]]))
