@@ -63,8 +63,11 @@ def test_there_and_back(clone):
     assert changed(clone) == ["M", "pyproject.toml", "M", "requirements.lock"]
     assert project.engine_pin(clone) == OTHER
     report = (clone / ".cache/reports" / f"repin-{PIN}-{OTHER}" / "report.md").read_text()
-    assert "## L04 lab: engine version" in report
-    assert "| differs |" not in report
+    parts = dict(part.partition(":")[::2] for part in report.split("\n## "))
+    # Cubes that tumble over an edge differ between versions; no check of any page may fail.
+    assert "| differs |" not in parts["L04 lab"]
+    assert "| equal | number of checks |" in parts["L03 lecture"]
+    assert " failed |" not in report
 
     run_in(clone, "make", "book", BASE)  # in the environment of the new lock
     second = keep(clone, "second")

@@ -118,8 +118,9 @@ TOLERANCES = {
     "m": (2e-5, 0.0), "m/s": (1e-3, 0.0), "s": (0.0, 0.0), "kg": (1e-6, 0.0), "J": (5e-6, 0.0),
     "%": (0.2, 0.0), "stop_distance": (0.01, 0.0), "final_distance": (0.01, 0.0),
     "stop_time": (0.08, 0.0), "airborne": (0.05, 0.0), "hop": (0.005, 0.0), "rad/s": (12.0, 0.0),
+    "link_quat_wxyz": (1e-5, 0.0),
 }  # fmt: skip
-"""By unit or metric, (atol, rtol) of one metric between engine versions or backends.
+"""By unit, metric or array, (atol, rtol) of one value between engine versions or backends.
 
 After a hop, the contact points at the landing decide the further motion, and no engine is right.
 The metrics of that motion have wide tolerances; those of times and spin compare little more than
