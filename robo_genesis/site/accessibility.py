@@ -18,9 +18,9 @@ def make_accessible(page: BeautifulSoup) -> None:
     # A fold of code shows an icon; its text is for screen readers and, as a title, for the mouse.
     for fold in page.select("details.hide.above-input > summary"):
         fold["title"] = "Show or hide source"
-    # HTML allows no paragraph in a summary; `look.css` has the rules for the spans.
+    # HTML allows no paragraph in a summary. A style sheet has other rules for spans there.
     for text in page.select("summary > p"):
-        text.name = "span"
+        text.name = "b"
     # The link beside a heading or caption is for the mouse: it repeats the contents list.
     for anchor in page.select("a.headerlink"):
         anchor["tabindex"] = "-1"
