@@ -3,7 +3,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from tiny_book import LAB_FRONT, cell, make_book, notebook, old_bundle
+from tiny_book import accept, lab, make_book, old_bundle
 
 from robo_genesis.build import recording
 from robo_genesis.build.execute import kernel_environment
@@ -15,43 +15,9 @@ from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.sim.diagnosis import Finding
 
-# A lab's cell that leaves what a recording looks at, as if it had run on ACTUAL.
-LAB = """\
-import json, os, pathlib
-asked, actual = os.environ["ROBO_GENESIS_BACKEND"], {actual!r}
-folder = pathlib.Path(os.environ["ROBO_GENESIS_OUTPUTS_DIR"], "l04", "lab", actual)
-folder.mkdir(parents=True)
-camera = os.environ["ROBO_GENESIS_RENDER"] == "1"
-facts = dict(
-    lesson="l04",
-    page="lab",
-    run_id=os.environ["ROBO_GENESIS_RUN_ID"],
-    command=os.environ["ROBO_GENESIS_COMMAND"],
-    backend=dict(requested=asked, actual=actual, device_name="a device", torch_version="2.13.0"),
-    engine=dict(version="1.2.3", quadrants_version="0.9"),
-    render=dict(mode="camera" if camera else "skip", renderer="llvmpipe", software=True),
-    checks=[dict(passed=True), dict(passed=True)],
-    warnings=["Approximating tendon."],
-    git=dict(commit="0123456789abcdef", dirty=True),
-)
-(folder / "manifest.json").write_text(json.dumps(dict(predicate=facts)))
-(folder / "log.txt").write_text("new")"""
-
-
-def accept(folder: Path, run_id: str) -> SimpleNamespace:
-    """Replace the verification of evidence, which needs the engine's records."""
-    text = (folder / "manifest.json").read_text()
-    manifest = json.loads(text, object_hook=lambda fields: SimpleNamespace(**fields))
-    assert manifest.predicate.run_id == run_id
-    return manifest
-
 
 def refuse(folder: Path, run_id: str) -> SimpleNamespace:
     raise BundleRefused("metrics", "metrics.json g1.rise_time is not what the arrays say.")
-
-
-def lab(actual: str, more: str = "") -> str:
-    return notebook(cell(LAB.format(actual=actual) + more), front=LAB_FRONT)
 
 
 def run(folder: Path, page: str, expected: str | None = None, **settings) -> list[str]:
