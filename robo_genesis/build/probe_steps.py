@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.build import torch_probe
+from robo_genesis.build.kernels import users_variables
 from robo_genesis.evidence.recorder import DRIVERS, driver_version
 from robo_genesis.sim.diagnosis import StepError
 
@@ -28,10 +29,13 @@ class DoubtError(StepError):
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """Where the steps look: below `root`, in these variables, and with this right of access."""
+    """Where the steps look: below `root`, in these variables, and with this right of access.
+
+    By default these are the variables that the kernel of a lab gets.
+    """
 
     root: Path = Path("/")
-    environ: Mapping[str, str] = field(default_factory=lambda: os.environ)
+    environ: Mapping[str, str] = field(default_factory=users_variables)
     access: Callable[[Path, int], bool] = os.access
 
     def at(self, path: str) -> Path:
@@ -148,11 +152,12 @@ def visibility(subject: Subject) -> str:
 def torch(subject: Subject) -> str:
     """Torch is a build for the backend."""
     version, hip, cuda = map(subject.said, ("torch", "hip", "cuda"))
+    what = f"HIP {hip}" if hip else f"CUDA {cuda}" if cuda else "the CPU alone"
     if (built := built_for(subject.torch)) and built == subject.backend:
-        return f"{version}, built for {f'HIP {hip}' if hip else f'CUDA {cuda}'}"
+        return f"{version}, built for {what}"
     raise StepError(
-        f"Torch {version} is built for HIP {hip} and CUDA {cuda}, expected a build for "
-        f"{subject.backend or 'one of them'}. Name an environment with one by PYTHON=path, or "
+        f"Torch {version} is built for {what}, expected a build for "
+        f"{subject.backend or 'amdgpu or cuda'}. Name an environment with one by PYTHON=path, or "
         "record the CPU with BACKEND=cpu."
     )
 

@@ -2,7 +2,6 @@
 
 import ctypes.util
 import json
-import os
 import sys
 from pathlib import Path
 
@@ -184,7 +183,8 @@ LLD = "opt/rocm/llvm/bin/ld.lld"
         (variables(HIP_VISIBLE_DEVICES="1"), "visibility", "warning", "set it alone"),
         (as_index("0"), "visibility", "warning", "set it alone"),
         (as_index("1"), "visibility", "broken", "in all three hides the card"),
-        (told(**CUDA), "torch", "broken", "expected a build for amdgpu"),
+        (told(**CUDA), "torch", "broken",
+         "built for CUDA 13.0, expected a build for amdgpu"),
         (told(count=0), "device", "broken", "Torch finds no device, expected one."),
         (told(codes=["gfx1100"]), "device_code", "warning",
          "for gfx1100, expected gfx942. Install Torch with it: torch[device-gfx942]"),
@@ -258,7 +258,8 @@ def test_a_torch_for_the_cpu_alone_is_named(machine, expected):
     machine.told(**CPU)
     backend, states, found = machine.probe(expected)
     assert (backend, states["torch"]) == ("cpu", "broken")
-    assert f"expected a build for {expected or 'one of them'}. Name an env" in found["torch"]
+    wanted = f"built for the CPU alone, expected a build for {expected or 'amdgpu or cuda'}. Name"
+    assert wanted in found["torch"]
     assert "BACKEND=cpu" in found["torch"]
 
 
@@ -289,5 +290,10 @@ def test_the_probe_loads_neither_engine_nor_course(machine):
     assert machine.probe()[1]["kernel"] == "ok"
 
 
-def test_this_machine_is_looked_at_by_default():
-    assert (Machine().root, Machine().environ) == (Path("/"), os.environ)
+def test_this_machine_is_looked_at_with_the_variables_of_a_kernel(monkeypatch):
+    monkeypatch.setenv("ROCM_PATH", "/opt/rocm-7.2.0")
+    monkeypatch.setenv("PYTORCH_NO_HIP_MEMORY_CACHING", "1")
+    machine = Machine()
+    assert machine.root == Path("/")
+    assert machine.environ["ROCM_PATH"] == "/opt/rocm-7.2.0"
+    assert "PYTORCH_NO_HIP_MEMORY_CACHING" not in machine.environ
