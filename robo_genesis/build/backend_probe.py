@@ -4,6 +4,7 @@ import json
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from typing import Any
 
 from robo_genesis.build import torch_probe
@@ -71,7 +72,7 @@ def _torch_facts(machine: Machine) -> tuple[dict[str, Any], str]:
         output, ended = error.stdout or b"", f"no answer in {PROBE_SECONDS:g} s"
     facts: dict[str, Any] = {}
     for line in output.decode("utf8", errors="replace").splitlines():
-        if line.startswith("{"):  # a driver may write lines of its own
+        with suppress(ValueError, TypeError):  # a driver may write lines of its own
             facts |= json.loads(line)
     return facts, facts.pop("error", ended)
 

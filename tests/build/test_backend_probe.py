@@ -24,7 +24,7 @@ cuda = types.SimpleNamespace(
         name="a card", gcnArchName="gfx942:sramecc+:xnack-"),
     get_arch_list=lambda: told["codes"],
 )
-print("a warning of the driver")
+print("a warning of the driver\\n{another}\\n3")
 
 class arange(list):
     def __init__(self, count, device):
