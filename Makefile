@@ -64,7 +64,8 @@ pages: $(ENVIRONMENT) ## print the executed pages as JSON
 
 # LESSON, BACKEND and TO reach the script as environment variables.
 .PHONY: evidence
-evidence: $(ENVIRONMENT) ## record a lab here (LESSON=l04 BACKEND=amdgpu|cuda|cpu TO=folder)
+evidence: NEEDED = genesis jupyter_book
+evidence: $(ENVIRONMENT) ## record all labs here, or one (BACKEND=amdgpu|cuda|cpu LESSON=l04 TO=folder)
 	@"$(PY)" build_scripts/evidence.py
 
 .PHONY: verify
@@ -146,13 +147,15 @@ repin: $(ENVIRONMENT) ## try another engine version, then change pin and lock (G
 bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=names RUNS=n; a quiet machine)
 	@"$(PY)" build_scripts/bench.py
 
+# Packages by the names of their modules; recording needs no linter and no test.
+NEEDED = genesis jupyter_book pytest xdist ruff mypy importlinter codespell_lib check_jsonschema
+
 .PHONY: has-packages
 has-packages:
 	@"$(PY)" -c 'import sys' &>/dev/null || { echo "PYTHON=$(PY) is not a Python command. Give the path of an" \
 	  "interpreter with the packages of requirements.lock, or leave PYTHON out to use .venv." >&2; exit 1; }
 	@"$(PY)" -c 'import sys; from importlib.util import find_spec; \
-	  needed = "genesis jupyter_book pytest xdist ruff mypy importlinter codespell_lib check_jsonschema".split(); \
-	  missing = [name for name in needed if find_spec(name) is None]; \
+	  missing = [name for name in "$(NEEDED)".split() if find_spec(name) is None]; \
 	  sys.exit("PYTHON=%s lacks %s. Install the lock there: pip install -r requirements.lock" \
 	  % (sys.argv[1], ", ".join(missing)) if missing else 0)' "$(PY)"
 

@@ -1,14 +1,16 @@
-"""Record a lab's evidence on this machine: `make evidence LESSON=l04`.
+"""Record labs as evidence on this machine: `make evidence BACKEND=amdgpu`.
 
-Environment: LESSON (which lab), BACKEND=amdgpu|cuda|cpu (the backend that must be found; unset, any
-accelerator) and TO (folder for the bundle; unset, `book/evidence`). The camera is always used.
-Exit status: 0 recorded, 1 failed, 130 interrupted; unless it is 0, the old bundle is unchanged.
+Environment: LESSON (the lab; unset, all labs without an accepted bundle of this backend),
+BACKEND=amdgpu|cuda|cpu (the backend that must be found; unset, any accelerator) and TO (folder for
+the bundles; unset, `book/evidence`). The camera is always used.
+Exit status: 0 recorded, 1 failed, 130 interrupted; a lab that is not recorded keeps its old bundle.
 """
 
 import os
 import sys
 
-from robo_genesis.build.command import choice, parser, path, run
+from robo_genesis.build.command import choice, parser, path, run, run_status
+from robo_genesis.build.record_all import record_all
 from robo_genesis.build.recording import Recording, record
 from robo_genesis.core.project import RENDER
 
@@ -22,4 +24,6 @@ if __name__ == "__main__":
         to=path("TO"),
         **vars(args),
     )
-    sys.exit(run(lambda: record(recording), "recorded"))
+    if recording.lesson:
+        sys.exit(run(lambda: record(recording), "recorded"))
+    sys.exit(run_status(lambda: record_all(recording), "recorded"))

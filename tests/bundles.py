@@ -2,9 +2,11 @@
 
 import shutil
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from spoilers import TORCH
 
 from robo_genesis.core import project
 from robo_genesis.evidence import evidence_key
@@ -39,6 +41,24 @@ def engine(backend):
     log = EngineLog()
     log.lines += LOG
     return session.Engine(project.engine_pin(), QUADRANTS, "32", 0, backend, log)
+
+
+GRAPHICS = {"cpu": RENDERER, "amdgpu": camera.Renderer("AMD", "AMD Instinct (radeonsi)"),
+            "cuda": camera.Renderer("NVIDIA Corporation", "NVIDIA H100/PCIe/SSE2")}  # fmt: skip
+"""What draws the frames on each backend."""
+
+
+def engine_on(engine: session.Engine, actual: str) -> session.Engine:
+    """Return the engine as it would have started on a backend."""
+    if actual == "cpu":
+        return engine
+    found = session.Backend("auto", actual, actual, "cuda", device_name="a GPU", **TORCH[actual])
+    log = EngineLog()
+    said = [text.replace("[a CPU] with backend gs.cpu", f"[a GPU] with backend gs.{actual}")
+            for _, text in engine.log.lines]  # fmt: skip
+    levels = [level for level, _ in engine.log.lines]
+    log.lines += [pair for pair in zip(levels, said, strict=True) if "Software" not in pair[1]]
+    return replace(engine, backend=found, log=log)
 
 
 @contextmanager
@@ -81,7 +101,7 @@ def written(engine, outputs: Path, lesson: str, page: str, experiment: Experimen
     """Write the bundle of a page below a folder without a real engine, and return its folder."""
     with without_engine(engine.backend) as patch:
         return recorder_of(patch, engine, outputs, lesson, page).write(
-            experiment, RENDERER if experiment.page.camera else None
+            experiment, GRAPHICS[engine.backend.actual] if experiment.page.camera else None
         )
 
 

@@ -52,6 +52,12 @@ def test_a_python_without_the_packages_is_refused_with_their_names_and_the_fix(c
     assert str(checkout) not in done.stdout.splitlines()
 
 
+def test_recording_needs_no_package_of_the_tests_and_linters(checkout):
+    without = python(checkout, "-S")
+    done = make(checkout, "evidence", f"PYTHON={without}")
+    assert f"PYTHON={without} lacks genesis, jupyter_book. Install" in done.stderr
+
+
 @pytest.mark.parametrize("given", ["nowhere/python", "bad", "/tmp", "ls"])
 def test_a_python_that_is_none_is_refused_with_the_fix(checkout, given):
     done = make(checkout, "serve", f"PYTHON={given}")

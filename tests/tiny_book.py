@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import yaml
 
@@ -24,6 +25,28 @@ folder = pathlib.Path(os.environ["ROBO_GENESIS_OUTPUTS_DIR"], "l04", "lab", "cpu
 folder.mkdir(parents=True)
 manifest = {"predicate": {"run_id": os.environ["ROBO_GENESIS_RUN_ID"]}}
 (folder / "manifest.json").write_text(json.dumps(manifest))"""
+
+# A cell that leaves what a recording looks at, as if it had run on this backend.
+RECORDED_LAB = """\
+import json, os, pathlib
+asked, actual = os.environ["ROBO_GENESIS_BACKEND"], {actual!r}
+folder = pathlib.Path(os.environ["ROBO_GENESIS_OUTPUTS_DIR"], "l04", "lab", actual)
+folder.mkdir(parents=True)
+camera = os.environ["ROBO_GENESIS_RENDER"] == "1"
+facts = dict(
+    lesson="l04",
+    page="lab",
+    run_id=os.environ["ROBO_GENESIS_RUN_ID"],
+    command=os.environ["ROBO_GENESIS_COMMAND"],
+    backend=dict(requested=asked, actual=actual, device_name="a device", torch_version="2.13.0"),
+    engine=dict(version="1.2.3", quadrants_version="0.9"),
+    render=dict(mode="camera" if camera else "skip", renderer="llvmpipe", software=True),
+    checks=[dict(passed=True), dict(passed=True)],
+    warnings=["Approximating tendon."],
+    git=dict(commit="0123456789abcdef", dirty=True),
+)
+(folder / "manifest.json").write_text(json.dumps(dict(predicate=facts)))
+(folder / "log.txt").write_text("new")"""
 
 LAB_FRONT = "robo_genesis: {lesson: l04, page: lab}\n"
 SETTINGS = ("RENDER", "RELEASE", "JOBS", "SITE_URL", "EXECUTED", "PAGE", "TO", "LESSON", "BACKEND")
@@ -43,6 +66,19 @@ def raising(code: str, expects: str | None) -> str:
 def notebook(*cells: str, front: str = "", title: str = "Page") -> str:
     """Return the text of an executed page."""
     return FRONT.format(front=front, title=title) + "".join(cells)
+
+
+def lab(actual: str, more: str = "") -> str:
+    """Return a lab that can be recorded, and ends with more code."""
+    return notebook(cell(RECORDED_LAB.format(actual=actual) + more), front=LAB_FRONT)
+
+
+def accept(folder: Path, run_id: str) -> SimpleNamespace:
+    """Replace the verification of evidence, which needs the engine's records."""
+    text = (folder / "manifest.json").read_text()
+    manifest = json.loads(text, object_hook=lambda fields: SimpleNamespace(**fields))
+    assert manifest.predicate.run_id == run_id
+    return manifest
 
 
 def make_book(folder: Path, **pages: str) -> Path:

@@ -74,6 +74,11 @@ class CleanKernelManager(AsyncKernelManager):
         await super().shutdown_kernel(now=now or type(self).busy, restart=restart)
 
 
+def users_variables() -> dict[str, str]:
+    """Return the variables of this process that a kernel gets."""
+    return {n: v for n, v in os.environ.items() if n in MACHINE or n.startswith(ALLOWED)}
+
+
 def clean_environment(
     home: Path, runtime: Path, root: Path, extra: Mapping[str, str]
 ) -> dict[str, str]:
@@ -85,7 +90,6 @@ def clean_environment(
         root: the checkout, the only entry of the kernel's PYTHONPATH.
         extra: variables of this run.
     """
-    kept = {n: v for n, v in os.environ.items() if n in MACHINE or n.startswith(ALLOWED)}
     folders = {
         "IPYTHONDIR": home / "ipython",
         "JUPYTER_CONFIG_DIR": home / "jupyter-config",
@@ -101,7 +105,12 @@ def clean_environment(
         "PYTHONNOUSERSITE": "1",
         "PYTHONPATH": str(root),
     }
-    return {**kept, **{name: str(path) for name, path in folders.items()}, **own, **extra}
+    return {
+        **users_variables(),
+        **{name: str(path) for name, path in folders.items()},
+        **own,
+        **extra,
+    }
 
 
 @contextmanager

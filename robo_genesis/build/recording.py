@@ -1,25 +1,29 @@
-"""`make evidence`: run a lesson's lab on this machine and keep its bundle, whole or not at all."""
+"""`make evidence LESSON=l04`: run a lab on this machine and keep its bundle whole, or not."""
 
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.build.backend_probe import expected_backend
+from robo_genesis.build.backend_probe import probe
 from robo_genesis.build.command import TIMEOUT, Progress, say
 from robo_genesis.build.execute import execute_pages, kernel_environment
 from robo_genesis.build.page_progress import reporting
 from robo_genesis.build.page_results import PageResult, failure_report
 from robo_genesis.build.page_store import Verify, places
+from robo_genesis.build.recording_report import summary
 from robo_genesis.build.stages import build_lock
 from robo_genesis.build.verification import require_contract
 from robo_genesis.core import project
 from robo_genesis.core.project import BACKEND, RENDER
 from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence.bundle_store import put, recover, require_folder
+from robo_genesis.evidence.status import RECORDED_PAGE
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.book_pages import Page, find_pages
+from robo_genesis.sim.diagnosis import Finding
 
 ACCELERATORS = ("amdgpu", "cuda")
 BACKENDS = (*ACCELERATORS, "cpu")
@@ -27,16 +31,24 @@ COMMAND = "make evidence"
 
 
 class RecordingError(project.ProjectError):
-    """Nothing was recorded; the message is the whole report. The older bundle is unchanged."""
+    """Nothing was recorded; the message is the whole report. The older bundle is unchanged.
+
+    `reason` is its first line, or the error of a page that failed.
+    """
+
+    def __init__(self, report: str, reason: str = "") -> None:
+        super().__init__(report)
+        self.reason = (reason or report).splitlines()[0]
 
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """Which lab to record, and where its bundle goes.
+    """Which labs to record, and where their bundles go.
 
-    `expected` is the backend that must be found; None accepts any accelerator. `to` gets the folder
-    `<lesson>/<actual backend>`; None is the book's own `evidence`. `probe` returns, before the run,
-    the backend that it would find.
+    `lesson` names one, and is empty for all. `expected` is the backend that must be found; None
+    accepts any accelerator. `to` gets the folder `<lesson>/<actual backend>`; None is the book's
+    own `evidence`. `probe` returns, before the run, the backend that it would find, and the
+    findings of its steps.
     """
 
     lesson: str
@@ -47,7 +59,7 @@ class Recording:
     cache: Path = project.CACHE
     timeout: int = TIMEOUT
     verify: Verify = verify_bundle
-    probe: Callable[[], str] = expected_backend
+    probe: Callable[[str | None], tuple[str, list[Finding]]] = probe
     say: Callable[[str], None] = say
 
     @property
@@ -62,7 +74,7 @@ class Recording:
 
 
 def record(recording: Recording) -> list[str]:
-    """Run the lab in a clean kernel, verify its bundle and put it in its place.
+    """Run one lab in a clean kernel, verify its bundle and put it in its place.
 
     Args:
         recording: see there.
@@ -76,43 +88,75 @@ def record(recording: Recording) -> list[str]:
         BuildError: a build, or another recording, runs here.
         ProjectError: checkout, environment or the bundle's place is not fit for it.
     """
-    with build_lock(recording.cache):
-        recover(recording.evidence)
-        page, progress = _lab(recording), Progress(recording.say)
-        require_folder(recording.evidence)
-        project.require_pinned_engine(recording.root)
-        if recording.requested == "auto":
-            found = recording.probe()
-            progress("probe", f"Torch finds {found}")
-            require_expected(recording, found)
-        project.remove_stale_kernel_lock(recording.cache)
-        folder = recording.cache / project.RECORDING  # new each time: nothing is ever reused
-        shutil.rmtree(folder, ignore_errors=True)
-        try:
-            result = _execute(recording, page, folder, progress)
-            bundle, facts = _accepted(recording, result)
-            progress("verify", page.docname, "accepted")
-            place = put(bundle, recording.evidence / recording.lesson)
-        finally:
-            shutil.rmtree(folder, ignore_errors=True)
-        progress("record", str(place))
-        return summary(place, facts)
+    with ready(recording) as (pages, progress):
+        if recording.lesson not in pages:
+            raise RecordingError(
+                f"LESSON={recording.lesson!r} is not valid. "
+                f"Lessons with a lab: {', '.join(sorted(pages)) or 'none'}; unset, all."
+            )
+        found_backend(recording, progress)
+        return summary(*record_lab(recording, pages[recording.lesson], progress))
 
 
-def _lab(recording: Recording) -> Page:
-    """Return the lab page of the lesson, after checking both names that the user gave."""
+@contextmanager
+def ready(recording: Recording) -> Iterator[tuple[dict[str, Page], Progress]]:
+    """Hold the lock of builds, and check before any run what does not depend on the lab.
+
+    Yields:
+        The labs by their lessons, and the lines of progress.
+    """
     if recording.expected not in (None, *BACKENDS):
         raise RecordingError(
             f"BACKEND={recording.expected!r} is not valid. Choices: {', '.join(BACKENDS)}; "
             "unset, any accelerator."
         )
-    labs = {str(page.lesson): page for page in find_pages(recording.book) if page.page == "lab"}
-    if recording.lesson not in labs:
+    with build_lock(recording.cache):
+        recover(recording.evidence)
+        require_folder(recording.evidence)
+        project.require_pinned_engine(recording.root)
+        pages = find_pages(recording.book)
+        labs = {str(page.lesson): page for page in pages if page.page == RECORDED_PAGE}
+        yield labs, Progress(recording.say)
+
+
+def found_backend(recording: Recording, progress: Progress) -> str:
+    """Return the backend that a run would find, after a probe of the accelerator.
+
+    Raises:
+        RecordingError: a step of the probe is broken.
+    """
+    if recording.requested == "cpu":
+        return "cpu"
+    found, findings = recording.probe(recording.expected)
+    for finding in findings:
+        progress("probe", f"{finding.step:12} {finding.state:8} {finding.found}")
+    broken = [finding.step for finding in findings if finding.state == "broken"]
+    if broken:
         raise RecordingError(
-            f"LESSON={recording.lesson!r} is not valid. "
-            f"Lessons with a lab: {', '.join(sorted(labs)) or 'none'}."
+            f"Broken: {', '.join(broken)}. The lines of the probe above say what was found, what "
+            "is expected and what to do. No lab was run."
         )
-    return labs[recording.lesson]
+    return found
+
+
+def record_lab(recording: Recording, page: Page, progress: Progress) -> tuple[Path, Any]:
+    """Run one lab, and return the place of its verified bundle and the facts in its manifest.
+
+    Raises:
+        RecordingError, ProjectError: see `record`.
+    """
+    project.remove_stale_kernel_lock(recording.cache)
+    folder = recording.cache / project.RECORDING  # new each time: nothing is ever reused
+    shutil.rmtree(folder, ignore_errors=True)
+    try:
+        result = _execute(recording, page, folder, progress)
+        bundle, facts = _accepted(recording, result)
+        progress("verify", page.docname, "accepted")
+        place = put(bundle, recording.evidence / str(page.lesson))
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    progress("record", str(place))
+    return place, facts
 
 
 def require_expected(recording: Recording, actual: str) -> None:
@@ -150,8 +194,9 @@ def _execute(recording: Recording, page: Page, folder: Path, progress: Progress)
             logs=recording.cache / project.LOGS,
             report=report,
         )
-    if result.failure:
-        raise RecordingError(failure_report([result]))
+    if failure := result.failure:
+        reason = f"{failure.error}: {failure.message}"
+        raise RecordingError(failure_report([result]), reason)
     return result
 
 
@@ -167,42 +212,3 @@ def _accepted(recording: Recording, result: PageResult) -> tuple[Path, Any]:
         raise RecordingError(f"The bundle of this run is refused: {error}") from error
     require_expected(recording, facts.backend.actual)
     return result.bundle, facts
-
-
-def summary(place: Path, facts: Any) -> list[str]:
-    """Return the last lines of a recording: the facts of the run, and what to check by eye.
-
-    Args:
-        place: where the bundle is.
-        facts: the facts about the run in its manifest.
-    """
-    files = [path for path in place.rglob("*") if path.is_file()]
-    size = sum(path.stat().st_size for path in files) / 1e6
-    backend, render = facts.backend, facts.render
-    drawn = " (drawn in software)" if render.software else ""
-    return [
-        f"Recorded: {place}",
-        f"Backend: requested {backend.requested}, actual {backend.actual}, "
-        f"device {backend.device_name}",
-        f"Engine: {project.ENGINE} {facts.engine.version}, "
-        f"quadrants {facts.engine.quadrants_version}, torch {backend.torch_version}",
-        f"Camera: {render.renderer}{drawn}",
-        f"Checks passed: {sum(check.passed for check in facts.checks)} of {len(facts.checks)}. "
-        f"Engine warnings kept: {len(facts.warnings)}.",
-        f"Files: {len(files)}, {size:.1f} MB",
-        _checkout(facts.git),
-        f"Before you commit: look at both pictures in {place / 'frames'}, read log.txt, and check "
-        "that manifest.json names nothing private of your machine.",
-    ]
-
-
-def _checkout(git: Any) -> str:
-    """Return a line that says which sources ran."""
-    if git is None:
-        return "Checkout: no git here, so no commit is recorded; a release refuses that."
-    if git.dirty:
-        return (
-            f"Checkout: changed since commit {git.commit[:12]}, and the manifest says so; a "
-            "release refuses that. Commit or stash, then record again."
-        )
-    return f"Checkout: clean, commit {git.commit[:12]}"

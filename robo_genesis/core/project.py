@@ -45,7 +45,9 @@ SOLUTIONS = "SOLUTIONS"
 """0: the site has no solutions and answers, see `site.solutions`."""
 
 # Variables that switch the engine, its compiler and the drivers below it.
-ENGINE_PREFIXES = ("GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "HSA_", "CUDA_")
+ENGINE_PREFIXES = (
+    "GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "ROCM_", "HSA_", "CUDA_",
+)  # fmt: skip
 SET_BY_ENGINE = ("QD_ENABLE_PYBUF",)
 """Switches that Genesis itself sets when it is imported; they decide only how messages print."""
 

@@ -28,6 +28,11 @@ from robo_genesis.sim.camera import Renderer
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"
+NOT_RECORDED = f":(exclude,glob){project.BOOK.name}/evidence/*/*/**"
+"""The pathspec of git for all files of a checkout that are not in a recorded bundle."""
+
+DRIVERS = {"amdgpu": "amdgpu", "cuda": "nvidia"}
+"""The kernel's module that drives the device of a backend."""
 
 
 class RecordError(ValueError):
@@ -147,7 +152,7 @@ class Recorder:
             | {"files_match_wheel": self._match.result()},
             "backend": asdict(backend)
             | {"actual_at_end": session.probe(backend.requested).actual}
-            | {"driver": driver_version()},
+            | {"driver": driver_version(backend.actual)},
             "render": {
                 "mode": "camera" if renderer else "skip",
                 "vendor": renderer.vendor if renderer else None,
@@ -228,18 +233,25 @@ def host_record(cpu: str | None) -> dict[str, Any]:
     }
 
 
-def driver_version() -> str | None:
-    """Return the version of the kernel driver of the accelerator, None if there is none."""
-    for path in ("/sys/module/amdgpu/version", "/sys/module/nvidia/version"):
-        if Path(path).is_file():
-            return Path(path).read_text().strip()
-    return None
+def driver_version(backend: str, root: Path = Path("/")) -> str | None:
+    """Return the version of the kernel driver of a backend, None if it names none.
+
+    Args:
+        backend: the actual backend.
+        root: the root of the file system.
+    """
+    path = root / "sys" / "module" / DRIVERS.get(backend, backend) / "version"
+    return path.read_text().strip() if path.is_file() else None
 
 
 def git_record() -> dict[str, Any] | None:
-    """Return commit and dirty flag of the checkout, None outside a checkout."""
+    """Return commit and dirty flag of the checkout, None outside a checkout.
+
+    No page reads recorded bundles, so those that were not committed yet do not count.
+    """
     commit = git_or_none(PACKAGE.parent, "rev-parse", "HEAD")
-    status = git_or_none(PACKAGE.parent, "status", "--porcelain", "--untracked-files=normal")
+    asked = ("status", "--porcelain", "--untracked-files=normal", "--", ".", NOT_RECORDED)
+    status = git_or_none(PACKAGE.parent, *asked)
     if commit is None or status is None:
         return None
     return {"commit": commit.strip(), "dirty": bool(status.strip())}

@@ -54,7 +54,7 @@ class Bench:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """The result of one step: `state` is ok, broken or not run."""
+    """The result of one step: `state` is ok, warning, broken or not run."""
 
     step: str
     state: str

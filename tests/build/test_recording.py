@@ -3,52 +3,21 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from tiny_book import LAB_FRONT, cell, make_book, notebook, old_bundle
+from tiny_book import accept, lab, make_book, old_bundle
 
 from robo_genesis.build import recording
 from robo_genesis.build.execute import kernel_environment
+from robo_genesis.build.kernels import clean_environment
 from robo_genesis.build.recording import Recording, RecordingError, record
+from robo_genesis.build.recording_report import checkout
 from robo_genesis.build.stages import BuildError, build_lock
 from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.evidence.bundle import BundleRefused
-
-# A lab's cell that leaves what a recording looks at, as if it had run on ACTUAL.
-LAB = """\
-import json, os, pathlib
-asked, actual = os.environ["ROBO_GENESIS_BACKEND"], {actual!r}
-folder = pathlib.Path(os.environ["ROBO_GENESIS_OUTPUTS_DIR"], "l04", "lab", actual)
-folder.mkdir(parents=True)
-camera = os.environ["ROBO_GENESIS_RENDER"] == "1"
-facts = dict(
-    lesson="l04",
-    page="lab",
-    run_id=os.environ["ROBO_GENESIS_RUN_ID"],
-    command=os.environ["ROBO_GENESIS_COMMAND"],
-    backend=dict(requested=asked, actual=actual, device_name="a device", torch_version="2.13.0"),
-    engine=dict(version="1.2.3", quadrants_version="0.9"),
-    render=dict(mode="camera" if camera else "skip", renderer="llvmpipe", software=True),
-    checks=[dict(passed=True), dict(passed=True)],
-    warnings=["Approximating tendon."],
-    git=dict(commit="0123456789abcdef", dirty=True),
-)
-(folder / "manifest.json").write_text(json.dumps(dict(predicate=facts)))
-(folder / "log.txt").write_text("new")"""
-
-
-def accept(folder: Path, run_id: str) -> SimpleNamespace:
-    """Replace the verification of evidence, which needs the engine's records."""
-    text = (folder / "manifest.json").read_text()
-    manifest = json.loads(text, object_hook=lambda fields: SimpleNamespace(**fields))
-    assert manifest.predicate.run_id == run_id
-    return manifest
+from robo_genesis.sim.diagnosis import Finding
 
 
 def refuse(folder: Path, run_id: str) -> SimpleNamespace:
     raise BundleRefused("metrics", "metrics.json g1.rise_time is not what the arrays say.")
-
-
-def lab(actual: str, more: str = "") -> str:
-    return notebook(cell(LAB.format(actual=actual) + more), front=LAB_FRONT)
 
 
 def run(folder: Path, page: str, expected: str | None = None, **settings) -> list[str]:
@@ -57,7 +26,7 @@ def run(folder: Path, page: str, expected: str | None = None, **settings) -> lis
     settings = {
         "lesson": "l04",
         "verify": accept,
-        "probe": lambda: expected or "cuda",
+        "probe": lambda expected: (expected or "cuda", [Finding("torch", "ok", "2.13.0")]),
         "say": lambda line: None,
         "to": folder / "kept",
     } | settings
@@ -98,8 +67,8 @@ def test_the_cpu_is_recorded_without_a_probe_and_by_default_in_the_book(tmp_path
 
 def test_the_last_lines_name_the_checkout():
     clean = SimpleNamespace(commit="0123456789abcdef", dirty=False)
-    assert recording._checkout(clean) == "Checkout: clean, commit 0123456789ab"
-    assert recording._checkout(None).startswith("Checkout: no git here, so no commit is recorded")
+    assert checkout(clean) == "Checkout: clean, commit 0123456789ab"
+    assert checkout(None).startswith("Checkout: no git here, so no commit is recorded")
 
 
 @pytest.mark.parametrize(
@@ -151,26 +120,34 @@ def test_a_run_that_is_not_accepted_leaves_the_old_bundle(tmp_path, page, settin
 
 def test_engine_switches_reach_the_lab_and_the_user_s_contract_does_not(tmp_path, monkeypatch):
     monkeypatch.setenv("GS_ENABLE_ZEROCOPY", "0")
+    monkeypatch.setenv("ROCM_PATH", "/opt/rocm-7.2.0")
+    monkeypatch.setenv("LD_LIBRARY_PATH", "/opt/hip")
     monkeypatch.setenv("ROBO_GENESIS_BACKEND", "cpu")
     monkeypatch.setenv("ROBO_GENESIS_RENDER", "0")
     recorded = recording.contract(Recording("l04"))
     environment = kernel_environment(ROOT, tmp_path, "make evidence", **recorded)
+    environment = clean_environment(tmp_path, tmp_path, ROOT, environment)
     assert environment["GS_ENABLE_ZEROCOPY"] == "0"
+    assert environment["ROCM_PATH"] == "/opt/rocm-7.2.0"
+    assert environment["LD_LIBRARY_PATH"] == "/opt/hip"
     assert environment["ROBO_GENESIS_BACKEND"] == "auto"
     assert environment["ROBO_GENESIS_RENDER"] == "1"
     assert environment["ROBO_GENESIS_COMMAND"] == "make evidence"
 
 
+FOUND = [Finding(name, "broken", "a b") for name in ("devices", "kernel")]
+FOUND += [Finding("torch", "warning", "c")]
+
+
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        ({"lesson": "l05"}, r"^LESSON='l05' is not valid\. Lessons with a lab: l04\."),
-        ({"lesson": ""}, r"^LESSON='' is not valid\. Lessons with a lab: l04\."),
+        ({"lesson": "l05"}, r"^LESSON='l05' is not valid\. Lessons with a lab: l04; unset, all\."),
         ({"expected": "rocm"}, r"^BACKEND='rocm' is not valid\. Choices: amdgpu, cuda, cpu;"),
         ({"expected": "auto"}, r"^BACKEND='auto' is not valid\. Choices: amdgpu, cuda, cpu;"),
         ({"to": Path("file", "below")}, r"file is not a folder .* TO=folder"),
         ({"root": Path()}, r"Installed is genesis-world \S+, pinned in pyproject.toml is 0\.0\.1"),
-        ({"expected": "amdgpu", "probe": lambda: "cpu"}, "finds 'cpu'"),
+        ({"probe": lambda expected: ("cuda", FOUND)}, r"^Broken: devices, kernel\. The lines"),
     ],
 )
 def test_what_cannot_be_recorded_is_refused_before_the_run(tmp_path, monkeypatch, settings, said):
@@ -180,7 +157,9 @@ def test_what_cannot_be_recorded_is_refused_before_the_run(tmp_path, monkeypatch
     lines: list[str] = []
     with pytest.raises(ProjectError, match=said):
         run(tmp_path, lab("cuda"), **settings, say=lines.append)
-    assert [line.split("] ")[1].split()[0] for line in lines] == ["probe"] * ("probe" in settings)
+    probed = ["probe devices broken a b", "probe kernel broken a b", "probe torch warning c"]
+    found = [" ".join(line.split("] ")[1].split()) for line in lines]
+    assert found == (probed if "probe" in settings else [])
 
 
 def test_a_recording_beside_a_build_is_refused(tmp_path):
@@ -192,5 +171,5 @@ def test_the_next_command_brings_back_what_a_kill_left_aside(tmp_path):
     old = old_bundle(tmp_path, "cuda")
     old.parent.rename(old.parents[1] / ".cuda.old")
     with pytest.raises(RecordingError):
-        run(tmp_path, lab("cuda"), lesson="")
+        run(tmp_path, lab("cuda"), lesson="l05")
     assert old.read_text() == "old"

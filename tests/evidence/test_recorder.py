@@ -20,6 +20,7 @@ from robo_genesis.evidence.bundle import read_manifest, read_metrics
 from robo_genesis.evidence.recorder import (
     Recorder,
     RecordError,
+    driver_version,
     files_match_wheel,
     git_record,
 )
@@ -210,6 +211,18 @@ def test_files_without_their_recorded_digest_do_not_match_their_wheel(wheel):
     assert files_match_wheel("engine") is False  # no digest is recorded
 
 
+@pytest.mark.parametrize(
+    ("backend", "version"),
+    [("amdgpu", "6.16"), ("cuda", "580.1"), ("cpu", None), ("metal", None)],
+)
+def test_the_driver_is_that_of_the_backend(tmp_path, backend, version):
+    for module, text in (("amdgpu", "6.16\n"), ("nvidia", "580.1\n")):
+        (tmp_path / "sys/module" / module).mkdir(parents=True)
+        (tmp_path / "sys/module" / module / "version").write_text(text)
+    assert driver_version(backend, tmp_path) == version
+    assert driver_version(backend, tmp_path / "elsewhere") is None
+
+
 def test_commit_and_changes_are_recorded(tmp_path, monkeypatch):
     monkeypatch.setenv("GIT_CONFIG_GLOBAL", "/dev/null")
     monkeypatch.setattr(record, "PACKAGE", tmp_path / "robo_genesis")
@@ -218,5 +231,14 @@ def test_commit_and_changes_are_recorded(tmp_path, monkeypatch):
     commit(tmp_path)
     head = git(tmp_path, "rev-parse", "HEAD").strip()
     assert git_record() == {"commit": head, "dirty": False}
+    page = tmp_path / "book" / "evidence" / "page.md"
+    page.parent.mkdir(parents=True)
+    for place in ("l02/amdgpu/frames", "l03/.amdgpu.next"):  # of the labs that were recorded before
+        (page.parent / place).mkdir(parents=True)
+        (page.parent / place / "new").touch()
+    assert git_record() == {"commit": head, "dirty": False}
+    page.touch()
+    assert git_record() == {"commit": head, "dirty": True}
+    page.unlink()
     (tmp_path / "new").touch()
     assert git_record() == {"commit": head, "dirty": True}

@@ -8,6 +8,7 @@ import numpy as np
 import pygltflib
 import pytest
 import trimesh
+from bundles import engine_on, written
 from docutils import nodes
 from docutils.parsers.rst import DirectiveError
 from docutils.utils import new_document
@@ -16,8 +17,10 @@ from without_sphinx import Panel
 
 from robo_genesis.core import project
 from robo_genesis.core.quantities import format_value, six_digits
-from robo_genesis.evidence import bundle, replay_data
-from robo_genesis.evidence.status import Status
+from robo_genesis.evidence import bundle, recorder, replay_data, report
+from robo_genesis.evidence.bundle_store import put
+from robo_genesis.evidence.compare import compare
+from robo_genesis.evidence.status import Status, recorded_status
 from robo_genesis.evidence.trace_files import read_trace
 from robo_genesis.lessons.declaration import Filmed
 from robo_genesis.lessons.l04 import spec as l04
@@ -309,6 +312,36 @@ def test_the_comparison_names_both_runs_and_all_else_the_recorded_one(
     anchors = ["#run-l04-lab-cpu", f"#run-l04-lab-{accelerator}-recorded"]
     assert [link["refuri"] for link in run] == anchors
     assert [node.astext() for node in badge] == ["cpu-verified", f"{accelerator}-verified"]
+
+
+@pytest.mark.parametrize(
+    ("actual", "facts", "axis"),
+    [
+        ("amdgpu", {"HIP, CUDA": "7.1.25424, –", "renderer": "AMD Instinct (radeonsi)"},
+         "backend cpu → amdgpu"),
+        ("cuda", {"HIP, CUDA": "–, 13.0", "renderer": "NVIDIA H100/PCIe/SSE2"},
+         "backend cpu → cuda"),
+        ("cpu", {"HIP, CUDA": "–, –", "renderer": "llvmpipe"}, "repeat"),
+    ],
+)  # fmt: skip
+def test_what_the_recorder_writes_on_each_backend_is_accepted_shown_and_compared(
+    folder, tmp_path, record, engine, experiment, monkeypatch, actual, facts, axis
+):
+    monkeypatch.setattr(recorder, "driver_version", lambda name: f"the driver of {name}")
+    there = engine_on(engine, actual)
+    left = written(there, tmp_path / "outputs", "l04", "lab", experiment)
+    place = put(left, tmp_path / "book" / "evidence" / "l04")
+    status = recorded_status(tmp_path / "book", "l04", actual)
+    assert (status.badge, place.name) == (f"{actual}-verified", actual)
+    panel = Panel(tmp_path / "book").panel(Run("l04/lab", place, status, recorded=True))
+    shown = dict(row for row in rows_of([panel]) if len(row) == 2)
+    facts |= {"device": there.backend.device_name, "driver": f"the driver of {actual}"}
+    facts["backend requested, actual"] = f"{there.backend.requested}, {actual}"
+    assert shown | facts == shown
+    assert "Compared with this build's run on cpu: equal." in panel.astext()
+    comparison = compare(folder, place)
+    assert report.summary(comparison).startswith(f"L04 lab: {axis}\nEqual.")
+    assert f"{actual} (requested: {there.backend.requested})" in report.markdown(comparison)
 
 
 def test_a_recorded_run_replays_from_its_own_record(tmp_path, record):

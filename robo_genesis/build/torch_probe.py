@@ -1,0 +1,62 @@
+"""What Torch finds on this machine, in a process that `backend_probe` starts: facts as JSON lines.
+
+Each line is written at once, so a crash or a hang leaves the facts before it. Nothing of the course
+and of the engine is imported: Torch is loaded as in a process of its own.
+"""
+
+import ctypes
+import json
+import sys
+from pathlib import Path
+
+RUNTIME = "libamdhip64.so"
+"""The name by which the engine's compiler opens the HIP runtime; its wheel names no folder."""
+
+NUMBERS, SUM = 8, 140
+"""The card adds the squares of so many numbers from 0; the sum."""
+
+
+def say(**facts: object) -> None:
+    """Write facts as one line."""
+    print(json.dumps(facts), flush=True)
+
+
+def runtimes(maps: Path) -> list[str]:
+    """Return the files of the HIP runtime that a process has loaded, from its memory map."""
+    files = {line.split(maxsplit=5)[-1] for line in maps.read_text("utf8").splitlines()}
+    return sorted(path for path in files if RUNTIME in path)
+
+
+def main(maps: Path) -> None:
+    """Write the facts.
+
+    Args:
+        maps: the memory map of this process.
+    """
+    import torch
+
+    say(torch=torch.__version__, hip=torch.version.hip, cuda=torch.version.cuda)
+    count = torch.cuda.device_count() if torch.cuda.is_available() else 0
+    say(count=count)
+    if count:
+        card = torch.cuda.get_device_properties(0)
+        gfx = card.gcnArchName.partition(":")[0] if torch.version.hip else ""
+        say(device=card.name, gfx=gfx, codes=torch.cuda.get_arch_list())
+    if torch.version.hip:
+        own, unopened = runtimes(maps), ""
+        try:
+            ctypes.CDLL(RUNTIME)
+        except OSError as error:
+            unopened = str(error)
+        say(own=own, runtimes=runtimes(maps), unopened=unopened)
+    if count:
+        numbers = torch.arange(NUMBERS, device="cuda")
+        say(kernel=int((numbers * numbers).sum()))
+
+
+if __name__ == "__main__":
+    try:
+        main(Path(sys.argv[1]))
+    except Exception as error:
+        say(error=f"{type(error).__name__}: {error}".splitlines()[0])
+        sys.exit(1)
