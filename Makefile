@@ -1,7 +1,7 @@
 # `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
 # PORT=8000, EXECUTE=0|1 (live), BUNDLE=path (verify), GENESIS=version (repin), SITE_URL=address,
 # SOLUTIONS=0|1 (default 1) and EXECUTED=folder (book), PAGE=page and TO=folder (execute), LESSON=name, BACKEND=name and TO=folder (evidence),
-# OLD=path, NEW=path and REPORT=folder (compare), NEW=name (lesson), ROWS=names and RUNS=n (bench),
+# OLD=path, NEW=path and REPORT=folder (compare), FIRST=folder and SECOND=folder (agree), NEW=name (lesson), ROWS=names and RUNS=n (bench),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
 
 SHELL := /bin/bash
@@ -14,7 +14,7 @@ MAKEFLAGS += --no-print-directory
 # Variables are in capitals: `jobs=2` would be ignored without a word.
 NAMED := $(foreach word,$(MAKEOVERRIDES),$(if $(findstring =,$(word)),$(firstword $(subst =, ,$(word)))))
 KNOWN := RENDER RELEASE JOBS PORT EXECUTE EXECUTED BUNDLE GENESIS SITE_URL SOLUTIONS PAGE TO LESSON BACKEND OLD NEW \
-  REPORT ROWS RUNS PYTHON BASE_PYTHON
+  REPORT ROWS RUNS PYTHON BASE_PYTHON FIRST SECOND
 ifneq ($(filter-out $(KNOWN),$(NAMED)),)
   SMALL := $(foreach name,$(filter-out $(KNOWN),$(NAMED)),$(if $(filter $(KNOWN),$(shell echo '$(name)' | tr a-z A-Z)),$(name)))
   ifneq ($(strip $(SMALL)),)
@@ -114,6 +114,11 @@ lesson: $(ENVIRONMENT) ## add a lesson that is made from the template (NEW=l05)
 .PHONY: compare
 compare: $(ENVIRONMENT) ## compare two bundles: OLD=path NEW=path [REPORT=folder]
 	@"$(PY)" build_scripts/compare.py --report "$${REPORT:-}" -- "$${OLD:-}" "$${NEW:-}"
+
+# FIRST and SECOND reach the script as environment variables.
+.PHONY: agree
+agree: $(ENVIRONMENT) ## require equal arrays from two machines (FIRST=folder SECOND=folder, each from make execute)
+	@"$(PY)" build_scripts/agree.py
 
 .PHONY: serve
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
