@@ -47,7 +47,7 @@ export EXECUTED
 .PHONY: help
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
-	  while IFS='|' read -r name text; do printf '  make %-10s %s\n' "$$name" "$$text"; done
+	  while IFS='|' read -r name text; do printf '  make %-11s %s\n' "$$name" "$$text"; done
 
 .PHONY: book
 book: $(ENVIRONMENT) ## measure every lesson on CPU, verify, render and check the site
@@ -150,6 +150,11 @@ repin: $(ENVIRONMENT) ## try another engine version, then change pin and lock (G
 .PHONY: bench
 bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=names RUNS=n; a quiet machine)
 	@"$(PY)" build_scripts/bench.py
+
+# The address has one home, where the site's commands for students read it too.
+.PHONY: torch-index
+torch-index: ## print the index with Torch's builds for the CPU (for PIP_EXTRA_INDEX_URL)
+	@sed -n 's/^ *torch_index: *\([^ ]*\).*/\1/p' book/_config.yml
 
 .PHONY: has-packages
 has-packages:
