@@ -1,6 +1,6 @@
 # `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
 # PORT=8000, EXECUTE=0|1 (live), BUNDLE=path (verify), GENESIS=version (repin), SITE_URL=address,
-# SOLUTIONS=0|1 (default 1) and EXECUTED=folder (book), PAGE=page and TO=folder (execute), LESSON=name, BACKEND=name and TO=folder (evidence),
+# SOLUTIONS=0|1 (default 1) and EXECUTED=folder (book), PAGE=page and TO=folder (execute), LESSON=name, BACKEND=name and TO=folder (evidence, evidence-rocm),
 # OLD=path, NEW=path and REPORT=folder (compare), FIRST=folder and SECOND=folder (agree), NEW=name (lesson), ROWS=names and RUNS=n (bench),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
 
@@ -47,7 +47,7 @@ export EXECUTED
 .PHONY: help
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
-	  while IFS='|' read -r name text; do printf '  make %-11s %s\n' "$$name" "$$text"; done
+	  while IFS='|' read -r name text; do printf '  make %-13s %s\n' "$$name" "$$text"; done
 
 .PHONY: book
 book: $(ENVIRONMENT) ## measure every lesson on CPU, verify, render and check the site
@@ -66,6 +66,12 @@ pages: $(ENVIRONMENT) ## print the executed pages as JSON
 .PHONY: evidence
 evidence: $(ENVIRONMENT) ## record a lab here (LESSON=l04 BACKEND=amdgpu|cuda|cpu TO=folder)
 	@"$(PY)" build_scripts/evidence.py
+
+# The container has the packages; the host needs Python alone. LESSON reaches the script as an
+# environment variable.
+.PHONY: evidence-rocm
+evidence-rocm: ## record a lab in a container with ROCm, on an AMD GPU (LESSON=l04; docker or podman)
+	@"$(BASE_PYTHON)" build_scripts/evidence_rocm.py
 
 .PHONY: verify
 verify: $(ENVIRONMENT) ## verify recorded and built evidence (BUNDLE=path: one folder)
@@ -104,6 +110,7 @@ lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages 
 	@"$(PY)" build_scripts/sizes.py
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-actions .github/actions/*/action.yml
+	@"$(PY)" -m check_jsonschema --builtin-schema vendor.dependabot .github/dependabot.yml
 
 # NEW reaches the script as an environment variable.
 .PHONY: lesson
