@@ -100,7 +100,7 @@ WORDS = (?<![./-])(?<!here )(?:$$(sed 's/->.*//; s/^[a-z]/\\b[&\U&]/' .words.txt
 PROSE := robo_genesis build_scripts README.md CONTRIBUTING.md CHANGELOG.md book/_decisions
 
 .PHONY: lint
-lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages and the schema of workflows
+lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages and the schemas of .github
 	@"$(PY)" -m ruff check .
 	@"$(PY)" -m ruff format --check .
 	@"$(PY)" -m mypy
@@ -111,6 +111,8 @@ lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages 
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-actions .github/actions/*/action.yml
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.dependabot .github/dependabot.yml
+	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-issue-forms $(filter-out %/config.yml,$(wildcard .github/ISSUE_TEMPLATE/*.yml))
+	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-issue-config .github/ISSUE_TEMPLATE/config.yml
 
 # NEW reaches the script as an environment variable.
 .PHONY: lesson
