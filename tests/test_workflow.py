@@ -53,6 +53,19 @@ def test_every_target_that_a_step_makes_is_one():
     assert made <= targets
 
 
+def test_every_target_that_a_document_names_is_one():
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M))
+    documents = [*ROOT.glob("*.md"), *FOLDER.rglob("*.md"), *FOLDER.rglob("*.yml")]
+    documents += [ROOT / ".devcontainer/devcontainer.json", ROOT / ".rocm/Dockerfile"]
+    for document in documents:
+        if document.name != "CHANGELOG.md":  # it names targets of the past as well
+            # A word of prose after "make" is not in a span or block of code.
+            code = re.findall(r"`make ([^`\n]*)`|^    make (.*)$", document.read_text(), re.M)
+            words = {word for found in code for word in " ".join(found).split("#")[0].split()}
+            named = {word.strip(".,") for word in words if re.fullmatch(r"[a-z-]+[.,]?", word)}
+            assert named <= targets, document.name
+
+
 def run_plan(folder: Path, python: str) -> tuple[int, dict[str, str]]:
     """Run the step that says what to execute, as the workflow's shell does.
 
