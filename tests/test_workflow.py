@@ -10,6 +10,7 @@ from typing import Any
 
 import yaml
 
+from robo_genesis.build.site.sums import SUMS
 from robo_genesis.core.project import BOOK, ROOT, engine_cache_folder
 from robo_genesis.lessons.book_pages import find_pages
 
@@ -136,13 +137,15 @@ def test_what_is_deployed_has_passed_the_gate_of_releases():
     assert book["env"]["RELEASE"] == "1"
     assert set(JOBS["deploy"]["needs"]) == {"workflows", "test", "book"}
     assert making(FLOWS["release"]["jobs"]["book"], "book")["env"]["RELEASE"] == "1"
-    sites = [
-        name
-        for name, job in JOBS.items()
-        for one in job["steps"]
-        if "upload-pages-" in one.get("uses", "")
+    (sent,) = [
+        one["with"] for one in JOBS["book"]["steps"] if one.get("with", {}).get("name") == "site"
     ]
-    assert sites == ["book"]
+    assert sent["path"] == "book/_build/html"
+    taken = step(JOBS["deploy"], "actions/download-artifact")["with"]
+    assert taken["name"] == sent["name"]
+    assert step(JOBS["deploy"], "actions/upload-pages-artifact")["with"]["path"] == taken["path"]
+    sums = step(JOBS["deploy"], "actions/attest@")["with"]["subject-checksums"]
+    assert sums == f"{taken['path']}/{SUMS}"
     assert "if" not in JOBS["book"]
 
 
