@@ -278,6 +278,17 @@ def test_jobs_run_in_the_container_of_the_labs():
     assert found == {image, "python:${{ matrix.python }}-bookworm"}
 
 
+def test_the_dev_container_sets_up_the_course_and_runs_a_lab():
+    command = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text())[
+        "postCreateCommand"
+    ]
+    assert MAKE.findall(command) == ["torch-index", ".venv/.installed", "execute"]
+    (lab,) = re.findall(r"PAGE=(\S+)", command)
+    assert lab in {f"{page.lesson}/{page.page}" for page in find_pages(BOOK)}
+    assert "TO=executed" in command
+    assert "/executed/" in (ROOT / ".gitignore").read_text().splitlines()
+
+
 def test_dependabot_watches_each_kind_of_dependency():
     updates = read(FOLDER / "dependabot.yml")["updates"]
     kinds = {one["package-ecosystem"] for one in updates}
