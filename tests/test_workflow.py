@@ -137,6 +137,11 @@ def test_what_is_deployed_has_passed_the_gate_of_releases():
     assert book["env"]["RELEASE"] == "1"
     assert set(JOBS["deploy"]["needs"]) == {"workflows", "test", "book"}
     assert making(FLOWS["release"]["jobs"]["book"], "book")["env"]["RELEASE"] == "1"
+    assert book["env"]["SITE_URL"] == "${{ vars.SITE_URL || needs.address.outputs.url }}"
+    (pages,) = JOBS["address"]["steps"]
+    events = 'contains(fromJSON(\'["push", "workflow_dispatch"]\'), github.event_name)'
+    assert events in pages["if"]
+    assert events in JOBS["deploy"]["if"]
     (sent,) = [
         one["with"] for one in JOBS["book"]["steps"] if one.get("with", {}).get("name") == "site"
     ]
