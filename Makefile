@@ -145,6 +145,11 @@ clean: ## remove the built site and the executed pages, keep the compiled kernel
 distclean: clean ## remove the environment and every cache too
 	@rm -rf .venv .cache
 
+# The address has one home, where the site's commands for students read it too.
+.PHONY: torch-index
+torch-index: ## print the index with Torch's builds for the CPU (for PIP_EXTRA_INDEX_URL)
+	@sed -n 's/^ *torch_index: *\([^ ]*\).*/\1/p' book/_config.yml
+
 .PHONY: lock
 lock: $(ENVIRONMENT) ## resolve requirements.lock again from pyproject.toml
 	@"$(PY)" build_scripts/lock.py
@@ -158,11 +163,6 @@ repin: $(ENVIRONMENT) ## try another engine version, then change pin and lock (G
 .PHONY: bench
 bench: $(ENVIRONMENT) ## measure whole commands against bare counterparts (ROWS=names RUNS=n; a quiet machine)
 	@"$(PY)" build_scripts/bench.py
-
-# The address has one home, where the site's commands for students read it too.
-.PHONY: torch-index
-torch-index: ## print the index with Torch's builds for the CPU (for PIP_EXTRA_INDEX_URL)
-	@sed -n 's/^ *torch_index: *\([^ ]*\).*/\1/p' book/_config.yml
 
 .PHONY: has-packages
 has-packages:
