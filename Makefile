@@ -1,7 +1,7 @@
 # `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
 # PORT=8000, EXECUTE=0|1 (live), BUNDLE=path (verify), GENESIS=version (repin), SITE_URL=address,
-# SOLUTIONS=0|1 (default 1) and EXECUTED=folder (book), PAGE=page and TO=folder (execute), LESSON=name, BACKEND=name and TO=folder (evidence),
-# OLD=path, NEW=path and REPORT=folder (compare), NEW=name (lesson), ROWS=names and RUNS=n (bench),
+# SOLUTIONS=0|1 (default 1) and EXECUTED=folder (book), PAGE=page and TO=folder (execute), LESSON=name, BACKEND=name and TO=folder (evidence, evidence-rocm),
+# OLD=path, NEW=path and REPORT=folder (compare), FIRST=folder and SECOND=folder (agree), NEW=name (lesson), ROWS=names and RUNS=n (bench),
 # PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
 
 SHELL := /bin/bash
@@ -14,7 +14,7 @@ MAKEFLAGS += --no-print-directory
 # Variables are in capitals: `jobs=2` would be ignored without a word.
 NAMED := $(foreach word,$(MAKEOVERRIDES),$(if $(findstring =,$(word)),$(firstword $(subst =, ,$(word)))))
 KNOWN := RENDER RELEASE JOBS PORT EXECUTE EXECUTED BUNDLE GENESIS SITE_URL SOLUTIONS PAGE TO LESSON BACKEND OLD NEW \
-  REPORT ROWS RUNS PYTHON BASE_PYTHON
+  REPORT ROWS RUNS PYTHON BASE_PYTHON FIRST SECOND
 ifneq ($(filter-out $(KNOWN),$(NAMED)),)
   SMALL := $(foreach name,$(filter-out $(KNOWN),$(NAMED)),$(if $(filter $(KNOWN),$(shell echo '$(name)' | tr a-z A-Z)),$(name)))
   ifneq ($(strip $(SMALL)),)
@@ -47,7 +47,7 @@ export EXECUTED
 .PHONY: help
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1|/' | \
-	  while IFS='|' read -r name text; do printf '  make %-10s %s\n' "$$name" "$$text"; done
+	  while IFS='|' read -r name text; do printf '  make %-13s %s\n' "$$name" "$$text"; done
 
 .PHONY: book
 book: $(ENVIRONMENT) ## measure every lesson on CPU, verify, render and check the site
@@ -67,6 +67,12 @@ pages: $(ENVIRONMENT) ## print the executed pages as JSON
 evidence: NEEDED = genesis jupyter_book
 evidence: $(ENVIRONMENT) ## record all labs here, or one (BACKEND=amdgpu|cuda|cpu LESSON=l04 TO=folder)
 	@"$(PY)" build_scripts/evidence.py
+
+# The container has the packages; the host needs Python alone. LESSON reaches the script as an
+# environment variable.
+.PHONY: evidence-rocm
+evidence-rocm: ## record a lab in a container with ROCm, on an AMD GPU (LESSON=l04; docker or podman)
+	@"$(BASE_PYTHON)" build_scripts/evidence_rocm.py
 
 .PHONY: verify
 verify: $(ENVIRONMENT) ## verify recorded and built evidence (BUNDLE=path: one folder)
@@ -95,7 +101,7 @@ WORDS = (?<![./-])(?<!here )(?:$$(sed 's/->.*//; s/^[a-z]/\\b[&\U&]/' .words.txt
 PROSE := robo_genesis build_scripts README.md CONTRIBUTING.md CHANGELOG.md book/_decisions
 
 .PHONY: lint
-lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages and the schema of workflows
+lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages and the schemas of .github
 	@"$(PY)" -m ruff check .
 	@"$(PY)" -m ruff format --check .
 	@"$(PY)" -m mypy
@@ -105,6 +111,8 @@ lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages 
 	@"$(PY)" build_scripts/sizes.py
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-workflows .github/workflows/*.yml
 	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-actions .github/actions/*/action.yml
+	@"$(PY)" -m check_jsonschema --builtin-schema vendor.dependabot .github/dependabot.yml
+	@"$(PY)" -m check_jsonschema --builtin-schema vendor.github-issue-forms .github/ISSUE_TEMPLATE/*.yml
 
 # NEW reaches the script as an environment variable.
 .PHONY: lesson
@@ -115,6 +123,11 @@ lesson: $(ENVIRONMENT) ## add a lesson that is made from the template (NEW=l05)
 .PHONY: compare
 compare: $(ENVIRONMENT) ## compare two bundles: OLD=path NEW=path [REPORT=folder]
 	@"$(PY)" build_scripts/compare.py --report "$${REPORT:-}" -- "$${OLD:-}" "$${NEW:-}"
+
+# FIRST and SECOND reach the script as environment variables.
+.PHONY: agree
+agree: $(ENVIRONMENT) ## require equal arrays from two machines (FIRST=folder SECOND=folder, each from make execute)
+	@"$(PY)" build_scripts/agree.py
 
 .PHONY: serve
 serve: $(ENVIRONMENT) ## serve the built site on localhost (PORT=8000)
@@ -132,6 +145,11 @@ clean: ## remove the built site and the executed pages, keep the compiled kernel
 .PHONY: distclean
 distclean: clean ## remove the environment and every cache too
 	@rm -rf .venv .cache
+
+# The address has one home, where the site's commands for students read it too.
+.PHONY: torch-index
+torch-index: ## print the index with Torch's builds for the CPU (for PIP_EXTRA_INDEX_URL)
+	@sed -n 's/^ *torch_index: *\([^ ]*\).*/\1/p' book/_config.yml
 
 .PHONY: lock
 lock: $(ENVIRONMENT) ## resolve requirements.lock again from pyproject.toml

@@ -1,4 +1,4 @@
-"""The workflow for GitHub: what its steps use exists, and what they may do is limited."""
+"""The workflows for GitHub: what their steps use exists, and what they may do is limited."""
 
 import json
 import os
@@ -10,19 +10,31 @@ from typing import Any
 
 import yaml
 
+from robo_genesis.build.site.sums import SUMS
 from robo_genesis.core.project import BOOK, ROOT, engine_cache_folder
 from robo_genesis.lessons.book_pages import find_pages
 
-WORKFLOW = ROOT / ".github" / "workflows" / "book.yml"
-SETUP = ROOT / ".github" / "actions" / "setup" / "action.yml"
+FOLDER = ROOT / ".github"
+SETUP = FOLDER / "actions" / "setup" / "action.yml"
 MAKE = re.compile(r"\bmake ([a-z.][\w./-]*)")
 INTERPOLATED = re.compile(r"\$\{\{")
+PINNED = re.compile(
+    r"uses: (?:[\w-]+/[\w./-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+|docker://\S+:\S+@sha256:[0-9a-f]{64})$"
+)
+LOCAL = re.compile(r"uses: (\./\S+)$")
 
 
-# YAML 1.1 reads `on` as true; the base loader leaves every scalar as text.
-PLAN, OWN = (yaml.load(path.read_text(), Loader=yaml.BaseLoader) for path in (WORKFLOW, SETUP))
+def read(path: Path) -> dict[str, Any]:
+    """Return a file of YAML. YAML 1.1 reads `on` as true; the base loader leaves all as text."""
+    return yaml.load(path.read_text(), Loader=yaml.BaseLoader)
+
+
+FLOWS = {path.stem: read(path) for path in sorted((FOLDER / "workflows").glob("*.yml"))}
+PLAN, RECORD = FLOWS["book"], FLOWS["record"]
 JOBS = PLAN["jobs"]
-STEPS = [step for job in JOBS.values() for step in job["steps"]] + OWN["runs"]["steps"]
+EVERY_JOB = {f"{flow}.{name}": job for flow in FLOWS for name, job in FLOWS[flow]["jobs"].items()}
+STEPS = [step for job in EVERY_JOB.values() for step in job["steps"]]
+STEPS += read(SETUP)["runs"]["steps"]
 
 
 def step(job: dict[str, Any], uses: str) -> dict[str, Any]:
@@ -30,11 +42,29 @@ def step(job: dict[str, Any], uses: str) -> dict[str, Any]:
     return found
 
 
+def making(job: dict[str, Any], target: str) -> dict[str, Any]:
+    (found,) = [step for step in job["steps"] if target in MAKE.findall(step.get("run", ""))]
+    return found
+
+
 def test_every_target_that_a_step_makes_is_one():
     targets = set(re.findall(r"^([\w./-]+):", (ROOT / "Makefile").read_text(), re.M))
     made = {name for one in STEPS for name in MAKE.findall(one.get("run", ""))}
-    assert made >= {"lint", "test", "execute", "book", "pages", "repin"}
+    assert made >= {"lint", "test", "execute", "agree", "book", "pages", "repin", "evidence-rocm"}
     assert made <= targets
+
+
+def test_every_target_that_a_document_names_is_one():
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M))
+    documents = [*ROOT.glob("*.md"), *FOLDER.rglob("*.md"), *FOLDER.rglob("*.yml")]
+    documents += [ROOT / ".devcontainer/devcontainer.json", ROOT / ".rocm/Dockerfile"]
+    for document in documents:
+        if document.name != "CHANGELOG.md":  # it names targets of the past as well
+            # A word of prose after "make" is not in a span or block of code.
+            code = re.findall(r"`make ([^`\n]*)`|^    make (.*)$", document.read_text(), re.M)
+            words = {word for found in code for word in " ".join(found).split("#")[0].split()}
+            named = {word.strip(".,") for word in words if re.fullmatch(r"[a-z-]+[.,]?", word)}
+            assert named <= targets, document.name
 
 
 def run_plan(folder: Path, python: str) -> tuple[int, dict[str, str]]:
@@ -64,7 +94,8 @@ def test_the_matrix_is_the_pages_of_the_book(tmp_path):
     assert output["kernels"] == engine_cache_folder().name
     assert JOBS["lint"]["outputs"] == {n: f"${{{{ steps.plan.outputs.{n} }}}}" for n in output}
     assert JOBS["execute"]["strategy"]["matrix"] == {
-        "page": "${{ fromJSON(needs.lint.outputs.pages) }}"
+        "page": "${{ fromJSON(needs.lint.outputs.pages) }}",
+        "machine": ["first", "second"],
     }
     assert JOBS["execute"]["strategy"]["fail-fast"] == "false"
 
@@ -73,17 +104,27 @@ def test_a_plan_that_fails_stops_the_workflow(tmp_path):
     assert run_plan(tmp_path, "false") == (2, {})
 
 
-def test_the_book_is_built_from_what_the_pages_jobs_export():
-    (execute,) = [one for one in JOBS["execute"]["steps"] if "make execute" in one.get("run", "")]
-    (book,) = [one for one in JOBS["book"]["steps"] if "make book" in one.get("run", "")]
+def test_the_book_is_built_from_pages_whose_arrays_two_machines_agree_on():
+    execute, agree, book = (
+        making(JOBS[job], target)
+        for job, target in (("execute", "execute"), ("book", "agree"), ("book", "book"))
+    )
     (sent, *_) = [
         one["with"] for one in JOBS["execute"]["steps"] if "upload-" in one.get("uses", "")
     ]
-    taken = step(JOBS["book"], "actions/download-artifact")["with"]
+    taken = {
+        one["with"]["pattern"]: one["with"]["path"]
+        for one in JOBS["book"]["steps"]
+        if "download-artifact" in one.get("uses", "")
+    }
     assert execute["env"] == {"PAGE": "${{ matrix.page }}", "TO": sent["path"]}
-    assert sent["name"] == "executed-${{ strategy.job-index }}"
-    assert taken["pattern"] == "executed-*"
-    assert book["env"]["EXECUTED"] == taken["path"]
+    assert sent["name"] == "executed-${{ matrix.machine }}-${{ strategy.job-index }}"
+    assert taken == {
+        "executed-first-*": agree["env"]["FIRST"],
+        "executed-second-*": agree["env"]["SECOND"],
+    }
+    assert book["env"]["EXECUTED"] == agree["env"]["FIRST"]
+    assert JOBS["book"]["steps"].index(agree) < JOBS["book"]["steps"].index(book)
     assert "execute" in JOBS["book"]["needs"]
 
 
@@ -94,15 +135,44 @@ def test_what_is_deployed_has_passed_the_gate_of_releases():
     (book,) = builds
     assert book in JOBS["book"]["steps"]
     assert book["env"]["RELEASE"] == "1"
-    assert "book" in JOBS["deploy"]["needs"]
-    sites = [
-        name
-        for name, job in JOBS.items()
-        for one in job["steps"]
-        if "upload-pages-" in one.get("uses", "")
+    assert set(JOBS["deploy"]["needs"]) == {"workflows", "test", "book"}
+    assert making(FLOWS["release"]["jobs"]["book"], "book")["env"]["RELEASE"] == "1"
+    assert book["env"]["SITE_URL"] == "${{ vars.SITE_URL || needs.address.outputs.url }}"
+    (pages,) = JOBS["address"]["steps"]
+    events = 'contains(fromJSON(\'["push", "workflow_dispatch"]\'), github.event_name)'
+    assert events in pages["if"]
+    assert events in JOBS["deploy"]["if"]
+    (sent,) = [
+        one["with"] for one in JOBS["book"]["steps"] if one.get("with", {}).get("name") == "site"
     ]
-    assert sites == ["book"]
+    assert sent["path"] == "book/_build/html"
+    taken = step(JOBS["deploy"], "actions/download-artifact")["with"]
+    assert taken["name"] == sent["name"]
+    assert step(JOBS["deploy"], "actions/upload-pages-artifact")["with"]["path"] == taken["path"]
+    sums = step(JOBS["deploy"], "actions/attest@")["with"]["subject-checksums"]
+    assert sums == f"{taken['path']}/{SUMS}"
     assert "if" not in JOBS["book"]
+
+
+def test_the_parts_of_the_tests_are_all_of_them():
+    parts = JOBS["test"]["strategy"]["matrix"]
+    marks = {one["part"]: one["marks"] for one in parts["include"]}
+    assert list(marks) == parts["part"]
+    assert JOBS["test"]["env"] == {"PYTEST_ADDOPTS": '-m "${{ matrix.marks }}"'}
+    for engine in (False, True):
+        for browser in (False, True):
+            names = {"engine": engine, "browser": browser}
+            chosen = [part for part, mark in marks.items() if eval(mark, {}, names)]
+            assert len(chosen) == 1, names
+
+
+def test_every_environment_gets_torch_for_the_cpu_from_the_address_of_the_book():
+    done = subprocess.run(["make", "torch-index"], cwd=ROOT, capture_output=True, text=True)
+    address = yaml.safe_load((BOOK / "_config.yml").read_text())["sphinx"]["config"]["torch_index"]
+    assert address in done.stdout.splitlines()
+    assert any("${TORCH_INDEX:-$(make torch-index)}" in one.get("run", "") for one in STEPS)
+    for name, flow in FLOWS.items():
+        assert flow["env"]["TORCH_INDEX"] == "${{ vars.TORCH_INDEX }}", name
 
 
 def test_compiled_kernels_are_saved_when_a_page_fails_and_restored_by_the_same_name():
@@ -116,45 +186,117 @@ def test_compiled_kernels_are_saved_when_a_page_fails_and_restored_by_the_same_n
 
 def test_a_scheduled_run_restores_nothing():
     cached = [one for one in STEPS if re.match("actions/cache(/restore)?@", one.get("uses", ""))]
-    assert len(cached) == 2
+    assert len(cached) == 3
     assert all("github.event_name != 'schedule'" in one["if"] for one in cached)
 
 
+def test_a_run_of_a_tag_restores_nothing():
+    for one in read(SETUP)["runs"]["steps"]:
+        if re.match("actions/cache(/restore)?@", one.get("uses", "")):
+            assert "github.ref_type != 'tag'" in one["if"]
+    used = [
+        one.get("uses", "") for job in FLOWS["release"]["jobs"].values() for one in job["steps"]
+    ]
+    assert not any("cache" in name for name in used)
+
+
 def test_a_job_that_can_fail_leaves_its_reports():
-    for name in ("test", "execute", "book", "refresh"):
-        kept = [one for one in JOBS[name]["steps"] if one.get("if") == "failure()"]
+    for name in ("book.test", "book.execute", "book.book", "book.refresh", "release.book"):
+        kept = [one for one in EVERY_JOB[name]["steps"] if one.get("if") == "failure()"]
         assert [one["with"]["include-hidden-files"] for one in kept] == ["true"], name
 
 
 def test_jobs_can_write_only_what_they_must():
-    assert PLAN["permissions"] == {"contents": "read"}
-    more = {name: job["permissions"] for name, job in JOBS.items() if "permissions" in job}
+    assert {str(flow["permissions"]) for flow in FLOWS.values()} == {"{'contents': 'read'}"}
+    more = {name: job["permissions"] for name, job in EVERY_JOB.items() if "permissions" in job}
     assert more == {
-        "deploy": {"pages": "write", "id-token": "write"},
-        "propose": {"contents": "write", "pull-requests": "write"},
+        "book.address": {"pages": "read"},
+        "book.deploy": {"pages": "write", "id-token": "write", "attestations": "write"},
+        "book.propose": {"contents": "write", "pull-requests": "write"},
+        "record.propose": {"contents": "write", "pull-requests": "write"},
+        "release.release": {"contents": "write", "id-token": "write", "attestations": "write"},
     }
     assert JOBS["deploy"]["if"].startswith("github.ref == 'refs/heads/main'")
     for name in more:  # what can write runs no code of the course, of its packages or its pages
-        assert not any(MAKE.search(one.get("run", "")) for one in JOBS[name]["steps"])
+        steps = EVERY_JOB[name]["steps"]
+        assert not any(MAKE.search(one.get("run", "")) for one in steps), name
+        assert not any("python" in one.get("run", "") for one in steps), name
+        assert not any(one.get("uses", "").startswith("./") for one in steps), name
 
 
-def test_no_checkout_leaves_its_token_where_the_course_s_code_runs():
-    kept = [
-        name
-        for name, job in JOBS.items()
-        for one in job["steps"]
-        if one.get("uses", "").startswith("actions/checkout")
-        and one.get("with", {}).get("persist-credentials") != "false"
-    ]
-    assert kept == ["propose"]
+def test_no_checkout_leaves_its_token():
+    for name, job in EVERY_JOB.items():
+        for one in job["steps"]:
+            if one.get("uses", "").startswith("actions/checkout"):
+                assert one["with"]["persist-credentials"] == "false", name
 
 
-def test_versions_are_pinned_and_input_never_becomes_shell():
+def test_only_a_person_starts_a_recording():
+    """A runner of one's own must never run the code of a pull request."""
+    assert list(RECORD["on"]) == ["workflow_dispatch"]
+    own = {n: job["runs-on"] for n, job in EVERY_JOB.items() if "self-hosted" in job["runs-on"]}
+    assert own == {"record.record": ["self-hosted", "rocm"]}
+
+
+def test_a_recording_is_verified_and_compared_before_it_is_proposed():
+    jobs = RECORD["jobs"]
+    assert making(jobs["cpu"], "evidence")["env"] == {"BACKEND": "cpu", "TO": "executed"}
+    compare = [MAKE.findall(one.get("run", "")) for one in jobs["compare"]["steps"]]
+    assert [name for names in compare for name in names] == ["verify", "compare"]
+    needs = {name: job.get("needs") for name, job in jobs.items()}
+    assert needs == {
+        "cpu": None,
+        "record": "cpu",
+        "compare": ["cpu", "record"],
+        "propose": "compare",
+    }
+
+
+def test_every_action_is_pinned_by_its_commit_or_digest():
+    files = [SETUP, *(FOLDER / "workflows").glob("*.yml")]
+    used = [line.strip().removeprefix("- ") for f in files for line in f.read_text().splitlines()]
+    used = [line for line in used if line.startswith("uses:")]
+    assert len(used) > 30
+    for line in used:
+        local = LOCAL.match(line)
+        assert local or PINNED.match(line), line
+        assert local is None or (ROOT / local[1] / "action.yml").is_file(), line
+    names = {line.partition("@")[0]: set() for line in used}
+    for line in used:
+        names[line.partition("@")[0]].add(line)
+    assert {len(versions) for versions in names.values()} == {1}, names
+
+
+def test_input_never_becomes_shell_and_every_job_ends():
     for one in STEPS:
-        used = one.get("uses", "")
-        assert not used.startswith("./") or (ROOT / used / "action.yml").is_file()
-        assert used.startswith("./") or not used or re.search(r"[@:]v?\d[\w.]*$", used), used
         assert not INTERPOLATED.search(one.get("run", "")), one["run"]
-    for job in JOBS.values():
-        assert not job.get("container", "").endswith("latest")
-        assert re.search(r"\b\d{2,3}\b", job["timeout-minutes"])
+    for name, job in EVERY_JOB.items():
+        assert not job.get("container", "").endswith("latest"), name
+        assert re.search(r"\b\d{1,3}\b", job["timeout-minutes"]), name
+
+
+def test_jobs_run_in_the_container_of_the_labs():
+    """Dependabot updates the digest in the Dockerfile; this test requires it in the workflows."""
+    (image,) = re.findall(r"^FROM (\S+)$", (ROOT / ".devcontainer/Dockerfile").read_text(), re.M)
+    assert re.search(r"@sha256:[0-9a-f]{64}$", image)
+    found = {job["container"] for job in EVERY_JOB.values() if "container" in job}
+    assert found == {image, "python:${{ matrix.python }}-bookworm"}
+
+
+def test_the_dev_container_sets_up_the_course_and_runs_a_lab():
+    command = json.loads((ROOT / ".devcontainer/devcontainer.json").read_text())[
+        "postCreateCommand"
+    ]
+    assert MAKE.findall(command) == ["torch-index", ".venv/.installed", "execute"]
+    (lab,) = re.findall(r"PAGE=(\S+)", command)
+    assert lab in {f"{page.lesson}/{page.page}" for page in find_pages(BOOK)}
+    assert "TO=executed" in command
+    assert "/executed/" in (ROOT / ".gitignore").read_text().splitlines()
+
+
+def test_dependabot_watches_each_kind_of_dependency():
+    updates = read(FOLDER / "dependabot.yml")["updates"]
+    kinds = {one["package-ecosystem"] for one in updates}
+    assert kinds >= {"github-actions", "pip", "npm", "docker"}
+    for folder in (name for one in updates for name in one.get("directories", [])):
+        assert (ROOT / folder.strip("/")).is_dir(), folder

@@ -186,7 +186,7 @@ def import_pages(
     known = {page.docname: page for page in pages}
     found: dict[str, tuple[Path, Record]] = {}
     problems = []
-    for place in _handed_over(source):
+    for place in exported_folders(source):
         try:
             record = _accepted(place, known, into, verify)
             if record.docname in found:
@@ -207,7 +207,7 @@ def import_pages(
     return [found[docname][1] for docname in known]
 
 
-def _handed_over(source: Path) -> list[Path]:
+def exported_folders(source: Path) -> list[Path]:
     """Return the folders that hold a record.
 
     Left out are folders within another of them, hidden ones, and what a killed `make execute` left

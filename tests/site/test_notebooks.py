@@ -27,7 +27,7 @@ CELLS = (
 )
 COMMANDS = ("python3 -m venv course", "course/bin/pip install ./robo.whl jupyterlab")
 ORIGIN = Origin(
-    Course("Course", "Its authors", "https://example.org/cpu"),
+    Course("Course", "Its authors", "https://example.org/cpu", ""),
     "A lab",
     "Linux with Python 3",
     "1.2.3",

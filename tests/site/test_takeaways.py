@@ -1,15 +1,19 @@
 import csv
 import io
 import zipfile
+from contextlib import nullcontext
 from email import message_from_bytes
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from sphinx.errors import ConfigError
 
 from robo_genesis.core import project
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.site.takeaways.files import csv_text, package_facts, run_commands, without_places
+from robo_genesis.site.takeaways.repository import codespace, require_address
 from robo_genesis.site.takeaways.wheel import build_wheel, built_wheel
 
 LINKS = ["link0", "link4", "hand"]
@@ -64,6 +68,50 @@ def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
         if path.is_file() and path.suffix not in (".pyc", ".tmpl")
     }
     assert {name for name in names if not name.startswith("robo_genesis-")} == files
+
+
+def test_the_wheel_names_the_repository_that_is_configured(tmp_path):
+    wheels = {
+        "": build_wheel(tmp_path / "without"),
+        "https://github.com/a/b": build_wheel(
+            tmp_path / "with", repository="https://github.com/a/b"
+        ),
+    }
+    for address, path in wheels.items():
+        with zipfile.ZipFile(path) as wheel:
+            (found,) = (name for name in wheel.namelist() if name.endswith("/METADATA"))
+            urls = message_from_bytes(wheel.read(found)).get_all("Project-URL")
+        assert urls == ([f"Repository, {address}"] if address else None)
+
+
+@pytest.mark.parametrize(
+    ("repository", "offered"),
+    [
+        ("https://github.com/a/b-c", "(https://codespaces.new/a/b-c)"),
+        ("https://example.org/a/b", ""),
+        ("", ""),
+    ],
+)
+def test_a_codespace_is_offered_for_a_repository_on_github_alone(repository, offered):
+    text = codespace(repository)
+    assert offered in text
+    assert bool(text) == bool(offered)
+    assert not text or "We have not tried it" in text
+
+
+@pytest.mark.parametrize(
+    ("given", "valid"),
+    [
+        ("", True),
+        ("https://github.com/a/b", True),
+        ("https://github.com/a/b/", False),
+        ("http://github.com/a/b", False),
+        ('https://github.com/a/b"', False),
+    ],
+)
+def test_the_address_of_a_repository_is_checked(given, valid):
+    with nullcontext() if valid else pytest.raises(ConfigError, match="OWNER/NAME, without a sl"):
+        require_address(None, SimpleNamespace(course_repository=given))
 
 
 def test_a_package_that_cannot_be_built_says_why(tmp_path):

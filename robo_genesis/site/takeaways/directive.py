@@ -25,6 +25,7 @@ from robo_genesis.site.page_files import TAKEAWAYS, note_files
 from robo_genesis.site.takeaways.files import Takeaways, run_commands, system, write_takeaways
 from robo_genesis.site.takeaways.notebooks import Course
 from robo_genesis.site.takeaways.plain_markdown import ProseError
+from robo_genesis.site.takeaways.repository import codespace, require_address
 
 Link = Callable[..., list[nodes.Node]]
 """Returns the link to a file with an optional text, and its size."""
@@ -77,6 +78,8 @@ class TakeawaysBox(SphinxDirective):
             "cell checks the engine's version and says what to do if yours differs. In its first "
             "run the engine compiles its kernels, which takes minutes too."
         )
+        if offer := codespace(self.config.course_repository):
+            box += self.prose(offer)
         return box
 
     def downloads(self, found: Takeaways, links: Link) -> Iterable[nodes.Node]:
@@ -118,7 +121,7 @@ class RunCommands(SphinxDirective):
 
 def course(config: Config) -> Course:
     """Return what the book's configuration states about the course."""
-    return Course(config.html_title, config.author, config.torch_index)
+    return Course(config.html_title, config.author, config.torch_index, config.course_repository)
 
 
 def link(base: str, files: Path, file: Path, text: str = "") -> list[nodes.Node]:
@@ -164,6 +167,8 @@ def copy_files(app: Sphinx, exception: Exception | None) -> None:
 def setup(app: Sphinx) -> None:
     """Register the directive and the copying of its files."""
     app.add_config_value("torch_index", "", "env", str)
+    app.add_config_value("course_repository", "", "env", str)
+    app.connect("config-inited", require_address)
     app.add_directive("takeaways", TakeawaysBox)
     app.add_directive("run-commands", RunCommands)
     app.connect("build-finished", copy_files)

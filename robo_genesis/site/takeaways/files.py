@@ -75,13 +75,13 @@ def write_takeaways(
         run: the accepted bundle of that run.
         folder: gets the wheel, the constraints, and a folder for the lab.
         measured: returns a measured value as the site writes it.
-        course: named in the notebooks.
+        course: named in the notebooks; its repository is named in the wheel.
     """
     name = f"{page.lesson}-{page.page}"
     own = folder / name
     shutil.rmtree(own, ignore_errors=True)
     own.mkdir(parents=True)
-    wheel = build_wheel(folder)
+    wheel = build_wheel(folder, repository=course.repository)
     constraints = Path(shutil.copy(project.ROOT / "requirements.lock", folder / CONSTRAINTS))
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
     commands = run_commands(wheel.name, course.torch_index, student.name)

@@ -56,14 +56,16 @@ print(*(f"{{package}} {{number}}" for package, number in NEEDED.items()), sep="\
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """What `_config.yml` states about the course: its name, its authors, and an index of packages.
+    """What `_config.yml` states about the course: its name, its authors, and two addresses.
 
-    `torch_index` is the address of an index with builds of Torch for the CPU alone.
+    `torch_index` is the address of an index with builds of Torch for the CPU alone, and
+    `repository` that of the course's repository, empty if none is configured.
     """
 
     name: str
     authors: str
     torch_index: str
+    repository: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,15 @@
+"""Require equal arrays from two machines: `make agree FIRST=folder SECOND=folder`.
+
+Environment: FIRST and SECOND, folders that `make execute` filled on two machines.
+Exit status: 0 equal, 1 different or not comparable, 130 interrupted.
+"""
+
+import argparse
+import sys
+
+from robo_genesis.build.agreement import agree
+from robo_genesis.build.command import path, run
+
+if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
+    sys.exit(run(lambda: agree(path("FIRST"), path("SECOND")), "accepted"))

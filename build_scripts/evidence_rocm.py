@@ -1,0 +1,22 @@
+"""Record a lab's evidence in a container with ROCm: `make evidence-rocm LESSON=l04`.
+
+Environment: LESSON (which lab), and the switches of engine and drivers, which are passed on.
+It builds the image of `.rocm/Dockerfile` and runs `make evidence BACKEND=amdgpu` in it, on this
+checkout.
+Exit status: 0 recorded, 1 nothing was started, otherwise that of the command that failed.
+"""
+
+import argparse
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from robo_genesis.build.rocm_container import ContainerError, Host, record
+
+if __name__ == "__main__":
+    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
+    try:
+        sys.exit(record(Host(Path(__file__).resolve().parents[1], shutil.which, os.environ)))
+    except ContainerError as error:
+        sys.exit(f"{error}\n\nFAILED: nothing was recorded.")

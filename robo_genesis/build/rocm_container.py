@@ -1,0 +1,112 @@
+"""`make evidence-rocm`: record a lab in a container with AMD's ROCm and Torch.
+
+This module imports the standard library alone: the host needs Python, but no package of the course.
+"""
+
+import os
+import stat
+import subprocess
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+ENGINES = ("docker", "podman")
+IMAGE = "robo-genesis-rocm"
+DOCKERFILE = ".rocm/Dockerfile"
+PLACE = "/course"
+"""Where the container sees the checkout."""
+
+DEVICES = (Path("/dev/kfd"), Path("/dev/dri"))
+"""Compute interface of all AMD GPUs, and the folder with a node for each of them."""
+
+PASSED = ("GS_", "QD_", "LIBGL_", "MESA_", "EGL_", "HIP_", "ROCR_", "HSA_", "CUDA_")
+"""How the variables begin that the container gets: switches of engine and drivers. It does not
+get ROCM_PATH, because the image has its own ROCm."""
+
+WITHOUT = "book/evidence/recording.md describes the steps without a container."
+
+
+class ContainerError(Exception):
+    """No container can be started; the message says what was found and what to do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Host:
+    """The machine that starts the container; `find` returns the path of a program, or None."""
+
+    root: Path
+    find: Callable[[str], str | None]
+    environment: Mapping[str, str]
+    devices: tuple[Path, ...] = DEVICES
+
+
+def record(host: Host) -> int:
+    """Build the image and record in it; return the status of the first command that fails, or 0.
+
+    Args:
+        host: see there.
+
+    Raises:
+        ContainerError: nothing was started.
+    """
+    for command in commands(host):
+        status = subprocess.run(command, cwd=host.root, check=False).returncode
+        if status:
+            print(f"FAILED with status {status}: {' '.join(command)}", file=sys.stderr)
+            return status
+    return 0
+
+
+def commands(host: Host) -> list[list[str]]:
+    """Return the command that builds the image and the one that records a lab in it.
+
+    Docker's options are those of AMD's page on ROCm containers. The process has the ids of the
+    user, so that the bundle belongs to the user, and the groups of the devices, `video` and
+    `render`. Podman keeps the user's own groups.
+
+    Args:
+        host: see there. LESSON of its environment names the lab.
+
+    Raises:
+        ContainerError: docker and podman, or a device is missing.
+    """
+    engine = _engine(host)
+    for device in host.devices:
+        if not device.exists():
+            raise ContainerError(
+                f"{device} is missing here. A recording needs an AMD GPU with its kernel driver: "
+                f"{' and '.join(map(str, host.devices))} must exist. Install amdgpu-dkms, or use "
+                "another machine."
+            )
+    build = [engine, "build", "--tag", IMAGE, "--file", DOCKERFILE, "."]
+    run = [engine, "run", "--rm", "--security-opt", "seccomp=unconfined"]
+    run += [f"--device={device}" for device in host.devices]
+    if engine == "podman":
+        run += ["--group-add", "keep-groups", "--userns", "keep-id"]
+    else:
+        run += [word for group in _groups(host.devices) for word in ("--group-add", str(group))]
+        run += ["--user", f"{os.getuid()}:{os.getgid()}"]
+    run += ["--volume", f"{host.root}:{PLACE}", "--workdir", PLACE]
+    run += ["--env", "HOME=/tmp", "--env", "USER=course"]
+    passed = sorted(name for name in host.environment if name.startswith(PASSED))
+    run += [word for name in passed for word in ("--env", name)]
+    if lesson := host.environment.get("LESSON"):
+        run += ["--env", f"LESSON={lesson}"]
+    return [build, [*run, IMAGE, "make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]]
+
+
+def _engine(host: Host) -> str:
+    for name in ENGINES:
+        if host.find(name):
+            return name
+    raise ContainerError(
+        f"PATH has neither {' nor '.join(ENGINES)}. Install one of them, or record without it: "
+        f"{WITHOUT}"
+    )
+
+
+def _groups(devices: Iterable[Path]) -> list[int]:
+    """Return the groups that own the device nodes."""
+    nodes = [node for device in devices for node in (device, *device.glob("*"))]
+    return sorted({node.stat().st_gid for node in nodes if stat.S_ISCHR(node.stat().st_mode)})
