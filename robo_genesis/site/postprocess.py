@@ -11,14 +11,14 @@ from sphinx.application import Sphinx
 
 from robo_genesis.core import palette
 from robo_genesis.core.files import derived
-from robo_genesis.site import accessibility, drawings, page_weight, stacked_tables
+from robo_genesis.site import accessibility, drawings, page_weight, stacked_tables, style_sheets
 from robo_genesis.site.accessibility import make_accessible
 from robo_genesis.site.drawings import inline_drawings
 from robo_genesis.site.page_weight import drop_unused_files, reduce_weight
 from robo_genesis.site.stacked_tables import stack_tables
-from robo_genesis.site.style_sheets import trim_sheets
+from robo_genesis.site.style_sheets import join_sheets, link_joined
 
-CHANGES = (accessibility, stacked_tables, drawings, page_weight, palette)
+CHANGES = (accessibility, stacked_tables, drawings, page_weight, style_sheets, palette)
 """The modules that change a page, and the colours that they use."""
 IMAGE = re.compile(r"""<img\b[^>]*?\bsrc="([^"]+)\"""")
 """A picture of a page; a finished page contains its size."""
@@ -42,7 +42,7 @@ def finish_site(app: Sphinx, error: Exception | None) -> None:
         for page in sorted(written(app)):
             path = Path(app.builder.get_outfilename(page))  # type: ignore[attr-defined]
             path.write_text(finish_page(path.read_text("utf8"), path.parent), "utf8")
-        trim_sheets(Path(app.outdir))  # it looks for the names in all finished pages
+        join_sheets(Path(app.outdir))  # it looks for the names in all finished pages
     written(app).clear()
 
 
@@ -60,6 +60,7 @@ def finish_page(html: str, folder: Path) -> str:
         stack_tables(page)
         inline_drawings(page, folder)
         reduce_weight(page, folder)
+        link_joined(page)
         return str(page).encode()
 
     images = [folder / unquote(urlsplit(unescape(src)).path) for src in IMAGE.findall(html)]

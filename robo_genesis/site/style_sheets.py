@@ -1,11 +1,19 @@
-"""Removes the rules of the theme's style sheets that no page of the site can match."""
+"""Joins the style sheets of the site in one file, without the rules that no page can match.
+
+A phone that fetches one sheet instead of sixteen shows a page earlier.
+"""
 
 import json
 import re
 import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping
+from fnmatch import fnmatch
+from hashlib import sha256
 from pathlib import Path
+from urllib.parse import urlsplit
+
+from bs4 import BeautifulSoup
 
 from robo_genesis.build import npm
 from robo_genesis.build.command import end_with_parent
@@ -13,41 +21,92 @@ from robo_genesis.core.files import derived
 from robo_genesis.core.project import ProjectError
 
 SHEETS = (
+    "_static/basic.css",
     "_static/styles/pydata-sphinx-theme.css",
+    "_static/pygments.css",
     "_static/styles/sphinx-book-theme.css",
-    "_static/sphinx-design.min.css",
+    "_static/palette.css",
+    "_static/togglebutton.css",
+    "_static/copybutton.css",
     "_static/mystnb.*.css",
+    "_static/sphinx-design.min.css",
+    *(f"_static/{name}.css" for name in ("print", "calm", "course", "replay", "look", "plot")),
+    "_static/home.css",
 )
-"""Sheets of the theme and its extensions, relative to the site. The course's own stay."""
+"""The sheets of all pages in their order, relative to the site. `math.css` contains a font, so only
+pages with formulas load it."""
+IMPORTING = "_static/styles/theme.css"
+"""A sheet of the theme that imports the first one and has no rule."""
+TRIMMED = (*SHEETS[:4], "_static/mystnb.*.css", "_static/sphinx-design.min.css")
+"""The sheets of the theme and its extensions that have rules for other sites."""
+JOINED = "_static/styles/site.css"
 
 NAMES = (re.compile(rb' class="([^"]*)"'), re.compile(rb' id="([^"]*)"'))
 """Classes and identifiers of a page, which its tags name."""
 WORD = re.compile(rb"[\w-]+")
 OTHER_WORD = re.compile(rb"(?<![.#\w-])[\w-]+")
 """A word of a sheet that is neither a class nor an identifier: elements, attributes, states."""
+ADDRESS = re.compile(r"url\(\s*([\"']?)(?![\"']?(?:data:|https?:|[/#]))")
+"""The beginning of an address that is relative to its sheet."""
 PURGE = "purgecss/bin/purgecss.js"
 
 
-def trim_sheets(html: Path) -> None:
-    """Remove from each sheet the rules with classes or identifiers that the site does not have.
+def link_joined(page: BeautifulSoup) -> None:
+    """Replace the links of a page to the single sheets by one link, in place.
 
-    A name counts as present if a tag of any page has it or if it is a word of any script, which
-    may add it later. Rules that name elements and attributes alone stay.
+    Its query depends on the links that it replaces, which have digests of their sheets.
+    """
+    links = [
+        link for link in page.select('link[rel="stylesheet"]') if _is_joined(str(link["href"]))
+    ]
+    if links:
+        digest = sha256("".join(str(link["href"]) for link in links).encode()).hexdigest()
+        start = str(links[0]["href"]).partition("_static/")[0]
+        links[0].attrs = {"rel": "stylesheet", "href": f"{start}{JOINED}?v={digest[:8]}"}
+        for link in links[1:]:
+            link.decompose()
+
+
+def _is_joined(address: str) -> bool:
+    path = urlsplit(address).path
+    _, found, name = path.partition("_static/")
+    return any(fnmatch(found + name, pattern) for pattern in (*SHEETS, IMPORTING))
+
+
+def join_sheets(html: Path) -> None:
+    """Write the joined sheet of a site.
+
+    The theme's rules with classes or identifiers that the site does not have are left out. A name
+    counts as present if a tag of any page has it or if it is a word of any script, which may add it
+    later. Rules that name elements and attributes alone stay.
 
     Args:
-        html: folder of the site, whose sheets are changed in place.
+        html: folder of the site.
 
     Raises:
         ProjectError: PurgeCSS failed; the message holds its output.
     """
-    sheets = {path.name: path for name in SHEETS for path in html.glob(name)}
-    content = {name: path.read_bytes() for name, path in sheets.items()}
-    present = used_names(html) | words(content.values(), OTHER_WORD)
-    names = b"\n".join(sorted(present & words(content.values(), WORD)))
-    inputs = [names, *content.values(), Path(__file__).read_bytes()]
-    found = derived("sheets", inputs, lambda: json.dumps(_purged(content, names)).encode())
-    for name, text in json.loads(found).items():
-        sheets[name].write_text(text, "utf8")
+    sheets = [path for pattern in SHEETS for path in sorted(html.glob(pattern))]
+    trimmed = {p.name: p.read_bytes() for pattern in TRIMMED for p in html.glob(pattern)}
+    present = used_names(html) | words(trimmed.values(), OTHER_WORD)
+    names = b"\n".join(sorted(present & words(trimmed.values(), WORD)))
+    inputs = [names, *trimmed.values(), Path(__file__).read_bytes()]
+    found = json.loads(
+        derived("sheets", inputs, lambda: json.dumps(_purged(trimmed, names)).encode())
+    )
+    joined = html / JOINED
+    joined.parent.mkdir(parents=True, exist_ok=True)
+    texts = (
+        (path, found[path.name] if path.name in found else path.read_text("utf8"))
+        for path in sheets
+    )
+    joined.write_text(
+        "\n".join(
+            text if path.parent == joined.parent else ADDRESS.sub(r"url(\1../", text)
+            for path, text in texts
+        ),
+        "utf8",
+    )
 
 
 def used_names(html: Path) -> set[bytes]:
