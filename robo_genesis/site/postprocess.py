@@ -74,4 +74,5 @@ def finish_page(html: str, folder: Path) -> str:
 def setup(app: Sphinx) -> None:
     """Register the extension; see the module's summary."""
     app.connect("html-page-context", note_page)
-    app.connect("build-finished", finish_site)
+    # After the theme, which writes the colours of code then.
+    app.connect("build-finished", finish_site, priority=900)
