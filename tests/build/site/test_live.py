@@ -18,6 +18,7 @@ from tiny_book import cell, fails, make_book, notebook, start
 from robo_genesis.build.page_folder import write_page
 from robo_genesis.build.page_store import places
 from robo_genesis.build.site.live import Live, LiveEndedError
+from robo_genesis.core.files import write_whole
 from robo_genesis.core.project import STORE
 from robo_genesis.lessons.book_pages import find_pages
 
@@ -88,15 +89,16 @@ def test_a_bad_edit_is_reported_and_the_last_good_state_stays(live, file, conten
     if content is None:
         path.unlink()
     else:
-        path.write_text(content)
+        write_whole(path, content.encode())  # at once, so that no half of it is seen
     live.wait(lambda: "keeps the last good state" in live.output()[begin:])
     reported = live.said[begin:].splitlines()
     assert said in live.said[begin:]
     assert len(reported) <= 4
     assert live.article() == before
-    path.write_text(good + ("\n" if file == "_toc.yml" else "\nCorrected once more.\n"))
+    more = "\n" if file == "_toc.yml" else "\nCorrected once more.\n"
+    write_whole(path, (good + more).encode())
     live.wait(lambda: "Shown: " in live.output()[begin:])
-    path.write_text(good)
+    write_whole(path, good.encode())
     live.wait(lambda: live.output()[begin:].count("Shown: ") > 1)
     assert live.article() == before
 
