@@ -82,7 +82,7 @@ def conclusion(run: Experiment) -> str:
     found, case = run.metrics["baseline"], run.cases["baseline"]
     agrees = found.formula_error <= spec.FORMULA_TOLERANCE
     return (
-        f"After {case.steps} outer steps the centre of the sphere is at {found.final_height:.6f} m. "
+        f"After {case.steps} outer steps the sphere's centre is at {found.final_height:.6f} m. "
         f"The largest difference from the computed height over all states is "
         f"{1e6 * found.formula_error:.2g} µm. "
         + (
