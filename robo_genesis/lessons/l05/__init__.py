@@ -10,13 +10,13 @@ from robo_genesis.lessons.l05 import (
     checks,
     claims_text,
     exercises,
-    kinematics,
     plausibility,
     spec,
     study,
 )
 from robo_genesis.lessons.l05.metrics import ReachMetrics
 from robo_genesis.lessons.l05.run import ask, control_case, reach, solve_all
+from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joints import resolve_joints
 

@@ -14,10 +14,11 @@ from robo_genesis.core.checks import (
     sample_times,
 )
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import kinematics, spec, study
-from robo_genesis.lessons.l05.kinematics import ARM, CHAIN, Pose
+from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.metrics import HAND
+from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import end_state, mujoco_kinematics
+from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose
 from robo_genesis.sim.franka import JOINT_NAMES
 
 FIRST = HAND - ARM

@@ -8,9 +8,10 @@ import numpy as np
 from robo_genesis.core.checks import Check, Finding, at_most, below, equal
 from robo_genesis.core.exercises import outcome
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l05 import kinematics, spec
-from robo_genesis.lessons.l05.kinematics import ARM, CHAIN, Pose
+from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.metrics import measured_hand
+from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose
 
 CLOSE = 5e-6
 """Largest difference to a pose of the engine, which computes in float32 [m or rad]."""

@@ -11,7 +11,7 @@ import numpy as np
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l05.kinematics import Pose, distances, hand_pose, pose_error
+from robo_genesis.sim.arm_kinematics import Pose, distances, hand_pose, pose_error
 from robo_genesis.sim.franka import LINK_PARENTS
 
 HAND = LINK_PARENTS[-1]

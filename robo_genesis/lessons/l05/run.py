@@ -7,8 +7,8 @@ import numpy as np
 
 from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l05.kinematics import ARM, accepted, distances
 from robo_genesis.sim import franka, mujoco_kinematics
+from robo_genesis.sim.arm_kinematics import ARM, accepted, distances
 from robo_genesis.sim.joint_control import ControlCase, assign_postures, run_case
 from robo_genesis.sim.joints import JointMap
 from robo_genesis.sim.kinematics import IkAnswer, IkSettings, solve_ik

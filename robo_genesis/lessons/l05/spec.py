@@ -105,7 +105,7 @@ MANY_STARTS = SolveCase(np.tile(TARGET, (RESTARTS, 1)), DOWN, RANDOM_STARTS, ONE
 UNREACHABLE = SolveCase(BEYOND_REACH[None], DOWN, franka.Q_START[None], IK)
 
 QUESTIONS = REACH_MAP | {"many_starts": MANY_STARTS, "unreachable": UNREACHABLE}
-"""What the solver is asked beyond the lab."""
+"""Questions to the solver beyond those of the lab."""
 
 RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
 """By unit: values that differ by no more than this are called equal, the noise floor."""

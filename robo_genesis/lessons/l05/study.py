@@ -7,12 +7,13 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l05 import kinematics, spec
-from robo_genesis.lessons.l05.kinematics import ARM, Pose
+from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.metrics import ReachMetrics, measured_hand, reach_metrics
 from robo_genesis.lessons.l05.run import END_EFFECTOR, ReachCase, SolveCase, ask
+from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import kinematics as engine
 from robo_genesis.sim import mujoco_kinematics
+from robo_genesis.sim.arm_kinematics import ARM, Pose
 from robo_genesis.sim.joints import JointMap, to_numpy
 
 GROUP = "ik"
@@ -23,7 +24,7 @@ IK_READINGS = {"residual_m": "m", "residual_rad": "rad", "jacobian_difference": 
 of MuJoCo, in m/rad or without a unit."""
 
 REPEAT_GROUP = "ik_repeated"
-"""Group of counts: entries of q and residual that differ when the same question is asked again."""
+"""Group of counts: entries of q and residual that differ between two equal questions."""
 
 REPEATED = ("entries_that_differ",)
 

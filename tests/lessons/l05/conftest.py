@@ -5,8 +5,9 @@ import pytest
 from robot_runs import driven
 
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import SOLUTIONS, kinematics, spec
+from robo_genesis.lessons.l05 import SOLUTIONS, spec
 from robo_genesis.lessons.l05.run import control_case
+from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import mujoco_kinematics
 from robo_genesis.sim.franka import Q_START
 from robo_genesis.sim.joint_control import assemble

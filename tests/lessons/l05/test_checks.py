@@ -7,9 +7,10 @@ import pytest
 
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import kinematics, plausibility, spec, study
+from robo_genesis.lessons.l05 import plausibility, spec, study
 from robo_genesis.lessons.l05.metrics import HAND, reach_metrics
 from robo_genesis.lessons.l05.run import NotAccepted, control_case
+from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim.kinematics import IkAnswer
 
 

@@ -7,8 +7,9 @@ import pytest
 
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import LAB, checks, kinematics, spec, study
+from robo_genesis.lessons.l05 import LAB, checks, spec, study
 from robo_genesis.lessons.l05.run import NotAccepted, reach, solve_all
+from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim.joint_control import reset
 from robo_genesis.sim.kinematics import link_poses_at
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.lessons.l05 import exercises
-from robo_genesis.lessons.l05 import kinematics as of
+from robo_genesis.sim import arm_kinematics as of
 
 
 def forward(q, links, multiply=of.quat_multiply, turned=of.rotate, angle=1.0, fixed_last=True):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from robo_genesis.lessons.l05 import kinematics as of
 from robo_genesis.lessons.l05 import spec
+from robo_genesis.sim import arm_kinematics as of
 from robo_genesis.sim import mujoco_kinematics
 from robo_genesis.sim.franka import Q_START
 

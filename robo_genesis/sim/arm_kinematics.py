@@ -2,7 +2,7 @@
 
 Quaternions are (w, x, y, z) of unit length. All functions take leading dimensions `…`, so one call
 handles one posture or many. Positions are in metres, angles in radians. The frame is that of the
-world if nothing else is said; the base of the arm is at its origin.
+world, and the base of the arm is at its origin.
 """
 
 from typing import NamedTuple
