@@ -91,7 +91,8 @@ def link_poses_at(
     """Return where the engine puts links at joint positions, without a step.
 
     The state is assigned, read and assigned back. That also ends contacts and velocities: reset
-    before the next run. The engine's own `forward_kinematics` exists in 1.3.3 alone.
+    before the next run. The engine's own `forward_kinematics` is missing in newer versions, and in
+    older ones it fails before the first call of the solver.
 
     Args:
         robot: rigid entity of a built scene, without parallel environments.
