@@ -108,32 +108,30 @@ def self_motion(q: FloatArray, target: Pose, step: float = 0.05) -> FloatArray:
     """Return postures (n, 7) [rad] that keep the hand at a target, on the curve through `q` (7,).
 
     Seven joints meet six conditions, so a solution is a point of a curve. From `q` the curve is
-    followed along the null vector of the Jacobian in both directions, up to a joint limit or around
-    to `q`.
+    followed along the null vector of the Jacobian in both directions, up to a joint limit.
 
     Args:
         q: a solution [rad].
         target: of the hand.
         step: distance of neighbours on the curve [rad].
     """
-    ways = []
-    for sign in (1.0, -1.0):
-        way = [np.asarray(q, dtype=np.float64)]
-        along = sign * null_vector(way[0])
-        while len(way) < LONGEST_CURVE:
-            null = null_vector(way[-1])
-            along = null if null @ along > 0 else -null
-            at = way[-1] + step * along
-            error = kinematics.pose_error(target, kinematics.hand_pose(at))
-            at = at + kinematics.damped_step(kinematics.jacobian(at), error, 1e-4)
-            around = len(way) > 2 and np.linalg.norm(at - way[0]) < step
-            if around or kinematics.limit_margin(at, *spec.ARM_LIMITS) < 0:
-                break
-            way.append(at)
-        ways.append(way)
-        if around:
+    there, back = (one_way(q, sign * null_vector(q), target, step) for sign in (1.0, -1.0))
+    return np.array([*back[::-1], q, *there])
+
+
+def one_way(q: FloatArray, along: FloatArray, target: Pose, step: float) -> list[FloatArray]:
+    """Return the postures beyond `q` in direction `along` (7,); see `self_motion`."""
+    way: list[FloatArray] = []
+    while len(way) < LONGEST_CURVE:
+        q = q + step * along
+        error = kinematics.pose_error(target, kinematics.hand_pose(q))
+        q = q + kinematics.damped_step(kinematics.jacobian(q), error, 1e-4)
+        if kinematics.limit_margin(q, *spec.ARM_LIMITS) < 0:
             break
-    return np.array(ways[-1][:0:-1] + ways[0] if len(ways) == 2 else ways[0])
+        way.append(q)
+        null = null_vector(q)
+        along = null if null @ along > 0 else -null
+    return way
 
 
 LONGEST_CURVE = 400
