@@ -73,7 +73,8 @@ def look(camera: Any, scene: Any, render: bool = True) -> View:
 
     A camera on a link must be placed first, with `place_on_link`. Depth is rendered without
     colours: with them, the engine takes it from one sample of a multisampled picture, which is not
-    at the centre of the pixel.
+    at the centre of the pixel. Rendering is forced, because the engine otherwise draws nothing new
+    before the next step, not even after a position was assigned.
 
     Args:
         camera: of a built scene.
@@ -85,9 +86,10 @@ def look(camera: Any, scene: Any, render: bool = True) -> View:
     """
     pictures: dict[str, Any] = {}
     if render:
-        _, depth, segmentation, _ = camera.render(rgb=False, depth=True, segmentation=True)
+        first = camera.render(rgb=False, depth=True, segmentation=True, force_render=True)
+        _, depth, segmentation, _ = first
         pictures = {
-            "rgb": to_numpy(camera.render()[0]),
+            "rgb": to_numpy(camera.render(force_render=True)[0]),
             "depth": to_numpy(depth),
             "segmentation": to_numpy(segmentation).astype(np.int32),
             "shown": read_segments(scene),

@@ -23,8 +23,8 @@ class Camera:
         self.extrinsics = np.linalg.inv(self.transform)  # not computed again
         self.rgb = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
 
-    def render(self, rgb=True, depth=False, segmentation=False):
-        self.rendered.append((rgb, depth, segmentation))
+    def render(self, rgb=True, depth=False, segmentation=False, force_render=False):
+        self.rendered.append((rgb, depth, segmentation, force_render))
         return (
             self.rgb if rgb else None,
             np.ones((HEIGHT, WIDTH), np.float32) if depth else None,
@@ -53,9 +53,9 @@ def test_a_view_has_pictures_pose_and_meaning_of_the_numbers(camera):
     assert not view.depth.flags.writeable
 
 
-def test_depth_is_rendered_without_colours(camera):
+def test_depth_is_rendered_without_colours_and_all_pictures_are_new(camera):
     camera_views.look(camera, SCENE)
-    assert camera.rendered == [(False, True, True), (True, False, False)]
+    assert camera.rendered == [(False, True, True, True), (True, False, False, True)]
 
 
 def test_without_rendering_there_are_matrix_and_pose_but_no_pictures(camera):

@@ -72,35 +72,28 @@ def projection(label: str, view: View, marker: Marker) -> Iterator[Finding]:
 
 
 def sphere_surface(label: str, view: View, marker: Marker) -> Iterator[Finding]:
-    """Require the back-projected pixels of a marker to be on its surface.
-
-    Pixels at the silhouette count for the larger bound, because rays graze the sphere there.
-    """
+    """Require the back-projected pixels of a marker, its edge included, to be on its surface."""
     if view.depth is None or view.segmentation is None:
         yield noted(f"{label}.depth", SKIP)
         return
     points = cameras.back_project(view.depth, view.intrinsics, view.transform)
     radii = np.linalg.norm(points - np.array(marker.centre), axis=-1)
     mask = view.segmentation == marker.number
-    inside = cameras.residuals(radii, np.full(radii.shape, marker.radius), cameras.inner(mask))
-    every = cameras.residuals(radii, np.full(radii.shape, marker.radius), mask)
-    yield above(f"{label}.pixels", inside.count, camera_spec.FEWEST_PIXELS)
-    yield noted(f"{label}.mean_m", inside.mean)
-    yield at_most(f"{label}.largest_m", inside.largest, camera_spec.SPHERE_SHARE * marker.radius)
-    yield at_most(f"{label}.largest_with_edge_m", every.largest, camera_spec.EDGE)
+    found = cameras.residuals(radii, np.full(radii.shape, marker.radius), mask)
+    yield above(f"{label}.pixels", found.count, camera_spec.FEWEST_PIXELS)
+    yield noted(f"{label}.mean_m", found.mean)
+    yield at_most(f"{label}.largest_m", found.largest, camera_spec.MESH_SHARE * marker.radius)
 
 
 def plane_surface(label: str, view: View, number: int, height: float = 0.0) -> Iterator[Finding]:
     """Require the back-projected pixels of a horizontal plane to be at its height [m].
 
-    Pixels beside another thing are left out. Pixels farther than the camera's limit are refused: a
-    depth equal to the far limit means that nothing nearer was seen.
+    Pixels deeper than `PLANE_FAR` are left out: the depth buffer resolves less there.
     """
     if view.depth is None or view.segmentation is None:
         yield noted(f"{label}.depth", SKIP)
         return
-    mask = cameras.inner(view.segmentation == number)
-    yield at_most(f"{label}.depth_m", float(view.depth[mask].max(initial=0)), camera_spec.PLANE_FAR)
+    mask = (view.segmentation == number) & (view.depth < camera_spec.PLANE_FAR)
     points = cameras.back_project(view.depth, view.intrinsics, view.transform)
     found = cameras.residuals(points[..., 2], np.full(mask.shape, height), mask)
     yield above(f"{label}.pixels", found.count, camera_spec.FEWEST_PIXELS)

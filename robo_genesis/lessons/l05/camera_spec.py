@@ -12,11 +12,11 @@ FEWEST_PIXELS = 50
 CENTROID = 0.1
 """Largest distance of a centroid from the centre of the computed silhouette [pixel]."""
 
-SPHERE_SHARE = 0.02
-"""Largest distance of a point from a sphere's surface, as a share of the radius: its mesh."""
+MESH_SHARE = 0.006
+"""Largest distance of a point from a sphere's surface, as a share of the radius.
 
-EDGE = 0.02
-"""The same with the pixels at the silhouette [m]."""
+The engine draws a sphere as 1280 triangles, whose centres are 0.45 % nearer to its middle.
+"""
 
 PLANE = 1e-4
 """Largest distance of a point from a plane that is nearer than `PLANE_FAR` [m]."""

@@ -130,14 +130,6 @@ def centroid(mask: np.ndarray) -> FloatArray:
     return np.array([columns.mean() + 0.5, rows.mean() + 0.5])
 
 
-def inner(mask: np.ndarray) -> np.ndarray:
-    """Return the pixels of a mask (H, W) whose eight neighbours are all in the mask."""
-    height, width = mask.shape
-    padded = np.pad(mask, 1)
-    shifted = [padded[i : i + height, j : j + width] for i in range(3) for j in range(3)]
-    return np.logical_and.reduce(shifted)
-
-
 @dataclass(frozen=True, slots=True)
 class Residuals:
     """Distances between measured and computed values: their number, mean, RMS and largest size."""
