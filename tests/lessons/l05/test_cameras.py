@@ -15,6 +15,7 @@ K = cameras.intrinsics(42.0, SIZE)
 TRANSFORM = TURNED
 MARKER = Marker(3, tuple((TURNED @ (0.3, 0.2, -1.2, 1.0))[:3].tolist()), 0.1)
 PLANE = 1
+SMALL = Marker(3, tuple((TURNED @ (0.3, 0.2, -1.2, 1.0))[:3].tolist()), 0.04)
 
 
 def seen(marker=MARKER):
@@ -143,6 +144,7 @@ def test_checks_of_pictures_say_skip_without_them():
 SPOILED = {
     "another number": (camera_checks.projection, {}, replace(MARKER, number=7)),
     "another radius": (camera_checks.sphere_surface, {}, replace(MARKER, radius=0.11)),
+    "too few pixels": (camera_checks.projection, {}, SMALL),
     "moved pose": (camera_checks.projection, {"transform": "moved"}, MARKER),
     "depth along the ray": (camera_checks.sphere_surface, {"depth": "along"}, MARKER),
 }
@@ -151,7 +153,7 @@ SPOILED = {
 @pytest.mark.parametrize("how", SPOILED)
 def test_a_check_fails_if_its_input_is_wrong(how):
     check, changed, marker = SPOILED[how]
-    view = seen()
+    view = seen(SMALL if marker is SMALL else MARKER)
     _, directions = cameras.rays(K, TRANSFORM, SIZE)
     if changed.get("depth"):
         changed = {"depth": cameras.along_ray(view.depth, directions)}
