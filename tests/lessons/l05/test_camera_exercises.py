@@ -9,17 +9,10 @@ from robo_genesis.lessons.l05 import cameras
 FLIP = cameras.FLIP
 
 
-def pixels(shape, half=0.5):
-    """Return u and v of each pixel (H, W)."""
-    rows, columns = np.mgrid[: shape[0], : shape[1]]
-    return columns + half, rows + half
-
-
 def lifted(depth, K, transform, half=0.5, flip=FLIP, along=False, swap=False):
     """Return back-projected pixels, with one mistake."""
-    u, v = pixels(depth.shape, half)
-    if swap:
-        u, v = v, u
+    v, u = np.indices(depth.shape) + half
+    u, v = (v, u) if swap else (u, v)
     unit = np.dstack([u, v, np.ones(depth.shape)]) @ np.linalg.inv(K).T
     if along:
         unit /= np.linalg.norm(unit, axis=-1, keepdims=True)
