@@ -7,6 +7,7 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.metrics import ReachMetrics, measured_hand, reach_metrics
 from robo_genesis.lessons.l05.run import END_EFFECTOR, ReachCase, SolveCase, ask
@@ -94,13 +95,21 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
     q = trace.q[1:].astype(np.float64)
     apart, angle = kinematics.distances(error)
     limits = case.settings.position_tolerance, case.settings.rotation_tolerance
+    accepted = kinematics.accepted(q, error, *limits)
+    found = {"position": apart, "rotation": angle, "accepted": accepted}
+    return found | qualities(q[:, :ARM], trace.q[0, :ARM])
+
+
+def qualities(q: FloatArray, start: FloatArray) -> dict[str, FloatArray]:
+    """Return what can decide between postures (m, 7), given the start (7,) of a run [rad].
+
+    Returns:
+        `manipulability`, `margin` and `from_start` as `answers` does.
+    """
     return {
-        "position": apart,
-        "rotation": angle,
-        "accepted": kinematics.accepted(q, error, *limits),
         "manipulability": kinematics.manipulability(kinematics.jacobian(q)),
-        "margin": kinematics.limit_margin(q[:, :ARM], *spec.ARM_LIMITS),
-        "from_start": np.abs(q - trace.q[0])[:, :ARM].max(axis=1),
+        "margin": kinematics.limit_margin(q, *spec.ARM_LIMITS),
+        "from_start": np.abs(q - start).max(axis=1),
     }
 
 
@@ -166,6 +175,34 @@ def families(solutions: FloatArray, target: Pose) -> list[tuple[FloatArray, list
 SAME_CURVE = 0.1
 """A solution within this distance of a curve belongs to it [rad]: two steps along the curve, of
 which one may be missing at a joint limit."""
+
+
+def clusters(solutions: FloatArray, threshold: float) -> int:
+    """Return how many groups of postures (n, 7) are farther apart than a threshold [rad].
+
+    Two postures are in one group if a chain of others connects them whose largest joint difference
+    from one to the next is within the threshold.
+    """
+    near = np.abs(solutions[:, None] - solutions).max(axis=-1) <= threshold
+    groups = np.arange(len(solutions))
+    for _ in solutions:
+        groups = np.where(near, groups, len(groups)).min(axis=1)
+    return len(set(groups.tolist()))
+
+
+def solution_families(run: Experiment) -> list[tuple[FloatArray, list[int]]]:
+    """Return the curve (m, 7) of each family of answers for the target [rad], the largest first.
+
+    With it are the numbers of its answers, from 0, in the order of joint 1.
+    """
+    trace, case = run.traces["many_starts"], spec.MANY_STARTS
+    numbers = np.flatnonzero(answers(trace, case)["accepted"])
+    q = trace.q[1 + numbers, :ARM].astype(float)
+    found = families(q, Pose(spec.TARGET, spec.DOWN))
+    return [
+        (curve, [int(numbers[k]) for k in sorted(inside, key=lambda k: float(q[k, 0]))])
+        for curve, inside in found
+    ]
 
 
 def weighted(apart: FloatArray, angle: FloatArray) -> FloatArray:
