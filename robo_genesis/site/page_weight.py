@@ -19,6 +19,7 @@ NEEDED_BY = {
     ".explorer, .replay": {"plot.js"},
     ".replay": {"replay.js"},
     ".posture-map": {"posture-map.js"},
+    ".picture-reader": {"picture-reader.js"},
     ".explorer, .posture-map": {"cell-map.js"},
     ".replay, .posture-map": {"stage.js"},
     "#search-results": {

@@ -49,7 +49,7 @@ def page_of(block: nodes.Node, folder: Path, scripts: Sequence[str], sheets: Seq
         image["uri"] = (folder / "book" / image["uri"][1:]).resolve().as_uri()
     html = publish_from_doctree(document, writer_name="html5").decode()
     site = folder / "book" / "_build" / "html"
-    (site / "lessons").mkdir(exist_ok=True)
+    (site / "lessons").mkdir(parents=True, exist_ok=True)
     (site / "palette.css").write_text(palette_css.css())
     viewer.write_viewer(SimpleNamespace(outdir=site), None)
     head = ['<link rel="stylesheet" href="../palette.css">']

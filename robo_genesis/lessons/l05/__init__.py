@@ -29,17 +29,17 @@ from robo_genesis.sim.joint_control import reset
 from robo_genesis.sim.joints import resolve_joints
 
 if TYPE_CHECKING:
-    from robo_genesis.lessons.l05 import camera_plots, solutions_plots
+    from robo_genesis.lessons.l05 import solutions_plots
 
 __all__ = [
     "CAMERA", "CAMERAS", "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LESSON", "MISTAKES",
-    "SOLUTIONS", "SUBSTEPS", "ask", "camera_plots", "camera_spec", "control_case", "exercises",
+    "SOLUTIONS", "SUBSTEPS", "ask", "camera_spec", "control_case", "exercises",
     "explorer", "kinematics", "mistakes", "reach", "reset", "resolve_joints", "solutions_plots",
     "solutions_text", "solve_all", "spec", "study", "study_views", "view_record",
 ]  # fmt: skip
 
 
-__getattr__ = on_demand(__name__, "camera_plots", "solutions_plots")
+__getattr__ = on_demand(__name__, "solutions_plots")
 
 LINKS = (*(f"link{number}" for number in range(8)), "hand", "left_finger", "right_finger")
 

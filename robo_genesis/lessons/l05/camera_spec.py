@@ -37,6 +37,20 @@ FOV = {"world": 42.0, "cut": 42.0, "hand": 60.0}
 """Vertical field of view of each recorded view [degree]: the scene before the run; the scene after
 it, with narrow limits; and what the camera on the hand sees after it."""
 
+PICTURES = {
+    "world": {
+        "alt": "Camera frame of the robot at its start, with an orange ball beside it.",
+        "caption": "Depth and point are those of the recorded arrays, in the pixel's centre.",
+    },
+    "cut": {
+        "alt": "Camera frame of the robot. The floor exists only in a band. The hand and the wrist "
+        "are cut open, so that the orange marker behind them is visible.",
+        "caption": "Surfaces nearer than the near limit or farther than the far one are missing. "
+        "The hand is cut open, and the marker behind it is visible.",
+    },
+}
+"""Alternative text and caption of the pictures that a reader can read."""
+
 CUT = (1.65, 2.2)
 """Near and far limit of the view `cut` [m]: one is inside the hand, the other on the floor."""
 

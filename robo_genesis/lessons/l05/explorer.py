@@ -1,11 +1,13 @@
-"""The maps of postures: the places of recorded answers in a map."""
+"""The maps of postures: the places of recorded answers in a map. What a recorded picture shows."""
 
 from collections.abc import Sequence
 from typing import Any
 
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import spec, study
+from robo_genesis.lessons.l05 import camera_spec, spec, study, study_views
+from robo_genesis.lessons.l05.cameras import other_axes
 from robo_genesis.lessons.l05.solutions_text import MEASURES, records
+from robo_genesis.lessons.l05.view_record import DEPTH_UNIT, view_of
 
 COLUMNS = 9
 """Most cells in a row of a map."""
@@ -62,3 +64,23 @@ def _places(run: Experiment, name: str) -> tuple[str, tuple[str, str], list[Any]
     ]
     caption = "Answers for one target. Rows: their curve, and on it joint1 from low to high."
     return caption, ("curve", "place"), rows, range(1, COLUMNS + 1)
+
+
+def picture(run: Experiment, name: str) -> dict[str, Any]:
+    """Return what reads a recorded view: JSON values for `site/picture_reader.py`.
+
+    Returns:
+        `size`, `K`, `pose` (OpenCV axes), the `unit` of a depth [m], by number the `names`, heights
+        of `planes` [m], centre and radius of `spheres` [m], and `alt` and `caption`.
+    """
+    view, numbers = view_of(run, name), run.readings[study_views.SEGMENTS]
+    return {
+        "size": view.size,
+        "K": view.intrinsics.tolist(),
+        "pose": other_axes(view.transform)[:3].tolist(),
+        "unit": DEPTH_UNIT,
+        "names": {0: "nothing"} | {number: link for link, number in numbers.items()},
+        "planes": {numbers[study_views.PLANE]: 0.0},
+        "spheres": {numbers[study_views.MARKER]: [*camera_spec.MARKER, camera_spec.MARKER_RADIUS]},
+        **camera_spec.PICTURES[name],
+    }
