@@ -154,6 +154,15 @@ def test_what_is_deployed_has_passed_the_gate_of_releases():
     assert "if" not in JOBS["book"]
 
 
+def test_links_to_other_sites_are_checked_weekly_on_the_whole_site():
+    assert JOBS["links"]["if"] == "github.event_name == 'schedule'"
+    assert JOBS["links"]["needs"] == "book"
+    taken = step(JOBS["links"], "actions/download-artifact")["with"]
+    assert taken["name"] == "site"
+    words = step(JOBS["links"], "lycheeverse/lychee-action")["with"]["args"]
+    assert f"'{taken['path']}/**/*.html'" in words
+
+
 def test_the_parts_of_the_tests_are_all_of_them():
     parts = JOBS["test"]["strategy"]["matrix"]
     marks = {one["part"]: one["marks"] for one in parts["include"]}

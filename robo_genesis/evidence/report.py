@@ -1,6 +1,7 @@
 """The report of a comparison: a summary, a Markdown page and an HTML page that fetches nothing."""
 
 from collections import Counter
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
@@ -9,7 +10,13 @@ from robo_genesis.core.files import write_whole
 from robo_genesis.core.refusals import printable
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison
-from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, SEVERITY, Finding, Section
+from robo_genesis.evidence.findings import (
+    DIFFERS,
+    EQUAL,
+    INCONCLUSIVE,
+    SEVERITY,
+    Finding,
+)
 
 COLUMNS = ("result", "what", "old", "new", "Δ", "allowed")
 Row = tuple[str, ...]
@@ -70,38 +77,42 @@ def _words(row: Finding) -> str:
     return f"{row.what}: {row.old} → {row.new}{more}"
 
 
-def markdown(comparison: BundleComparison, level: int = 1) -> str:
-    """Return the report as Markdown; its heading has the given level."""
-    mark = "#" * level
-    parts = [f"{mark} {plain(title(comparison))}", f"**{verdict(comparison)}**"]
+def markdown(comparison: BundleComparison) -> str:
+    """Return the report as a Markdown page."""
+    parts = [f"# {plain(title(comparison))}", f"**{verdict(comparison)}**"]
     parts += ["\n".join(f"- {plain(line)}" for line in comparison.remarks)]
     for part in comparison.sections:
         state = f": {part.state}" if part.findings else ""
-        parts.append(f"{mark}# {part.title}{state}")
-        parts.append(markdown_table(_table(part), part.empty))
-    parts += [f"{mark}# The two bundles", markdown_table(_origin(comparison))]
+        parts.append(f"## {part.title}{state}")
+        parts.append(markdown_table(_table(part.findings), part.empty))
+    parts += ["## The two bundles", markdown_table(_origin(comparison))]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
 
 def html(comparison: BundleComparison) -> str:
     """Return the report as one HTML page without scripts, fonts or pictures from elsewhere."""
-    return html_page(title(comparison), html_body(comparison))
-
-
-def html_body(comparison: BundleComparison, level: int = 1) -> list[str]:
-    """Return the HTML elements of the report; its heading has the given level."""
-    top, below = f"h{level}", f"h{level + 1}"
-    body = [f"<{top}>{escape(title(comparison))}</{top}>"]
+    body = [f"<h1>{escape(title(comparison))}</h1>"]
     state = _css(comparison.state)
     body.append(f'<p class="verdict {state}">{escape(verdict(comparison))}</p>')
-    remarks = "".join(f"<li>{_escaped(line)}</li>\n" for line in comparison.remarks)
-    body += [f"<ul>\n{remarks}</ul>"] if remarks else []
+    body += html_list(comparison.remarks)
     for part in comparison.sections:
         mark = f': <span class="{_css(part.state)}">{part.state}</span>' if part.findings else ""
-        body.append(f"<{below}>{part.title}{mark}</{below}>")
-        body.append(html_table(part.title, _table(part), part.empty))
-    table = html_table("The two bundles", _origin(comparison))
-    return [*body, f"<{below}>The two bundles</{below}>", table]
+        body.append(f"<h2>{part.title}{mark}</h2>")
+        body.append(html_table(part.title, _table(part.findings), part.empty))
+    body += ["<h2>The two bundles</h2>", html_table("The two bundles", _origin(comparison))]
+    return html_page(title(comparison), body)
+
+
+def changes(comparison: BundleComparison) -> list[Row]:
+    """Return head and rows of all sections that are not equal, the worst rows first."""
+    found = [f for part in comparison.sections for f in part.findings if f.state != EQUAL]
+    return _table(sorted(found, key=lambda f: -SEVERITY.index(f.state)))
+
+
+def html_list(lines: Sequence[str]) -> list[str]:
+    """Return lines as an HTML list, nothing for no line."""
+    items = "".join(f"<li>{_escaped(line)}</li>\n" for line in lines)
+    return [f"<ul>\n{items}</ul>"] if items else []
 
 
 def html_page(name: str, body: list[str]) -> str:
@@ -122,9 +133,9 @@ def write(folder: Path, markdown_text: str, html_text: str) -> list[Path]:
     return [folder / name for name in pages]
 
 
-def _table(part: Section) -> list[Row]:
-    """Return head and rows of one section, without empty columns."""
-    rows = [(f.state, f.what, f.old, f.new, f.delta, f.allowed) for f in part.findings]
+def _table(findings: Sequence[Finding]) -> list[Row]:
+    """Return a head and a row for each finding, without empty columns."""
+    rows = [(f.state, f.what, f.old, f.new, f.delta, f.allowed) for f in findings]
     kept = [k for k in range(len(COLUMNS)) if any(row[k] for row in rows)]
     return [tuple(row[k] for k in kept) for row in [COLUMNS, *rows]]
 

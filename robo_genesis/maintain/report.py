@@ -1,7 +1,7 @@
 """The refresh report: what another engine version changes in packages, evidence and sentences."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 from html import escape
@@ -94,7 +94,7 @@ def compare_builds(
         tuple(compare(old[n], new[n]) for n in shared),
         tuple(sorted(old.keys() ^ new.keys())),
         {name: (recorded[0][name], recorded[1][name]) for name in recorded[0]},
-        tuple(changed_sentences(builds[0] / "html", builds[1] / "html")),
+        tuple(changed_sentences(builds[0] / "html", builds[1] / "html", versions)),
     )
 
 
@@ -118,16 +118,19 @@ def changed_packages(old: str, new: str) -> dict[str, Pair]:
     return {name: pair for name, pair in both.items() if pair[0] != pair[1]}
 
 
-def changed_sentences(old: Path, new: Path) -> Iterator[tuple[str, str, str]]:
+def changed_sentences(old: Path, new: Path, versions: Pair) -> Iterator[tuple[str, str, str]]:
     """Yield (page, old, new) of each sentence that changed between two builds' folders of HTML.
 
     One of the texts is empty if the other has no counterpart. The pages' sources are the same, so a
-    changed sentence contains a measured or computed value.
+    changed sentence contains a measured or computed value. A sentence in which only the engine's
+    version differs is left out.
     """
+    own = "|".join(map(re.escape, versions))
+    volatile = re.compile(rf"{VOLATILE.pattern}|(?<![\d.])(?:{own})(?![\d.]*\d)")
     names = {page.relative_to(site) for site in (old, new) for page in site.rglob("*.html")}
     for name in sorted(names - LEFT_OUT):
         was, now = (list(sentences(site / name)) for site in (old, new))
-        before, after = ([VOLATILE.sub("…", text) for text in page] for page in (was, now))
+        before, after = ([volatile.sub("…", text) for text in page] for page in (was, now))
         for tag, a, b, c, d in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
             if tag != "equal":
                 for pair in zip_longest(was[a:b], now[c:d], fillvalue=""):
@@ -151,7 +154,8 @@ def sentences(page: Path) -> Iterator[str]:
         block.insert(0, BREAK)
         block.append(BREAK)
     for piece in article.get_text().split(BREAK):
-        yield from (s for s in END.split(" ".join(piece.split())) if s and not LOG.match(s))
+        text = " ".join(piece.split())
+        yield from (s for s in END.split(text) if s and not LOG.match(text))
 
 
 def summary(refresh: Refresh) -> str:
@@ -165,9 +169,9 @@ def summary(refresh: Refresh) -> str:
 def markdown(refresh: Refresh) -> str:
     """Return the report as a Markdown page."""
     parts = [f"# {refresh.title}", f"**{summary(refresh).capitalize()}.**"]
-    parts += [report.markdown(comparison, level=2) for comparison in refresh.comparisons]
-    for name, rows, empty in _tables(refresh):
-        parts += [f"## {name}", report.markdown_table(rows, empty)]
+    for name, remarks, rows, empty in _parts(refresh):
+        parts += [f"## {report.plain(name)}", *(f"- {report.plain(line)}" for line in remarks)]
+        parts.append(report.markdown_table(rows, empty))
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
@@ -176,25 +180,39 @@ def html(refresh: Refresh) -> str:
     state = refresh.state.replace(" ", "-")
     body = [f"<h1>{escape(refresh.title)}</h1>"]
     body.append(f'<p class="verdict {state}">{escape(summary(refresh).capitalize())}.</p>')
-    for comparison in refresh.comparisons:
-        body += report.html_body(comparison, level=2)
-    for name, rows, empty in _tables(refresh):
-        body += [f"<h2>{escape(name)}</h2>", report.html_table(name, rows, empty)]
+    for name, remarks, rows, empty in _parts(refresh):
+        body += [f"<h2>{escape(name)}</h2>", *report.html_list(remarks)]
+        body.append(report.html_table(name, rows, empty))
     return report.html_page(refresh.title, body)
+
+
+def _parts(refresh: Refresh) -> Iterator[tuple[str, Sequence[str], list[Row], str]]:
+    """Yield (heading, remarks, rows with their head, the text for a table without rows).
+
+    The first part has one row for each page. Rows that are equal are counted there and left out
+    below: most of several thousand rows are.
+    """
+    both = refresh.comparisons
+    rows = [(f"{one.new.lesson} {one.new.page}", one.state, report.verdict(one)) for one in both]
+    rows += [(name, SEVERITY[-1], "In one build only.") for name in refresh.missing]
+    yield "Pages", (), [("page", "result", "rows"), *rows], "No page has a bundle."
+    for name, table, empty in _tables(refresh):
+        yield name, (), table, empty
+    for one in both:
+        table = report.changes(one)
+        if one.remarks or len(table) > 1:
+            yield report.title(one), one.remarks, table, ""
+    for page, changed in groupby(refresh.changed, key=lambda one: one[0]):
+        yield f"Sentences of {page}", (), [("old", "new"), *(one[1:] for one in changed)], ""
+    if not refresh.changed:
+        yield "Sentences", (), [("", "")], "No sentence of the site changed."
 
 
 def _tables(refresh: Refresh) -> Iterator[tuple[str, list[Row], str]]:
     """Yield (heading, rows with their head, the text for a table without rows)."""
-    lacking = [(name, "in one build only") for name in refresh.missing]
-    if lacking:
-        yield "Lessons without a counterpart", [("lesson", "evidence"), *lacking], ""
     packages = [(name, *versions) for name, versions in refresh.packages.items()]
     yield "Packages", [("package", "old", "new"), *packages], "No other package changed."
     rows = [(name, was.state, now.state, now.reason)
             for name, (was, now) in refresh.recorded.items()]  # fmt: skip
     head = ("bundle", f"under {refresh.versions[0]}", f"under {refresh.versions[1]}", "reason")
     yield "Recorded bundles", [head, *rows], "No bundle is recorded."
-    for page, changed in groupby(refresh.changed, key=lambda one: one[0]):
-        yield f"Sentences of {page}", [("old", "new"), *(one[1:] for one in changed)], ""
-    if not refresh.changed:
-        yield "Sentences", [("", "")], "No sentence of the site changed."

@@ -129,6 +129,22 @@ def read_segments(scene: Any) -> dict[int, tuple[int, ...]]:
     }
 
 
+def segment_number(scene: Any, link: Any) -> int:
+    """Return the number of a link in the segmentations of a scene, whose level is the link.
+
+    Raises:
+        ViewError: no segment is this link's; the message has those that exist.
+    """
+    segments = read_segments(scene)
+    found = [number for number, key in segments.items() if key == (link.entity.idx, link.idx)]
+    if len(found) != 1:
+        raise ViewError(
+            f"No single segment is that of entity {link.entity.idx}, link {link.idx}. The scene "
+            f"has {sorted(segments.values())}. Leave the scene's segmentation_level at 'link'."
+        )
+    return found[0]
+
+
 def read_link_pose(link: Any) -> tuple[FloatArray, FloatArray]:
     """Return position (3,) [m] and orientation (4,), (w, x, y, z), of a link in the world."""
     return to_numpy(link.get_pos()).reshape(3), to_numpy(link.get_quat()).reshape(4)

@@ -42,7 +42,7 @@ book:
 \t@echo "the book says $(PIN)"; test "$(PIN)" != %(book)s
 \t@test -n "$(PYTHON)" || test -f .venv/.installed
 \t@mkdir -p book/_build/html
-\t@echo '<p>Measured with $(PIN).</p><p>Same.</p>' > book/_build/html/index.html
+\t@echo '<p>Measured: 7$(PIN) m.</p><p>Same.</p>' > book/_build/html/index.html
 \t@if test "$(PIN)" = %(hangs)s; then echo $$$$ > sleeper; exec sleep 600; fi
 .venv/.installed: requirements.lock
 \t@test "$(PIN)" != %(install)s
@@ -100,9 +100,9 @@ def test_pin_and_lock_change_together_with_a_report_and_git_restores_both(root, 
     text = (folder / "report.md").read_text()
     assert f"| genesis-world | {OLD} | {NEW} |" in text
     assert "| zeta |  | 2 |" in text
-    assert f"| Measured with {OLD}. | Measured with {NEW}. |" in text
+    assert f"| Measured: 7{OLD} m. | Measured: 7{NEW} m. |" in text
     assert "Same." not in text
-    assert f"<td>Measured with {NEW}.</td>" in (folder / "report.html").read_text()
+    assert f"<td>Measured: 7{NEW} m.</td>" in (folder / "report.html").read_text()
 
     commit(root)
     monkeypatch.setattr("robo_genesis.maintain.repin.require_locked_packages", lambda root: None)

@@ -38,8 +38,8 @@ def test_equal_metrics_are_reported_as_such(builds):
     assert text.startswith(
         "# Engine 1.0 → 9.9.9\n\n**Equal; changed packages: 1, changed sentences: 0, "
     )
-    assert "## L04 lab: engine version" in text
-    assert "### Relations: equal" in text
+    assert "| l04 lab | equal | Equal. Rows: " in text
+    assert "\n| equal | " not in text
     assert "No bundle is recorded." in text
     assert "No sentence of the site changed." in text
 
@@ -54,7 +54,7 @@ def test_a_bundle_that_one_build_lacks_makes_the_builds_not_comparable(builds):
     shutil.rmtree(builds[1] / "evidence" / "l04")
     found = compared(builds)
     assert (found.state, found.missing) == ("not comparable", ("l04/cpu", "l04/lecture/cpu"))
-    assert "| l04/cpu | in one build only |" in refresh.markdown(found)
+    assert "| l04/cpu | not comparable | In one build only. |" in refresh.markdown(found)
 
 
 def test_a_metric_beyond_tolerance_a_warning_and_a_flipped_relation_are_named(builds):
@@ -73,6 +73,12 @@ def test_a_metric_beyond_tolerance_a_warning_and_a_flipped_relation_are_named(bu
     assert "<h2>L04 lab: engine version" in page
     assert "flipped" in page
     assert "http" not in page
+    (row,) = [line for line in text.splitlines() if line.startswith("| l04 lab |")]
+    assert row.startswith("| l04 lab | differs | Differs. Rows: ")
+    below = text.split("## L04 lab: ")[1].split("## ")[0]
+    states = [line.split(" | ")[0] for line in below.splitlines() if line.startswith("| ")][2:]
+    assert states[0] == "| differs"
+    assert set(states) <= {"| differs", "| inconclusive", "| within tolerance", "| shown"}
 
 
 def test_a_bundle_that_a_new_pin_makes_stale_is_named_with_both_states(builds):
@@ -120,12 +126,12 @@ def test_a_built_bundle_that_cannot_be_read_is_an_error(builds):
 PAGE = """<nav><p>Menu 1.</p></nav><article>
 <h1>Lesson</h1>
 <p>It rose in <span class="measured">{time} s</span>. Then it
-stayed, run {run}, {date}.</p>
+stayed, run {run}, {date}.</p><p>Measured with Genesis {version}.</p>
 <ul><li>one <ul><li>inner</li></ul></li></ul>
 <div class="cell_input"><pre>x = {source}</pre></div>
 <table><tr><th>case</th><th>value</th></tr><tr><td>G1</td><td><p>{cell}</p></td></tr></table>
 <pre>line one
-[Genesis] [04:28:32] [INFO] Built in {source} s.
+[Genesis] [04:28:32] [INFO] Built in {source} s. Box {source}. It has a name.
 [W 11/21/26 04:41:27.754 12581] [frontend.cpp:b@1] {source}
 counted {line}</pre>
 <table><tr><td>run</td><td>{run}</td></tr><tr><td>sha256</td><td>{digest}</td></tr></table>
@@ -133,7 +139,7 @@ counted {line}</pre>
 </article>"""
 SAME = {
     "time": "0.31", "source": "1", "cell": "7.5", "line": "12345678", "date": "2026-11-21",
-    "run": "7c694fce", "digest": "0123456789abcdef" * 4,
+    "run": "7c694fce", "digest": "0123456789abcdef" * 4, "version": "1.0",
 }  # fmt: skip
 
 
@@ -145,6 +151,8 @@ SAME = {
         ({"run": "12345678"}, []),
         ({"digest": "f" * 64}, []),
         ({"date": "2027-01-02T05:11:12.25Z"}, []),
+        ({"version": "9.9.9"}, []),
+        ({"version": "9.9"}, [("Measured with Genesis 1.0.", "Measured with Genesis 9.9.")]),
         ({"time": "0.32"}, [("It rose in 0.31 s.", "It rose in 0.32 s.")]),
         ({"cell": "7.6"}, [("G1 | 7.5 |", "G1 | 7.6 |")]),
         ({"line": "87654321"}, [("counted 12345678", "counted 87654321")]),
@@ -159,7 +167,7 @@ def test_a_sentence_that_changed_is_listed_and_what_any_two_runs_differ_in_is_no
     for name, values in (("old", SAME), ("new", SAME | change)):
         (tmp_path / name).mkdir()
         (tmp_path / name / "lab.html").write_text(PAGE.format_map(values))
-    found = list(changed_sentences(tmp_path / "old", tmp_path / "new"))
+    found = list(changed_sentences(tmp_path / "old", tmp_path / "new", ("1.0", "9.9.9")))
     assert found == [("lab", *pair) for pair in moved]
 
 
@@ -170,4 +178,5 @@ def test_a_page_of_one_build_alone_is_listed_and_what_each_build_changes_never(t
         page = tmp_path / "new" / name
         page.parent.mkdir(parents=True, exist_ok=True)
         page.write_text("<p>New.</p>")
-    assert list(changed_sentences(tmp_path / "old", tmp_path / "new")) == [("more", "", "New.")]
+    found = list(changed_sentences(tmp_path / "old", tmp_path / "new", ("1.0", "9.9.9")))
+    assert found == [("more", "", "New.")]

@@ -8,7 +8,7 @@ import numpy as np
 from robo_genesis.core.checks import Check, Finding, at_most, equal
 from robo_genesis.core.exercises import outcome
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l05 import cameras
+from robo_genesis.sim import camera_geometry as cameras
 
 TINY_PIXEL = 1e-6
 """Largest difference of a pixel coordinate that rounding explains."""

@@ -14,11 +14,13 @@ from robo_genesis.core.checks import (
     sample_times,
 )
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.lessons.l05.metrics import HAND
+from robo_genesis.lessons.l05 import camera_spec, spec, study
+from robo_genesis.lessons.l05.metrics import HAND, measured_hand
+from robo_genesis.lessons.l05.view_record import SEGMENTS, view_of
 from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim import end_state, mujoco_kinematics
+from robo_genesis.sim import camera_checks, end_state, mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose
+from robo_genesis.sim.camera_checks import Marker
 from robo_genesis.sim.franka import JOINT_NAMES
 
 FIRST = HAND - ARM
@@ -129,13 +131,47 @@ def nearest_is_nearer(run: Experiment) -> Iterator[Finding]:
 
 
 def posture(run: Experiment) -> Iterator[Finding]:
-    return end_state.findings(run.rendered, run.frames, run.traces["baseline"].link_pos)
+    ends = {name: frame for name, frame in run.frames.items() if name in ("initial", "final")}
+    return end_state.findings(run.rendered, ends, run.traces["baseline"].link_pos)
 
 
-WITHOUT_CAMERA = (
+def marker(run: Experiment) -> Marker:
+    """Return the sphere at the target as the camera must see it."""
+    number = int(run.readings[SEGMENTS]["marker"])
+    return Marker(number, tuple(spec.TARGET.tolist()), spec.MARKER_RADIUS)
+
+
+def camera_matrix(run: Experiment) -> Iterator[Finding]:
+    view = view_of(run, spec.VIEWED)
+    return camera_checks.camera_matrix(spec.VIEWED, view, spec.VIEW["fov"])
+
+
+def projection(run: Experiment) -> Iterator[Finding]:
+    return camera_checks.projection(spec.VIEWED, view_of(run, spec.VIEWED), marker(run))
+
+
+def marker_surface(run: Experiment) -> Iterator[Finding]:
+    return camera_checks.sphere_surface(spec.VIEWED, view_of(run, spec.VIEWED), marker(run))
+
+
+def plane_surface(run: Experiment) -> Iterator[Finding]:
+    number = int(run.readings[SEGMENTS]["plane"])
+    return camera_checks.plane_surface(spec.VIEWED, view_of(run, spec.VIEWED), number)
+
+
+def mounted_camera(run: Experiment) -> Iterator[Finding]:
+    hand, offset = measured_hand(run.traces["baseline"], -1), np.array(camera_spec.ON_HAND)
+    return camera_checks.mounted_camera("hand", view_of(run, "hand"), *hand, offset)
+
+
+MOTION = (
     mapping, stamps, acceptance, forward_kinematics, second_engine, arrived, sag_explains,
     repeatable,
 )  # fmt: skip
-LAB = (*WITHOUT_CAMERA, posture)
+"""Checks of every page that has the runs of the lab."""
+
+VIEW = (camera_matrix, projection, marker_surface, plane_surface)
+LAB = (*MOTION, posture, *VIEW)
+CAMERAS = (*VIEW, mounted_camera)
 SOLUTIONS = (unreachable_refused, nearest_is_nearer)
 """Checks of the page about many solutions."""

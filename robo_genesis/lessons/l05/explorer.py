@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import camera_spec, spec, study, study_views
-from robo_genesis.lessons.l05.cameras import other_axes
+from robo_genesis.lessons.l05 import camera_spec, spec, study
 from robo_genesis.lessons.l05.solutions_text import MEASURES, records
-from robo_genesis.lessons.l05.view_record import DEPTH_UNIT, view_of
+from robo_genesis.lessons.l05.view_record import DEPTH_UNIT, SEGMENTS, view_of
+from robo_genesis.sim.camera_geometry import other_axes
 
 COLUMNS = 9
 """Most cells in a row of a map."""
@@ -73,14 +73,16 @@ def picture(run: Experiment, name: str) -> dict[str, Any]:
         `size`, `K`, `pose` (OpenCV axes), the `unit` of a depth [m], by number the `names`, heights
         of `planes` [m], centre and radius of `spheres` [m], and `alt` and `caption`.
     """
-    view, numbers = view_of(run, name), run.readings[study_views.SEGMENTS]
+    view, numbers = view_of(run, name), run.readings[SEGMENTS]
+    first = numbers["hand"] - run.links.index("hand")
+    links = {first + k: link for k, link in enumerate(run.links)}
     return {
         "size": view.size,
         "K": view.intrinsics.tolist(),
         "pose": other_axes(view.transform)[:3].tolist(),
         "unit": DEPTH_UNIT,
-        "names": {0: "nothing"} | {number: link for link, number in numbers.items()},
-        "planes": {numbers[study_views.PLANE]: 0.0},
-        "spheres": {numbers[study_views.MARKER]: [*camera_spec.MARKER, camera_spec.MARKER_RADIUS]},
+        "names": {0: "nothing"} | links | {numbers[name]: name for name in spec.SEGMENTS},
+        "planes": {numbers["plane"]: 0.0},
+        "spheres": {numbers["marker"]: [*spec.TARGET.tolist(), spec.MARKER_RADIUS]},
         **camera_spec.PICTURES[name],
     }

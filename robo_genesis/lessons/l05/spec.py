@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.scene import CAMERA, FloatArray
 from robo_genesis.lessons.l05.run import ReachCase, SolveCase
 from robo_genesis.sim import franka
 from robo_genesis.sim.kinematics import IkSettings
@@ -67,6 +67,23 @@ CASES = {
 CASE_MARKS = {"stiff": "first", "compensated": "second"}
 """The mark of each case in the palette."""
 
+LABELS = {"baseline": "baseline", "stiff": "KP doubled", "compensated": "gravity compensated"}
+"""Words of a reader for runs."""
+
+MARKER_RADIUS = 0.03
+"""Radius of the sphere that marks the target [m]; nothing collides with it."""
+
+VIEWED = "world"
+"""The recorded view of the camera, before the first step."""
+
+VIEW = CAMERA | {
+    "pos": (1.5, -1.1, 1.0), "lookat": (0.4, 0.0, 0.3), "near": 0.1, "far": 20.0,
+}  # fmt: skip
+"""The lesson's camera: the robot, the marker and the ground."""
+
+SEGMENTS = ("plane", "hand", "marker")
+"""What is looked up in the segmentation."""
+
 RELATIONS = (
     (("baseline", "stiff"), "final_distance", "lower", 1e-3),
     (("baseline", "compensated"), "final_distance", "lower", 1e-3),
@@ -116,6 +133,8 @@ TOLERANCES = {
     "rad/s": (1e-3, 1e-3),
     "N·m": (1e-2, 1e-3),
     "N": (1e-2, 1e-3),
+    "pixel": (1e-6, 0.0),
+    "1": (1e-6, 0.0),
     "link_quat_wxyz": (1e-4, 0.0),
 }
 """By unit, or by array: (atol, rtol) of a value between engine versions or backends."""
@@ -151,4 +170,6 @@ def parameters() -> dict[str, Any]:
         "model": franka.FRANKA_MJCF,
         "counted": list(EXPECTED_MODEL),
         "cases": case_parameters(CASES),
+        "marker": MARKER_RADIUS,
+        "view": {name: value for name, value in VIEW.items() if name != "GUI"},
     }

@@ -16,6 +16,9 @@ from robo_genesis.sim.camera_views import View
 DEPTH_UNIT = 1e-5
 """Resolution of a recorded depth [m]; 24 bits reach 167 m."""
 
+SEGMENTS = "segments"
+"""Group of counts: the numbers of things in the segmentation, by name."""
+
 PICTURES = ("rgb", "depth", "segmentation")
 
 NUMBERS = {

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.lessons.l05 import camera_exercises as exercises
-from robo_genesis.lessons.l05 import cameras
+from robo_genesis.sim import camera_geometry as cameras
 
 FLIP = cameras.FLIP
 
