@@ -12,12 +12,17 @@ from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, on_demand
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.lessons.l05 import (
     camera_exercises,
+    camera_spec,
     checks,
     claims_text,
     exercises,
+    explorer,
+    mistakes,
     plausibility,
+    solutions_text,
     spec,
     study,
+    study_views,
     text,
     view_record,
 )
@@ -31,22 +36,27 @@ from robo_genesis.sim.joints import resolve_joints
 from robo_genesis.sim.visual_shape import WORLD, Part, floor, read_shape
 
 if TYPE_CHECKING:
-    from robo_genesis.lessons.l05 import plots
+    from robo_genesis.lessons.l05 import camera_plots, plots, solutions_plots
 
 __all__ = [
-    "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LECTURE", "LESSON", "SOLUTIONS", "SUBSTEPS", "ask",
-    "camera_exercises", "control_case", "exercises", "floor", "kinematics", "look", "plots",
-    "reach", "read_shape", "reset", "resolve_joints", "segment_number", "solve_all", "spec",
-    "study", "target_part", "text", "view_record",
+    "CAMERAS", "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LECTURE", "LESSON", "MISTAKES",
+    "SOLUTIONS", "SUBSTEPS", "ask", "camera_exercises", "camera_plots", "camera_spec",
+    "control_case", "exercises", "explorer", "floor", "kinematics", "look", "mistakes", "plots",
+    "reach", "read_shape", "reset", "resolve_joints", "segment_number", "solutions_plots",
+    "solutions_text", "solve_all", "spec", "study", "study_views", "target_part", "text",
+    "view_record",
 ]  # fmt: skip
 
-__getattr__ = on_demand(__name__, "plots")
+__getattr__ = on_demand(__name__, "camera_plots", "plots", "solutions_plots")
 
 
 def target_part(marker: Any) -> list[Part]:
     """Return the shape of a fixed sphere at the lesson's target, for the replay."""
     parts = read_shape(marker)
     return [replace(p, link=WORLD, vertices=p.vertices + np.float32(spec.TARGET)) for p in parts]
+
+
+LINKS = (*(f"link{number}" for number in range(8)), "hand", "left_finger", "right_finger")
 
 
 def readings(rendered: bool) -> dict[str, Readings]:
@@ -64,7 +74,7 @@ MOTION = MeasuringPage(
     joints=JOINT_NAMES,
     readings=readings,
     measure=study.measure,
-    checks=checks.MOTION,
+    checks=checks.WITHOUT_CAMERA,
     claims=claims_text.CLAIMS,
     parameters=spec.parameters,
     validate=plausibility.require_possible_runs,
@@ -90,15 +100,44 @@ SOLUTIONS = replace(
         **runs_of(spec.CASES),
         **{name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()},
     },
-    checks=(*checks.MOTION, *checks.SOLUTIONS),
+    checks=(*checks.WITHOUT_CAMERA, *checks.SOLUTIONS),
     parameters=lambda: spec.parameters() | {"questions": spec.case_parameters(spec.QUESTIONS)},
 )
 """The page about many solutions, the map of targets and the target beyond reach."""
 
+MISTAKES = replace(MOTION, camera=True, frames=())
+
+
+def camera_readings(rendered: bool) -> dict[str, Readings]:
+    """Return the groups of the page about cameras."""
+    numbers = counts((study_views.PLANE, *LINKS, study_views.MARKER))
+    segments = {view_record.SEGMENTS: numbers} if rendered else {}
+    model = {"model": counts(spec.EXPECTED_MODEL)}
+    return model | view_record.groups(*camera_spec.FOV) | segments
+
+
+CAMERAS = replace(
+    MOTION,
+    runs=runs_of({"baseline": spec.BASELINE}),
+    readings=camera_readings,
+    checks=study_views.CAMERAS,
+    claims=study_views.CLAIMS,
+    parameters=lambda: spec.parameters() | camera_spec.parameters(),
+    camera=True,
+    frames=view_record.frame_names(*camera_spec.FOV),
+)
+"""The page about cameras; every view has colours, depth and segmentation."""
+
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, ReachMetrics),
-    pages={"lab": LAB, "lecture": LECTURE, "solutions": SOLUTIONS},
+    pages={
+        "lab": LAB,
+        "lecture": LECTURE,
+        "solutions": SOLUTIONS,
+        "mistakes": MISTAKES,
+        "cameras": CAMERAS,
+    },
     filmed=Filmed("the Franka"),
     marks=spec.CASE_MARKS,
     compared=Compared(

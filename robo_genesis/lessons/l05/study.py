@@ -15,7 +15,9 @@ from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import kinematics as engine
 from robo_genesis.sim import mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, Pose
-from robo_genesis.sim.joints import JointMap, to_numpy
+from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.joint_control import reset
+from robo_genesis.sim.joints import JointMap, resolve_joints, to_numpy
 
 GROUP = "ik"
 """Group of a bundle's metrics: what the engine's solver reported, with units."""
@@ -33,6 +35,22 @@ REPEATED = ("entries_that_differ",)
 def measure(trace: Trace, case: ReachCase) -> ReachMetrics:
     """Return the distances of a reach."""
     return reach_metrics(trace, case.position, case.quat)
+
+
+def describe(page: Any, robot: Any) -> JointMap:
+    """Give a page the counts, links and joints of the robot, and return its joints."""
+    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
+    page.readings["model"] = dict(zip(spec.EXPECTED_MODEL, counted, strict=True))
+    page.links = [link.name for link in robot.links]
+    page.joints = resolve_joints(robot, JOINT_NAMES)
+    return page.joints
+
+
+def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
+    """Give a page what the solver reports of the baseline's question; this resets the scene."""
+    reset(scene, robot, joints, spec.UNREACHABLE.start)
+    page.readings[GROUP] = read_solver(robot, joints, spec.BASELINE)
+    page.readings[REPEAT_GROUP] = read_repeat(robot, joints, spec.BASELINE)
 
 
 def read_solver(robot: Any, joints: JointMap, case: ReachCase) -> dict[str, float]:
