@@ -69,7 +69,7 @@ MOTION = MeasuringPage(
     joints=JOINT_NAMES,
     readings=readings,
     measure=study.measure,
-    checks=checks.MOTION,
+    checks=checks.WITHOUT_CAMERA,
     claims=claims_text.CLAIMS,
     parameters=spec.parameters,
     validate=plausibility.require_possible_runs,
@@ -95,7 +95,7 @@ SOLUTIONS = replace(
         **runs_of(spec.CASES),
         **{name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()},
     },
-    checks=(*checks.MOTION, *checks.SOLUTIONS),
+    checks=(*checks.WITHOUT_CAMERA, *checks.SOLUTIONS),
     parameters=lambda: spec.parameters() | {"questions": spec.case_parameters(spec.QUESTIONS)},
 )
 """The page about many solutions, the map of targets and the target beyond reach."""

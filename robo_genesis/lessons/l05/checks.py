@@ -143,14 +143,14 @@ def marker(run: Experiment) -> Marker:
 
 def camera_matrix(run: Experiment) -> Iterator[Finding]:
     view = view_of(run, spec.VIEWED)
-    return camera_checks.camera_matrix(spec.VIEWED, view, spec.VIEW["fov"])
+    return camera_checks.camera_matrix(spec.VIEWED, view, spec.FOV)
 
 
 def projection(run: Experiment) -> Iterator[Finding]:
     return camera_checks.projection(spec.VIEWED, view_of(run, spec.VIEWED), marker(run))
 
 
-def marker_surface(run: Experiment) -> Iterator[Finding]:
+def sphere_surface(run: Experiment) -> Iterator[Finding]:
     return camera_checks.sphere_surface(spec.VIEWED, view_of(run, spec.VIEWED), marker(run))
 
 
@@ -164,14 +164,14 @@ def mounted_camera(run: Experiment) -> Iterator[Finding]:
     return camera_checks.mounted_camera("hand", view_of(run, "hand"), *hand, offset)
 
 
-MOTION = (
+WITHOUT_CAMERA = (
     mapping, stamps, acceptance, forward_kinematics, second_engine, arrived, sag_explains,
     repeatable,
 )  # fmt: skip
 """Checks of every page that has the runs of the lab."""
 
-VIEW = (camera_matrix, projection, marker_surface, plane_surface)
-LAB = (*MOTION, posture, *VIEW)
+VIEW = (camera_matrix, projection, sphere_surface, plane_surface)
+LAB = (*WITHOUT_CAMERA, posture, *VIEW)
 CAMERAS = (*VIEW, mounted_camera)
 SOLUTIONS = (unreachable_refused, nearest_is_nearer)
 """Checks of the page about many solutions."""

@@ -31,7 +31,7 @@ CLAIMS: dict[str, str] = {
     ),
     "camera_matrix": "The engine's camera matrix is that of the vertical field of view.",
     "projection": "The centroid of the marker's pixels is where a sphere's picture must be.",
-    "marker_surface": "Each pixel of the marker, back-projected, is on its surface.",
+    "sphere_surface": "Each pixel of the marker, back-projected, is on its surface.",
     "plane_surface": "Each pixel of the ground nearer than 3 m, back-projected, is at height 0.",
     "mounted_camera": "The camera on the hand is at the pose of the hand times the offset.",
     "posture": "Two different camera frames, or a schematic whose links moved, show the end state.",

@@ -29,7 +29,7 @@ def posture(run: Experiment) -> Figure:
 
 def distance(run: Experiment) -> Figure:
     """Draw the distance of the hand from its target over time, on a logarithmic scale."""
-    figure, marks = plotting.figure(3.6), marks_of(spec.CASES, spec.CASE_MARKS)
+    figure, marks = plotting.figure(3.6), marks_of(tuple(spec.CASES), spec.CASE_MARKS)
     ax = figure.subplots()
     for name in spec.CASES:
         trace = run.traces[name]

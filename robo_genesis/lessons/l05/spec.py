@@ -76,8 +76,11 @@ MARKER_RADIUS = 0.03
 VIEWED = "world"
 """The recorded view of the camera, before the first step."""
 
+FOV = 42.0
+"""Vertical field of view of the lesson's camera [degree]."""
+
 VIEW = CAMERA | {
-    "pos": (1.5, -1.1, 1.0), "lookat": (0.4, 0.0, 0.3), "near": 0.1, "far": 20.0,
+    "pos": (1.5, -1.1, 1.0), "lookat": (0.4, 0.0, 0.3), "fov": FOV, "near": 0.1, "far": 20.0,
 }  # fmt: skip
 """The lesson's camera: the robot, the marker and the ground."""
 

@@ -140,9 +140,9 @@ def conclusions(run: Experiment) -> str:
     lines = [
         f"The answer of the solver is {'accepted' if accepted else 'refused'}: its residual is "
         f"{1000 * ik['residual_m']:.3f} mm and {1000 * ik['residual_rad']:.4f} mrad.",
-        f"The hand came from {1000 * base.start_distance:.1f} mm to {1000 * base.final_distance:.2f}"
-        f" mm from its target. {1000 * base.tracking_distance:.2f} mm of this are between the pose "
-        "of the command and the arm.",
+        f"The hand's distance from its target went from {1000 * base.start_distance:.1f} mm to "
+        f"{1000 * base.final_distance:.2f} mm. The arm stopped {1000 * base.tracking_distance:.2f} "
+        "mm from the pose of its command.",
     ]
     for name in ("stiff", "compensated"):
         verb = "less" if m[name].final_distance < base.final_distance else "not less"
