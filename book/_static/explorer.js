@@ -2,20 +2,12 @@
    itself over the last one. The page contains all runs as JSON. */
 "use strict";
 
-/* plot.js has loaded by then, in whatever order the page lists the scripts. */
+/* plot.js and cell-map.js have loaded by then, in whatever order the page lists the scripts. */
 document.addEventListener("DOMContentLoaded", () => {
   const { add, draw, write } = globalThis.timePlot;
+  const { fill, make, mark } = globalThis.cellMap;
   const HEIGHT = 210;
   const UNKNOWN = "these runs cannot show it";
-  const KEYS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
-
-  const make = (parent, name, text = "", attributes = {}) => {
-    const element = document.createElement(name);
-    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-    element.textContent = text;
-    parent.append(element);
-    return element;
-  };
 
   function start(root) {
     const data = JSON.parse(root.dataset.grid);
@@ -24,8 +16,7 @@ document.addEventListener("DOMContentLoaded", () => {
     const find = (name) => root.querySelector(name);
     const [step, measure, predict] = ["step", "measure", "predict"].map((n) => find(`[name=${n}]`));
     const [question, output, plots] = [".question", "output", ".plots"].map(find);
-    const map = make(find(".map-of-runs"), "table", "", { class: "map", role: "grid" });
-    map.createCaption();
+    const map = make(find(".map-of-runs"), "table", "", { class: "map" });
     const svgs = Object.fromEntries(
       plots.dataset.curves.split(" ").map((curve) => [
         curve, add(plots, "svg", { role: "img", "data-curve": curve }),
@@ -46,29 +37,11 @@ document.addEventListener("DOMContentLoaded", () => {
     const positions = (n) => data.points[n].q.map((q) => data.start + q * data.resolution.q);
     const forces = (n) => data.points[n].force.map((force) => force * data.resolution.force);
 
-    /* The map: KP upwards, KV to the right; one stop for the Tab key. */
-    const cells = [];
-    for (let row = KPS.length - 1; row >= 0; row -= 1) {
-      const line = make(map, "tr");
-      make(line, "th", KPS[row], { scope: "row" });
-      KVS.forEach((_, column) => {
-        const cell = make(line, "td", "", { role: "gridcell" });
-        const k = row * KVS.length + column;
-        cells[k] = cell;
-        cell.addEventListener("click", () => choose(Number(step.value) * SIZE + k));
-        cell.addEventListener("keydown", (event) => {
-          const [up, right] = KEYS[event.key] ?? [];
-          if (up === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
-          event.preventDefault();
-          const [to, beside] = [row + up, column + right];
-          if (!(to in KPS) || !(beside in KVS)) return;
-          choose(Number(step.value) * SIZE + to * KVS.length + beside);
-        });
-      });
-    }
-    const foot = make(map, "tr");
-    make(foot, "td", "");
-    for (const kv of KVS) make(foot, "th", kv, { scope: "col" });
+    /* The map: KP upwards, KV to the right. A cell's key is the number of its gains. */
+    const rows = KPS.map((kp, row) => ({
+      label: kp, cells: KVS.map((_, column) => row * KVS.length + column),
+    })).reverse();
+    const cells = fill(map, rows, KVS, (k) => choose(Number(step.value) * SIZE + k));
 
     function writeMap() {
       const { label, noun, values, cell: format } = data.measures[measure.value];
@@ -91,18 +64,15 @@ document.addEventListener("DOMContentLoaded", () => {
         cell.setAttribute( // it begins with the text of the cell
           "aria-label", `${name ? `${name} ` : ""}${number} ${said}: ${noun}, ${gains(n)}${state}`,
         );
-        cell.setAttribute("aria-selected", n === chosen);
         cell.classList.toggle("last", n === compared);
-        cell.tabIndex = n === chosen ? 0 : -1;
         cell.style.setProperty("--share", value === null ? 0 : (value - low) / (high - low || 1));
       });
+      mark(map, cells, chosen % SIZE);
     }
 
     function choose(n) {
-      const inside = map.contains(document.activeElement);
       chosen = n;
       writeMap();
-      if (inside) cells[n % SIZE].focus();
       question.hidden = true;
       if (n === shown) output.textContent = data.points[n].sentence;
       else if (predict.checked) ask();
@@ -147,7 +117,7 @@ document.addEventListener("DOMContentLoaded", () => {
       show(
         `${verdict}. The ${about.noun}: ${words[right]}, first ${before}, now ${now}.${margin} `,
       );
-      cells[chosen % SIZE].focus({ preventScroll: true }); // the button has gone
+      cells.get(chosen % SIZE).focus({ preventScroll: true }); // the button has gone
     }
 
     function show(feedback) {

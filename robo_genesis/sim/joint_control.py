@@ -165,22 +165,30 @@ def engine_time(scene: Any) -> float:
 def assign_path(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Trace:
     """Assign the states of a straight line from start to target, without control and steps.
 
-    This sequence of resets is the contrast to `run_case`.
+    This sequence of resets is the contrast to `run_case`; see `assign_postures`.
+    """
+    path = np.linspace(case.q_start, case.q_target, case.steps + 1)[1:]
+    return assign_postures(scene, robot, joints, case, path)
+
+
+def assign_postures(
+    scene: Any, robot: Any, joints: JointMap, case: ControlCase, postures: FloatArray
+) -> Trace:
+    """Reset, then assign postures (case.steps, d) [rad or m] one after the other, and read each.
 
     Returns:
-        A trace of the assigned positions. Its time is nominal: none passed.
+        A trace of the start and the assigned postures. Its time is nominal: none passed.
     """
     reset(scene, robot, joints, case)
     dofs = joints.dofs_idx_local.tolist()
     start_qd, start_force, _ = read_step(robot, dofs)
     effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
     states, steps = [read_state(robot, dofs)], []
-    path = np.linspace(case.q_start, case.q_target, case.steps + 1)[1:]
-    for q in path:
+    for q in postures:
         robot.set_dofs_position(q, dofs, zero_velocity=True)
         states.append(read_state(robot, dofs))
         steps.append(read_step(robot, dofs))
-    return assemble(case, states, steps, list(path), start_qd, start_force, effort_limit)
+    return assemble(case, states, steps, list(postures), start_qd, start_force, effort_limit)
 
 
 def assemble(

@@ -55,11 +55,11 @@ def explorer_html(lesson: str, folder: Path) -> str:
         experiment = accepted_experiment(folder, bundle.read_manifest(folder))
         return str(markup(experiment)).encode()
 
-    return derived("explorer", _inputs(folder), make).decode()
+    return derived("explorer", inputs(folder), make).decode()
 
 
-def _inputs(folder: Path) -> Iterator[bytes]:
-    """Yield everything that determines the markup."""
+def inputs(folder: Path) -> Iterator[bytes]:
+    """Yield everything that determines what is made of a bundle."""
     sources = (project.ROOT / "robo_genesis").rglob("*.py")
     files = (path for path in folder.rglob("*") if path.is_file())
     for path in sorted([*files, *sources]):

@@ -18,6 +18,10 @@ NEEDED_BY = {
     ".explorer": {"explorer.js"},
     ".explorer, .replay": {"plot.js"},
     ".replay": {"replay.js"},
+    ".posture-map": {"posture-map.js"},
+    ".picture-reader": {"picture-reader.js"},
+    ".explorer, .posture-map": {"cell-map.js"},
+    ".replay, .posture-map": {"stage.js"},
     "#search-results": {
         "language_data.js", "search-from-disk.js", "searchindex.js", "searchtools.js",
     },

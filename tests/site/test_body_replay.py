@@ -3,7 +3,6 @@
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pygltflib
@@ -11,14 +10,11 @@ import pytest
 import trimesh
 from browsers import SOFTWARE, launched
 from docutils import nodes
-from docutils.core import publish_from_doctree
 from docutils.parsers.rst import DirectiveError
-from docutils.utils import new_document
 from playwright.sync_api import Browser, Page
 from watching import errors, violations
-from without_sphinx import Panel
+from without_sphinx import Panel, page_of
 
-from robo_genesis.core.project import BOOK
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
@@ -26,11 +22,8 @@ from robo_genesis.evidence.trace_files import read_any_trace, write_traces
 from robo_genesis.lessons import registry
 from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
 from robo_genesis.sim import visual_shape
-from robo_genesis.site import palette_css
 from robo_genesis.site.evidence import glance as sphinx_glance
-from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.panel import response
-from robo_genesis.site.replay import viewer
 from robo_genesis.site.replay.directive import replay_block
 
 LESSON, KEY = "l99", "l99/lecture/cpu"
@@ -143,23 +136,7 @@ def browser() -> Iterator[Browser]:
 @pytest.fixture
 def page(block, tmp_path, browser) -> Iterator[Page]:
     """A page that holds the replay alone, opened from disk."""
-    document = new_document("page")
-    document += block.deepcopy()
-    for box in list(document.findall(scroll_box)):  # whose writer is Sphinx's
-        box.replace_self(nodes.container("", *box.children))
-    for image in document.findall(nodes.image):  # which Sphinx copies
-        image["uri"] = (tmp_path / "book" / image["uri"][1:]).resolve().as_uri()
-    html = publish_from_doctree(document, writer_name="html5").decode()
-    site = tmp_path / "book" / "_build" / "html"
-    (site / "lessons").mkdir(exist_ok=True)
-    (site / "palette.css").write_text(palette_css.css())
-    viewer.write_viewer(SimpleNamespace(outdir=site), None)
-    for name in ("plot.js", "replay.js", "plot.css", "replay.css"):
-        shutil.copy(BOOK / "_static" / name, site)
-    head = [f'<link rel="stylesheet" href="../{n}.css">' for n in ("palette", "plot", "replay")]
-    head += [f'<script defer src="../{n}.js"></script>' for n in ("plot", "replay")]
-    file = site / "lessons" / "page.html"
-    file.write_text(html.replace("</head>", f"{''.join(head)}</head>"))
+    file = page_of(block, tmp_path, ("plot", "stage", "replay"), ("plot", "replay"))
     page = browser.new_page(viewport={"width": 480, "height": 700})
     problems = errors(page)
     page.goto(file.as_uri())

@@ -134,7 +134,7 @@ def test_bodies_have_no_levels_and_no_words_of_a_robot(box):
 def test_the_controls_are_hidden_until_the_script_shows_them(joint):
     (panel,) = parsed(joint).select("[hidden]")
     assert panel["class"] == ["panel"]
-    over = BeautifulSoup(controls.OVER_THE_PICTURE, "html.parser")
+    over = BeautifulSoup(controls.over_the_picture("Play"), "html.parser")
     assert over.button.has_attr("hidden")
     assert over.get_text() == "at the startPlay"
 

@@ -1,11 +1,20 @@
-"""Directives where Sphinx does not run: a folder, and a parser of Markdown."""
+"""Directives where Sphinx does not run: a folder, a parser of Markdown, and a page of one block."""
 
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
 from types import SimpleNamespace
 
-from docutils.core import publish_doctree
+from docutils import nodes
+from docutils.core import publish_doctree, publish_from_doctree
+from docutils.utils import new_document
 from myst_parser.parsers.docutils_ import Parser
 
+from robo_genesis.core.project import BOOK
+from robo_genesis.site import palette_css
 from robo_genesis.site.evidence import panel
+from robo_genesis.site.evidence.ledger import scroll_box
+from robo_genesis.site.replay import viewer
 
 
 class Panel(panel.Evidence):
@@ -21,3 +30,33 @@ class Panel(panel.Evidence):
 
     def parse_text_to_nodes(self, text):
         return publish_doctree(text, parser=Parser()).children
+
+
+def page_of(block: nodes.Node, folder: Path, scripts: Sequence[str], sheets: Sequence[str]) -> Path:
+    """Write a page that holds one block alone, for a browser, and return its file.
+
+    Args:
+        block: of a directive for the book `folder / "book"`.
+        folder: of the test.
+        scripts: names of the scripts that it loads.
+        sheets: names of its style sheets beside the palette.
+    """
+    document = new_document("page")
+    document += block.deepcopy()
+    for box in list(document.findall(scroll_box)):  # whose writer is Sphinx's
+        box.replace_self(nodes.container("", *box.children))
+    for image in document.findall(nodes.image):  # which Sphinx copies
+        image["uri"] = (folder / "book" / image["uri"][1:]).resolve().as_uri()
+    html = publish_from_doctree(document, writer_name="html5").decode()
+    site = folder / "book" / "_build" / "html"
+    (site / "lessons").mkdir(parents=True, exist_ok=True)
+    (site / "palette.css").write_text(palette_css.css())
+    viewer.write_viewer(SimpleNamespace(outdir=site), None)
+    head = ['<link rel="stylesheet" href="../palette.css">']
+    for name in (*(f"{n}.css" for n in sheets), *(f"{n}.js" for n in scripts)):
+        shutil.copy(BOOK / "_static" / name, site)
+    head += [f'<link rel="stylesheet" href="../{name}.css">' for name in sheets]
+    head += [f'<script defer src="../{name}.js"></script>' for name in scripts]
+    file = site / "lessons" / "page.html"
+    file.write_text(html.replace("</head>", f"{''.join(head)}</head>"))
+    return file

@@ -17,18 +17,16 @@ masses and gravity of the same model file in float64.
 """
 
 from collections.abc import Iterator, Sequence
-from functools import cache
-from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim import mujoco_joints
-from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES, per_joint
+from robo_genesis.sim.franka import per_joint
 from robo_genesis.sim.joint_control import LIMIT_TOLERANCE, ControlCase
+from robo_genesis.sim.mujoco_kinematics import bare_robot, link_names, link_poses
 from robo_genesis.sim.plausibility.rules import Breach, apart, times, unit_quaternions
-from robo_genesis.sim.session import asset
 
 LAW = 5e-3
 """Tolerance of a control force [N·m or N]: float32 in KP times a position error."""
@@ -107,54 +105,13 @@ def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
 def poses(trace: Trace, links: Sequence[str]) -> Iterator[Breach]:
     """Yield a link that is not where the positions of the joints put it."""
     yield from unit_quaternions(trace.link_quat)
-    unknown = sorted(set(links) - _links())
+    unknown = sorted(set(links) - link_names())
     if unknown:
         yield Breach("pose", "list of links that the model does not have", unknown, [])
         return
     position, orientation = link_poses(trace.q, links)
     yield from apart("pose", "link_pos [m]", trace.link_pos, position, POSE)
     yield from apart("pose", "link_quat", trace.link_quat, orientation, POSE)
-
-
-@cache
-def _robot() -> tuple[Any, Any, list[int], list[int]]:
-    """Return the model without shapes and actuators, its data, and the joints in qpos and qvel.
-
-    The data are made once, because that takes as long as a hundred states. Every use sets all of
-    `qpos` and `qvel` that it reads.
-    """
-    import mujoco
-
-    spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
-    for part in (*spec.actuators, *spec.keys, *spec.geoms, *spec.meshes):
-        spec.delete(part)
-    model = spec.compile()
-    joints = [model.joint(name) for name in JOINT_NAMES]
-    q_at, dof_at = [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
-    return model, mujoco.MjData(model), q_at, dof_at
-
-
-def _links() -> set[str]:
-    """Return the names of the model's links."""
-    model, *_ = _robot()
-    return {model.body(k).name for k in range(1, model.nbody)}
-
-
-def link_poses(q: FloatArray, links: Sequence[str]) -> tuple[FloatArray, FloatArray]:
-    """Return positions (n, l, 3) [m] and orientations (n, l, 4) of links at `q` (n, d)."""
-    import mujoco
-
-    model, data, q_at, _ = _robot()
-    bodies = [model.body(name).id for name in links]
-    position, orientation = np.empty((len(q), model.nbody, 3)), np.empty((len(q), model.nbody, 4))
-    joints = np.empty((len(q), model.nq))
-    joints[:, q_at] = q
-    qpos, xpos, xquat = data.qpos, data.xpos, data.xquat
-    for values, places, turns in zip(joints, position, orientation, strict=True):
-        qpos[:] = values
-        mujoco.mj_kinematics(model, data)
-        places[:], turns[:] = xpos, xquat
-    return position[:, bodies], orientation[:, bodies]
 
 
 def dynamics(trace: Trace, case: ControlCase) -> Iterator[Breach]:
@@ -187,7 +144,7 @@ def last_step(
     """Return velocity and net force, each (n, d), at the positions (n, d) before the last step."""
     import mujoco
 
-    (model, data, q_at, dof_at), h = _robot(), case.dt / case.substeps
+    (model, data, q_at, dof_at), h = bare_robot(), case.dt / case.substeps
     damping, diagonal = model.dof_damping[dof_at], model.M_rowadr + model.M_rownnz - 1
     states, impulses, speeds, bias = np.zeros((4, len(q_before), model.nv))
     states[:, q_at], speeds[:, dof_at] = q_before, trace.qd

@@ -1,6 +1,7 @@
 """The replay of recorded runs as text and markup: a table of all samples, and the controls."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -58,9 +59,12 @@ def opening(name: str, runs: Runs, camera: "Camera", files: Files) -> str:
     return f'<div class="replay" {_data(name, runs, camera)} {model} {viewer}>'
 
 
-OVER_THE_PICTURE = (
-    '<p class="shown">at the start</p><button type="button" class="play" hidden>Play</button>'
-)
+def over_the_picture(button: str) -> str:
+    """Return what is on top of the still picture: the state that it shows, and a button."""
+    return (
+        '<p class="shown">at the start</p>'
+        f'<button type="button" class="play" hidden>{button}</button>'
+    )
 
 
 def alt(runs: Runs) -> str:
@@ -90,10 +94,7 @@ def panel(name: str, runs: Runs, weight: int) -> str:
         weight: of what loads with the first Play, compressed [kB].
     """
     name = escape(name)
-    speeds = "".join(
-        f'<option value="{value}"{" selected" * (value == SLOW)}>{text}</option>'
-        for value, text in SPEEDS.items()
-    )
+    speeds = options(SPEEDS, SLOW)
     terms = ["time", *(c.name for c in runs.channels), *(level.name for level in runs.levels)]
     return (
         '<div class="panel" hidden><p role="status">'
@@ -116,7 +117,7 @@ def _data(name: str, runs: Runs, camera: "Camera") -> str:
     words = {
         "name": name,
         "subject": runs.subject,
-        "channels": _json(channels),
+        "channels": as_json(channels),
         "time-digits": str(time_digits(next(iter(runs.traces.values())).dt)),
         "thing": view.thing,
         "alt": view.alt,
@@ -139,7 +140,7 @@ def _cases(name: str, runs: Runs) -> str:
 
 
 def _levels(runs: Runs, case: str) -> str:
-    return _json(
+    return as_json(
         [
             {
                 "channel": level.channel,
@@ -152,7 +153,17 @@ def _levels(runs: Runs, case: str) -> str:
     )
 
 
-def _json(content: Any) -> str:
+def options(texts: Mapping[str, str], selected: str) -> str:
+    """Return the options of a `select` by their value."""
+    chosen = {selected: " selected"}
+    return "".join(
+        f'<option value="{escape(value)}"{chosen.get(value, "")}>{escape(text)}</option>'
+        for value, text in texts.items()
+    )
+
+
+def as_json(content: Any) -> str:
+    """Return content as JSON without spaces."""
     return json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
 

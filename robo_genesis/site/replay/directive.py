@@ -16,6 +16,7 @@ from pathlib import Path
 from docutils import nodes
 from docutils.parsers.rst.directives import flag
 from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.build.built_pages import page_outputs
@@ -87,12 +88,7 @@ def replay_block(
         what = around, runs.links, runs.traces, runs.view.credit
         model = derived("replay", inputs, lambda: replay_model.glb(*what))
         still = derived("poster", inputs, lambda: picture(model, around.camera))
-        files_of = Path(env.app.outdir) / FOLDER
-        written = write_model(files_of, name, model)
-        note_files(env, files_of / f"{name}.glb", files_of / f"{name}.js")
-        weight = round((written + len(gzip.compress(viewer.viewer()))) / 1000)
-        up = "../" * env.docname.count("/") + FOLDER
-        files = controls.Files(f"{up}/{name}.js", f"{up}/{VIEWER}")
+        files, weight = leave_model(env, name, model)
         shown = first_channel(runs) if brief else runs  # the model is the same
         opening = controls.opening(name, shown, around.camera, files)
     except (LookupError, ValueError) as error:
@@ -102,21 +98,45 @@ def replay_block(
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     block += nodes.raw("", opening, format="html")
-    poster = image(env, f"{name}.jpg", still, controls.alt(runs))
-    poster["kind"], poster["classes"] = "model", ["still"]
-    over = nodes.raw("", controls.OVER_THE_PICTURE, format="html")
-    stage = nodes.container("", poster, over, classes=["stage"])
-    caption = nodes.caption("", controls.caption(runs, around))
-    block += nodes.figure("", stage, caption, ids=[f"{name}-model"])
+    captions = controls.alt(runs), controls.caption(runs, around)
+    block += stage(env, name, still, *captions, controls.over_the_picture("Play"))
     block += nodes.raw("", controls.panel(name, shown, weight), format="html")
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
     if shown.moves:
         lines = (nodes.paragraph("", "", *marked(text)) for text in shown.moves.values())
         block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
     block += scroll_box("", *directive.parse_text_to_nodes(controls.samples(shown)), label=summary)
-    origin = origin_html(name, folder, up, runs.view.credit)
+    origin = origin_html(name, folder, replay_folder(env), runs.view.credit)
     block += nodes.raw("", f"</details>{origin}", format="html")
     return block
+
+
+def replay_folder(env: BuildEnvironment) -> str:
+    """Return the address of the replays' files, as the page that is read names it."""
+    return "../" * env.docname.count("/") + FOLDER
+
+
+def leave_model(env: BuildEnvironment, name: str, model: bytes) -> tuple[controls.Files, int]:
+    """Write a model for the page that is read.
+
+    Returns:
+        What loads on a reader's request, and its compressed size [kB].
+    """
+    files_of, up = Path(env.app.outdir) / FOLDER, replay_folder(env)
+    written = write_model(files_of, name, model)
+    note_files(env, files_of / f"{name}.glb", files_of / f"{name}.js")
+    weight = round((written + len(gzip.compress(viewer.viewer()))) / 1000)
+    return controls.Files(f"{up}/{name}.js", f"{up}/{VIEWER}"), weight
+
+
+def stage(
+    env: BuildEnvironment, name: str, still: bytes, alt: str, caption: str, over: str
+) -> nodes.figure:
+    """Return the figure in which the model replaces its still picture; `over` is on top of it."""
+    poster = image(env, f"{name}.jpg", still, alt)
+    poster["kind"], poster["classes"] = "model", ["still"]
+    content = nodes.container("", poster, nodes.raw("", over, format="html"), classes=["stage"])
+    return nodes.figure("", content, nodes.caption("", caption), ids=[f"{name}-model"])
 
 
 def first_channel(runs: Runs) -> Runs:

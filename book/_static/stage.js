@@ -1,0 +1,89 @@
+/* The robot or body of recorded runs in 3D, for the replay and the maps of postures. The viewer and the
+   model load when a reader asks for them. */
+"use strict";
+
+globalThis.stage = (() => {
+  /* Adds a script once for all replays of the page; a script that failed is added again. */
+  const requested = new Map();
+  function script(source) {
+    const adding = () => new Promise((resolve, reject) => {
+      const element = document.createElement("script");
+      element.src = source;
+      element.onload = resolve;
+      element.onerror = () => {
+        requested.delete(source);
+        reject(new Error(source));
+      };
+      document.head.append(element);
+    });
+    if (!requested.has(source)) requested.set(source, adding());
+    return requested.get(source);
+  }
+
+  /* The viewer needs WebGL 2: without it, the viewer would report success and show nothing. */
+  const draws3D = () => document.createElement("canvas").getContext("webgl2") !== null;
+
+  /* Light from above, as a small picture. Without a graphics card, the viewer's own surroundings
+     would take seconds before the first frame. */
+  function light() {
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [128, 64];
+    const brush = canvas.getContext("2d");
+    brush.fillStyle = brush.createLinearGradient(0, 0, 0, canvas.height);
+    brush.fillStyle.addColorStop(0, "#fff");
+    brush.fillStyle.addColorStop(1, "#888");
+    brush.fillRect(0, 0, canvas.width, canvas.height);
+    return canvas.toDataURL();
+  }
+
+  /* The 3D model, in step with the replay. A classic script and a data: address work from disk. */
+  class Scene {
+    constructor(root) {
+      this.root = root;
+      this.viewer = null;
+    }
+
+    async load() {
+      const { viewer, model, name, alt, orbit, target } = this.root.dataset;
+      await Promise.all([script(viewer), script(model)]);
+      const stage = this.root.querySelector(".stage");
+      const element = document.createElement("model-viewer");
+      const distance = `auto auto ${orbit.split(" ").at(-1)}`; // the viewer's own limits are farther
+      const settings = {
+        alt, loading: "eager", "camera-controls": "", "disable-zoom": "", "disable-tap": "",
+        "disable-pan": "", "interaction-prompt": "none", "touch-action": "pan-y",
+        "camera-orbit": orbit, "camera-target": target,
+        "min-camera-orbit": distance, "max-camera-orbit": distance,
+        "environment-image": light(), exposure: "1.25", "animation-crossfade-duration": "0",
+        src: `data:model/gltf-binary;base64,${globalThis.replayModels[name]}`,
+      };
+      for (const [key, value] of Object.entries(settings)) element.setAttribute(key, value);
+      const loaded = new Promise((resolve, reject) => {
+        element.addEventListener("load", resolve, { once: true });
+        element.addEventListener("error", (event) => reject(event.detail), { once: true });
+      });
+      stage.append(element);
+      try {
+        await loaded;
+      } catch (error) {
+        element.remove();
+        throw error;
+      }
+      stage.classList.add("loaded");
+      this.viewer = element;
+    }
+
+    /* The case first: a new animation begins at its own start. */
+    async pose(name, time) {
+      const { viewer } = this;
+      if (!viewer) return;
+      if (viewer.animationName !== name) {
+        viewer.animationName = name;
+        await viewer.updateComplete;
+      }
+      viewer.currentTime = Math.min(time, viewer.duration - 1e-7); // at its end it would start again
+    }
+  }
+
+  return { Scene, draws3D };
+})();

@@ -1,0 +1,80 @@
+"""Distances of the hand from its target, from a trace alone.
+
+Three of them are kept apart: how far the command's own pose is from the target, how far the arm is
+from the command, and how far the hand is from the target.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robo_genesis.core.metrics import CaseMetrics, metric
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim.arm_kinematics import Pose, distances, hand_pose, pose_error
+from robo_genesis.sim.franka import LINK_PARENTS
+
+HAND = LINK_PARENTS[-1]
+"""Index of the hand among the links of the arrays: the parent of both fingers."""
+
+MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
+
+
+@dataclass(frozen=True, slots=True)
+class ReachMetrics(CaseMetrics):
+    """Where the hand began, where the command would put it, and where it ended."""
+
+    start_distance: float = metric("m", "start to target", *MEASURED)
+    command_distance: float = metric("m", "command to target", *COMMANDED)
+    command_angle: float = metric("rad", "command to target, angle", *COMMANDED)
+    tracking_distance: float = metric("m", "end to command", *MEASURED, *COMMANDED)
+    tracking_angle: float = metric("rad", "end to command, angle", *MEASURED, *COMMANDED)
+    final_distance: float = metric("m", "end to target", *MEASURED)
+    final_angle: float = metric("rad", "end to target, angle", *MEASURED)
+    final_speed: float = metric("rad/s", "speed of the fastest joint at the end", "qd_rad_s_or_m_s")
+
+
+def measured_hand(trace: Trace, state: int) -> Pose:
+    """Return the pose of the hand in a state of a run, as the engine reported it."""
+    quat = trace.link_quat[state, HAND].astype(np.float64)
+    return Pose(trace.link_pos[state, HAND].astype(np.float64), quat / np.linalg.norm(quat))
+
+
+def commanded_hand(trace: Trace) -> Pose:
+    """Return the pose of the hand at the last command, by forward kinematics."""
+    return hand_pose(trace.target[-1])
+
+
+def reach_metrics(trace: Trace, position: FloatArray, quat: FloatArray) -> ReachMetrics:
+    """Measure a run that commands one constant target.
+
+    Args:
+        trace: the run, with all links of the robot.
+        position: (3,) target of the hand [m].
+        quat: (4,) its target orientation.
+
+    Raises:
+        ValueError: the trace lacks the hand, or the command changes.
+    """
+    if trace.link_pos.shape[1] <= HAND:
+        raise ValueError(
+            f"The trace has {trace.link_pos.shape[1]} links, expected the {len(LINK_PARENTS)} of "
+            "the robot. Record all links."
+        )
+    if (trace.target != trace.target[0]).any():
+        raise ValueError("The command changes during the run. Measure a run with a constant one.")
+    target = Pose(np.asarray(position, float), np.asarray(quat, float))
+    command, end = commanded_hand(trace), measured_hand(trace, -1)
+    start_distance, _ = distances(pose_error(target, measured_hand(trace, 0)))
+    pairs = ((target, command), (command, end), (target, end))
+    apart, angle = zip(*(distances(pose_error(to, at)) for to, at in pairs), strict=True)
+    return ReachMetrics(
+        start_distance=float(start_distance),
+        command_distance=float(apart[0]),
+        command_angle=float(angle[0]),
+        tracking_distance=float(apart[1]),
+        tracking_angle=float(angle[1]),
+        final_distance=float(apart[2]),
+        final_angle=float(angle[2]),
+        final_speed=float(np.abs(trace.qd[-1]).max()),
+    )

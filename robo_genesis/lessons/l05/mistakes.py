@@ -1,0 +1,157 @@
+"""Mistakes made on purpose with poses, answers of a solver, and cameras.
+
+Every function makes one mistake and measures its symptom. Do not copy them.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.mistakes import Failure, quoted, refused
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.lessons.l05.run import END_EFFECTOR, ReachCase, ask, control_case
+from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim import camera_geometry as cameras
+from robo_genesis.sim.camera_views import read_intrinsics, read_transform
+from robo_genesis.sim.joint_control import reset, run_case, validate
+from robo_genesis.sim.joints import JointMap, to_numpy
+from robo_genesis.sim.kinematics import IkAnswer, link_poses_at
+
+
+def written(answer: IkAnswer, case: ReachCase) -> str:
+    """Return whether an answer is accepted, with its residual."""
+    apart, angle = kinematics.distances(answer.error)
+    verdict = "refused" if refused(lambda: control_case(case, answer)) else "accepted"
+    return f"{verdict} with a residual of {1000 * apart:.2f} mm and {1000 * angle:.2f} mrad"
+
+
+def swapped_quaternion(robot: Any, joints: JointMap, case: ReachCase) -> Failure:
+    """Give the orientation as (x, y, z, w)."""
+    wrong = replace(case, quat=np.roll(case.quat, -1))  # the mistake
+    answer = ask(robot, joints, wrong)
+    fingers = kinematics.rotate(kinematics.hand_pose(answer.q).quat, np.array([0.0, 0.0, 1.0]))
+    return Failure(
+        "swapped_quaternion",
+        shown=bool(fingers[2] > 0.9 and not refused(lambda: control_case(wrong, answer))),
+        evidence=(
+            f"The answer is {written(answer, wrong)}. At the answer the axis from the hand to the "
+            f"fingers has the vertical component {fingers[2]:+.3f}; down is −1."
+        ),
+    )
+
+
+def other_frame(robot: Any, joints: JointMap, case: ReachCase, base: FloatArray) -> Failure:
+    """Give a target in the frame of a base that is at `base` (3,) in the world [m]."""
+    answer = ask(robot, joints, case)  # the mistake: the solver expects a pose in the world
+    (reached,), _ = link_poses_at(robot, joints, [END_EFFECTOR], answer.q)
+    apart = float(np.linalg.norm(reached - (case.position + base)))
+    return Failure(
+        "other_frame",
+        shown=bool(not refused(lambda: control_case(case, answer)) and apart > 0.1),
+        evidence=(
+            f"The answer is {written(answer, case)}. The hand would be {1000 * apart:.1f} mm from "
+            f"the intended place; the base is {1000 * np.linalg.norm(base):.1f} mm from the "
+            "world's origin."
+        ),
+    )
+
+
+def unaccepted_answer(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Failure:
+    """Command an answer that the acceptance rule refuses."""
+    answer = ask(robot, joints, case)
+    trace = run_case(scene, robot, joints, case.commanding(answer.q.astype(float)))  # the mistake
+    apart = np.linalg.norm(kinematics.hand_pose(trace.q).position - case.position, axis=-1)
+    behind = np.abs(trace.q[-1] - trace.target[-1])[: kinematics.ARM].max()
+    return Failure(
+        "unaccepted_answer",
+        shown=bool(refused(lambda: control_case(case, answer)) and apart[-1] > 1 and behind < 0.05),
+        evidence=(
+            f"The answer is {written(answer, case)}. Commanded anyway, each joint ends within "
+            f"{1000 * behind:.1f} mrad of its command. The hand starts {apart[0]:.2f} m from its "
+            f"target and ends {apart[-1]:.2f} m from it."
+        ),
+        curves={"hand to target": (trace.t, apart)},
+    )
+
+
+def degrees(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Failure:
+    """Command an accepted answer, converted to degrees."""
+    right = control_case(case, ask(robot, joints, case))
+    wrong = replace(right, q_target=np.rad2deg(right.q_target))
+    refusal, dofs = refused(lambda: validate(wrong, joints)), joints.dofs_idx_local.tolist()
+    reset(scene, robot, joints, right)
+    robot.control_dofs_position(wrong.q_target, dofs)  # the mistake: not validated
+    for _ in range(case.steps):
+        scene.step()
+    q = to_numpy(robot.get_dofs_position(dofs))
+    at_limit = np.minimum(np.abs(q - joints.lower), np.abs(q - joints.upper)) < 0.01
+    apart = np.linalg.norm(kinematics.hand_pose(q).position - case.position)
+    return Failure(
+        "degrees",
+        shown=bool(refusal and at_limit[: kinematics.ARM].any() and apart > 0.1),
+        evidence=(
+            f"The engine reports nothing. {at_limit[: kinematics.ARM].sum()} of the arm's joints "
+            f"end at a limit, and the hand ends {1000 * apart:.0f} mm from its target. "
+            f"The course's validation before a run: {quoted(refusal)}"
+        ),
+    )
+
+
+def rows_first(meant: Any, given: Any, point: FloatArray) -> Failure:
+    """Give `res` as (H, W): two cameras of one pose, the second with the mistake."""
+    K, other = read_intrinsics(meant), read_intrinsics(given)
+    shapes = [tuple(map(int, camera.res[::-1])) for camera in (meant, given)]
+    fields = [np.degrees(2 * np.arctan(k[0, 2] / k[0, 0])) for k in (K, other)]
+    pose = read_transform(meant)
+    apart = np.linalg.norm(cameras.project(point, K, pose) - cameras.project(point, other, pose))
+    return Failure(
+        "rows_first",
+        shown=bool(shapes[0] == shapes[1][::-1] and apart > 10),
+        evidence=(
+            f"The arrays have shape {shapes[1]} instead of {shapes[0]}, and the horizontal field "
+            f"of view is {fields[1]:.1f}° instead of {fields[0]:.1f}°. With the camera matrix of "
+            f"the intended picture, the target is expected {apart:.0f} pixels from its place."
+        ),
+    )
+
+
+def stale_extrinsics(camera: Any, moved_to: Mapping[str, Any], point: FloatArray) -> Failure:
+    """Keep the extrinsics of a camera that has moved since."""
+    kept = to_numpy(camera.extrinsics).astype(float).copy()
+    camera.set_pose(**moved_to)
+    pose, again, K = read_transform(camera), to_numpy(camera.extrinsics), read_intrinsics(camera)
+    old = cameras.other_axes(np.linalg.inv(kept))
+    apart = np.linalg.norm(cameras.project(point, K, old) - cameras.project(point, K, pose))
+    now = "still that matrix" if (again == kept).all() else "the matrix of the new pose"
+    return Failure(
+        "stale_extrinsics",
+        shown=bool(apart > 10),
+        evidence=(
+            f"With the matrix that was read before the move, the target is expected {apart:.0f} "
+            "pixels from its place in the picture. Read again after the move, "
+            f"`camera.extrinsics` is {now}: it differs by up to "
+            f"{np.abs(again - cameras.extrinsics(pose)).max():.1g} from the inverse of the pose in "
+            "`camera.transform`."
+        ),
+    )
+
+
+def beyond_far(depth: FloatArray | None, camera: Any) -> Failure:
+    """Back-project every depth (H, W) [m] that is smaller than `far`, None without pictures."""
+    if depth is None:
+        return Failure("beyond_far", True, "SKIP: this run has no camera.")
+    heights = cameras.back_project(depth, read_intrinsics(camera), read_transform(camera))[..., 2]
+    nothing = depth > 0.999 * camera.far
+    kept = nothing & (depth < camera.far)  # the mistake: the depth buffer rounds
+    return Failure(
+        "beyond_far",
+        shown=bool(nothing.sum() > 1000 and heights[nothing].max() > 1),
+        evidence=(
+            f"{nothing.sum()} of {depth.size} pixels show no surface. Their depth is "
+            f"{depth[nothing].min():.6f} m with `far` at {camera.far:g} m; `depth < far` keeps "
+            f"{kept.sum()} of them. Back-projected, they are up to {heights[nothing].max():.1f} m "
+            "above the floor."
+        ),
+    )

@@ -1,0 +1,142 @@
+"""Reaches of L05: ask for joint positions, accept or refuse them, command them."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim import franka, mujoco_kinematics
+from robo_genesis.sim.arm_kinematics import ARM, accepted, distances
+from robo_genesis.sim.joint_control import ControlCase, assign_postures, run_case
+from robo_genesis.sim.joints import JointMap
+from robo_genesis.sim.kinematics import IkAnswer, IkSettings, solve_ik
+
+END_EFFECTOR = "hand"
+MOVED = franka.JOINT_NAMES[:ARM]
+"""The joints that the solver may move."""
+
+
+class NotAccepted(ValueError):  # noqa: N818 - read aloud: not accepted
+    """The solver's answer is not finite or too far from the target; nothing was commanded."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReachCase:
+    """A target of the hand, the start, and the controller that brings the arm there.
+
+    `position` (3,) [m] and `quat` (4,) are in the world; the other arrays have one entry for each
+    joint: `q_start` [rad or m], `kp` [N·m/rad or N/m], `kv` [N·m·s/rad or N·s/m], `effort_limit`
+    [N·m or N]. With `compensated`, each arm joint's command is gravity / KP beyond the answer.
+    """
+
+    position: FloatArray
+    quat: FloatArray
+    q_start: FloatArray
+    kp: FloatArray
+    kv: FloatArray
+    effort_limit: FloatArray
+    settings: IkSettings
+    steps: int
+    compensated: bool = False
+    dt: float = DT
+    substeps: int = SUBSTEPS
+    seed: int = SEED
+
+    def commanding(self, q_target: FloatArray) -> ControlCase:
+        """Return the control case that commands joint positions (d,) [rad or m]."""
+        return ControlCase(
+            self.q_start, q_target, self.kp, self.kv, self.effort_limit,
+            self.steps, self.dt, self.substeps, self.seed,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class SolveCase:
+    """Many questions to the solver: target k with start k. The answers are assigned, not commanded.
+
+    `positions` (m, 3) [m] and `quat` (4,) are in the world; `starts` (m, d) [rad or m].
+    """
+
+    positions: FloatArray
+    quat: FloatArray
+    starts: FloatArray
+    settings: IkSettings
+    dt: float = DT
+    substeps: int = SUBSTEPS
+    seed: int = SEED
+
+    @property
+    def steps(self) -> int:
+        """Number of questions m."""
+        return len(self.positions)
+
+    @property
+    def start(self) -> ControlCase:
+        """The settings from which the answers are assigned: those of the course, at its start."""
+        return ControlCase(
+            franka.Q_START, franka.Q_START, franka.KP_BASELINE, franka.KV_BASELINE,
+            franka.EFFORT_LIMIT, self.steps, self.dt, self.substeps, self.seed,
+        )  # fmt: skip
+
+
+def ask(robot: Any, joints: JointMap, case: ReachCase) -> IkAnswer:
+    """Return the engine's answer for the target of a case; the fingers stay at its start."""
+    return solve_ik(
+        robot, joints, END_EFFECTOR, case.position, case.quat, case.q_start, MOVED, case.settings
+    )
+
+
+def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:
+    """Return the control case that commands an answer.
+
+    Raises:
+        NotAccepted: the answer is not finite, or a residual is beyond its tolerance; the message
+            gives both residuals and both tolerances.
+    """
+    settings = case.settings
+    limits = settings.position_tolerance, settings.rotation_tolerance
+    if not accepted(answer.q, answer.error, *limits):
+        apart, angle = distances(answer.error)
+        raise NotAccepted(
+            f"The residual is {apart:.3g} m and {angle:.3g} rad, accepted are {limits[0]:g} m and "
+            f"{limits[1]:g} rad with finite joint positions. Nothing is commanded: choose another "
+            "target, or another start of the solver."
+        )
+    q_target = answer.q.astype(np.float64)
+    q_target[ARM:] = case.q_start[ARM:]
+    if case.compensated:
+        q_target[:ARM] += (mujoco_kinematics.gravity_effort(q_target) / case.kp)[:ARM]
+    return case.commanding(q_target)
+
+
+def reach(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Trace:
+    """Ask for joint positions, and command them if they are accepted.
+
+    Returns:
+        The run, whose target is the command.
+
+    Raises:
+        NotAccepted: the engine's answer is refused; no command was sent.
+    """
+    return run_case(scene, robot, joints, control_case(case, ask(robot, joints, case)))
+
+
+def solve_all(
+    scene: Any, robot: Any, joints: JointMap, case: SolveCase
+) -> tuple[Trace, FloatArray]:
+    """Ask all questions of a case, then assign each answer and read where the links are.
+
+    Returns:
+        A trace of the start and the m answers, without steps, and the residuals (m, 6) that the
+        engine reported [m and rad].
+    """
+    questions = zip(case.positions, case.starts, strict=True)
+    answers = [
+        solve_ik(robot, joints, END_EFFECTOR, position, case.quat, start, MOVED, case.settings)
+        for position, start in questions
+    ]
+    postures = np.stack([answer.q for answer in answers]).astype(np.float64)
+    trace = assign_postures(scene, robot, joints, case.start, postures)
+    return trace, np.stack([answer.error for answer in answers])

@@ -1,0 +1,178 @@
+"""Specification of lesson L05: targets, solver settings, controllers, predictions and tolerances.
+
+Pages, checks, verification and tests read the experiment here. The module is data and computes
+nothing. `parameters()` has the values that decide what runs; all other values only judge.
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict, replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import CAMERA, FloatArray
+from robo_genesis.lessons.l05.run import ReachCase, SolveCase
+from robo_genesis.sim import franka
+from robo_genesis.sim.kinematics import IkSettings
+
+LESSON = "l05"
+MINIMUM_HARDWARE = "cpu"
+
+EXPECTED_MODEL = franka.MODEL_COUNTS
+
+ARM_LIMITS = (
+    franka.per_joint(-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0, 0)[:7],
+    franka.per_joint(2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973, 0.04, 0.04)[:7],
+)
+"""Lower and upper limits (7,) of the arm's joints in the model file [rad]."""
+
+IK = IkSettings()
+"""Tolerances 0.5 mm and 5 mrad; up to 50 starts of 20 iterations each."""
+
+ONE_START = replace(IK, samples=1, iterations=100)
+"""The same without starts of the engine's choice, so that an answer depends on its start alone."""
+
+
+def fixed(*values: float) -> FloatArray:
+    """Return a read-only array of the values."""
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array
+
+
+TARGET = fixed(0.45, 0.0, 0.35)
+"""Target of the hand's origin in the world [m]."""
+
+DOWN = fixed(0.0, 1.0, 0.0, 0.0)
+"""Target orientation (w, x, y, z): half a turn about x, so the fingers point down."""
+
+BEYOND_REACH = fixed(2.0, 0.0, 2.0)
+"""A target that no posture of the arm comes near to [m]."""
+
+BASELINE = ReachCase(
+    position=TARGET,
+    quat=DOWN,
+    q_start=franka.Q_START,
+    kp=franka.KP_BASELINE,
+    kv=franka.KV_BASELINE,
+    effort_limit=franka.EFFORT_LIMIT,
+    settings=IK,
+    steps=180,
+)
+CASES = {
+    "baseline": BASELINE,
+    "stiff": replace(BASELINE, kp=2 * franka.KP_BASELINE),
+    "compensated": replace(BASELINE, compensated=True),
+}
+CASE_MARKS = {"stiff": "first", "compensated": "second"}
+"""The mark of each case in the palette."""
+
+LABELS = {"baseline": "baseline", "stiff": "KP doubled", "compensated": "gravity compensated"}
+"""Words of a reader for runs."""
+
+MARKER_RADIUS = 0.03
+"""Radius of the sphere that marks the target [m]; nothing collides with it."""
+
+VIEWED = "world"
+"""The recorded view of the camera, before the first step."""
+
+FOV = 42.0
+"""Vertical field of view of the lesson's camera [degree]."""
+
+VIEW = CAMERA | {
+    "pos": (1.5, -1.1, 1.0), "lookat": (0.4, 0.0, 0.3), "fov": FOV, "near": 0.1, "far": 20.0,
+}  # fmt: skip
+"""The lesson's camera: the robot, the marker and the ground."""
+
+SEGMENTS = ("plane", "hand", "marker")
+"""What is looked up in the segmentation."""
+
+RELATIONS = (
+    (("baseline", "stiff"), "final_distance", "lower", 1e-3),
+    (("baseline", "compensated"), "final_distance", "lower", 1e-3),
+)
+"""Written down before the runs: how the second case of a pair compares with the first [m]."""
+
+GRID_X, GRID_Y, GRID_Z = (
+    tuple(np.round(np.linspace(*ends), 3).tolist())
+    for ends in ((0.1, 0.9, 9), (-0.6, 0.6, 7), (0.05, 0.95, 7))
+)
+HEIGHT = 0.35
+"""Height of the horizontal plane of the reach map [m]; the vertical plane is y = 0."""
+
+PLANES = {
+    "vertical": fixed(*(v for z in GRID_Z for x in GRID_X for v in (x, 0, z))).reshape(-1, 3),
+    "horizontal": fixed(*(v for y in GRID_Y for x in GRID_X for v in (x, y, HEIGHT))).reshape(
+        -1, 3
+    ),
+}
+"""Targets (63, 3) of the reach map, row by row [m]."""
+
+REACH_MAP = {
+    name: SolveCase(points, DOWN, np.tile(franka.Q_START, (len(points), 1)), ONE_START)
+    for name, points in PLANES.items()
+}
+
+RESTARTS, RESTART_SEED = 100, 0
+RANDOM_STARTS = np.hstack([
+    np.random.default_rng(RESTART_SEED).uniform(*ARM_LIMITS, (RESTARTS, 7)),
+    np.tile(franka.Q_START[7:], (RESTARTS, 1)),
+])  # fmt: skip
+"""Starts (100, 9) of the solver, uniform within the limits [rad or m]."""
+
+MANY_STARTS = SolveCase(np.tile(TARGET, (RESTARTS, 1)), DOWN, RANDOM_STARTS, ONE_START)
+
+UNREACHABLE = SolveCase(BEYOND_REACH[None], DOWN, franka.Q_START[None], IK)
+
+QUESTIONS = REACH_MAP | {"many_starts": MANY_STARTS, "unreachable": UNREACHABLE}
+"""Questions to the solver beyond those of the lab."""
+
+RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
+"""By unit: values that differ by no more than this are called equal, the noise floor."""
+
+TOLERANCES = {
+    "m": (1e-5, 1e-3),
+    "rad": (1e-5, 1e-3),
+    "rad/s": (1e-3, 1e-3),
+    "N·m": (1e-2, 1e-3),
+    "N": (1e-2, 1e-3),
+    "pixel": (1e-6, 0.0),
+    "1": (1e-6, 0.0),
+    "link_quat_wxyz": (1e-4, 0.0),
+}
+"""By unit, or by array: (atol, rtol) of a value between engine versions or backends."""
+
+REACHED = (0.02, 0.05)
+"""The hand counts as arrived within these distances of its target [m] and [rad]."""
+
+SAME_POSE = (5e-6, 5e-6)
+"""Largest difference of a link's pose between two computations, one of them in float32 [m, rad]."""
+
+SAG_SHARE = 0.02
+"""Share of the final error that gravity, KP and the Jacobian may leave unexplained."""
+
+ANGLE_WEIGHT = 0.5
+"""Metres that count as much as one radian, where the nearest pose is sought."""
+
+BEYOND_NEAREST = 0.01
+"""The engine's answer for the target beyond reach is farther than the nearest pose by more [m]."""
+
+
+def case_parameters(cases: Mapping[str, ReachCase | SolveCase]) -> dict[str, dict[str, Any]]:
+    """Return every field of every case as JSON values."""
+    return {
+        name: {key: np.asarray(value).tolist() for key, value in asdict(case).items()}
+        for name, case in cases.items()
+    }
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input of the lab as JSON values, for the evidence key."""
+    return {
+        "joints": list(franka.JOINT_NAMES),
+        "model": franka.FRANKA_MJCF,
+        "counted": list(EXPECTED_MODEL),
+        "cases": case_parameters(CASES),
+        "marker": MARKER_RADIUS,
+        "view": {name: value for name, value in VIEW.items() if name != "GUI"},
+    }

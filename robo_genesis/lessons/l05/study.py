@@ -1,0 +1,246 @@
+"""What L05 computes from its runs and answers: sag, self-motion, families of solutions, nearest."""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l05 import spec
+from robo_genesis.lessons.l05.metrics import ReachMetrics, measured_hand, reach_metrics
+from robo_genesis.lessons.l05.run import END_EFFECTOR, ReachCase, SolveCase, ask
+from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim import kinematics as engine
+from robo_genesis.sim import mujoco_kinematics
+from robo_genesis.sim.arm_kinematics import ARM, Pose
+from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.joint_control import reset
+from robo_genesis.sim.joints import JointMap, resolve_joints, to_numpy
+
+GROUP = "ik"
+"""Group of a bundle's metrics: what the engine's solver reported, with units."""
+
+IK_READINGS = {"residual_m": "m", "residual_rad": "rad", "jacobian_difference": "m"}
+"""Residuals of the baseline's answer, and the largest difference of the engine's Jacobian from that
+of MuJoCo, in m/rad or without a unit."""
+
+REPEAT_GROUP = "ik_repeated"
+"""Group of counts: entries of q and residual that differ between two equal questions."""
+
+REPEATED = ("entries_that_differ",)
+
+
+def measure(trace: Trace, case: ReachCase) -> ReachMetrics:
+    """Return the distances of a reach."""
+    return reach_metrics(trace, case.position, case.quat)
+
+
+def describe(page: Any, robot: Any) -> JointMap:
+    """Give a page the counts, links and joints of the robot, and return its joints."""
+    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
+    page.readings["model"] = dict(zip(spec.EXPECTED_MODEL, counted, strict=True))
+    page.links = [link.name for link in robot.links]
+    page.joints = resolve_joints(robot, JOINT_NAMES)
+    return page.joints
+
+
+def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
+    """Give a page what the solver reports of the baseline's question; this resets the scene."""
+    reset(scene, robot, joints, spec.UNREACHABLE.start)
+    page.readings[GROUP] = read_solver(robot, joints, spec.BASELINE)
+    page.readings[REPEAT_GROUP] = read_repeat(robot, joints, spec.BASELINE)
+
+
+def read_solver(robot: Any, joints: JointMap, case: ReachCase) -> dict[str, float]:
+    """Ask the engine for a case, and compare its Jacobian with MuJoCo's at the state now."""
+    apart, angle = kinematics.distances(ask(robot, joints, case).error)
+    dofs = joints.dofs_idx_local.tolist()
+    q = to_numpy(robot.get_dofs_position(dofs)).astype(np.float64)
+    rows = engine.jacobian(robot, joints, END_EFFECTOR)
+    other = mujoco_kinematics.jacobian(q, END_EFFECTOR)
+    return {
+        "residual_m": float(apart),
+        "residual_rad": float(angle),
+        "jacobian_difference": float(np.abs(rows - other).max()),
+    }
+
+
+def read_repeat(robot: Any, joints: JointMap, case: ReachCase) -> dict[str, int]:
+    """Ask the engine twice for a case, and count the entries that differ."""
+    first, second = ask(robot, joints, case), ask(robot, joints, case)
+    differ = (first.q != second.q).sum() + (first.error != second.error).sum()
+    return dict.fromkeys(REPEATED, int(differ))
+
+
+def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
+    """Return the motion (6,) of the hand [m and rad] by which gravity moves it from command `q`.
+
+    Each joint stops where KP times its position error equals gravity, so it rests gravity / KP
+    below its command. The Jacobian turns these small angles into a motion of the hand.
+
+    Args:
+        q: (9,) command [rad or m].
+        kp: (9,) position gains [N·m/rad or N/m].
+    """
+    angles = (mujoco_kinematics.gravity_effort(q) / kp)[:ARM]
+    return np.asarray(-kinematics.jacobian(q) @ angles)
+
+
+def measured_sag(trace: Trace) -> FloatArray:
+    """Return the motion (6,) of the hand [m and rad] from the command's pose to its last one."""
+    command = kinematics.hand_pose(trace.target[-1])
+    return kinematics.pose_error(measured_hand(trace, -1), command)
+
+
+def targets(case: SolveCase) -> Pose:
+    """Return the targets of all questions, (m, 3) and (m, 4)."""
+    return Pose(case.positions, np.tile(case.quat, (case.steps, 1)))
+
+
+def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
+    """Return what is known of each answer, from the measured poses of the hand.
+
+    Returns:
+        Arrays (m,): `position` [m] and `rotation` [rad] residual, `accepted`, `manipulability`,
+        `margin` of the joint that is nearest to a limit [rad], and `from_start`, the largest angle
+        between answer and start of the run [rad].
+    """
+    hand = [measured_hand(trace, k) for k in range(1, case.steps + 1)]
+    poses = Pose(np.stack([h.position for h in hand]), np.stack([h.quat for h in hand]))
+    error = kinematics.pose_error(targets(case), poses)
+    q = trace.q[1:].astype(np.float64)
+    apart, angle = kinematics.distances(error)
+    limits = case.settings.position_tolerance, case.settings.rotation_tolerance
+    accepted = kinematics.accepted(q, error, *limits)
+    found = {"position": apart, "rotation": angle, "accepted": accepted}
+    return found | qualities(q[:, :ARM], trace.q[0, :ARM])
+
+
+def qualities(q: FloatArray, start: FloatArray) -> dict[str, FloatArray]:
+    """Return what can decide between postures (m, 7), given the start (7,) of a run [rad].
+
+    Returns:
+        `manipulability`, `margin` and `from_start` as `answers` does.
+    """
+    return {
+        "manipulability": kinematics.manipulability(kinematics.jacobian(q)),
+        "margin": kinematics.limit_margin(q, *spec.ARM_LIMITS),
+        "from_start": np.abs(q - start).max(axis=1),
+    }
+
+
+def self_motion(q: FloatArray, target: Pose, step: float = 0.05) -> FloatArray:
+    """Return postures (n, 7) [rad] that keep the hand at a target, on the curve through `q` (7,).
+
+    Seven joints meet six conditions, so a solution is a point of a curve. From `q` the curve is
+    followed along the null vector of the Jacobian in both directions, up to a joint limit.
+
+    Args:
+        q: a solution [rad].
+        target: of the hand.
+        step: distance of neighbours on the curve [rad].
+    """
+    there, back = (one_way(q, sign * null_vector(q), target, step) for sign in (1.0, -1.0))
+    return np.array([*back[::-1], q, *there])
+
+
+def one_way(q: FloatArray, along: FloatArray, target: Pose, step: float) -> list[FloatArray]:
+    """Return the postures beyond `q` in direction `along` (7,); see `self_motion`."""
+    way: list[FloatArray] = []
+    while len(way) < LONGEST_CURVE:
+        q = q + step * along
+        error = kinematics.pose_error(target, kinematics.hand_pose(q))
+        q = q + kinematics.damped_step(kinematics.jacobian(q), error, 1e-4)
+        if kinematics.limit_margin(q, *spec.ARM_LIMITS) < 0:
+            break
+        way.append(q)
+        null = null_vector(q)
+        along = null if null @ along > 0 else -null
+    return way
+
+
+LONGEST_CURVE = 400
+"""Most postures of a self-motion in one direction."""
+
+
+def null_vector(q: FloatArray) -> FloatArray:
+    """Return the direction (7,) of joint angles that leaves the hand at rest, of length 1."""
+    return np.asarray(np.linalg.svd(kinematics.jacobian(q))[2][-1])
+
+
+def families(solutions: FloatArray, target: Pose) -> list[tuple[FloatArray, list[int]]]:
+    """Group solutions that a self-motion connects without moving the hand.
+
+    Args:
+        solutions: (n, 7) accepted answers for one target [rad].
+        target: of the hand.
+
+    Returns:
+        The curve (m, 7) of each family and the indices of its solutions, the largest family first.
+    """
+    left, found = list(range(len(solutions))), []
+    while left:
+        curve = self_motion(solutions[left[0]], target)
+        gaps = np.linalg.norm(solutions[left][:, None] - curve, axis=-1).min(axis=1)
+        inside = [n for n, gap in zip(left, gaps, strict=True) if gap <= SAME_CURVE]
+        found.append((curve, inside))
+        left = [n for n in left if n not in inside]
+    return sorted(found, key=lambda family: -len(family[1]))
+
+
+SAME_CURVE = 0.1
+"""A solution within this distance of a curve belongs to it [rad]: two steps along the curve, of
+which one may be missing at a joint limit."""
+
+
+def clusters(solutions: FloatArray, threshold: float) -> int:
+    """Return how many groups of postures (n, 7) are farther apart than a threshold [rad].
+
+    Two postures are in one group if a chain of others connects them whose largest joint difference
+    from one to the next is within the threshold.
+    """
+    near = np.abs(solutions[:, None] - solutions).max(axis=-1) <= threshold
+    groups = np.arange(len(solutions))
+    for _ in solutions:
+        groups = np.where(near, groups, len(groups)).min(axis=1)
+    return len(set(groups.tolist()))
+
+
+def solution_families(run: Experiment) -> list[tuple[FloatArray, list[int]]]:
+    """Return the curve (m, 7) of each family of answers for the target [rad], the largest first.
+
+    With it are the numbers of its answers, from 0, in the order of joint 1.
+    """
+    trace, case = run.traces["many_starts"], spec.MANY_STARTS
+    numbers = np.flatnonzero(answers(trace, case)["accepted"])
+    q = trace.q[1 + numbers, :ARM].astype(float)
+    found = families(q, Pose(spec.TARGET, spec.DOWN))
+    return [
+        (curve, [int(numbers[k]) for k in sorted(inside, key=lambda k: float(q[k, 0]))])
+        for curve, inside in found
+    ]
+
+
+def weighted(apart: FloatArray, angle: FloatArray) -> FloatArray:
+    """Return one distance (…) [m] of distances (…) [m] and angles (…) [rad] from a target."""
+    return np.hypot(apart, spec.ANGLE_WEIGHT * angle)
+
+
+@cache
+def nearest() -> tuple[FloatArray, FloatArray]:
+    """Return posture (7,) [rad] and pose error (6,) nearest to the target beyond reach.
+
+    The nearest has the smallest `weighted` distance of all that damped least squares reaches from
+    the random starts.
+    """
+    weights = np.repeat([1.0, spec.ANGLE_WEIGHT], 3)
+    target = Pose(spec.BEYOND_REACH, spec.DOWN)
+    q = kinematics.solve(
+        target, spec.RANDOM_STARTS[:, :ARM], *spec.ARM_LIMITS,
+        iterations=400, damping=0.1, largest=0.2, weights=weights,
+    )  # fmt: skip
+    error = kinematics.pose_error(target, kinematics.hand_pose(q))
+    best = int(weighted(*kinematics.distances(error)).argmin())
+    return q[best], error[best]

@@ -1,0 +1,56 @@
+"""Reaches of L05 without Genesis: answers by damped least squares in NumPy, runs by MuJoCo."""
+
+import numpy as np
+import pytest
+from robot_runs import driven
+
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l05 import SOLUTIONS, spec
+from robo_genesis.lessons.l05.run import control_case
+from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim import mujoco_kinematics
+from robo_genesis.sim.franka import Q_START
+from robo_genesis.sim.joint_control import assemble
+from robo_genesis.sim.kinematics import IkAnswer
+
+LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
+DOWN = kinematics.Pose(spec.TARGET, spec.DOWN)
+
+
+def answer(position, iterations=100) -> IkAnswer:
+    """Return what a solver like the engine's answers from the course's start."""
+    target = kinematics.Pose(np.asarray(position), spec.DOWN)
+    q = kinematics.solve(target, Q_START[:7], *spec.ARM_LIMITS, iterations=iterations, damping=0.01)
+    error = kinematics.pose_error(target, kinematics.hand_pose(q))
+    return IkAnswer(np.float32([*q, *Q_START[7:]]), np.float32(error))
+
+
+def assigned(case, postures):
+    """Return the record of assigned postures (m, 9)."""
+    q = np.float32(np.vstack([Q_START, postures]))
+    poses = (np.float32(part) for part in mujoco_kinematics.link_poses(q, LINKS))
+    zero = np.zeros(9, np.float32)
+    steps = [(zero, zero, zero)] * case.steps
+    states = list(zip(q, *poses, strict=True))
+    return assemble(case.start, states, steps, list(postures), zero, zero, case.start.effort_limit)
+
+
+@pytest.fixture(scope="session")
+def reaches(joints) -> Experiment:
+    """A run of the page about many solutions that passes its checks."""
+    found = answer(spec.TARGET)
+    runs = {n: driven(control_case(case, found), LINKS) for n, case in spec.CASES.items()}
+    refused = answer(spec.BEYOND_REACH, 20).q.astype(float)[None]
+    apart, angle = kinematics.distances(found.error)
+    solver = {"residual_m": float(apart), "residual_rad": float(angle), "jacobian_difference": 0.0}
+    return Experiment(
+        page=SOLUTIONS,
+        traces=runs | {"unreachable": assigned(spec.UNREACHABLE, refused)},
+        links=LINKS,
+        readings={
+            "model": spec.EXPECTED_MODEL, "ik": solver, "ik_repeated": {"entries_that_differ": 0},
+        },
+        frames={},
+        rendered=False,
+        joints=joints,
+    )  # fmt: skip

@@ -1,0 +1,142 @@
+"""The named checks pass for plausible runs, and each fails when one input changes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l05 import plausibility, spec, study
+from robo_genesis.lessons.l05.metrics import HAND, reach_metrics
+from robo_genesis.lessons.l05.run import NotAccepted, control_case
+from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim.kinematics import IkAnswer
+
+
+def failed(run):
+    return {check.name for check in run.outcomes() if not check.passed}
+
+
+def changed(run, name, **arrays):
+    traces = dict(run.traces)
+    traces[name] = replace(traces[name], **arrays)
+    return replace(run, traces=traces)
+
+
+def with_reading(run, group, name, value):
+    readings = {key: dict(values) for key, values in run.readings.items()}
+    readings[group][name] = value
+    return replace(run, readings=readings)
+
+
+def moved_hand(trace, by):
+    places = np.array(trace.link_pos)
+    places[:, HAND] += by
+    return places
+
+
+def lower_gain(run: Experiment) -> Experiment:
+    """Explain the baseline by another gain than its own."""
+    trace = run.traces["stiff"]
+    return changed(run, "baseline", q=trace.q, link_pos=trace.link_pos, link_quat=trace.link_quat)
+
+
+def with_answer(run, position, quat):
+    """Let the engine's answer for the target beyond reach put the hand into a pose."""
+    trace = run.traces["unreachable"]
+    places, turns = np.array(trace.link_pos), np.array(trace.link_quat)
+    places[1:, HAND], turns[1:, HAND] = position, quat
+    return changed(run, "unreachable", link_pos=places, link_quat=turns)
+
+
+CHANGES = {
+    "mapping": lambda run: replace(run, links=(*run.links[:8], "flange", *run.links[9:])),
+    "stamps": lambda run: changed(run, "baseline", t=run.traces["baseline"].t * 2),
+    "acceptance": lambda run: with_reading(run, "ik", "residual_m", 6e-4),
+    "forward_kinematics": lambda run: changed(
+        run, "stiff", link_pos=moved_hand(run.traces["stiff"], 1e-5)
+    ),
+    "second_engine": lambda run: with_reading(run, "ik", "jacobian_difference", 1e-4),
+    "arrived": lambda run: changed(
+        run, "stiff", link_pos=moved_hand(run.traces["stiff"], 0.05)
+    ),
+    "sag_explains": lower_gain,
+    "repeatable": lambda run: with_reading(run, "ik_repeated", "entries_that_differ", 1),
+    "unreachable_refused": lambda run: with_answer(run, spec.BEYOND_REACH, spec.DOWN),
+    "nearest_is_nearer": lambda run: with_answer(
+        run, *kinematics.hand_pose(study.nearest()[0])
+    ),
+}  # fmt: skip
+
+
+def test_plausible_runs_pass(reaches):
+    assert not failed(reaches)
+    plausibility.require_possible_runs(replace(reaches, page=reaches_page(reaches)))
+
+
+def reaches_page(run):
+    """Return the page with the recorded runs alone."""
+    return replace(run.page, runs={name: run.page.runs[name] for name in run.traces})
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_check_fails_when_its_input_changes(reaches, name):
+    assert name in failed(CHANGES[name](reaches))
+
+
+def test_each_check_of_the_page_has_such_a_change(reaches):
+    assert {check.__name__ for check in reaches.page.checks} == CHANGES.keys()
+
+
+def test_a_link_out_of_place_is_refused(reaches):
+    run = changed(reaches, "unreachable", link_pos=moved_hand(reaches.traces["unreachable"], 1e-4))
+    with pytest.raises(BundleRefused, match="link_pos"):
+        plausibility.require_possible_runs(replace(run, page=reaches_page(run)))
+
+
+def test_an_answer_that_is_not_accepted_is_not_commanded():
+    q = np.float32(spec.BASELINE.q_start)
+    with pytest.raises(NotAccepted, match=r"The residual is 0\.001 m .* Nothing is commanded"):
+        control_case(spec.BASELINE, IkAnswer(q, np.float32([1e-3, 0, 0, 0, 0, 0])))
+    q[0] = np.nan
+    with pytest.raises(NotAccepted, match="finite joint positions"):
+        control_case(spec.BASELINE, IkAnswer(q, np.zeros(6, np.float32)))
+
+
+def test_the_metrics_of_a_run_are_three_distances(reaches):
+    for name in spec.CASES:
+        m = reaches.metrics[name]
+        assert m.final_distance <= m.command_distance + m.tracking_distance
+        assert m.final_speed < 1e-3
+    assert reaches.metrics["baseline"].tracking_distance == pytest.approx(
+        np.linalg.norm(study.measured_sag(reaches.traces["baseline"])[:3])
+    )
+    assert reaches.metrics["compensated"].final_distance < 5e-4
+    trace = reaches.traces["baseline"]
+    changing = replace(trace, target=trace.target + np.linspace(0, 0.1, trace.steps)[:, None])
+    with pytest.raises(ValueError, match="The command changes"):
+        reach_metrics(changing, spec.TARGET, spec.DOWN)
+    few = replace(trace, link_pos=trace.link_pos[:, :3], link_quat=trace.link_quat[:, :3])
+    with pytest.raises(ValueError, match="3 links, expected the 11"):
+        reach_metrics(few, spec.TARGET, spec.DOWN)
+
+
+def test_twice_the_gain_halves_the_sag():
+    q = np.array(spec.BASELINE.q_start)
+    one, other = (study.sag(q, factor * spec.BASELINE.kp) for factor in (1, 2))
+    assert other == pytest.approx(one / 2)
+    assert one[2] < 0  # the hand hangs below its command
+
+
+def test_a_self_motion_keeps_the_hand_in_place_and_groups_solutions(reaches):
+    target = kinematics.Pose(spec.TARGET, spec.DOWN)
+    q = reaches.traces["baseline"].target[0, :7]
+    curve = study.self_motion(q, target)
+    error = kinematics.pose_error(target, kinematics.hand_pose(curve))
+    assert np.abs(error).max() < 1e-3
+    assert np.linalg.norm(np.diff(curve, axis=0), axis=1).max() < 0.1
+    assert np.ptp(curve, axis=0).max() > 0.5
+    ((of_curve, inside),) = study.families(curve[::5], target)
+    assert len(inside) == len(curve[::5])
+    assert len(of_curve) > 10

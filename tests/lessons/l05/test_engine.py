@@ -1,0 +1,80 @@
+"""Questions, answers and reaches in the real engine."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l05 import LAB, checks, spec, study
+from robo_genesis.lessons.l05.run import NotAccepted, reach, solve_all
+from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim.joint_control import reset
+from robo_genesis.sim.kinematics import link_poses_at
+
+pytestmark = pytest.mark.engine
+
+CHAIN = [name for name, *_ in kinematics.CHAIN]
+
+
+@pytest.fixture(scope="module")
+def measured(lab):
+    """The runs and readings of the lab, without a camera."""
+    scene, robot, joints = lab.scene, lab.franka, lab.joints
+    traces = {n: reach(scene, robot, joints, case) for n, case in spec.CASES.items()}
+    reset(scene, robot, joints, spec.UNREACHABLE.start)
+    readings = {
+        "model": spec.EXPECTED_MODEL,
+        study.GROUP: study.read_solver(robot, joints, spec.BASELINE),
+        study.REPEAT_GROUP: study.read_repeat(robot, joints, spec.BASELINE),
+    }
+    links = [link.name for link in robot.links]
+    return Experiment(LAB, traces, links, readings, {}, rendered=False, joints=joints)
+
+
+def test_the_lab_passes_its_checks(measured):
+    assert [check.detail for check in measured.outcomes() if not check.passed] == []
+
+
+def test_a_second_run_is_equal_to_the_last_bit(lab, measured):
+    again = reach(lab.scene, lab.franka, lab.joints, spec.BASELINE)
+    first = measured.traces["baseline"]
+    assert all((getattr(again, f.name) == getattr(first, f.name)).all() for f in fields(Trace))
+
+
+def test_a_target_beyond_reach_is_refused_and_nothing_is_commanded(lab):
+    before = lab.franka.get_dofs_position()
+    with pytest.raises(NotAccepted, match="Nothing is commanded"):
+        reach(lab.scene, lab.franka, lab.joints, replace(spec.BASELINE, position=spec.BEYOND_REACH))
+    assert (lab.franka.get_dofs_position() == before).all()
+
+
+def test_poses_are_read_without_a_change_of_the_state(lab):
+    before = lab.franka.get_qpos()
+    q = spec.RANDOM_STARTS[3]
+    position, quat = link_poses_at(lab.franka, lab.joints, CHAIN, q)
+    error = kinematics.pose_error(kinematics.Pose(position, quat), kinematics.link_poses(q))
+    assert np.abs(error).max() < spec.SAME_POSE[0]
+    assert (lab.franka.get_qpos() == before).all()
+
+
+def test_answers_depend_on_their_start_alone_and_are_measured_where_the_engine_says(lab):
+    case = replace(
+        spec.MANY_STARTS, positions=spec.MANY_STARTS.positions[:6], starts=spec.RANDOM_STARTS[:6]
+    )
+    trace, errors = solve_all(lab.scene, lab.franka, lab.joints, case)
+    again, _ = solve_all(lab.scene, lab.franka, lab.joints, case)
+    assert (trace.q == again.q).all()
+    found = study.answers(trace, case)
+    apart, angle = kinematics.distances(errors)
+    assert found["position"] == pytest.approx(apart, abs=spec.SAME_POSE[0])
+    assert found["rotation"] == pytest.approx(angle, abs=1e-5)
+    assert found["accepted"].any()
+
+
+def test_the_check_of_a_target_beyond_reach_holds_for_the_engines_answer(lab, measured):
+    trace, _ = solve_all(lab.scene, lab.franka, lab.joints, spec.UNREACHABLE)
+    run = replace(measured, traces={**measured.traces, "unreachable": trace})
+    for check in checks.SOLUTIONS:
+        assert all(finding.passed for finding in check(run)), [f.problem for f in check(run)]

@@ -1,0 +1,29 @@
+"""MuJoCo's Jacobian and gravity on the bare model agree with differences and with the full one."""
+
+import numpy as np
+import pytest
+
+from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.sim import mujoco_joints
+from robo_genesis.sim import mujoco_kinematics as of
+from robo_genesis.sim.franka import Q_START
+
+
+def test_the_jacobian_is_the_change_of_the_position():
+    rows, h = of.jacobian(Q_START, "hand"), 1e-6
+    for k in range(9):
+        ends = [Q_START + sign * h * np.eye(9)[k] for sign in (1, -1)]
+        position, _ = of.link_poses(np.stack(ends), ["hand"])
+        assert (position[0, 0] - position[1, 0]) / (2 * h) == pytest.approx(rows[:3, k], abs=1e-8)
+    assert (rows[:, 7:] == 0).all()  # the fingers move nothing behind them
+
+
+def test_gravity_is_that_of_the_model_with_actuators_whatever_was_asked_before():
+    expected = mujoco_joints.at_rest(l04.G1, Q_START)[1]
+    assert of.gravity_effort(Q_START) == pytest.approx(expected)
+    of.link_poses(np.ones((1, 9)), ["hand"])
+    assert of.gravity_effort(Q_START) == pytest.approx(expected)
+
+
+def test_links_are_those_of_the_robot():
+    assert {"link0", "hand", "left_finger"} <= of.link_names()
