@@ -74,7 +74,7 @@ def report(findings: Sequence[Finding], bench: Bench) -> str:
 
 
 def machine(bench: Bench) -> dict[str, str]:
-    """Return what a recorded run says of its machine too; without a started engine, less."""
+    """Return the facts that the manifest of a run has too; fewer if the engine did not start."""
     facts = {
         "engine": project.installed_version(project.ENGINE),
         "quadrants": project.installed_version("quadrants"),

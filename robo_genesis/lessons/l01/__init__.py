@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.declaration import Filmed, Lesson, Moving, on_demand
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
-from robo_genesis.lessons.l01 import checks, exercises, machine, spec, text
+from robo_genesis.lessons.l01 import checks, exercises, machine, mistakes, spec, text
 from robo_genesis.lessons.l01.metrics import FallMetrics, fall_metrics
 from robo_genesis.sim.plausibility.falling import require_falls
 from robo_genesis.sim.rigid_bodies import read_model, run_drop
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from robo_genesis.lessons.l01 import plots
 
 __all__ = [
-    "LAB", "LECTURE", "LESSON", "exercises", "floor", "machine", "plots", "read_model",
+    "LAB", "LECTURE", "LESSON", "exercises", "floor", "machine", "mistakes", "plots", "read_model",
     "read_shape", "run_drop", "spec", "text",
 ]  # fmt: skip
 

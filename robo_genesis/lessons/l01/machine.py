@@ -1,4 +1,4 @@
-"""The machine of a run: the doctor's steps, failures on purpose, and what a start costs.
+"""The machine of a run: the doctor's steps, and what a start costs.
 
 Each function starts a process of its own, because an engine starts once in a process.
 """
@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
-from robo_genesis.core.mistakes import Failure
 from robo_genesis.lessons.experiment import Readings, counts
 from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim import diagnosis
@@ -79,7 +78,7 @@ def examine(changed: Mapping[str, str] | None = None) -> dict[str, Any]:
     Raises:
         StartError: it printed no report.
     """
-    return json.loads(_output(["-m", "robo_genesis.doctor", "--json"], changed or {}))
+    return json.loads(run_python(["-m", "robo_genesis.doctor", "--json"], changed or {}))
 
 
 def passed(report: Mapping[str, Any]) -> dict[str, int]:
@@ -97,13 +96,21 @@ def measure_starts() -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder:
         kernels = project.engine_cache_environment(cache=Path(folder))
         for start in STARTS:
-            times = json.loads(_output(["-c", SCRIPT], kernels).splitlines()[-1])
+            times = json.loads(run_python(["-c", SCRIPT], kernels).splitlines()[-1])
             found |= {f"{start}_{part}": t for part, t in zip(PARTS, times, strict=True)}
     return found
 
 
-def _output(arguments: list[str], changed: Mapping[str, str]) -> str:
-    """Return what Python prints with these arguments, whatever its exit status."""
+def run_python(arguments: list[str], changed: Mapping[str, str]) -> str:
+    """Return what Python prints with these arguments, whatever its exit status.
+
+    Args:
+        arguments: of the interpreter.
+        changed: environment variables beside those of this process.
+
+    Raises:
+        StartError: it printed nothing.
+    """
     done = subprocess.run(
         [sys.executable, *arguments], env=os.environ | changed, capture_output=True, text=True,
         timeout=TIMEOUT, check=False,
@@ -112,43 +119,3 @@ def _output(arguments: list[str], changed: Mapping[str, str]) -> str:
         last = "\n".join(done.stderr.splitlines()[-10:])
         raise StartError(f"The process printed nothing. It ended with:\n{last}")
     return done.stdout
-
-
-def broken_step(name: str, report: Mapping[str, Any], step: str) -> Failure:
-    """Return a failure on purpose by the step at which the doctor stopped."""
-    found = next(s for s in report["steps"] if s["step"] == step)["found"]
-    return Failure(
-        name,
-        shown=report["broken"] == step,
-        evidence=f"The doctor stops at step {STEPS.index(step) + 1}, `{step}`: {found}",
-    )
-
-
-def wrong_version() -> Failure:
-    """Run the doctor where the installed engine has another version than the pinned one."""
-    with tempfile.TemporaryDirectory() as folder:
-        metadata = Path(folder, "genesis_world-0.0.1.dist-info", "METADATA")
-        metadata.parent.mkdir()
-        metadata.write_text("Metadata-Version: 2.1\nName: genesis-world\nVersion: 0.0.1\n")
-        first = os.pathsep.join([folder, os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep)
-        return broken_step("wrong_version", examine({"PYTHONPATH": first}), "version")
-
-
-def no_egl() -> Failure:
-    """Run the doctor where a file that is no library stands in the place of EGL."""
-    with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "libEGL.so.1").write_text("not a library")
-        return broken_step("no_egl", examine({"LD_LIBRARY_PATH": folder}), "libraries")
-
-
-def absent_backend() -> Failure:
-    """Ask the engine for a processor that this machine does not have."""
-    call = 'import genesis as gs\ntry:\n    gs.init(backend=gs.metal, logging_level="error")\n'
-    call += 'except Exception as error:\n    print(type(error).__name__, error, sep=": ")\n'
-    said = _output(["-c", f"import sys\n{call}else:\n    print(gs.backend.name)"], {}).strip()
-    line = said.splitlines()[-1]
-    return Failure(
-        "absent_backend",
-        shown="Exception" in line or "Error" in line,
-        evidence=f"`gs.init(backend=gs.metal)` on this machine, in a process of its own: `{line}`",
-    )

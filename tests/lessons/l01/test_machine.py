@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from robo_genesis.lessons.l01 import machine
+from robo_genesis.lessons.l01 import machine, mistakes
 
 
 def report(broken=None):
@@ -24,16 +24,16 @@ def test_steps_that_did_not_run_have_not_passed():
 
 
 def test_a_failure_is_shown_only_by_the_step_that_it_should_break():
-    found = machine.broken_step("no_egl", report("libraries"), "libraries")
+    found = mistakes.broken_step("no_egl", report("libraries"), "libraries")
     assert found.shown
     assert found.evidence == "The doctor stops at step 2, `libraries`: about libraries"
-    assert not machine.broken_step("no_egl", report("version"), "libraries").shown
-    assert not machine.broken_step("no_egl", report(), "libraries").shown
+    assert not mistakes.broken_step("no_egl", report("version"), "libraries").shown
+    assert not mistakes.broken_step("no_egl", report(), "libraries").shown
 
 
 def test_a_process_without_output_is_an_error_with_its_last_lines():
     with pytest.raises(machine.StartError, match="NameError: name 'nothing' is not defined"):
-        machine._output(["-c", "nothing"], {})
+        machine.run_python(["-c", "nothing"], {})
 
 
 def test_both_starts_share_one_folder_of_kernels(monkeypatch):
@@ -43,7 +43,7 @@ def test_both_starts_share_one_folder_of_kernels(monkeypatch):
         seen.append(changed)
         return "a line of the engine\n" + json.dumps([1, 2, 3, 4, len(seen)])
 
-    monkeypatch.setattr(machine, "_output", output)
+    monkeypatch.setattr(machine, "run_python", output)
     found = machine.measure_starts()
     assert seen[0] == seen[1] != {}
     assert list(found) == [f"{start}_{part}" for start in machine.STARTS for part in machine.PARTS]
@@ -51,5 +51,5 @@ def test_both_starts_share_one_folder_of_kernels(monkeypatch):
 
 
 def test_the_doctor_stops_at_another_version_and_at_a_file_that_is_no_library():
-    for failure in (machine.wrong_version(), machine.no_egl()):
+    for failure in (mistakes.wrong_version(), mistakes.no_egl()):
         assert failure.shown, failure.evidence
