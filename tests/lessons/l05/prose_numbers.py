@@ -1,6 +1,6 @@
 """The decimal numbers that prose of L05 may hold: configured inputs and calculations by hand."""
 
-from robo_genesis.lessons.l05 import spec
+from robo_genesis.lessons.l05 import camera_spec, spec
 
 CONFIGURED = {
     "length of a run [s]": spec.BASELINE.steps * spec.BASELINE.dt,
@@ -12,4 +12,17 @@ CONFIGURED = {
     "depth of the point in the third calculation [m]": 1.5,
     "its distance to the right [m]": 0.1,
     "another depth [m]": 1.51,
+    "height of the target [m]": spec.TARGET[2],
+    "near limit that cuts the hand [m]": camera_spec.CUT[0],
+    "far limit that cuts the floor [m]": camera_spec.CUT[1],
+    "damping of our search": 0.1,
+    "largest step of our search [rad]": 0.2,
+    "damping of the engine": spec.IK.damping,
+    "height of the shoulder in the model file [m]": 0.333,
+    "reach that the manufacturer gives [m]": 0.855,
+    "shoulder to the target beyond reach, by hand [m]": 2.6,
+    "what the reach leaves of it, by hand [m]": 1.75,
+    "offset of a pixel's centre, without the halves [pixel]": 0.7,
+    "near limit of a camera by default [m]": 0.1,
+    "far limit with a share for rounding": 0.999,
 }
