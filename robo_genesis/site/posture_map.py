@@ -27,7 +27,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.lessons.declaration import Compared
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.registry import drawn_cases
-from robo_genesis.sim.visual_shape import Part, load_shape
+from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.explorer import inputs
@@ -145,13 +145,14 @@ def camera_of(traces: Mapping[str, Trace]) -> "Camera":
 def model_of(
     shape: Path, links: Sequence[str], traces: Mapping[str, Trace], view: View, camera: "Camera"
 ) -> bytes:
-    """Return the model of all answers, one animation a map, with ball and floor."""
+    """Return the model of all answers, one animation a map, with ball and floor alone around it."""
     import trimesh  # these load slowly
 
     from robo_genesis.site.replay import model
     from robo_genesis.site.replay.scenery import Scenery, floor_of
 
-    parts, mesh = load_shape(shape), trimesh.creation.icosphere(2, BALL_RADIUS)
+    parts = [part for part in load_shape(shape) if part.link != WORLD]
+    mesh = trimesh.creation.icosphere(2, BALL_RADIUS)
     ball = Part(BALL, BALL_RGB, mesh.vertices, mesh.faces)
     scenery = Scenery([*parts, ball, *floor_of(parts)], camera)
     return model.glb(scenery, [*links, BALL], traces, view.credit)

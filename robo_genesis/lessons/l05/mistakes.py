@@ -32,14 +32,12 @@ def swapped_quaternion(robot: Any, joints: JointMap, case: ReachCase) -> Failure
     wrong = replace(case, quat=np.roll(case.quat, -1))  # the mistake
     answer = ask(robot, joints, wrong)
     fingers = kinematics.rotate(kinematics.hand_pose(answer.q).quat, np.array([0.0, 0.0, 1.0]))
-    return Failure(
-        "swapped_quaternion",
-        shown=bool(fingers[2] > 0.9 and not refused(lambda: control_case(wrong, answer))),
-        evidence=(
-            f"The answer is {written(answer, wrong)}. At the answer the axis from the hand to the "
-            f"fingers has the vertical component {fingers[2]:+.3f}; down is −1."
-        ),
+    shown = bool(fingers[2] > 0.9 and not refused(lambda: control_case(wrong, answer)))
+    text = (
+        f"The answer is {written(answer, wrong)}. At the answer the axis from the hand to the "
+        f"fingers has the vertical component {fingers[2]:+.3f}; down is −1."
     )
+    return Failure("swapped_quaternion", shown, text)
 
 
 def other_frame(robot: Any, joints: JointMap, case: ReachCase, base: FloatArray) -> Failure:
@@ -47,15 +45,13 @@ def other_frame(robot: Any, joints: JointMap, case: ReachCase, base: FloatArray)
     answer = ask(robot, joints, case)  # the mistake: the solver expects a pose in the world
     (reached,), _ = link_poses_at(robot, joints, [END_EFFECTOR], answer.q)
     apart = float(np.linalg.norm(reached - (case.position + base)))
-    return Failure(
-        "other_frame",
-        shown=bool(not refused(lambda: control_case(case, answer)) and apart > 0.1),
-        evidence=(
-            f"The answer is {written(answer, case)}. The hand would be {1000 * apart:.1f} mm from "
-            f"the intended place; the base is {1000 * np.linalg.norm(base):.1f} mm from the "
-            "world's origin."
-        ),
+    shown = bool(not refused(lambda: control_case(case, answer)) and apart > 0.1)
+    text = (
+        f"The answer is {written(answer, case)}. The hand would be {1000 * apart:.1f} mm from "
+        f"the intended place; the base is {1000 * np.linalg.norm(base):.1f} mm from the "
+        "world's origin."
     )
+    return Failure("other_frame", shown, text)
 
 
 def unaccepted_answer(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Failure:
@@ -64,16 +60,13 @@ def unaccepted_answer(scene: Any, robot: Any, joints: JointMap, case: ReachCase)
     trace = run_case(scene, robot, joints, case.commanding(answer.q.astype(float)))  # the mistake
     apart = np.linalg.norm(kinematics.hand_pose(trace.q).position - case.position, axis=-1)
     behind = np.abs(trace.q[-1] - trace.target[-1])[: kinematics.ARM].max()
-    return Failure(
-        "unaccepted_answer",
-        shown=bool(refused(lambda: control_case(case, answer)) and apart[-1] > 1 and behind < 0.05),
-        evidence=(
-            f"The answer is {written(answer, case)}. Commanded anyway, each joint ends within "
-            f"{1000 * behind:.1f} mrad of its command. The hand starts {apart[0]:.2f} m from its "
-            f"target and ends {apart[-1]:.2f} m from it."
-        ),
-        curves={"hand to target": (trace.t, apart)},
+    shown = bool(refused(lambda: control_case(case, answer)) and apart[-1] > 1 and behind < 0.05)
+    text = (
+        f"The answer is {written(answer, case)}. Commanded anyway, each joint ends within "
+        f"{1000 * behind:.1f} mrad of its command. The hand starts {apart[0]:.2f} m from its "
+        f"target and ends {apart[-1]:.2f} m from it."
     )
+    return Failure("unaccepted_answer", shown, text, {"hand to target": (trace.t, apart)})
 
 
 def degrees(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Failure:
@@ -88,15 +81,13 @@ def degrees(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Failur
     q = to_numpy(robot.get_dofs_position(dofs))
     at_limit = np.minimum(np.abs(q - joints.lower), np.abs(q - joints.upper)) < 0.01
     apart = np.linalg.norm(kinematics.hand_pose(q).position - case.position)
-    return Failure(
-        "degrees",
-        shown=bool(refusal and at_limit[: kinematics.ARM].any() and apart > 0.1),
-        evidence=(
-            f"The engine reports nothing. {at_limit[: kinematics.ARM].sum()} of the arm's joints "
-            f"end at a limit, and the hand ends {1000 * apart:.0f} mm from its target. "
-            f"The course's validation before a run: {quoted(refusal)}"
-        ),
+    shown = bool(refusal and at_limit[: kinematics.ARM].any() and apart > 0.1)
+    text = (
+        f"The engine reports nothing. {at_limit[: kinematics.ARM].sum()} of the arm's joints "
+        f"end at a limit, and the hand ends {1000 * apart:.0f} mm from its target. "
+        f"The course's validation before a run: {quoted(refusal)}"
     )
+    return Failure("degrees", shown, text)
 
 
 def rows_first(meant: Any, given: Any, point: FloatArray) -> Failure:
@@ -106,15 +97,13 @@ def rows_first(meant: Any, given: Any, point: FloatArray) -> Failure:
     fields = [np.degrees(2 * np.arctan(k[0, 2] / k[0, 0])) for k in (K, other)]
     pose = read_transform(meant)
     apart = np.linalg.norm(cameras.project(point, K, pose) - cameras.project(point, other, pose))
-    return Failure(
-        "rows_first",
-        shown=bool(shapes[0] == shapes[1][::-1] and apart > 10),
-        evidence=(
-            f"The arrays have shape {shapes[1]} instead of {shapes[0]}, and the horizontal field "
-            f"of view is {fields[1]:.1f}° instead of {fields[0]:.1f}°. With the camera matrix of "
-            f"the intended picture, the target is expected {apart:.0f} pixels from its place."
-        ),
+    shown = bool(shapes[0] == shapes[1][::-1] and apart > 10)
+    text = (
+        f"The arrays have shape {shapes[1]} instead of {shapes[0]}, and the horizontal field "
+        f"of view is {fields[1]:.1f}° instead of {fields[0]:.1f}°. With the camera matrix of "
+        f"the intended picture, the target is expected {apart:.0f} pixels from its place."
     )
+    return Failure("rows_first", shown, text)
 
 
 def stale_extrinsics(camera: Any, moved_to: Mapping[str, Any], point: FloatArray) -> Failure:
@@ -125,17 +114,15 @@ def stale_extrinsics(camera: Any, moved_to: Mapping[str, Any], point: FloatArray
     old = cameras.other_axes(np.linalg.inv(kept))
     apart = np.linalg.norm(cameras.project(point, K, old) - cameras.project(point, K, pose))
     now = "still that matrix" if (again == kept).all() else "the matrix of the new pose"
-    return Failure(
-        "stale_extrinsics",
-        shown=bool(apart > 10),
-        evidence=(
-            f"With the matrix that was read before the move, the target is expected {apart:.0f} "
-            "pixels from its place in the picture. Read again after the move, "
-            f"`camera.extrinsics` is {now}: it differs by up to "
-            f"{np.abs(again - cameras.extrinsics(pose)).max():.1g} from the inverse of the pose in "
-            "`camera.transform`."
-        ),
+    shown = bool(apart > 10)
+    text = (
+        f"With the matrix that was read before the move, the target is expected {apart:.0f} "
+        "pixels from its place in the picture. Read again after the move, "
+        f"`camera.extrinsics` is {now}: it differs by up to "
+        f"{np.abs(again - cameras.extrinsics(pose)).max():.1g} from the inverse of the pose in "
+        "`camera.transform`."
     )
+    return Failure("stale_extrinsics", shown, text)
 
 
 def beyond_far(depth: FloatArray | None, camera: Any) -> Failure:
@@ -145,13 +132,11 @@ def beyond_far(depth: FloatArray | None, camera: Any) -> Failure:
     heights = cameras.back_project(depth, read_intrinsics(camera), read_transform(camera))[..., 2]
     nothing = depth > 0.999 * camera.far
     kept = nothing & (depth < camera.far)  # the mistake: the depth buffer rounds
-    return Failure(
-        "beyond_far",
-        shown=bool(nothing.sum() > 1000 and heights[nothing].max() > 1),
-        evidence=(
-            f"{nothing.sum()} of {depth.size} pixels show no surface. Their depth is "
-            f"{depth[nothing].min():.6f} m with `far` at {camera.far:g} m; `depth < far` keeps "
-            f"{kept.sum()} of them. Back-projected, they are up to {heights[nothing].max():.1f} m "
-            "above the floor."
-        ),
+    shown = bool(nothing.sum() > 1000 and heights[nothing].max() > 1)
+    text = (
+        f"{nothing.sum()} of {depth.size} pixels show no surface. Their depth is "
+        f"{depth[nothing].min():.6f} m with `far` at {camera.far:g} m; `depth < far` keeps "
+        f"{kept.sum()} of them. Back-projected, they are up to {heights[nothing].max():.1f} m "
+        "above the floor."
     )
+    return Failure("beyond_far", shown, text)

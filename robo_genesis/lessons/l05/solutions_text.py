@@ -4,7 +4,6 @@ import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.text import bullets, listed
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.sim import arm_kinematics as kinematics
@@ -41,11 +40,11 @@ def records(run: Experiment, name: str) -> list[dict[str, str]]:
             "answer": str(k + 1),
             "target x, y, z [m]": ", ".join(f"{value:g}" for value in case.positions[k]),
             "accepted": "yes" if found["accepted"][k] else "no",
-            "joint1 [rad]": f"{q[k, 0]:.3f}",
+            "joint1 [rad]": f"{q[k, 0]:.3f}".replace("-", "−"),
             "nearest to a limit": JOINT_NAMES[nearest[k]],
         }
         | {
-            label: f"{max(factor * found[key][k], 0):.{digits}g}"
+            label: f"{round(max(factor * found[key][k], 0), 6):.{digits}g}"
             for label, (key, factor, digits) in MEASURES.items()
         }
         for k in range(case.steps)
@@ -74,32 +73,27 @@ def count_table(run: Experiment) -> str:
     )
 
 
-def family_sentences(run: Experiment) -> str:
-    """Say how many answers were accepted, and on which curves they are."""
-    found, families = many_answers(run), study.solution_families(run)
-    accepted = found["accepted"]
-    lengths = [np.linalg.norm(np.diff(curve, axis=0), axis=1).sum() for curve, _ in families]
-    margin = found["margin"][accepted]
-    elbow = np.concatenate([curve[:, 3] for curve, _ in families])
-    return bullets([
-        f"{accepted.sum()} of {len(accepted)} starts led to an accepted answer.",
-        f"They are on {len(families)} curves within the limits, with "
-        f"{listed([str(len(inside)) for _, inside in families])} answers and lengths of "
-        f"{listed([f'{length:.1f}' for length in lengths])} rad.",
-        f"On all curves, `joint4` stays between {elbow.min():.2f} and {elbow.max():.2f} rad: the "
-        "hand's distance from the shoulder determines the elbow's angle.",
-        f"{(margin < 0.01).sum()} accepted answers are within 0.01 rad of a joint limit.",
-    ])  # fmt: skip
+def family_table(run: Experiment) -> str:
+    """Return the curves on which the accepted answers are."""
+    rows = []
+    for number, (curve, inside) in enumerate(study.solution_families(run), start=1):
+        length = np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()
+        row = {"curve": number, "answers": len(inside), "length [rad]": f"{length:.1f}"}
+        rows.append(row | {f"{JOINT_NAMES[k]} [rad]": span(curve[:, k], 2) for k in (0, 1, 3)})
+    return tables.markdown(rows)
+
+
+def span(values: FloatArray, digits: int) -> str:
+    """Return the smallest and the largest of values (n,)."""
+    low, high = (f"{value:.{digits}f}".replace("-", "−") for value in (values.min(), values.max()))
+    return f"{low} … {high}"
 
 
 def choice_table(run: Experiment) -> str:
     """Return the answers that the criteria choose."""
-    rows, left_out = records(run, "many_starts"), ("accepted", "target x, y, z [m]")
+    rows, shown = records(run, "many_starts"), ("answer", "joint1 [rad]", *[*MEASURES][2:])
     return tables.markdown(
-        [
-            {"criterion": name} | {key: rows[k][key] for key in rows[k] if key not in left_out}
-            for name, k in chosen(run).items()
-        ]
+        [{"criterion": n} | {key: rows[k][key] for key in shown} for n, k in chosen(run).items()]
     )
 
 
@@ -110,32 +104,30 @@ def unreachable_table(run: Experiment) -> str:
         "engine's answer": (found["position"][0], found["rotation"][0]),
         "nearest that we found": kinematics.distances(study.nearest()[1]),
     }
+    heads = ("distance [m]", "angle [rad]", "weighted distance [m]")
+    rows = {name: (*pair, study.weighted(*pair)) for name, pair in pairs.items()}
     return tables.markdown(
         [
-            {
-                "posture": name,
-                "distance [m]": f"{apart:.3f}",
-                "angle [rad]": f"{angle:.3f}",
-                "weighted distance [m]": f"{study.weighted(apart, angle):.3f}",
-            }
-            for name, (apart, angle) in pairs.items()
+            {"posture": name} | {h: f"{v:.3f}" for h, v in zip(heads, row, strict=True)}
+            for name, row in rows.items()
         ]
     )
 
 
-def reach_sentences(run: Experiment) -> str:
-    """Say how many targets of each plane are accepted, and what the values of these span."""
-    lines = []
+def reach_table(run: Experiment) -> str:
+    """Return how many targets of each plane are accepted, and what their answers span."""
+    rows = []
     for name in spec.PLANES:
         found = study.answers(run.traces[name], spec.QUESTIONS[name])
         yes = found["accepted"].astype(bool)
-        spans = {
-            key: (found[key][yes].min(), found[key][yes].max())
-            for key in ("manipulability", "margin")
-        }
-        lines.append(
-            f"Of the {len(yes)} targets in the {name} plane, {yes.sum()} are accepted, with a "
-            "manipulability of {:.3f} to {:.3f} ".format(*spans["manipulability"])
-            + "and a distance of {:.3f} to {:.2f} rad from the limits.".format(*spans["margin"])
+        rows.append(
+            {
+                "plane": name,
+                "targets": len(yes),
+                "accepted": int(yes.sum()),
+                "manipulability": span(found["manipulability"][yes], 3),
+                "distance from limits [rad]": span(found["margin"][yes], 3),
+                "distance left where refused [mm]": span(1000 * found["position"][~yes], 1),
+            }
         )
-    return bullets(lines)
+    return tables.markdown(rows)
