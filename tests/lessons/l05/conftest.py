@@ -1,11 +1,13 @@
 """Reaches of L05 without Genesis: answers by damped least squares in NumPy, runs by MuJoCo."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from robot_runs import driven
 
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import SOLUTIONS, spec
+from robo_genesis.lessons.l05 import SOLUTIONS, spec, study
 from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import mujoco_kinematics
@@ -54,3 +56,15 @@ def reaches(joints) -> Experiment:
         rendered=False,
         joints=joints,
     )  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def solved(reaches):
+    """The plausible runs with answers from many starts and for the targets of both planes."""
+    traces = dict(reaches.traces)
+    for name in ("many_starts", *spec.PLANES):
+        case = spec.QUESTIONS[name]
+        q = kinematics.solve(study.targets(case), case.starts[:, :7], *spec.ARM_LIMITS,
+                             iterations=100, damping=0.01)  # fmt: skip
+        traces[name] = assigned(case, np.hstack([q, case.starts[:, 7:]]))
+    return replace(reaches, traces=traces)

@@ -1,0 +1,44 @@
+"""Tables and maps of many answers name, count and choose what the arrays hold."""
+
+import numpy as np
+import pytest
+
+from robo_genesis.lessons.l05 import explorer, solutions_plots, solutions_text, spec, study
+
+
+def test_each_target_of_a_plane_is_one_cell_and_upwards_is_up(solved):
+    for found, axis in zip(explorer.posture_maps(solved, "reach"), (2, 1), strict=True):
+        cells = [key for row in found["rows"] for key in row["cells"]]
+        assert sorted(cells) == list(range(1, 64)) == [int(r["answer"]) for r in found["records"]]
+        top = found["targets"][found["rows"][0]["cells"][0] - 1]
+        assert top[axis] == found["targets"][:, axis].max()
+        assert top[0] == found["targets"][:, 0].min() == float(found["columns"][0])
+        accepted = study.answers(solved.traces[found["run"]], spec.QUESTIONS[found["run"]])[
+            "accepted"
+        ]
+        assert [r["accepted"] == "yes" for r in found["records"]] == accepted.tolist()
+
+
+def test_the_map_of_solutions_has_the_accepted_answers_along_their_curves(solved):
+    (found,) = explorer.posture_maps(solved, "solutions")
+    assert {r["accepted"] for r in found["records"]} == {"yes"}
+    q = solved.traces["many_starts"].q
+    for row in found["rows"]:
+        assert (np.diff(q[row["cells"], 0]) >= 0).all()
+    accepted = solutions_text.many_answers(solved)["accepted"]
+    assert sum(len(row["cells"]) for row in found["rows"]) == accepted.sum() > 20
+
+
+def test_each_criterion_chooses_the_best_accepted_answer(solved):
+    found, chosen = solutions_text.many_answers(solved), solutions_text.chosen(solved)
+    assert len(set(chosen.values())) > 1
+    for name, (key, best) in solutions_text.CRITERIA.items():
+        assert found[key][chosen[name]] == best(found[key][found["accepted"]])
+    squares = [ax.lines[-1].get_xydata() for ax in solutions_plots.solutions(solved).axes[1:]]
+    joint1 = [solved.traces["many_starts"].q[1 + k, 0] for k in chosen.values()]
+    assert [float(xy[0, 0]) for xy in squares] == pytest.approx(joint1)
+
+
+def test_fewer_answers_are_distinct_above_a_larger_threshold():
+    q = np.array([[0.0], [0.05], [0.1], [1.0]])
+    assert [study.clusters(q, t) for t in (0.01, 0.06, 0.95)] == [4, 2, 1]
