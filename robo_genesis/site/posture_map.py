@@ -15,7 +15,6 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.build.shown import accepted_experiment
 from robo_genesis.core import tables
 from robo_genesis.core.channels import View
@@ -30,7 +29,7 @@ from robo_genesis.lessons.registry import drawn_cases
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
-from robo_genesis.site.explorer import inputs
+from robo_genesis.site.explorer import bundle_of, inputs
 from robo_genesis.site.replay import controls
 from robo_genesis.site.replay.directive import (
     leave_model,
@@ -59,9 +58,7 @@ class PostureMapDirective(SphinxDirective):
         Errors: the page has no bundle, or its lesson has no such maps or wrote no shape.
         """
         lesson_page, which = self.arguments
-        lesson, folder = lesson_page.split("/")[0], page_outputs(lesson_page) / BACKEND
-        if not (folder / "manifest.json").is_file():
-            raise self.error(f"posture-map: {lesson_page} has no bundle on {BACKEND}.")
+        lesson, folder = lesson_page.split("/")[0], bundle_of(self, lesson_page)
         try:
             compared, maps = drawn_cases(lesson), f"robo_genesis.lessons.{lesson}.explorer"
             if not isinstance(compared, Compared):
@@ -71,7 +68,7 @@ class PostureMapDirective(SphinxDirective):
             experiment = accepted_experiment(folder, bundle.read_manifest(folder))
             found = find(f"{maps}.posture_maps")(experiment, which)
         except (ShownError, LookupError, ValueError) as error:
-            raise self.error(f"posture-map: {lesson_page} {which}: {error}") from error
+            raise self.error(f"{self.name}: {lesson_page} {which}: {error}") from error
         key = f"{lesson_page}/{BACKEND}"
         return [posture_block(self, key, which, folder, experiment, found, shape, view)]
 
