@@ -18,7 +18,10 @@ document.addEventListener("DOMContentLoaded", () => {
   }
 
   /* Short enough for a cell on a phone. */
-  const short = (value) => (Math.abs(value) < 100 ? String(Number(value.toPrecision(2))) : value.toFixed(0));
+  function short(value) {
+    if (value >= 100) return value.toFixed(0);
+    return String(Number(value < 0.1 ? value.toFixed(3) : value.toPrecision(2)));
+  }
 
   function start(root) {
     const dt = Number(root.dataset.dt);
@@ -96,7 +99,7 @@ document.addEventListener("DOMContentLoaded", () => {
       try {
         await scene.load();
         button.hidden = true;
-        status.textContent = "Turn the view with the mouse, a finger or the arrow keys. The ball is the target.";
+        status.textContent = "Turn the view with the mouse, a finger or the arrow keys. The yellow cross is at the target.";
         pose();
       } catch {
         button.textContent = "Show in 3D";

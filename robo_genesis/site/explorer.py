@@ -30,9 +30,7 @@ class ExplorerDirective(SphinxDirective):
         Errors: the page has no bundle, or its lesson has no explorer.
         """
         lesson_page = self.arguments[0]
-        folder = page_outputs(lesson_page) / BACKEND
-        if not (folder / "manifest.json").is_file():
-            raise self.error(f"explorer: {lesson_page} has no bundle on {BACKEND}.")
+        folder = bundle_of(self, lesson_page)
         try:
             html = explorer_html(lesson_page.split("/")[0], folder)
         except ShownError as error:
@@ -41,6 +39,18 @@ class ExplorerDirective(SphinxDirective):
         block = nodes.container(classes=["explorer-block"], evidence_runs=(run,))
         block += nodes.raw("", html, format="html")
         return [block]
+
+
+def bundle_of(directive: SphinxDirective, lesson_page: str) -> Path:
+    """Return the folder of the bundle that a page wrote in this build.
+
+    Raises:
+        DirectiveError: it has none.
+    """
+    folder = page_outputs(lesson_page) / BACKEND
+    if not (folder / "manifest.json").is_file():
+        raise directive.error(f"{directive.name}: {lesson_page} has no bundle on {BACKEND}.")
+    return folder
 
 
 def explorer_html(lesson: str, folder: Path) -> str:

@@ -13,12 +13,12 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.build.shown import accepted_experiment
 from robo_genesis.core.shown import ShownError, find
 from robo_genesis.evidence import bundle
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import image
+from robo_genesis.site.explorer import bundle_of
 from robo_genesis.site.replay.controls import as_json
 
 LINES = ("pixel", "shows", "depth", "point in the world", "closed form", "depth − closed form")
@@ -35,9 +35,7 @@ class PictureReaderDirective(SphinxDirective):
         Errors: the page has no bundle, or its lesson has no such view.
         """
         lesson_page, name = self.arguments
-        lesson, folder = lesson_page.split("/")[0], page_outputs(lesson_page) / BACKEND
-        if not (folder / "manifest.json").is_file():
-            raise self.error(f"picture-reader: {lesson_page} has no bundle on {BACKEND}.")
+        lesson, folder = lesson_page.split("/")[0], bundle_of(self, lesson_page)
         try:
             about = find(f"robo_genesis.lessons.{lesson}.explorer.picture")
             run = accepted_experiment(folder, bundle.read_manifest(folder))
@@ -45,7 +43,7 @@ class PictureReaderDirective(SphinxDirective):
                 return [nodes.paragraph("", "SKIP: this run has no camera.")]
             view = about(run, name)
         except (ShownError, LookupError, ValueError) as error:
-            raise self.error(f"picture-reader: {lesson_page} {name}: {error}") from error
+            raise self.error(f"{self.name}: {lesson_page} {name}: {error}") from error
         return [reader_block(self, f"{lesson_page}/{BACKEND}", name, folder / "frames", view)]
 
 

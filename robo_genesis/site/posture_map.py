@@ -15,7 +15,6 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.build.shown import accepted_experiment
 from robo_genesis.core import tables
 from robo_genesis.core.channels import View
@@ -30,7 +29,7 @@ from robo_genesis.lessons.registry import drawn_cases
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
-from robo_genesis.site.explorer import inputs
+from robo_genesis.site.explorer import bundle_of, inputs
 from robo_genesis.site.replay import controls
 from robo_genesis.site.replay.directive import (
     leave_model,
@@ -43,8 +42,9 @@ from robo_genesis.site.replay.directive import (
 if TYPE_CHECKING:
     from robo_genesis.site.replay.scenery import Camera  # loads slowly
 
-BALL, BALL_RGB, BALL_RADIUS = "target", (240, 190, 0), 0.025
-"""Name, colour and radius [m] of the ball at the target, which moves like a link."""
+CROSS, CROSS_LENGTH, CROSS_RADIUS = "target", 0.3, 0.006
+"""Name of the cross at the target, which moves like a link, length and radius of its rods [m]. They
+are longer than the hand, which hides the target when it is there."""
 
 
 class PostureMapDirective(SphinxDirective):
@@ -58,9 +58,7 @@ class PostureMapDirective(SphinxDirective):
         Errors: the page has no bundle, or its lesson has no such maps or wrote no shape.
         """
         lesson_page, which = self.arguments
-        lesson, folder = lesson_page.split("/")[0], page_outputs(lesson_page) / BACKEND
-        if not (folder / "manifest.json").is_file():
-            raise self.error(f"posture-map: {lesson_page} has no bundle on {BACKEND}.")
+        lesson, folder = lesson_page.split("/")[0], bundle_of(self, lesson_page)
         try:
             compared, maps = drawn_cases(lesson), f"robo_genesis.lessons.{lesson}.explorer"
             if not isinstance(compared, Compared):
@@ -70,7 +68,7 @@ class PostureMapDirective(SphinxDirective):
             experiment = accepted_experiment(folder, bundle.read_manifest(folder))
             found = find(f"{maps}.posture_maps")(experiment, which)
         except (ShownError, LookupError, ValueError) as error:
-            raise self.error(f"posture-map: {lesson_page} {which}: {error}") from error
+            raise self.error(f"{self.name}: {lesson_page} {which}: {error}") from error
         key = f"{lesson_page}/{BACKEND}"
         return [posture_block(self, key, which, folder, experiment, found, shape, view)]
 
@@ -94,7 +92,9 @@ def posture_block(
     from robo_genesis.site.replay.poster import picture  # loads slowly
 
     env, name = directive.env, "-".join(("postures", *key.split("/"), which))
-    traces = {one["run"]: with_ball(experiment.traces[one["run"]], one["targets"]) for one in maps}
+    traces = {
+        one["run"]: with_target(experiment.traces[one["run"]], one["targets"]) for one in maps
+    }
     camera = camera_of(traces)
     built = [which.encode(), shape.read_bytes(), *inputs(folder)]
     what = shape, experiment.links, traces, view, camera
@@ -102,7 +102,7 @@ def posture_block(
     still = derived("poster", built, lambda: picture(model, camera))
     files, weight = leave_model(env, name, model)
     alt = f"The {view.thing} at the start, drawn from the recorded poses."
-    caption = f"Recorded postures of the {view.thing}. Yellow ball: the target."
+    caption = f"Recorded postures of the {view.thing}. Yellow cross: the target."
     summary = "All answers as tables"
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
@@ -119,7 +119,7 @@ def posture_block(
     return block
 
 
-def with_ball(trace: Trace, targets: FloatArray) -> Trace:
+def with_target(trace: Trace, targets: FloatArray) -> Trace:
     """Return answers with one more link, the target of each; before the first, that of the first.
 
     Args:
@@ -145,17 +145,18 @@ def camera_of(traces: Mapping[str, Trace]) -> "Camera":
 def model_of(
     shape: Path, links: Sequence[str], traces: Mapping[str, Trace], view: View, camera: "Camera"
 ) -> bytes:
-    """Return the model of all answers, one animation a map, with ball and floor alone around it."""
+    """Return the model of all answers, one animation a map, with the cross and a floor."""
     import trimesh  # these load slowly
 
     from robo_genesis.site.replay import model
-    from robo_genesis.site.replay.scenery import Scenery, floor_of
+    from robo_genesis.site.replay.scenery import AXIS_RGB, Scenery, floor_of
 
     parts = [part for part in load_shape(shape) if part.link != WORLD]
-    mesh = trimesh.creation.icosphere(2, BALL_RADIUS)
-    ball = Part(BALL, BALL_RGB, mesh.vertices, mesh.faces)
-    scenery = Scenery([*parts, ball, *floor_of(parts)], camera)
-    return model.glb(scenery, [*links, BALL], traces, view.credit)
+    half = CROSS_LENGTH / 2 * np.eye(3)
+    rods = [trimesh.creation.cylinder(CROSS_RADIUS, segment=[-end, end]) for end in half]
+    cross = [Part(CROSS, AXIS_RGB, rod.vertices, rod.faces) for rod in rods]
+    scenery = Scenery([*parts, *cross, *floor_of(parts)], camera)
+    return model.glb(scenery, [*links, CROSS], traces, view.credit)
 
 
 def opening(

@@ -71,7 +71,7 @@ def test_every_answer_is_in_a_table_and_in_the_model_with_its_target(block, tmp_
         tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.glb"
     )
     assert [animation.name for animation in model.animations] == ["upright", "level"]
-    assert {"box", posture_map.BALL} <= {node.name for node in model.nodes}
+    assert {"box", posture_map.CROSS} <= {node.name for node in model.nodes}
     assert np.vstack([TARGETS[:1], TARGETS]).astype(np.float32).tobytes() in model.binary_blob()
 
 

@@ -38,7 +38,7 @@ def posture_maps(run: Experiment, which: str) -> list[dict[str, Any]]:
             "axes": axes,
             "rows": rows,
             "columns": [f"{value:g}" for value in columns],
-            "measures": MEASURES,
+            "measures": tuple(MEASURES),
             "records": [row for row in records(run, name) if row["answer"] in shown],
         }
         for name in names

@@ -83,7 +83,7 @@ def degrees(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Failur
     apart = np.linalg.norm(kinematics.hand_pose(q).position - case.position)
     shown = bool(refusal and at_limit[: kinematics.ARM].any() and apart > 0.1)
     text = (
-        f"The engine reports nothing. {at_limit[: kinematics.ARM].sum()} of the arm's joints "
+        f"The engine raised no exception. {at_limit[: kinematics.ARM].sum()} of the arm's joints "
         f"end at a limit, and the hand ends {1000 * apart:.0f} mm from its target. "
         f"The course's validation before a run: {quoted(refusal)}"
     )

@@ -21,11 +21,11 @@ CRITERIA = {
 """What chooses one of several answers: a key of `study.answers`, and which value is best."""
 
 MEASURES = {
-    "distance left [mm]": ("position", 1000, 4),
-    "angle left [mrad]": ("rotation", 1000, 4),
     "manipulability": ("manipulability", 1, 3),
     "distance from limits [rad]": ("margin", 1, 3),
     "largest angle from the start [rad]": ("from_start", 1, 3),
+    "distance left [mm]": ("position", 1000, 4),
+    "angle left [mrad]": ("rotation", 1000, 4),
 }
 """Columns of `records`: key of `study.answers`, factor and significant digits."""
 
@@ -91,7 +91,7 @@ def span(values: FloatArray, digits: int) -> str:
 
 def choice_table(run: Experiment) -> str:
     """Return the answers that the criteria choose."""
-    rows, shown = records(run, "many_starts"), ("answer", "joint1 [rad]", *[*MEASURES][2:])
+    rows, shown = records(run, "many_starts"), ("answer", "joint1 [rad]", *[*MEASURES][:3])
     return tables.markdown(
         [{"criterion": n} | {key: rows[k][key] for key in shown} for n, k in chosen(run).items()]
     )
