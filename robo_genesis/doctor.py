@@ -1,8 +1,10 @@
 """Run the steps of the diagnosis on this machine and stop at the first that is broken.
 
-    python -m robo_genesis.doctor           a table for the terminal
-    python -m robo_genesis.doctor --json    the same facts for a bug report
+    python -m robo_genesis.doctor                a table for the terminal
+    python -m robo_genesis.doctor --json         the same facts for a bug report
+    python -m robo_genesis.doctor --like BUNDLE  and what differs from the machine of a recorded run
 
+A bundle is a folder, or an archive as the ledger of the site offers it.
 Exit status: 0 all steps pass, 1 one is broken, 2 the command was not understood.
 """
 
@@ -15,11 +17,13 @@ import platform
 import sys
 import tempfile
 import textwrap
-from collections.abc import Sequence
+import zipfile
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 
 from robo_genesis.core import project
 from robo_genesis.core.project import OUTPUTS_DIR
+from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.sim.diagnosis import STEPS, Bench, Finding, examine, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
@@ -69,6 +73,58 @@ def report(findings: Sequence[Finding], bench: Bench) -> str:
     return json.dumps(facts, indent=2, ensure_ascii=False)
 
 
+def machine(bench: Bench) -> dict[str, str]:
+    """Return the facts that the manifest of a run has too; fewer if the engine did not start."""
+    facts = {
+        "engine": project.installed_version(project.ENGINE),
+        "quadrants": project.installed_version("quadrants"),
+        "torch": project.installed_version("torch"),
+        "python": platform.python_version(),
+        "system": platform.platform(),
+    }
+    if bench.engine:
+        found = bench.engine.backend
+        facts |= {"backend": found.actual, "device": found.device_name}
+    return {name: value or "not installed" for name, value in facts.items()}
+
+
+def recorded_machine(bundle: str) -> dict[str, str]:
+    """Return the same facts of the machine that recorded a bundle.
+
+    Raises:
+        BundleRefused: there is no bundle, or its manifest cannot be read.
+    """
+    from robo_genesis.compare import bundle_folder
+    from robo_genesis.evidence.bundle import read_manifest
+
+    with contextlib.ExitStack() as opened:
+        run = read_manifest(bundle_folder(bundle, opened)).predicate
+    return {
+        "engine": run.engine.version,
+        "quadrants": run.engine.quadrants_version,
+        "torch": run.backend.torch_version,
+        "python": run.host.python,
+        "system": run.host.os,
+        "backend": run.backend.actual,
+        "device": run.backend.device_name,
+    }
+
+
+def differences(here: Mapping[str, str], recorded: Mapping[str, str]) -> list[str]:
+    """Return a line for each fact: equal, or both values."""
+    lines = [f"{'':10} {'recorded':30} here"]
+    for name, value in recorded.items():
+        found = here.get(name, "unknown: the engine did not start")
+        lines.append(f"{name:10} {value:30} {'equal' if found == value else found}")
+    if here.get("engine") != recorded["engine"]:
+        lines.append("Install the engine's version of the site: another one gives other numbers.")
+    elif here.get("backend", recorded["backend"]) != recorded["backend"]:
+        lines.append("Another backend rounds differently. Orderings of runs should agree.")
+    else:
+        lines.append("The engine is the same. Other differences change last digits at most.")
+    return lines
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the findings and return the exit status."""
     parser = argparse.ArgumentParser(
@@ -77,13 +133,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--json", action="store_true", help="a report for a bug, on stdout")
+    parser.add_argument("--like", metavar="BUNDLE", help="compare with the machine of this run")
     options = parser.parse_args(arguments)
+    if options.json and options.like:
+        parser.error("--json and --like do not go together: compare in one call, report in another")
+    try:
+        recorded = recorded_machine(options.like) if options.like else {}
+    except (BundleRefused, zipfile.BadZipFile) as error:
+        parser.error(printable(str(error)))
     print(f"{len(STEPS)} steps; the first start of the engine takes minutes", file=sys.stderr)
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
         # Without it, the outputs would go to the working directory.
         bench = Bench({OUTPUTS_DIR: folder} | os.environ)
         findings = examine(bench)
     print(report(findings, bench) if options.json else table(findings))
+    if recorded:
+        print("", *map(printable, differences(machine(bench), recorded)), sep="\n")
     return 0 if all(f.state == "ok" for f in findings) else 1
 
 

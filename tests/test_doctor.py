@@ -232,3 +232,56 @@ def test_the_table_is_aligned_and_fits_80_columns():
     texts = [line for line in lines if "word" in line or "Choose" in line]
     assert all(line[25] == " " != line[26] for line in texts)
     assert lines[-1] == "DOCTOR: step 2, longer_name, is broken; fix it and run this again"
+
+
+def test_two_machines_are_compared_field_by_field(steps_run, capsys, monkeypatch, pristine):
+    monkeypatch.setattr(project, "require_pinned_engine", fail)  # the engine does not start
+    recorded = doctor.recorded_machine(str(pristine))
+    assert list(recorded) == [
+        "engine",
+        "quadrants",
+        "torch",
+        "python",
+        "system",
+        "backend",
+        "device",
+    ]
+    assert main(["--like", str(pristine)]) == 1
+    lines = capsys.readouterr().out.split("DOCTOR: ")[1].splitlines()[2:]
+    rows = {line.split()[0]: line for line in lines[1 : 1 + len(recorded)]}
+    assert list(rows) == list(recorded)
+    assert rows["backend"].endswith("unknown: the engine did not start")
+
+
+@pytest.mark.parametrize(
+    ("here", "advice"),
+    [
+        ({"engine": "2", "backend": "cpu"}, "Install the engine's version"),
+        ({"engine": "1", "backend": "cuda"}, "Another backend"),
+        ({"engine": "1", "backend": "cpu"}, "The engine is the same"),
+    ],
+)
+def test_the_advice_is_about_the_difference_that_matters_most(here, advice):
+    recorded = {"engine": "1", "backend": "cpu"}
+    lines = doctor.differences(here, recorded)
+    assert advice in lines[-1]
+    assert [line.endswith("equal") for line in lines[1:3]] == [
+        here[name] == recorded[name] for name in recorded
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--like", "nowhere"], "'nowhere' is neither a folder nor a zip archive"),
+        (["--json", "--like", "nowhere"], "--json and --like do not go together"),
+    ],
+)
+def test_a_comparison_with_nothing_is_refused_before_the_first_step(
+    steps_run, capsys, arguments, words
+):
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    assert ended.value.code == 2
+    assert words in capsys.readouterr().err
+    assert steps_run == []

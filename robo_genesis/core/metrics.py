@@ -5,7 +5,10 @@ A record in `metrics.json` has value, unit, class and source. A value that was n
 
 from collections.abc import Mapping, Sequence
 from dataclasses import Field, field, fields
-from typing import Any
+from typing import Any, Literal
+
+Kind = Literal["value", "exact", "performance"]
+"""What another run must do with a value: agree within a tolerance, repeat it, or nothing."""
 
 Record = dict[str, Any]
 
@@ -43,10 +46,9 @@ class CaseMetrics:
 
 
 def reading_records(
-    found: Mapping[str, float], units: Mapping[str, str], exact: bool
+    found: Mapping[str, float], units: Mapping[str, str], kind: Kind
 ) -> dict[str, Record]:
-    """Return values that the engine reported, with their units; another run repeats exact ones."""
-    kind = "exact" if exact else "value"
+    """Return values that the engine reported, with their units."""
     return {name: _record(value, units[name], kind, ENGINE) for name, value in found.items()}
 
 

@@ -92,7 +92,7 @@ def readings(
         values = {name: metric.value for name, metric in recorded if metric.value is not None}
         what = f"list of values in {group}"
         expect("metrics", "metrics.json", what, sorted(values), sorted(declared.units))
-        if declared.exact:
+        if declared.kind == "exact":
             integers = [name for name, value in values.items() if isinstance(value, int)]
             expect("metrics", "metrics.json", f"list of integers in {group}", integers, [*values])
         found[group] = values

@@ -8,7 +8,13 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Check, Finding, evaluate
-from robo_genesis.core.metrics import CaseMetrics, Record, case_records, reading_records
+from robo_genesis.core.metrics import (
+    CaseMetrics,
+    Kind,
+    Record,
+    case_records,
+    reading_records,
+)
 from robo_genesis.core.trace import TimeSeries
 
 
@@ -34,16 +40,17 @@ def runs_of(cases: Mapping[str, Any]) -> dict[str, Run]:
 class Readings:
     """A group of values that the engine reports and that are in no array.
 
-    `units` are by name. `exact` values are counts, which another run must repeat.
+    `units` are by name. Values of kind `exact` are counts, which another run must repeat. Those of
+    kind `performance` are elapsed times and rates: no check may judge them.
     """
 
     units: Mapping[str, str]
-    exact: bool = False
+    kind: Kind = "value"
 
 
 def counts(names: Iterable[str]) -> Readings:
     """Return a group of counts."""
-    return Readings(dict.fromkeys(names, "1"), exact=True)
+    return Readings(dict.fromkeys(names, "1"), "exact")
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +145,7 @@ class Experiment:
         """Return the content of `metrics.json`: readings of the engine and metrics of each run."""
         declared = self.page.readings(self.rendered)
         of_engine = {
-            name: reading_records(self.readings[name], of.units, of.exact)
+            name: reading_records(self.readings[name], of.units, of.kind)
             for name, of in declared.items()
         }
         return of_engine | case_records(self.metrics)

@@ -111,7 +111,8 @@ def read_intrinsics(camera: Any) -> FloatArray:
 def read_transform(camera: Any) -> FloatArray:
     """Return the pose (4, 4) of a camera in the world, with z backwards [m].
 
-    It is computed at each call. `camera.extrinsics` is not: Genesis 1.3.3 keeps its first value.
+    It is computed at each call; older versions of Genesis keep the first value of
+    `camera.extrinsics`.
     """
     return to_numpy(camera.transform).astype(np.float64)
 

@@ -11,13 +11,13 @@ from robo_genesis.lessons.l02 import (
     exercises,
     life_cycle,
     mistakes,
-    plausibility,
     spec,
     study,
     text,
     trials,
 )
 from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics, fallen
+from robo_genesis.sim.plausibility.falling import require_falls
 from robo_genesis.sim.rigid_bodies import read_model, run_drop
 from robo_genesis.sim.visual_shape import floor, read_shape
 
@@ -52,7 +52,7 @@ LAB = MeasuringPage(
     checks=checks.CHECKS,
     claims=text.CLAIMS,
     parameters=spec.parameters,
-    validate=plausibility.require_possible_runs,
+    validate=require_falls,
 )
 LECTURE = replace(
     LAB,

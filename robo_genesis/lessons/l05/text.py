@@ -3,7 +3,7 @@
 import numpy as np
 
 from robo_genesis.core import tables
-from robo_genesis.core.text import bullets
+from robo_genesis.core.text import bullets, with_unit
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
@@ -16,6 +16,11 @@ from robo_genesis.sim.camera_checks import PLANE_FAR
 from robo_genesis.sim.franka import JOINT_NAMES
 
 NO_PICTURE = "SKIP: no camera"
+
+
+def shown(value: float, digits: int) -> str:
+    """Write a number with digits after the point and a true minus sign; zero has none."""
+    return with_unit(value, "", digits).strip()
 
 
 def error_table(run: Experiment) -> str:
@@ -64,13 +69,13 @@ def joint_table(run: Experiment) -> str:
         rows.append(
             {
                 "joint": f"`{JOINT_NAMES[k]}`",
-                "gravity [N·m]": f"{effort[k]:.2f}",
+                "gravity [N·m]": shown(effort[k], 2),
                 "KP [N·m/rad]": f"{kp[k]:.0f}",
-                "angle [mrad]": f"{1000 * angle:.2f}",
-                "hand moves along z [mm]": f"{1000 * of[2, k] * angle:.2f}",
+                "angle [mrad]": shown(1000 * angle, 2),
+                "hand moves along z [mm]": shown(1000 * of[2, k] * angle, 2),
             }
         )
-    return tables.markdown(rows).replace("-0.00", "0.00")
+    return tables.markdown(rows)
 
 
 def marker_table(run: Experiment) -> str:
@@ -115,8 +120,8 @@ def depth_table(run: Experiment) -> str:
         {
             "surface": name,
             "pixels": f"{found.count}",
-            "mean [mm]": f"{1000 * found.mean:.3f}",
-            "largest [mm]": f"{1000 * found.largest:.3f}",
+            "mean [mm]": shown(1000 * found.mean, 3),
+            "largest [mm]": shown(1000 * found.largest, 3),
         }
         for name, found in surfaces(run).items()
     ]

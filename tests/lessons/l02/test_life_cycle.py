@@ -55,7 +55,7 @@ def test_every_call_is_tried_on_both_sides_and_belongs_to_one():
     assert sum(counts.values()) == len(BELONGS)
     assert problems(counts, rendered=True) == []
     declared = LECTURE.readings(True)[life_cycle.GROUP]
-    assert declared.exact
+    assert declared.kind == "exact"
     assert declared.units.keys() == counts.keys()
 
 

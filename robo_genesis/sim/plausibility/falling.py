@@ -1,4 +1,4 @@
-"""What arrays of a dropped box cannot be, whatever metrics and checks they give.
+"""What arrays of a body that falls freely cannot be, whatever metrics and checks they give.
 
 | tolerance | residual of the CPU runs | value |
 |---|---|---|
@@ -7,12 +7,12 @@
 """
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.sim.plausibility.rules import Breach, apart, refuse, times, unit_quaternions
 from robo_genesis.sim.rigid_bodies import Drop
 
@@ -20,18 +20,18 @@ FALLEN, FALLING = 5e-6, 1e-4
 """Tolerances of place [m] and velocity [m/s]."""
 
 
-def require_possible_runs(run: Experiment) -> None:
-    """Require of each run what every drop has.
+def require_falls(run: Any) -> None:
+    """Require of each run of an experiment that nothing but gravity moves its body.
 
     Raises:
-        BundleRefused: `stamps`, `pose` or `start`.
+        BundleRefused: `stamps`, `pose` or `motion`.
     """
     for name, case in run.cases.items():
-        refuse(f"arrays/{name}.npz", falling_box(run.traces[name], case))
+        refuse(f"arrays/{name}.npz", falling(run.traces[name], case))
 
 
-def falling_box(trace: BodyTrace, case: Drop) -> Iterator[Breach]:
-    """Yield what no run of `rigid_bodies.run_drop` has; the box falls along the z axis."""
+def falling(trace: BodyTrace, case: Drop) -> Iterator[Breach]:
+    """Yield what no run of `rigid_bodies.run_drop` has that ends in the air, upright."""
     yield from times(trace, case.steps, case.dt)
     yield from unit_quaternions(trace.link_quat)
     place, motion = np.zeros((2, trace.steps + 1, 3))

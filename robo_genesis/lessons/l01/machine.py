@@ -1,0 +1,121 @@
+"""The machine of a run: the doctor's steps, and what a start costs.
+
+Each function starts a process of its own, because an engine starts once in a process.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from robo_genesis.core import project
+from robo_genesis.lessons.experiment import Readings, counts
+from robo_genesis.lessons.l01 import spec
+from robo_genesis.sim import diagnosis
+
+STEPS = tuple(step.__name__ for step in diagnosis.STEPS)
+"""The doctor's steps in their order."""
+
+DOCTOR, TIMES = "doctor", "times"
+"""Groups of a bundle's metrics: 1 for each step that passed, and elapsed times."""
+
+PARTS = ("import", "init", "build", "first_step", "more_steps")
+"""Parts of a start: import, `gs.init`, `build`, one step, and `MORE_STEPS` further steps."""
+
+STARTS = ("first", "second")
+"""A process that finds no compiled kernels, and one that finds those of the first."""
+
+SCRIPT = f"""\
+import json, time
+marks = [time.perf_counter()]
+mark = lambda: marks.append(time.perf_counter())
+import genesis as gs
+mark()
+gs.init(backend=gs.cpu, logging_level="error")
+mark()
+scene = gs.Scene(
+    sim_options=gs.options.SimOptions(dt=0.01, substeps=2),
+    profiling_options=gs.options.ProfilingOptions(show_FPS=False),
+    show_viewer=False,
+)
+scene.add_entity(gs.morphs.Plane())
+sphere = scene.add_entity(gs.morphs.Sphere(radius={spec.RADIUS}, pos=(0, 0, 0.5)))
+scene.build()
+mark()
+scene.step()
+mark()
+for _ in range({spec.MORE_STEPS}):
+    scene.step()
+sphere.get_pos()
+mark()
+print(json.dumps([b - a for a, b in zip(marks, marks[1:])]))
+"""
+
+TIMEOUT = 600
+"""Seconds until a process counts as hanging."""
+
+
+class StartError(RuntimeError):
+    """A process did not print what it measures; the message has its last lines."""
+
+
+def readings() -> dict[str, Readings]:
+    """Return the groups of values that the lecture reads."""
+    seconds = {f"{start}_{part}": "s" for start in STARTS for part in PARTS}
+    return {DOCTOR: counts(STEPS), TIMES: Readings(seconds, "performance")}
+
+
+def examine(changed: Mapping[str, str] | None = None) -> dict[str, Any]:
+    """Run the doctor in a process of its own and return its report.
+
+    Args:
+        changed: environment variables beside those of this process.
+
+    Raises:
+        StartError: it printed no report.
+    """
+    return json.loads(run_python(["-m", "robo_genesis.doctor", "--json"], changed or {}))
+
+
+def passed(report: Mapping[str, Any]) -> dict[str, int]:
+    """Return 1 for each step of a report that passed, else 0."""
+    return {step["step"]: int(step["state"] == "ok") for step in report["steps"]}
+
+
+def measure_starts() -> dict[str, float]:
+    """Start the engine twice with an empty folder for compiled kernels; return the times [s].
+
+    Raises:
+        StartError: a process failed.
+    """
+    found: dict[str, float] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        kernels = project.engine_cache_environment(cache=Path(folder))
+        for start in STARTS:
+            times = json.loads(run_python(["-c", SCRIPT], kernels).splitlines()[-1])
+            found |= {f"{start}_{part}": t for part, t in zip(PARTS, times, strict=True)}
+    return found
+
+
+def run_python(arguments: list[str], changed: Mapping[str, str]) -> str:
+    """Return what Python prints with these arguments, whatever its exit status.
+
+    Args:
+        arguments: of the interpreter.
+        changed: environment variables beside those of this process.
+
+    Raises:
+        StartError: it printed nothing.
+    """
+    done = subprocess.run(
+        [sys.executable, *arguments], env=os.environ | changed, capture_output=True, text=True,
+        timeout=TIMEOUT, check=False,
+    )  # fmt: skip
+    if not done.stdout.strip():
+        last = "\n".join(done.stderr.splitlines()[-10:])
+        raise StartError(f"The process printed nothing. It ended with:\n{last}")
+    return done.stdout

@@ -1,0 +1,38 @@
+"""Metrics of a sphere that falls, from its trace alone."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from robo_genesis.core.free_fall import continuous_drop, summed_drop
+from robo_genesis.core.metrics import CaseMetrics, metric
+from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.rigid_bodies import Drop
+
+
+@dataclass(frozen=True, slots=True)
+class FallMetrics(CaseMetrics):
+    """What one sphere did; heights are those of its centre."""
+
+    duration: float = metric("s", "duration", "t_s")
+    final_height: float = metric("m", "height at the end", "link_pos_m")
+    drop: float = metric("m", "distance fallen", "link_pos_m")
+    formula_error: float = metric(
+        "m", "largest distance from the computed height", "link_pos_m", "t_s"
+    )
+    school_gap: float = metric("m", "lower than by g t² / 2", "link_pos_m", "t_s")
+
+
+def fall_metrics(trace: BodyTrace, case: Drop) -> FallMetrics:
+    """Measure one fall; gravity and solver step of the case enter the formulas alone."""
+    height = trace.link_pos[:, 0, 2].astype(np.float64)
+    drop = height[0] - height
+    n = case.substeps * np.arange(len(trace.t))
+    expected = summed_drop(case.h, n, case.gravity)
+    return FallMetrics(
+        duration=float(trace.t[-1]),
+        final_height=float(height[-1]),
+        drop=float(drop[-1]),
+        formula_error=float(np.abs(drop - expected).max()),
+        school_gap=float(drop[-1] - continuous_drop(trace.t[-1:], case.gravity)[0]),
+    )

@@ -1,0 +1,25 @@
+"""Figures of L01, each a function of the experiment."""
+
+from matplotlib.figure import Figure
+
+from robo_genesis.core import plotting
+from robo_genesis.core.free_fall import summed_drop
+from robo_genesis.core.plotting import look
+from robo_genesis.lessons.experiment import Experiment
+
+
+def height(run: Experiment) -> Figure:
+    """Draw the measured heights on the computed ones, and the height on the ground."""
+    figure, case, trace = plotting.figure(3.2), run.cases["baseline"], run.traces["baseline"]
+    ax = figure.subplots()
+    solver_steps = [case.substeps * k for k in range(trace.steps + 1)]
+    computed = case.height - summed_drop(case.h, solver_steps, case.gravity)
+    ax.plot(trace.t, computed, label="computed beforehand", **look("target"))
+    colour = look("baseline")["color"]
+    ax.plot(trace.t, trace.link_pos[:, 0, 2], ".", label="measured", color=colour)
+    ax.axhline(case.size / 2, label="centre of a sphere on the ground", **look("limit"))
+    ax.set_ylim(bottom=0)
+    ax.set(xlabel="time [s]", ylabel="height z [m]")
+    ax.set_title("Height of the sphere's centre", loc="left")
+    ax.legend(loc="center left")
+    return figure

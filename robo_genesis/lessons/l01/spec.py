@@ -1,0 +1,58 @@
+"""Specification of lesson L01: a sphere that falls, and what a start of the engine needs.
+
+The module is data and computes nothing. `parameters()` has the values that decide what runs.
+"""
+
+from dataclasses import asdict
+from typing import Any
+
+from robo_genesis.core.scene import CAMERA, DT
+from robo_genesis.sim.rigid_bodies import Drop
+
+MINIMUM_HARDWARE = "cpu"
+
+RADIUS = 0.08
+"""Radius of the sphere [m]."""
+
+BASELINE = Drop(size=2 * RADIUS, density=500.0, height=0.5, steps=20)
+"""The fall; `size` is the diameter of the sphere."""
+
+CASES = {"baseline": BASELINE}
+
+LINK = "sphere_baselink"
+"""The engine's name of the sphere's only link."""
+
+EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
+"""`entities` counts those of the scene with the ground, the others belong to the sphere."""
+
+FORMULA_TOLERANCE = 1e-6
+"""Tolerance of a float32 position of half a metre against the exact sum [m]."""
+
+VIEW = CAMERA | {"pos": (0.75, -0.75, 0.5), "lookat": (0.0, 0.0, 0.32), "fov": 36}
+"""The lesson's camera: ground and sphere are in the picture."""
+
+MORE_STEPS = 100
+"""Outer steps after the first one whose time is measured."""
+
+RESOLUTION = {"m": 1e-6, "s": DT / 2, "1": 0.5}
+"""By unit, the difference below which two values count as equal."""
+
+TOLERANCES = {"m": (2e-6, 0.0), "m/s": (2e-5, 0.0), "s": (0.0, 0.0), "link_quat_wxyz": (1e-6, 0.0)}
+"""By unit or array, (atol, rtol) of one value between engine versions or backends."""
+
+RELATIONS = ()
+"""A single run claims no ordering."""
+
+
+def parameters() -> dict[str, Any]:
+    """Return every configured input as JSON values, for the evidence key."""
+    return {
+        "cases": {name: asdict(case) for name, case in CASES.items()},
+        "counted": list(EXPECTED_MODEL),
+        "view": {name: value for name, value in VIEW.items() if name != "GUI"},
+    }
+
+
+def lecture_parameters() -> dict[str, Any]:
+    """Return the inputs of the lecture, which also measures how long a start takes."""
+    return parameters() | {"more_steps": MORE_STEPS}

@@ -1,0 +1,109 @@
+"""Tables and sentences of L01, each a function of the experiment."""
+
+from robo_genesis.core import tables
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l01 import machine, spec
+
+RULES_OUT = {
+    "version": "another version of the engine, with other defaults",
+    "libraries": "missing graphics libraries, without which the engine does not start",
+    "backend": "settings that are not valid, and an engine that does not start",
+    "model_file": "an incomplete installation",
+    "build": "a compiler that does not work, and calls in the wrong order",
+    "render": "a camera without a picture",
+    "names": "another robot model than the lessons have",
+    "target": "a start or a target beyond a joint's limits",
+    "reset": "a state that is not what was assigned",
+    "stamps": "values that are not finite, and steps of another length",
+    "saturation": "a robot that does not move towards its target",
+}
+"""What each step of the doctor rules out."""
+
+PARTS = {
+    "import": "import of the package",
+    "init": "`gs.init`",
+    "build": "`scene.build`",
+    "first_step": "first step",
+    "more_steps": f"{spec.MORE_STEPS} further steps",
+}
+
+
+def doctor_table(run: Experiment) -> str:
+    """Return one row for each step of the doctor: its result, and what it rules out."""
+    found = run.readings[machine.DOCTOR]
+    rows = [
+        {
+            "step": str(number),
+            "name": f"`{step}`",
+            "result": "passes" if found[step] else "is broken",
+            "rules out": RULES_OUT[step],
+        }
+        for number, step in enumerate(machine.STEPS, start=1)
+    ]
+    return tables.markdown(rows)
+
+
+def start_table(run: Experiment) -> str:
+    """Return the times of both starts, part by part [s]."""
+    found = run.readings[machine.TIMES]
+    rows = [
+        {"part": words} | {f"{s} start [s]": f"{found[f'{s}_{part}']:.2f}" for s in machine.STARTS}
+        for part, words in PARTS.items()
+    ]
+    total = {
+        f"{s} start [s]": f"{sum(found[f'{s}_{part}'] for part in PARTS):.2f}"
+        for s in machine.STARTS
+    }
+    return tables.markdown([*rows, {"part": "together"} | total])
+
+
+def start_sentence(run: Experiment) -> str:
+    """Say by which factor the second start is faster."""
+    found = run.readings[machine.TIMES]
+    first, second = (sum(found[f"{s}_{part}"] for part in PARTS) for s in machine.STARTS)
+    if second < first:
+        return (
+            f"The second start took {second:.1f} s, {first / second:.1f} times less than the first "
+            f"with {first:.1f} s."
+        )
+    return (
+        f"In this run the second start took {second:.1f} s and the first {first:.1f} s, so the "
+        "kept kernels saved nothing. Another program may have slowed it down."
+    )
+
+
+def metric_table(run: Experiment) -> str:
+    """Return the metrics of the run."""
+    return tables.six_digits(run.metrics)
+
+
+def conclusion(run: Experiment) -> str:
+    """Compare the measured height with the computed one."""
+    found, case = run.metrics["baseline"], run.cases["baseline"]
+    agrees = found.formula_error <= spec.FORMULA_TOLERANCE
+    return (
+        f"After {case.steps} outer steps the sphere's centre is at {found.final_height:.6f} m. "
+        f"The largest difference from the computed height over all states is "
+        f"{1e6 * found.formula_error:.2g} µm. "
+        + (
+            "That is the rounding of float32 numbers: the engine steps as its rule says."
+            if agrees
+            else "That is more than rounding explains. Check version, gravity and step."
+        )
+    )
+
+
+CLAIMS: dict[str, str] = {
+    "structure": (
+        "The scene has two entities; the sphere is one link, one geom, one joint, 6 DOFs and 7 "
+        "qpos."
+    ),
+    "start": "The run begins with the sphere at rest at its height.",
+    "stamps": "The record has a state at t = 0 and one after each outer step, at k · dt.",
+    "computed_height": (
+        "At every sample the height is the one computed beforehand, to within float32."
+    ),
+    "posture": "The evidence of both ends is complete and shows the sphere in two places.",
+    "doctor": "Every step of the doctor passes in a process of its own.",
+}
+"""What each named check of the pages requires, shown where it passed."""

@@ -1,0 +1,121 @@
+"""L01's sphere: metrics with known answers, checks that fail alone, bundles that are refused."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bundles import written
+from lessons.body_runs import body_run, make_drop
+from lessons.lesson_bundles import differing_outputs, in_archive, metric, refused
+from spoilers import seal
+
+from robo_genesis.core.project import BOOK
+from robo_genesis.evidence.compare import compare
+from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l01 import LAB, LECTURE, machine, spec
+from robo_genesis.lessons.l01.metrics import fall_metrics
+
+CASE = spec.BASELINE
+TIMES = {f"{start}_{part}": 0.5 for start in machine.STARTS for part in machine.PARTS}
+READINGS = {
+    "model": spec.EXPECTED_MODEL,
+    machine.DOCTOR: dict.fromkeys(machine.STEPS, 1),
+    machine.TIMES: TIMES,
+}
+
+
+def test_a_stepped_fall_has_no_error_and_a_continuous_one_is_behind():
+    found = fall_metrics(make_drop(CASE), CASE)
+    assert found.final_height == pytest.approx(0.298895, abs=1e-6)
+    assert found.formula_error < spec.FORMULA_TOLERANCE
+    assert found.school_gap == pytest.approx(9.81 * CASE.h * 0.2 / 2, abs=1e-6)
+    t = np.arange(CASE.steps + 1) * CASE.dt
+    continuous = body_run(t, z=CASE.height - 9.81 * t**2 / 2, vz=-9.81 * t)
+    found = fall_metrics(continuous, CASE)
+    assert found.formula_error == pytest.approx(9.81 * CASE.h * 0.2 / 2, abs=1e-6)
+    assert found.school_gap == pytest.approx(0, abs=1e-6)
+
+
+def experiment(frames, page=LECTURE, case=CASE, **changed) -> Experiment:
+    readings = {name: READINGS[name] for name in page.readings(True)} | changed
+    return Experiment(page, {"baseline": make_drop(case)}, [spec.LINK], readings, frames, True)
+
+
+@pytest.mark.parametrize(
+    ("case", "changed", "failed"),
+    [
+        (CASE, {}, []),
+        (CASE, {"model": spec.EXPECTED_MODEL | {"geoms": 2}}, ["structure"]),
+        (type(CASE)(0.16, 500.0, 0.6, 20), {}, ["start"]),
+        (type(CASE)(0.16, 500.0, 0.5, 19), {}, ["stamps"]),
+        (type(CASE)(0.16, 500.0, 0.5, 20, gravity=9.82), {}, ["computed_height"]),
+        (CASE, {machine.DOCTOR: READINGS[machine.DOCTOR] | {"render": 0}}, ["doctor"]),
+        (CASE, {machine.TIMES: dict.fromkeys(TIMES, 900.0)}, []),
+    ],
+)
+def test_each_check_fails_on_its_own_fault_and_none_judges_a_time(frames, case, changed, failed):
+    run = experiment(frames, case=case, **changed)
+    assert [check.name for check in run.outcomes() if not check.passed] == failed
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory, engine, frames) -> Path:
+    """The lecture's bundle."""
+    return written(engine, tmp_path_factory.mktemp("fell"), "l01", "lecture", experiment(frames))
+
+
+def test_what_the_page_shows_follows_from_its_bundle(sound, frames):
+    assert differing_outputs(sound, experiment(frames), BOOK) == []
+
+
+def test_a_slower_machine_agrees(sound, tmp_path):
+    slower = Path(shutil.copytree(sound, tmp_path / "l01" / "lecture" / "cpu"))
+    metric(machine.TIMES, "first_build", 60.0)(slower)
+    seal(slower)
+    verify_bundle(slower)
+    assert compare(sound, slower).state == "equal"
+
+
+def moved(by):
+    return in_archive("baseline", lambda a: a["link_pos_m"][5:, 0, 2].__iadd__(by))
+
+
+@pytest.mark.parametrize(
+    ("code", "spoil"),
+    [
+        ("motion", moved(1e-4)),
+        ("metrics", metric("baseline", "final_height", 0.3038)),
+        ("metrics", metric(machine.DOCTOR, "render", 0.5)),
+        ("checks", metric(machine.DOCTOR, "render", 0)),
+    ],
+)
+def test_a_spoiled_bundle_is_refused(sound, tmp_path, code, spoil):
+    folder = Path(shutil.copytree(sound, tmp_path / "l01" / "lecture" / "cpu"))
+    spoil(folder)
+    assert refused(folder).startswith(f"{code}: ")
+
+
+@pytest.mark.engine
+def test_the_lab_passes_its_checks_and_falls_twice_the_same(real_engine):
+    from robo_genesis.core import checks
+    from robo_genesis.sim import rigid_bodies
+    from robo_genesis.sim.camera import capture
+
+    gs = real_engine.gs
+    scene = gs.Scene(
+        sim_options=gs.options.SimOptions(dt=CASE.dt, substeps=CASE.substeps), show_viewer=False
+    )
+    scene.add_entity(gs.morphs.Plane())
+    sphere = scene.add_entity(gs.morphs.Sphere(radius=spec.RADIUS, pos=(0, 0, CASE.height)))
+    camera = scene.add_camera(**spec.VIEW)
+    scene.build()
+    frames = {"initial": capture(camera)}
+    first, second = (rigid_bodies.run_drop(scene, sphere, CASE) for _ in range(2))
+    frames["final"] = capture(camera)
+    assert np.array_equal(first.link_pos, second.link_pos)
+    readings = {"model": rigid_bodies.read_model(scene, sphere)}
+    links = [link.name for link in sphere.links]
+    run = Experiment(LAB, {"baseline": first}, links, readings, frames, rendered=True)
+    assert checks.require("l01", run.outcomes()) == "L01 CHECK: PASSED"

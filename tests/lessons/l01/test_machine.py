@@ -1,0 +1,55 @@
+"""The processes that L01 starts: what they print, and failures on purpose."""
+
+import json
+
+import pytest
+
+from robo_genesis.lessons.l01 import machine, mistakes
+
+
+def report(broken=None):
+    place = len(machine.STEPS) if broken is None else machine.STEPS.index(broken)
+    states = ["ok"] * place + ["broken"] + ["not run"] * len(machine.STEPS)
+    steps = [
+        {"step": step, "state": state, "found": f"about {step}"}
+        for step, state in zip(machine.STEPS, states, strict=False)
+    ]
+    return {"steps": steps, "broken": broken}
+
+
+def test_steps_that_did_not_run_have_not_passed():
+    assert machine.passed(report()) == dict.fromkeys(machine.STEPS, 1)
+    found = machine.passed(report("build"))
+    assert [name for name, count in found.items() if not count] == list(machine.STEPS[4:])
+
+
+def test_a_failure_is_shown_only_by_the_step_that_it_should_break():
+    found = mistakes.broken_step("no_egl", report("libraries"), "libraries")
+    assert found.shown
+    assert found.evidence == "The doctor stops at step 2, `libraries`: about libraries"
+    assert not mistakes.broken_step("no_egl", report("version"), "libraries").shown
+    assert not mistakes.broken_step("no_egl", report(), "libraries").shown
+
+
+def test_a_process_without_output_is_an_error_with_its_last_lines():
+    with pytest.raises(machine.StartError, match="NameError: name 'nothing' is not defined"):
+        machine.run_python(["-c", "nothing"], {})
+
+
+def test_both_starts_share_one_folder_of_kernels(monkeypatch):
+    seen = []
+
+    def output(arguments, changed):
+        seen.append(changed)
+        return "a line of the engine\n" + json.dumps([1, 2, 3, 4, len(seen)])
+
+    monkeypatch.setattr(machine, "run_python", output)
+    found = machine.measure_starts()
+    assert seen[0] == seen[1] != {}
+    assert list(found) == [f"{start}_{part}" for start in machine.STARTS for part in machine.PARTS]
+    assert (found["first_more_steps"], found["second_more_steps"]) == (1, 2)
+
+
+def test_the_doctor_stops_at_another_version_and_at_a_file_that_is_no_library():
+    for failure in (mistakes.wrong_version(), mistakes.no_egl()):
+        assert failure.shown, failure.evidence
