@@ -21,7 +21,10 @@ CLAIMS: dict[str, str] = {
         "Gravity, KP and the Jacobian explain the motion from the command's pose to the last one, "
         "but for the declared share."
     ),
-    "repeatable": "The same question from the same start gets the same answer to the last bit.",
+    "repeatable": (
+        "Asked twice from the common start, where no restart is needed, the solver gives the same "
+        "answer to the last bit."
+    ),
     "unreachable_refused": (
         "The answer for the target beyond reach is finite, and refused for its residual."
     ),

@@ -158,7 +158,7 @@ def conclusions(run: Experiment) -> str:
     for name in ("stiff", "compensated"):
         verb = "less" if m[name].final_distance < base.final_distance else "not less"
         lines.append(
-            f"{spec.LABELS[name].capitalize()}: {1000 * m[name].final_distance:.2f} mm are left, "
+            f"Run \"{spec.LABELS[name]}\": {1000 * m[name].final_distance:.2f} mm are left, "
             f"{verb} than in the baseline."
         )
     lines += [
