@@ -15,6 +15,7 @@ from sphinx.transforms.post_transforms import SphinxPostTransform
 
 from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, Mark, css_name
 from robo_genesis.lessons.registry import COURSE_MARKS
+from robo_genesis.site import case_labels
 
 THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
 """Paper has the light theme."""
@@ -76,8 +77,8 @@ def _stripe(name: str) -> dict[str, str]:
 class MarkCases(SphinxPostTransform):
     """Mark each case that is named.
 
-    A cell of a table that holds a case's name, and nothing else, gets the line of the plots beside
-    it; in running text the name has the case's colour. The word "baseline" is not coloured there.
+    A cell of a table that holds a case's name or its words, and nothing else, gets the line of the
+    plots beside it; in running text the name has the case's colour, "baseline" excepted.
     """
 
     default_priority = 400  # outputs of cells have been chosen by then
@@ -87,8 +88,8 @@ class MarkCases(SphinxPostTransform):
         for entry in self.document.findall(nodes.entry):
             name = entry.astext()
             paragraph = entry.next_node(nodes.paragraph)
-            if name in COURSE_MARKS and paragraph is not None:
-                paragraph["classes"] += ["case-mark", css_name(COURSE_MARKS[name])]
+            if name in case_labels.MARKS and paragraph is not None:
+                paragraph["classes"] += ["case-mark", css_name(case_labels.MARKS[name])]
         for text in list(self.document.findall(nodes.Text)):
             if NAME.search(text) and _is_running(text):
                 text.parent.replace(text, _named(text))

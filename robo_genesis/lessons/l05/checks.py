@@ -45,7 +45,7 @@ def acceptance(run: Experiment) -> Iterator[Finding]:
     found, limits = run.readings[study.GROUP], spec.IK
     yield at_most("residual_m", found["residual_m"], limits.position_tolerance)
     yield at_most("residual_rad", found["residual_rad"], limits.rotation_tolerance)
-    for name in ("baseline", "stiff"):
+    for name in ("baseline", "kp_doubled"):
         trace, m = run.traces[name], run.metrics[name]
         yield equal(f"{name}.command_not_finite", int((~np.isfinite(trace.target)).sum()), 0)
         room = spec.SAME_POSE
@@ -111,7 +111,7 @@ def sag_explains(run: Experiment) -> Iterator[Finding]:
 def repeatable(run: Experiment) -> Iterator[Finding]:
     for name in study.REPEATED:
         yield equal(name, run.readings[study.REPEAT_GROUP][name], 0)
-    first, second = (run.traces[name].target[0] for name in ("baseline", "stiff"))
+    first, second = (run.traces[name].target[0] for name in ("baseline", "kp_doubled"))
     yield equal("entries_that_differ_between_runs", int((first != second).sum()), 0)
 
 

@@ -4,13 +4,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
-from robo_genesis.core.palette import marks_of
 from robo_genesis.core.plotting import look
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.checks import marker
+from robo_genesis.lessons.l05.metrics import HAND
 from robo_genesis.lessons.l05.view_record import frame_names, view_of
-from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_geometry as cameras
 from robo_genesis.sim.franka import LINK_PARENTS
 
@@ -29,12 +28,12 @@ def posture(run: Experiment) -> Figure:
 
 def distance(run: Experiment) -> Figure:
     """Draw the distance of the hand from its target over time, on a logarithmic scale."""
-    figure, marks = plotting.figure(3.6), marks_of(tuple(spec.CASES), spec.CASE_MARKS)
+    figure = plotting.figure(3.6)
     ax = figure.subplots()
     for name in spec.CASES:
         trace = run.traces[name]
-        apart = np.linalg.norm(kinematics.hand_pose(trace.q).position - spec.TARGET, axis=-1)
-        style = look(marks[name]) | {"linestyle": "-"}
+        apart = np.linalg.norm(trace.link_pos[:, HAND] - spec.TARGET, axis=-1)
+        style = look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
         ax.semilogy(trace.t, 1000 * apart, label=spec.LABELS[name], **style)
     ax.set(xlabel="time [s]", ylabel="hand to target [mm]")
     plotting.legend_above(ax, "Distance of the hand from its target")

@@ -61,13 +61,13 @@ BASELINE = ReachCase(
 )
 CASES = {
     "baseline": BASELINE,
-    "stiff": replace(BASELINE, kp=2 * franka.KP_BASELINE),
-    "compensated": replace(BASELINE, compensated=True),
+    "kp_doubled": replace(BASELINE, kp=2 * franka.KP_BASELINE),
+    "gravity_compensated": replace(BASELINE, compensated=True),
 }
-CASE_MARKS = {"stiff": "first", "compensated": "second"}
+CASE_MARKS = {"baseline": "baseline", "kp_doubled": "first", "gravity_compensated": "second"}
 """The mark of each case in the palette."""
 
-LABELS = {"baseline": "baseline", "stiff": "KP doubled", "compensated": "gravity compensated"}
+LABELS = {name: name.replace("kp", "KP").replace("_", " ") for name in CASES}
 """Words of a reader for runs."""
 
 MARKER_RADIUS = 0.03
@@ -88,8 +88,8 @@ SEGMENTS = ("plane", "hand", "marker")
 """What is looked up in the segmentation."""
 
 RELATIONS = (
-    (("baseline", "stiff"), "final_distance", "lower", 1e-3),
-    (("baseline", "compensated"), "final_distance", "lower", 1e-3),
+    (("baseline", "kp_doubled"), "final_distance", "lower", 1e-3),
+    (("baseline", "gravity_compensated"), "final_distance", "lower", 1e-3),
 )
 """Written down before the runs: how the second case of a pair compares with the first [m]."""
 

@@ -7,6 +7,7 @@ from robo_genesis.core.text import bullets, with_unit
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
+from robo_genesis.lessons.l05.metrics import ReachMetrics
 from robo_genesis.lessons.l05.view_record import view_of
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_geometry as cameras
@@ -130,8 +131,18 @@ def depth_table(run: Experiment) -> str:
 
 
 def metric_table(run: Experiment) -> str:
-    """Return the metrics of all runs."""
-    return tables.metric_table({spec.LABELS[name]: run.metrics[name] for name in spec.CASES})
+    """Return the metrics of all runs in millimetres and milliradians."""
+    labels, units = (ReachMetrics.about(what) for what in ("label", "unit"))
+    return tables.markdown(
+        [
+            {"metric": f"{label} [m{units[metric]}]"}
+            | {
+                spec.LABELS[name]: f"{1000 * getattr(run.metrics[name], metric):.3f}"
+                for name in spec.CASES
+            }
+            for metric, label in labels.items()
+        ]
+    )
 
 
 def conclusions(run: Experiment) -> str:
@@ -149,10 +160,11 @@ def conclusions(run: Experiment) -> str:
         f"{1000 * base.final_distance:.2f} mm. The arm stopped {1000 * base.tracking_distance:.2f} "
         "mm from the pose of its command.",
     ]
-    for name in ("stiff", "compensated"):
+    for name in tuple(spec.CASES)[1:]:
         verb = "less" if m[name].final_distance < base.final_distance else "not less"
+        label = spec.LABELS[name]
         lines.append(
-            f"{spec.LABELS[name].capitalize()}: {1000 * m[name].final_distance:.2f} mm are left, "
+            f"{label[0].upper()}{label[1:]}: {1000 * m[name].final_distance:.2f} mm are left, "
             f"{verb} than in the baseline."
         )
     lines += [

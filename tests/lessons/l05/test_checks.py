@@ -38,7 +38,7 @@ def moved_hand(trace, by):
 
 def lower_gain(run: Experiment) -> Experiment:
     """Explain the baseline by another gain than its own."""
-    trace = run.traces["stiff"]
+    trace = run.traces["kp_doubled"]
     return changed(run, "baseline", q=trace.q, link_pos=trace.link_pos, link_quat=trace.link_quat)
 
 
@@ -55,11 +55,11 @@ CHANGES = {
     "stamps": lambda run: changed(run, "baseline", t=run.traces["baseline"].t * 2),
     "acceptance": lambda run: with_reading(run, "ik", "residual_m", 6e-4),
     "forward_kinematics": lambda run: changed(
-        run, "stiff", link_pos=moved_hand(run.traces["stiff"], 1e-5)
+        run, "kp_doubled", link_pos=moved_hand(run.traces["kp_doubled"], 1e-5)
     ),
     "second_engine": lambda run: with_reading(run, "ik", "jacobian_difference", 1e-4),
     "arrived": lambda run: changed(
-        run, "stiff", link_pos=moved_hand(run.traces["stiff"], 0.05)
+        run, "kp_doubled", link_pos=moved_hand(run.traces["kp_doubled"], 0.05)
     ),
     "sag_explains": lower_gain,
     "repeatable": lambda run: with_reading(run, "ik_repeated", "entries_that_differ", 1),
@@ -112,7 +112,7 @@ def test_the_metrics_of_a_run_are_three_distances(reaches):
     assert reaches.metrics["baseline"].tracking_distance == pytest.approx(
         np.linalg.norm(study.measured_sag(reaches.traces["baseline"])[:3])
     )
-    assert reaches.metrics["compensated"].final_distance < 5e-4
+    assert reaches.metrics["gravity_compensated"].final_distance < 5e-4
     trace = reaches.traces["baseline"]
     changing = replace(trace, target=trace.target + np.linspace(0, 0.1, trace.steps)[:, None])
     with pytest.raises(ValueError, match="The command changes"):
