@@ -73,16 +73,16 @@ def joint_table(run: Experiment) -> str:
     rows = [
         {
             "joint": f"`{JOINT_NAMES[k]}`",
-            "gravity [N·m]": shown(effort[k], 2),
+            "torque to hold [N·m]": shown(effort[k], 2),
             "KP [N·m/rad]": f"{kp[k]:.0f}",
-            "angle [mrad]": shown(1000 * angles[k], 2),
-            "hand moves along z [mm]": shown(1000 * ways[k], 2),
+            "position − command, computed [mrad]": shown(1000 * angles[k], 2),
+            "moves the hand along z by [mm]": shown(1000 * ways[k], 2),
         }
         for k in most
     ]
-    rest = {"joint": "all others", "gravity [N·m]": "", "KP [N·m/rad]": "", "angle [mrad]": ""}
+    rest = dict.fromkeys(rows[0], "") | {"joint": "all others"}
     others = 1000 * (ways.sum() - ways[most].sum())
-    return tables.markdown([*rows, rest | {"hand moves along z [mm]": shown(others, 2)}])
+    return tables.markdown([*rows, rest | {"moves the hand along z by [mm]": shown(others, 2)}])
 
 
 def marker_table(run: Experiment) -> str:
