@@ -17,10 +17,10 @@ document.addEventListener("DOMContentLoaded", () => {
     }));
   }
 
-  /* Short enough for a cell on a phone. */
+  /* At most four characters: a cell on a phone has no room for more. */
   function short(value) {
-    if (value >= 100) return value.toFixed(0);
-    return String(Number(value < 0.1 ? value.toFixed(3) : value.toPrecision(2)));
+    if (value >= 10) return value.toFixed(0);
+    return String(Number(value.toFixed(value < 1 ? 3 : 2))).replace(/^0\./, ".");
   }
 
   function start(root) {

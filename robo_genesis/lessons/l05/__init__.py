@@ -32,7 +32,7 @@ from robo_genesis.sim.camera_views import look, segment_number
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import reset
 from robo_genesis.sim.joints import resolve_joints
-from robo_genesis.sim.visual_shape import WORLD, Part, floor, read_shape
+from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
 
 if TYPE_CHECKING:
     from robo_genesis.lessons.l05 import plots, solutions_plots
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 __all__ = [
     "CAMERAS", "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LECTURE", "LESSON", "MISTAKES",
     "SOLUTIONS", "SUBSTEPS", "ask", "camera_exercises", "camera_spec", "control_case",
-    "exercises", "explorer", "floor", "kinematics", "look", "mistakes", "plots", "reach",
+    "exercises", "explorer", "kinematics", "look", "mistakes", "plots", "reach",
     "read_shape", "reset", "resolve_joints", "segment_number", "solutions_plots",
     "solutions_text", "solve_all", "spec", "study", "target_part", "text", "view_record",
 ]  # fmt: skip

@@ -21,7 +21,10 @@ CLAIMS: dict[str, str] = {
         "Gravity, KP and the Jacobian explain the motion from the command's pose to the last one, "
         "but for the declared share."
     ),
-    "repeatable": "The same question from the same start gets the same answer to the last bit.",
+    "repeatable": (
+        "Asked twice from the common start, where no restart is needed, the solver gives the same "
+        "answer to the last bit."
+    ),
     "unreachable_refused": (
         "The answer for the target beyond reach is finite, and refused for its residual."
     ),
@@ -30,9 +33,16 @@ CLAIMS: dict[str, str] = {
         "count as much as 1 rad."
     ),
     "camera_matrix": "The engine's camera matrix is that of the vertical field of view.",
-    "projection": "The centroid of the marker's pixels is where a sphere's picture must be.",
-    "sphere_surface": "Each pixel of the marker, back-projected, is on its surface.",
-    "plane_surface": "Each pixel of the ground nearer than 3 m, back-projected, is at height 0.",
+    "projection": (
+        "The centroid of the marker's pixels is within 0.15 pixels of the computed "
+        "silhouette's centre."
+    ),
+    "sphere_surface": (
+        "Each pixel of the marker, back-projected, is within 0.6 % of the radius of its surface."
+    ),
+    "plane_surface": (
+        "Each pixel of the ground nearer than 3 m, back-projected, is within 0.1 mm of height 0."
+    ),
     "mounted_camera": "The camera on the hand is at the pose of the hand times the offset.",
     "posture": "Two different camera frames, or a schematic whose links moved, show the end state.",
 }

@@ -50,7 +50,15 @@ def picture(run: Experiment) -> Figure:
         height, width = view.rgb.shape[:2]
         shown = run.frames[frame_names(spec.VIEWED)[0]]
         ax.imshow(shown, extent=(0, width, height, 0), interpolation="nearest")
-    ax.plot([u], [v], "+", markersize=14, color=look("target")["color"], label="projected by hand")
+    ax.plot(
+        [u],
+        [v],
+        "+",
+        markersize=16,
+        markeredgewidth=2,
+        color=look("target")["color"],
+        label="projected by hand",
+    )
     ax.set(xlim=(u - AROUND, u + AROUND), ylim=(v + AROUND, v - AROUND), aspect="equal")
     ax.set(xlabel="u [pixel]", ylabel="v [pixel]")
     ax.grid(visible=False)

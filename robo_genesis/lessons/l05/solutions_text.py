@@ -14,7 +14,7 @@ THRESHOLDS = (0.05, 0.1, 0.3, 0.5, 1.0)
 """Largest joint differences within which two answers count as one [rad]."""
 
 CRITERIA = {
-    "nearest to the start": ("from_start", min),
+    "nearest to the present posture": ("from_start", min),
     "farthest from the limits": ("margin", max),
     "largest manipulability": ("manipulability", max),
 }
@@ -23,7 +23,7 @@ CRITERIA = {
 MEASURES = {
     "manipulability": ("manipulability", 1, 3),
     "distance from limits [rad]": ("margin", 1, 3),
-    "largest angle from the start [rad]": ("from_start", 1, 3),
+    "largest angle from the present posture [rad]": ("from_start", 1, 3),
     "distance left [mm]": ("position", 1000, 4),
     "angle left [mrad]": ("rotation", 1000, 4),
 }

@@ -18,6 +18,9 @@ from robo_genesis.sim.franka import JOINT_NAMES
 
 NO_PICTURE = "SKIP: no camera"
 
+SHOWN = 3
+"""Joints with a row of their own in the table of gravity."""
+
 
 def shown(value: float, digits: int) -> str:
     """Write a number with digits after the point and a true minus sign; zero has none."""
@@ -61,22 +64,25 @@ def sag_table(run: Experiment) -> str:
 
 
 def joint_table(run: Experiment) -> str:
-    """Return by joint the gravity in the baseline's command, its angle, and the hand's way."""
+    """Return the joints that lower the hand most: gravity in the command, angle, and way."""
     q, kp = run.traces["baseline"].target[-1].astype(float), spec.BASELINE.kp
-    effort, of = mujoco_kinematics.gravity_effort(q), kinematics.jacobian(q)
-    rows = []
-    for k in range(ARM):
-        angle = -effort[k] / kp[k]
-        rows.append(
-            {
-                "joint": f"`{JOINT_NAMES[k]}`",
-                "gravity [N·m]": shown(effort[k], 2),
-                "KP [N·m/rad]": f"{kp[k]:.0f}",
-                "angle [mrad]": shown(1000 * angle, 2),
-                "hand moves along z [mm]": shown(1000 * of[2, k] * angle, 2),
-            }
-        )
-    return tables.markdown(rows)
+    effort, of = mujoco_kinematics.gravity_effort(q)[:ARM], kinematics.jacobian(q)
+    angles = -effort / kp[:ARM]
+    ways = of[2] * angles
+    most = sorted(np.abs(ways).argsort()[-SHOWN:])
+    rows = [
+        {
+            "joint": f"`{JOINT_NAMES[k]}`",
+            "torque to hold [N·m]": shown(effort[k], 2),
+            "KP [N·m/rad]": f"{kp[k]:.0f}",
+            "position − command, computed [mrad]": shown(1000 * angles[k], 2),
+            "moves the hand along z by [mm]": shown(1000 * ways[k], 2),
+        }
+        for k in most
+    ]
+    rest = dict.fromkeys(rows[0], "") | {"joint": "all others"}
+    others = 1000 * (ways.sum() - ways[most].sum())
+    return tables.markdown([*rows, rest | {"moves the hand along z by [mm]": shown(others, 2)}])
 
 
 def marker_table(run: Experiment) -> str:
