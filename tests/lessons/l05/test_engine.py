@@ -30,10 +30,11 @@ def measured(lab):
         study.REPEAT_GROUP: study.read_repeat(robot, joints, spec.BASELINE),
     }
     links = [link.name for link in robot.links]
-    return Experiment(LAB, traces, links, readings, {}, rendered=False, joints=joints)
+    page = replace(LAB, checks=checks.WITHOUT_CAMERA)
+    return Experiment(page, traces, links, readings, {}, rendered=False, joints=joints)
 
 
-def test_the_lab_passes_its_checks(measured):
+def test_runs_without_a_camera_pass_their_checks(measured):
     assert [check.detail for check in measured.outcomes() if not check.passed] == []
 
 
@@ -61,7 +62,7 @@ def test_poses_are_read_without_a_change_of_the_state(lab):
 
 def test_answers_depend_on_their_start_alone_and_are_measured_where_the_engine_says(lab):
     case = replace(
-        spec.MANY_STARTS, positions=spec.MANY_STARTS.positions[:6], starts=spec.RANDOM_STARTS[:6]
+        spec.MANY_STARTS, positions=spec.MANY_STARTS.positions[:20], starts=spec.RANDOM_STARTS[:20]
     )
     trace, errors = solve_all(lab.scene, lab.franka, lab.joints, case)
     again, _ = solve_all(lab.scene, lab.franka, lab.joints, case)
