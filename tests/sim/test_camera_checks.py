@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from closed_views import PLANE, closed_view
 
 from robo_genesis.sim import camera_checks
 from robo_genesis.sim import camera_geometry as cameras
@@ -19,19 +20,11 @@ TRANSFORM = np.array([
     [0.0, 0.0, 0.0, 1.0],
 ])  # fmt: skip
 MARKER = Marker(3, tuple((TRANSFORM @ (0.3, 0.2, -1.2, 1.0))[:3].tolist()), 0.1)
-PLANE = 1
 
 
 def seen(marker=MARKER):
     """Return a view of a plane and one sphere, both in closed form."""
-    start, directions = cameras.rays(K, TRANSFORM, SIZE)
-    plane = cameras.plane_depth(start, directions)
-    sphere = cameras.sphere_depth(start, directions, marker.centre, marker.radius)
-    hit = np.isfinite(sphere) & ~(sphere > plane)
-    depth = np.where(hit, sphere, np.where(plane < 20, plane, 20.0))
-    numbers = np.where(hit, marker.number, np.where(depth < 20, PLANE, 0))
-    return View(K, TRANSFORM, SIZE, (0.1, 20.0), np.zeros((120, 160, 3), np.uint8),
-                depth.astype(np.float32), numbers.astype(np.int32))  # fmt: skip
+    return closed_view(42.0, SIZE, TRANSFORM, marker)
 
 
 def problems(findings):

@@ -77,12 +77,15 @@ def test_names_in_running_text_are_marked_and_the_text_stays(node, names):
     assert marked(node) == (text, [(n, ["case-name", f"case-{n.lower()}"]) for n in names])
 
 
-def test_a_cell_that_is_a_name_gets_the_line_instead():
-    paragraphs = [nodes.paragraph("", text) for text in ("G1", "baseline", "after G2")]
+def test_a_cell_that_is_a_name_or_its_words_gets_the_line_instead():
+    paragraphs = [
+        nodes.paragraph("", text) for text in ("G1", "baseline", "after G2", "KP doubled")
+    ]
     _, found = marked(*(nodes.entry("", paragraph) for paragraph in paragraphs))
     assert [p["classes"] for p in paragraphs] == [
         ["case-mark", "case-g1"],
         ["case-mark", "case-baseline"],
         [],
+        ["case-mark", "case-g1"],
     ]
     assert [name for name, _ in found] == ["G2"]

@@ -11,7 +11,7 @@ from without_sphinx import Panel, page_of
 
 from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.evidence.picture_file import write_picture
-from robo_genesis.lessons.l05 import view_record
+from robo_genesis.lessons import view_record
 from robo_genesis.sim.camera_geometry import intrinsics, plane_depth, rays, sphere_depth
 from robo_genesis.sim.camera_views import View
 from robo_genesis.site.picture_reader import reader_block

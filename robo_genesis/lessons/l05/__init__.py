@@ -8,6 +8,7 @@ import numpy as np
 from robo_genesis.core.channels import View
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.trace import Trace
+from robo_genesis.lessons import view_record
 from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, on_demand
 from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
 from robo_genesis.lessons.l05 import (
@@ -23,7 +24,6 @@ from robo_genesis.lessons.l05 import (
     spec,
     study,
     text,
-    view_record,
 )
 from robo_genesis.lessons.l05.metrics import ReachMetrics
 from robo_genesis.lessons.l05.run import ask, control_case, reach, solve_all

@@ -16,7 +16,7 @@ from robo_genesis.core.checks import (
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import camera_spec, spec, study
 from robo_genesis.lessons.l05.metrics import HAND, measured_hand
-from robo_genesis.lessons.l05.view_record import SEGMENTS, view_of
+from robo_genesis.lessons.view_record import SEGMENTS, view_of
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_checks, end_state, mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose

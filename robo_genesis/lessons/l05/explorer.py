@@ -6,7 +6,7 @@ from typing import Any
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import camera_spec, spec, study
 from robo_genesis.lessons.l05.solutions_text import MEASURES, records
-from robo_genesis.lessons.l05.view_record import DEPTH_UNIT, SEGMENTS, view_of
+from robo_genesis.lessons.view_record import DEPTH_UNIT, SEGMENTS, view_of
 from robo_genesis.sim.camera_geometry import other_axes
 
 COLUMNS = 9

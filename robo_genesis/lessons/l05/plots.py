@@ -9,7 +9,7 @@ from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.checks import marker
 from robo_genesis.lessons.l05.metrics import HAND
-from robo_genesis.lessons.l05.view_record import frame_names, view_of
+from robo_genesis.lessons.view_record import frame_names, view_of
 from robo_genesis.sim import camera_geometry as cameras
 from robo_genesis.sim.franka import LINK_PARENTS
 

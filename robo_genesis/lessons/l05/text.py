@@ -8,7 +8,7 @@ from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
 from robo_genesis.lessons.l05.metrics import ReachMetrics
-from robo_genesis.lessons.l05.view_record import view_of
+from robo_genesis.lessons.view_record import view_of
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_geometry as cameras
 from robo_genesis.sim import mujoco_kinematics

@@ -7,7 +7,7 @@ import pytest
 
 from robo_genesis.core.scene import CAMERA_RES, FRAME_SHAPE
 from robo_genesis.evidence.picture_file import read_picture, write_picture
-from robo_genesis.lessons.l05 import view_record
+from robo_genesis.lessons import view_record
 from robo_genesis.sim import camera_geometry as cameras
 from robo_genesis.sim.camera_views import View
 

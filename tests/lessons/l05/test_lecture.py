@@ -1,0 +1,75 @@
+"""Tables, figures and bundles of the lecture and the lab, with a camera and without."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bundles import written
+from closed_views import PLANE, closed_view, looking
+from lessons.lesson_bundles import in_archive, in_json, metric, refused
+
+from robo_genesis.core.scene import CAMERA_RES, FRAME_SHAPE
+from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.lessons import view_record
+from robo_genesis.lessons.l05 import LAB, plots, spec, text
+from robo_genesis.sim.camera_checks import Marker
+
+SPHERE = Marker(13, tuple(spec.TARGET), spec.MARKER_RADIUS)
+
+
+@pytest.fixture(scope="module", params=[True, False], ids=["camera", "RENDER=0"])
+def run(request, reaches):
+    """The lab as a camera without errors sees it."""
+    view = closed_view(spec.FOV, CAMERA_RES, looking(spec.VIEW["pos"], spec.VIEW["lookat"]), SPHERE)
+    readings = reaches.readings | {
+        "view_world": view_record.numbers(view),
+        "segments": {"plane": PLANE, "hand": 10, "marker": SPHERE.number},
+    }
+    pattern = np.arange(np.prod(FRAME_SHAPE)).reshape(FRAME_SHAPE)
+    ends = {"initial": pattern.astype(np.uint8), "final": (pattern // 2).astype(np.uint8)}
+    return replace(
+        reaches,
+        page=LAB,
+        traces={name: reaches.traces[name] for name in spec.CASES},
+        readings=readings,
+        frames=ends | view_record.frames("world", view) if request.param else {},
+        rendered=request.param,
+    )
+
+
+def test_the_checks_hold_and_pictures_are_skipped_where_there_are_none(run):
+    assert [check.detail for check in run.outcomes() if not check.passed] == []
+    shown = text.marker_table(run), text.depth_table(run), text.conclusions(run)
+    assert [text.NO_PICTURE in part for part in shown] == [not run.rendered] * 2 + [False]
+    assert ("The pixels of the marker are" in shown[2]) == run.rendered
+    assert len(plots.picture(run).axes[0].images) == run.rendered
+    assert plots.posture(run).axes
+
+
+def test_tables_and_figures_give_the_numbers_of_the_runs(run):
+    base = run.metrics["baseline"]
+    apart, angle = (f"{1000 * value:.3f}" for value in (base.final_distance, base.final_angle))
+    assert f"| {apart} | {angle} |" in text.error_table(run)
+    assert f"| end to target [mm] | {apart} |" in text.metric_table(run)
+    assert "is accepted" in text.conclusions(run)
+    assert f"{plots.distance(run).axes[0].lines[0].get_ydata()[-1]:.3f}" == apart
+
+
+SPOILED = {
+    "a hand that was moved": ("link_pos", in_archive(
+        "baseline", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01))),
+    "a residual that was written": ("checks", metric("ik", "residual_m", 1.0)),
+    "a camera that was moved": ("checks", metric("view_world", "transform_03", 1.6)),
+    "another hand": ("pose", in_json(
+        "arrays.json", lambda a: a["coords"]["link"].__setitem__(8, "flange"))),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("run", [True], indirect=True)
+@pytest.mark.parametrize("how", SPOILED)
+def test_a_sound_bundle_is_accepted_and_a_spoiled_one_is_refused(engine, tmp_path, run, how):
+    folder = written(engine, tmp_path, "l05", "lab", run)
+    assert all(check.passed for check in verify_bundle(folder).predicate.checks)
+    code, spoil = SPOILED[how]
+    spoil(folder)
+    assert code in refused(folder)
