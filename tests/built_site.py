@@ -30,11 +30,7 @@ if TYPE_CHECKING:
 PAGES = tuple(docnames(BOOK / "_toc.yml"))
 """Every page of the book in reading order."""
 
-LESSON_PAGES = {
-    (Path(name).parent.name.partition("-")[0], Path(name).name.removeprefix("deeper-")): name
-    for name in PAGES
-    if name.startswith("lessons/")
-}
+LESSON_PAGES = {(page.lesson, page.page): page.docname for page in find_pages(BOOK) if page.lesson}
 """The pages of lessons by lesson and page."""
 
 MEASURING_PAGES = [(name, page) for name, lesson in LESSONS.items() for page in lesson.pages]

@@ -21,7 +21,7 @@ PIN = project.engine_pin()
 def test_pages_show_executed_outputs_and_their_verdict(site, lesson, name):
     found = parsed(site, LESSON_PAGES[lesson, name])
     assert f"{lesson.upper()} CHECK: PASSED" in found.get_text()
-    assert found.select("article svg.drawing")
+    assert found.select("article svg.drawing, article .picture-reader")
 
 
 @pytest.mark.parametrize(

@@ -82,7 +82,7 @@ LAB = replace(
         | view_record.groups(spec.VIEWED)
         | {view_record.SEGMENTS: counts(spec.SEGMENTS)}
     ),
-    checks=checks.LAB,
+    checks=checks.CHECKS,
     camera=True,
     frames=("initial", "final", *view_record.frame_names(spec.VIEWED)),
 )

@@ -171,7 +171,7 @@ WITHOUT_CAMERA = (
 """Checks of every page that has the runs of the lab."""
 
 VIEW = (camera_matrix, projection, sphere_surface, plane_surface)
-LAB = (*WITHOUT_CAMERA, posture, *VIEW)
+CHECKS = (*WITHOUT_CAMERA, posture, *VIEW)
 CAMERAS = (*VIEW, mounted_camera)
 SOLUTIONS = (unreachable_refused, nearest_is_nearer)
 """Checks of the page about many solutions."""

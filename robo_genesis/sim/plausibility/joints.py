@@ -2,7 +2,8 @@
 
 The poses of the links are a function of the positions, the control force is the control law, and
 the internal force is the net force at the state before the last solver step. MuJoCo computes poses,
-masses and gravity of the same model file in float64.
+masses and gravity of the same model file in float64. What computes them is imported where it is
+used: a page measures without it.
 
 | tolerance | residual of the CPU runs | value |
 |---|---|---|
@@ -22,10 +23,8 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim import mujoco_joints
 from robo_genesis.sim.franka import per_joint
 from robo_genesis.sim.joint_control import LIMIT_TOLERANCE, ControlCase
-from robo_genesis.sim.mujoco_kinematics import bare_robot, link_names, link_poses
 from robo_genesis.sim.plausibility.rules import Breach, apart, times, unit_quaternions
 
 LAW = 5e-3
@@ -104,12 +103,14 @@ def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
 
 def poses(trace: Trace, links: Sequence[str]) -> Iterator[Breach]:
     """Yield a link that is not where the positions of the joints put it."""
+    from robo_genesis.sim import mujoco_kinematics
+
     yield from unit_quaternions(trace.link_quat)
-    unknown = sorted(set(links) - link_names())
+    unknown = sorted(set(links) - mujoco_kinematics.link_names())
     if unknown:
         yield Breach("pose", "list of links that the model does not have", unknown, [])
         return
-    position, orientation = link_poses(trace.q, links)
+    position, orientation = mujoco_kinematics.link_poses(trace.q, links)
     yield from apart("pose", "link_pos [m]", trace.link_pos, position, POSE)
     yield from apart("pose", "link_quat", trace.link_quat, orientation, POSE)
 
@@ -143,6 +144,8 @@ def last_step(
 ) -> tuple[FloatArray, FloatArray]:
     """Return velocity and net force, each (n, d), at the positions (n, d) before the last step."""
     import mujoco
+
+    from robo_genesis.sim.mujoco_kinematics import bare_robot
 
     (model, data, q_at, dof_at), h = bare_robot(), case.dt / case.substeps
     damping, diagonal = model.dof_damping[dof_at], model.M_rowadr + model.M_rownnz - 1
@@ -178,6 +181,8 @@ def driven_in_mujoco(
     Each state follows from the state before it. A whole run is not comparable on another CPU where
     the integrator is nearly unstable: there the rounding of float64 grows to 0.6 rad/s.
     """
+    from robo_genesis.sim import mujoco_joints
+
     yield from commanded(trace, case, links)
     q, qd, force = mujoco_joints.each_step(trace, case, timestep, integrator)
     yield from apart("motion", "q [rad or m]", trace.q[1:], q, NEXT[0])
