@@ -10,7 +10,8 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.sim import mujoco_joints
 from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import ControlCase, assemble
-from robo_genesis.sim.plausibility.joints import control_law, link_poses
+from robo_genesis.sim.mujoco_kinematics import link_poses
+from robo_genesis.sim.plausibility.joints import control_law
 
 
 @cache

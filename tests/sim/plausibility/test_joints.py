@@ -5,7 +5,8 @@ import pytest
 
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.sim import mujoco_joints
-from robo_genesis.sim.plausibility.joints import driven_in_mujoco, last_step, link_poses
+from robo_genesis.sim.mujoco_kinematics import link_poses
+from robo_genesis.sim.plausibility.joints import driven_in_mujoco, last_step
 
 LINKS, HOW = ("link7", "hand"), (0.01, "Euler")
 CASE = spec.G2
