@@ -6,10 +6,12 @@ the frames of a page's bundle.
 
 import base64
 from html import escape
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from docutils import nodes
+from PIL import Image
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -64,8 +66,8 @@ def reader_block(
     }
     data = {"view": as_json(view)} | {k: base64.b64encode(v).decode() for k, v in read.items()}
     words = " ".join(f'data-{key}="{escape(text)}"' for key, text in data.items())
-    file = "-".join(("picture", *key.split("/"), f"{name}.png"))
-    picture = image(directive.env, file, (frames / f"{name}_rgb.png").read_bytes(), view["alt"])
+    file = "-".join(("picture", *key.split("/"), f"{name}.jpg"))
+    picture = image(directive.env, file, as_jpeg(frames / f"{name}_rgb.png"), view["alt"])
     cross = nodes.raw("", '<span class="cross" hidden></span>', format="html")
     block = nodes.container(classes=["picture-reader-block"], evidence_runs=(key,))
     block += nodes.raw("", f'<div class="picture-reader" {words}>', format="html")
@@ -73,6 +75,14 @@ def reader_block(
     block += nodes.figure("", stage, nodes.caption("", view["caption"]), ids=[file[:-4]])
     block += nodes.raw("", panel(view["size"]), format="html")
     return block
+
+
+def as_jpeg(frame: Path) -> bytes:
+    """Return a frame as a smaller picture to look at; all numbers are read from other frames."""
+    content = BytesIO()
+    with Image.open(frame) as picture:
+        picture.convert("RGB").save(content, "JPEG", quality=85, optimize=True)
+    return content.getvalue()
 
 
 def panel(size: tuple[int, int]) -> str:

@@ -639,7 +639,7 @@ SPOILED = {
     "a shape of 401 digits": ("digest", "bad-json", variable(shape=[10**400, 9])),
     "a DOF of 401 digits": ("digest", "bad-json", joint(0, dof_idx_local=10**400)),
     # Identity.
-    "another lesson": ("lesson", "lesson", predicate(lesson="l05")),
+    "another lesson": ("lesson", "lesson", predicate(lesson="l99")),
     "a page that the book lacks": ("key", "lesson", predicate(page="exam")),
     "ended before it began": ("time", "time", predicate(ended="2020-01-01T00:00:00Z")),
     "a day that no month has": ("time", "time", predicate(started="2026-13-45T00:00:00Z")),

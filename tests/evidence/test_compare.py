@@ -359,7 +359,7 @@ def test_bundles_of_two_pages_are_refused_in_one_line(folder, other, change):
 
 def test_an_unknown_lesson_is_refused(folder, other):
     spoil(other, predicate(lesson="l99"))
-    with pytest.raises(BundleRefused, match=r"^lesson: Lesson 'l99' does not exist. Choices: l02"):
+    with pytest.raises(BundleRefused, match=r"^lesson: Lesson 'l99' does not exist. Choices: l01"):
         compare(folder, other)
 
 

@@ -5,7 +5,12 @@ from collections.abc import Iterator, Sequence
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05.run import ReachCase, SolveCase
-from robo_genesis.sim.plausibility.joints import driven_run, poses, start_and_limits
+from robo_genesis.sim.plausibility.joints import (
+    driven_run,
+    never_stepped,
+    poses,
+    start_and_limits,
+)
 from robo_genesis.sim.plausibility.rules import Breach, apart, refuse, times
 
 
@@ -30,4 +35,5 @@ def assigned(trace: Trace, case: SolveCase, links: Sequence[str]) -> Iterator[Br
     yield from times(trace, case.steps, case.dt)
     yield from start_and_limits(trace, case.start)
     yield from apart("start", "q [rad or m]", trace.q[1:], trace.target, 1e-6)
+    yield from never_stepped(trace)
     yield from poses(trace, links)

@@ -77,13 +77,18 @@ def assigned_path(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iter
     path = np.linspace(case.q_start, case.q_target, case.steps + 1)
     yield from apart("start", "q [rad or m]", trace.q, path, LIMIT_TOLERANCE)
     yield from apart("start", "target [rad or m]", trace.target, path[1:], 0.0)
+    yield from never_stepped(trace)
+    yield from poses(trace, links)
+
+
+def never_stepped(trace: Trace) -> Iterator[Breach]:
+    """Yield velocities and forces that no assigned states have."""
     zero = np.zeros(())
     yield from apart("motion", "qd [rad/s or m/s]", trace.qd, zero, 0.0)
     yield from apart("law", "control_force [N·m or N]", trace.control_force, zero, 0.0)
     yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, zero, 0.0)
     first = trace.internal_force[0]  # of the last step that the engine took, whenever that was
     yield from apart("motion", "internal_force [N·m or N]", trace.internal_force, first, 0.0)
-    yield from poses(trace, links)
 
 
 def start_and_limits(trace: Trace, case: ControlCase) -> Iterator[Breach]:

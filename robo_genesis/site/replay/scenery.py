@@ -171,9 +171,17 @@ def rod(link: str, hinge: Hinge) -> Part:
 
 
 def floor_of(shape: Sequence[Part]) -> list[Part]:
-    """Return the tiles on the still parts of a shape, with a floor at z = 0 if it has none."""
-    added = [] if any(part.link == WORLD for part in shape) else [floor(2.0)]
-    still = np.concatenate([p.vertices for p in (*shape, *added) if p.link == WORLD])
+    """Return the tiles on the still parts of a shape, with a floor at z = 0 if it has none.
+
+    A still part that is smaller than a tile, such as a marker, has no tiles.
+    """
+    grounds = [
+        part.vertices
+        for part in shape
+        if part.link == WORLD and np.ptp(part.vertices[:, :2], axis=0).min() > TILE
+    ]
+    added = [] if grounds else [floor(2.0)]
+    still = np.concatenate([*grounds, *(part.vertices for part in added)])
     low, high = still.min(axis=0), still.max(axis=0)
     columns, rows = (np.arange(low[k], high[k] - TILE / 2, TILE) for k in (0, 1))
     dark = [
