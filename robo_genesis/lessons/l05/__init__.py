@@ -32,7 +32,7 @@ from robo_genesis.sim.camera_views import look, segment_number
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import reset
 from robo_genesis.sim.joints import resolve_joints
-from robo_genesis.sim.visual_shape import Part, read_shape
+from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
 
 if TYPE_CHECKING:
     from robo_genesis.lessons.l05 import plots, solutions_plots
@@ -49,13 +49,9 @@ __getattr__ = on_demand(__name__, "plots", "solutions_plots")
 
 
 def target_part(marker: Any) -> list[Part]:
-    """Return the shape of a fixed sphere at the lesson's target, for the replay.
-
-    It belongs to the base of the arm, which is at the world's origin: a replay lays its floor on
-    the parts that belong to the world.
-    """
+    """Return the shape of a fixed sphere at the lesson's target, for the replay."""
     parts = read_shape(marker)
-    return [replace(p, link="link0", vertices=p.vertices + np.float32(spec.TARGET)) for p in parts]
+    return [replace(p, link=WORLD, vertices=p.vertices + np.float32(spec.TARGET)) for p in parts]
 
 
 def readings(rendered: bool) -> dict[str, Readings]:
