@@ -41,6 +41,11 @@ ACCEPTED = {
         for lesson in ("l04", "l05")
         for how in ("× 1.02", "× 0.98", "zero")
     },
+    (
+        "l05",
+        "internal_force",
+        "sample",
+    ): f"{EARLIER} A record of one answer has no other to compare.",
 }
 """By lesson, array and alteration, why a try may be accepted. No other may."""
 

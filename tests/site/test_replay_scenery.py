@@ -98,6 +98,13 @@ def test_an_arm_gets_floor_axis_and_target_and_the_view_of_what_moves():
     assert found.camera.distance < 2.0
 
 
+def test_a_marker_in_the_air_is_no_ground():
+    marker = Part(WORLD, (9, 9, 9), BOX.vertices * 0.3 + (0.4, 0, 0.5), BOX.faces)
+    ground, tiles = floor_of([marker])
+    assert np.ptp(ground.vertices[:, 2]) == 0
+    assert tiles.vertices[:, 2].max() == pytest.approx(scenery.RAISED)
+
+
 @pytest.mark.parametrize(("drift", "followed"), [(3.0, 0), (0.1, None)])
 def test_a_single_body_that_moves_away_is_followed_horizontally(drift, followed):
     trace = falling(1.0, drift=drift)
