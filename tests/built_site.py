@@ -30,7 +30,12 @@ if TYPE_CHECKING:
 PAGES = tuple(docnames(BOOK / "_toc.yml"))
 """Every page of the book in reading order."""
 
-LESSON_PAGES = {(page.lesson, page.page): page.docname for page in find_pages(BOOK) if page.lesson}
+EXECUTED = {page.docname: (page.lesson, page.page) for page in find_pages(BOOK)}
+LESSON_PAGES = {
+    EXECUTED.get(name) or (Path(name).parent.name.partition("-")[0], Path(name).name): name
+    for name in PAGES
+    if name.startswith("lessons/")
+}
 """The pages of lessons by lesson and page."""
 
 MEASURING_PAGES = [(name, page) for name, lesson in LESSONS.items() for page in lesson.pages]
