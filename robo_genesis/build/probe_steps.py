@@ -139,7 +139,13 @@ def linker(subject: Subject) -> str:
 
 def visibility(subject: Subject) -> str:
     """At most the one variable is set that selects a card reliably."""
-    given = {name: value for name in VISIBILITY if (value := subject.machine.environ.get(name))}
+    environ = subject.machine.environ
+    given = {name: environ[name] for name in VISIBILITY if name in environ}
+    if hiding := [name for name, value in given.items() if not value.strip()]:
+        raise StepError(
+            f"{' and '.join(hiding)} is set and empty, which hides every card. Unset it, or name a "
+            "card."
+        )
     text = ", ".join(f"{name}={value}" for name, value in given.items())
     if given.keys() <= {VISIBILITY[0]}:
         return text or "no variable hides a card"

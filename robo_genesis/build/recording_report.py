@@ -68,7 +68,7 @@ def checkout(git: Any) -> str:
     if git.dirty:
         return (
             f"Checkout: changed since commit {git.commit[:12]}, and the manifest says so; a "
-            "release refuses that. Commit or stash, then record again."
+            "release refuses that. Commit or stash, then record each lab again with LESSON=name."
         )
     return f"Checkout: clean, commit {git.commit[:12]}"
 

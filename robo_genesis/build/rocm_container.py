@@ -91,6 +91,13 @@ def commands(host: Host) -> list[list[str]]:
     run += ["--env", "HOME=/tmp", "--env", "USER=course"]
     passed = sorted(name for name in host.environment if name.startswith(PASSED))
     run += [word for name in passed for word in ("--env", name)]
+    for name in ("TO", "BACKEND"):
+        if host.environment.get(name):
+            raise ContainerError(
+                f"{name}={host.environment[name]!r} would be ignored: the container records on "
+                "amdgpu into book/evidence of this checkout. Leave it out, or record without the "
+                f"container: {WITHOUT}"
+            )
     if lesson := host.environment.get("LESSON"):
         run += ["--env", f"LESSON={lesson}"]
     return [build, [*run, IMAGE, "make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]]

@@ -53,7 +53,7 @@ def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(tmp_pa
         "Checks passed: 2 of 2. Engine warnings kept: 1.",
         "Files: 2, 0.0 MB",
         "Checkout: changed since commit 0123456789ab, and the manifest says so; a release refuses "
-        "that. Commit or stash, then record again.",
+        "that. Commit or stash, then record each lab again with LESSON=name.",
     ]
     assert last[7].startswith("Before you commit: look at both pictures")
 

@@ -118,3 +118,9 @@ def test_the_image_keeps_the_torch_of_its_base():
     assert "--no-deps" in DOCKERFILE
     lock = (ROOT / "requirements.lock").read_text()
     assert re.search(r"^torch==", lock, re.M)
+
+
+@pytest.mark.parametrize("given", [{"TO": "elsewhere"}, {"BACKEND": "cuda"}])
+def test_a_setting_that_the_container_would_ignore_is_refused(given):
+    with pytest.raises(ContainerError, match="would be ignored"):
+        commands(host(**given))
