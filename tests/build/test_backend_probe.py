@@ -182,7 +182,7 @@ LLD = "opt/rocm/llvm/bin/ld.lld"
         (variables(ROCR_VISIBLE_DEVICES="1"), "visibility", "ok", "ROCR_VISIBLE_DEVICES=1"),
         (variables(HIP_VISIBLE_DEVICES="1"), "visibility", "warning", "set it alone"),
         (as_index("0"), "visibility", "warning", "set it alone"),
-        (variables(HIP_VISIBLE_DEVICES=""), "visibility", "broken", "HIP_VISIBLE_DEVICES is set and"),
+        (variables(HIP_VISIBLE_DEVICES=""), "visibility", "broken", "is set and empty"),
         (as_index("1"), "visibility", "broken", "in all three hides the card"),
         (told(**CUDA), "torch", "broken",
          "built for CUDA 13.0, expected a build for amdgpu"),
