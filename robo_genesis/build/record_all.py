@@ -9,6 +9,7 @@ from typing import Any
 from robo_genesis.build.command import Progress
 from robo_genesis.build.recording import Recording, found_backend, ready, record_lab
 from robo_genesis.build.recording_report import STATUS, Outcome, checkout, look, table
+from robo_genesis.core.git import unclean
 from robo_genesis.core.project import ProjectError
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence.status import RECORDED_PAGE, bundle_status, cpu_runs
@@ -41,9 +42,7 @@ def record_all(recording: Recording, run: Runner = record_lab) -> int:
             if status == STATUS["interrupted"]:
                 outcomes.append(Outcome(lesson, "not run"))
             else:
-                outcomes.append(
-                    _kept(one, backend, progress) or _recorded(one, page, run, progress)
-                )
+                outcomes.append(_outcome(one, page, backend, run, progress))
             status = max(status, STATUS[outcomes[-1].state])
     for line in table(outcomes, backend):
         recording.say(line)
@@ -69,15 +68,21 @@ def _kept(recording: Recording, backend: str, progress: Progress) -> Outcome | N
     if status.manifest is None:
         return None
     facts = status.manifest.predicate
+    if facts.git and facts.git.dirty and not unclean(recording.root):
+        return None  # a release refuses it, and now it can be recorded from a commit
     again = f"LESSON={recording.lesson} records it again"
     progress("keep", recording.lesson, f"{status.badge}, run {facts.run_id[:8]}; {again}")
     return Outcome(recording.lesson, "kept", str(place), facts)
 
 
-def _recorded(recording: Recording, page: Page, run: Runner, progress: Progress) -> Outcome:
-    """Return the outcome of a run."""
+def _outcome(
+    recording: Recording, page: Page, backend: str, run: Runner, progress: Progress
+) -> Outcome:
+    """Return the outcome of a lab: its bundle is kept, or it is run."""
     begin = time.monotonic()
     try:
+        if kept := _kept(recording, backend, progress):
+            return kept
         place, facts = run(recording, page, progress)
         state, where = "recorded", str(place)
     except KeyboardInterrupt:
@@ -85,5 +90,6 @@ def _recorded(recording: Recording, page: Page, run: Runner, progress: Progress)
     except (ProjectError, BundleRefused, OSError) as error:
         recording.say(f"\n{error}\n")
         state, facts = "failed", None
-        where = getattr(error, "reason", str(error).splitlines()[0])
+        where = getattr(error, "reason", None) or (str(error) or type(error).__name__)
+        where = where.splitlines()[0]
     return Outcome(recording.lesson, state, where, facts, time.monotonic() - begin)

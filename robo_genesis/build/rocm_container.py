@@ -69,8 +69,15 @@ def commands(host: Host) -> list[list[str]]:
         host: see there. LESSON of its environment names the lab.
 
     Raises:
-        ContainerError: docker and podman, or a device is missing.
+        ContainerError: docker and podman, or a device is missing, or a setting is not valid.
     """
+    for name, valid in (("TO", ""), ("BACKEND", "amdgpu")):
+        if (given := host.environment.get(name)) and given != valid:
+            raise ContainerError(
+                f"{name}={given!r} is not valid here: the container records on amdgpu into "
+                f"book/evidence of this checkout. Leave {name} out, or record without the "
+                f"container: {WITHOUT}"
+            )
     engine = _engine(host)
     for device in host.devices:
         if not device.exists():
@@ -91,13 +98,6 @@ def commands(host: Host) -> list[list[str]]:
     run += ["--env", "HOME=/tmp", "--env", "USER=course"]
     passed = sorted(name for name in host.environment if name.startswith(PASSED))
     run += [word for name in passed for word in ("--env", name)]
-    for name in ("TO", "BACKEND"):
-        if host.environment.get(name):
-            raise ContainerError(
-                f"{name}={host.environment[name]!r} would be ignored: the container records on "
-                "amdgpu into book/evidence of this checkout. Leave it out, or record without the "
-                f"container: {WITHOUT}"
-            )
     if lesson := host.environment.get("LESSON"):
         run += ["--env", f"LESSON={lesson}"]
     return [build, [*run, IMAGE, "make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]]

@@ -18,7 +18,7 @@ from bs4 import BeautifulSoup
 from robo_genesis.build import npm
 from robo_genesis.build.command import end_with_parent
 from robo_genesis.core.files import derived
-from robo_genesis.core.project import ProjectError
+from robo_genesis.core.project import ROOT, ProjectError
 
 SHEETS = (
     "_static/basic.css",
@@ -90,7 +90,8 @@ def join_sheets(html: Path) -> None:
     trimmed = {p.name: p.read_bytes() for pattern in TRIMMED for p in html.glob(pattern)}
     present = used_names(html) | words(trimmed.values(), OTHER_WORD)
     names = b"\n".join(sorted(present & words(trimmed.values(), WORD)))
-    inputs = [names, *trimmed.values(), Path(__file__).read_bytes()]
+    lock = (ROOT / "package-lock.json").read_bytes()  # names the version of PurgeCSS
+    inputs = [names, *trimmed.values(), Path(__file__).read_bytes(), lock]
     found = json.loads(
         derived("sheets", inputs, lambda: json.dumps(_purged(trimmed, names)).encode())
     )

@@ -150,6 +150,15 @@ def test_a_copy_of_the_cpu_s_run_is_recorded_again(labs, recorded, folder, tmp_p
     assert labs()[1] == ["l02", "l03", "l04"]
 
 
+@pytest.mark.parametrize(("changed", "ran"), [([], ["l02", "l03", "l04"]), (["x"], ["l02", "l03"])])
+def test_a_run_of_changed_sources_is_recorded_again_from_a_commit(
+    labs, recorded, monkeypatch, changed, ran
+):
+    monkeypatch.setattr("robo_genesis.build.record_all.unclean", lambda root: changed)
+    recorded(both(part("git", dirty=True), seal))
+    assert labs()[1] == ran
+
+
 def test_an_accepted_run_that_does_not_show_the_claims_is_kept(labs, recorded, undecided):
     recorded()
     _, ran, said = labs()

@@ -121,6 +121,7 @@ def test_the_image_keeps_the_torch_of_its_base():
 
 
 @pytest.mark.parametrize("given", [{"TO": "elsewhere"}, {"BACKEND": "cuda"}])
-def test_a_setting_that_the_container_would_ignore_is_refused(given):
-    with pytest.raises(ContainerError, match="would be ignored"):
-        commands(host(**given))
+def test_a_setting_that_the_container_does_not_have_is_refused_first(given):
+    with pytest.raises(ContainerError, match="is not valid here"):
+        commands(host("none", **given))
+    assert commands(host(BACKEND="amdgpu")) == commands(host())
