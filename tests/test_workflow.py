@@ -193,6 +193,22 @@ def test_compiled_kernels_are_saved_when_a_page_fails_and_restored_by_the_same_n
         assert save["with"]["key"].startswith(f"{restored}-${{{{ github.run_id }}}}")
 
 
+def test_the_folder_of_logs_and_packages_is_made_before_anything_is_written_there():
+    runs = [one.get("run", "") for one in read(SETUP)["runs"]["steps"]]
+    made = next(k for k, run in enumerate(runs) if "mkdir -p .cache/pip" in run)
+    assert made < next(k for k, run in enumerate(runs) if "PIP_CACHE_DIR" in run)
+    for job in EVERY_JOB.values():
+        uses = [one.get("uses", "") for one in job["steps"]]
+        logs = [k for k, one in enumerate(job["steps"]) if "tee .cache/" in one.get("run", "")]
+        assert not logs or uses.index("./.github/actions/setup") < min(logs)
+
+
+def test_a_release_begins_with_its_tag():
+    steps = FLOWS["release"]["jobs"]["book"]["steps"]
+    tag = next(k for k, one in enumerate(steps) if "GITHUB_REF_NAME" in one.get("run", ""))
+    assert tag < next(k for k, one in enumerate(steps) if "make book" in one.get("run", ""))
+
+
 def test_a_scheduled_run_restores_nothing():
     cached = [one for one in STEPS if re.match("actions/cache(/restore)?@", one.get("uses", ""))]
     assert len(cached) == 3

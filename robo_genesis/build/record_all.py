@@ -9,9 +9,9 @@ from typing import Any
 from robo_genesis.build.command import Progress
 from robo_genesis.build.recording import Recording, found_backend, ready, record_lab
 from robo_genesis.build.recording_report import STATUS, Outcome, checkout, look, table
-from robo_genesis.core.git import unclean
 from robo_genesis.core.project import ProjectError
 from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.evidence.recorder import git_record
 from robo_genesis.evidence.status import RECORDED_PAGE, bundle_status, cpu_runs
 from robo_genesis.lessons.book_pages import Page
 
@@ -68,7 +68,7 @@ def _kept(recording: Recording, backend: str, progress: Progress) -> Outcome | N
     if status.manifest is None:
         return None
     facts = status.manifest.predicate
-    if facts.git and facts.git.dirty and not unclean(recording.root):
+    if facts.git and facts.git.dirty and (now := git_record()) and not now["dirty"]:
         return None  # a release refuses it, and now it can be recorded from a commit
     again = f"LESSON={recording.lesson} records it again"
     progress("keep", recording.lesson, f"{status.badge}, run {facts.run_id[:8]}; {again}")

@@ -14,6 +14,7 @@ SHARED = ("derived", COMPILED, "npm", STORE)
 
 OUTER = (
     "GENESIS", "PYTHON", "BUNDLE", "RELEASE", "EXECUTED", "MAKEFLAGS", "MFLAGS", "MAKELEVEL",
+    "PYTEST_ADDOPTS",
 )  # fmt: skip
 """Variables of the outer make that a make in another checkout must not get: a new pin makes
 recorded bundles stale, which a release would refuse."""
