@@ -9,7 +9,6 @@ import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping
 from fnmatch import fnmatch
-from hashlib import sha256
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -54,15 +53,15 @@ PURGE = "purgecss/bin/purgecss.js"
 def link_joined(page: BeautifulSoup) -> None:
     """Replace the links of a page to the single sheets by one link, in place.
 
-    Its query depends on the links that it replaces, which have digests of their sheets.
+    All pages have the same link, so a browser fetches the sheet once. It has no query: its content
+    depends on the names in all pages, and a browser asks the server whether it changed.
     """
     links = [
         link for link in page.select('link[rel="stylesheet"]') if _is_joined(str(link["href"]))
     ]
     if links:
-        digest = sha256("".join(str(link["href"]) for link in links).encode()).hexdigest()
         start = str(links[0]["href"]).partition("_static/")[0]
-        links[0].attrs = {"rel": "stylesheet", "href": f"{start}{JOINED}?v={digest[:8]}"}
+        links[0].attrs = {"rel": "stylesheet", "href": f"{start}{JOINED}"}
         for link in links[1:]:
             link.decompose()
 
