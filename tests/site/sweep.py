@@ -89,20 +89,22 @@ LOADED = """() => [
   blocking: entry.renderBlockingStatus === "blocking",
 }))"""
 READ = """async () => {
-  const frame = () => new Promise(requestAnimationFrame);
+  const within = (ms) => new Promise(done => setTimeout(done, ms));
+  const frame = () => Promise.race([new Promise(requestAnimationFrame), within(1000)]);
+  const end = performance.now() + 30000;
   const seen = () => [...document.images].every(image => {
     const { top, bottom } = image.getBoundingClientRect();
     return image.complete || !image.checkVisibility() || bottom < 0 || top > innerHeight;
   });
   for (let top = 0; top < document.body.scrollHeight; top += innerHeight / 2) {
     scrollTo({ top, behavior: "instant" });
-    while (!seen()) await frame();
+    while (!seen() && performance.now() < end) await frame();
     await frame();
     await frame(); // by now the first is drawn, and its shifts are known
   }
   scrollTo({ top: 0, behavior: "instant" });
 }"""
-"""Reads a page to its end, and waits for the images in sight."""
+"""Reads a page to its end, and waits for the images in sight, together no longer than 30 s."""
 
 IMAGES = """async () => {
   const early = [...document.querySelectorAll("article img")]
@@ -111,7 +113,10 @@ IMAGES = """async () => {
     .map(image => `without a size, or loaded at once: ${image.src}`);
   const all = [...document.images];
   for (const image of all) image.loading = "eager";
-  while (!all.every(image => image.complete)) await new Promise(requestAnimationFrame);
+  const end = performance.now() + 30000; // what has not come by then is named as empty
+  while (!all.every(image => image.complete) && performance.now() < end) {
+    await new Promise(done => setTimeout(done, 20));
+  }
   const empty = all.filter(image => !image.naturalWidth).map(image => `empty: ${image.src}`);
   const changed = all.filter(image => {
     const style = getComputedStyle(image);

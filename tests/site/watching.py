@@ -53,8 +53,9 @@ def foreign(page: Page, base: str) -> list[str]:
 
 
 def drawn(page: Page) -> None:
-    """Wait until a frame has been laid out, and what watches sizes has been told of it."""
+    """Wait until a frame has been laid out, and what watches sizes knows it, at most 5 s."""
     page.evaluate("""() => new Promise(done => {
+      setTimeout(done, 5000);
       const observer = new ResizeObserver(() => { observer.disconnect(); done(); });
       observer.observe(document.body);
     })""")
