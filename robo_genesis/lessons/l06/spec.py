@@ -129,8 +129,9 @@ PLACES = tuple((SPACING * x, SPACING * y) for x in (-0.5, 0.5) for y in (-0.5, 0
 MARKER_RADIUS = 0.03
 """Radius of the spheres that mark targets in the replay [m]."""
 
-VIEW = CAMERA | {"pos": (2.9, -2.3, 1.9), "lookat": (0.15, 0.0, 0.25), "fov": 38}
-"""The lesson's camera: all environments, apart from each other."""
+VIEW = CAMERA | {"pos": (3.1, -1.7, 1.7), "lookat": (0.7, 0.45, 0.3), "fov": 32}
+"""The lesson's camera: all environments, apart from each other. The engine places it in the world of
+environment 0, which pictures show at a corner of the group."""
 
 RELATIONS = (
     (("plain", "stiff"), "final_distance", "lower", 1e-3),
