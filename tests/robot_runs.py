@@ -1,6 +1,7 @@
 """Runs of the Franka without Genesis, by the engine's rule of stepping and MuJoCo's mechanics."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache
 
 import mujoco
@@ -21,30 +22,40 @@ def model(timestep: float) -> mujoco.MjModel:
     return mujoco_joints.load(G1, timestep, "Euler")
 
 
-def driven(case: ControlCase, links: Sequence[str]) -> Trace:
-    """Return a run by semi-implicit Euler with (M + h D) a = f, stored in float32 like others."""
-    of = model(case.dt)
+def driven(
+    case: ControlCase,
+    links: Sequence[str],
+    extra: Callable[[np.ndarray], np.ndarray] = lambda q: np.zeros(len(JOINT_NAMES)),
+) -> Trace:
+    """Return a run by semi-implicit Euler with (M + h D) a = f, stored in float32 like others.
+
+    Args:
+        case: its target is one for all steps, (d,), or one for each, (n, d).
+        links: of the trace.
+        extra: effort (d,) of a load at positions (d,), which the controller must hold.
+    """
+    of, commands = model(case.dt), np.broadcast_to(case.q_target, (case.steps, len(JOINT_NAMES)))
     data, h, dofs = mujoco.MjData(of), case.dt / case.substeps, len(JOINT_NAMES)
     damping, mass = of.dof_damping, np.zeros((dofs, dofs))
     q, qd, force = np.array(case.q_start), np.zeros(dofs), np.zeros(dofs)
     at, steps = [q.astype(np.float32)], []
-    for _ in range(case.steps):
+    for command in commands:
+        now = replace(case, q_target=command)
         for _ in range(case.substeps):
             data.qpos[:], data.qvel[:] = q, qd
             mujoco.mj_fwdPosition(of, data)
             mujoco.mj_fwdVelocity(of, data)
             mujoco.mj_fullM(of, data, mass)
-            force = control_law(case, q, qd) - data.qfrc_bias - damping * qd
+            force = control_law(now, q, qd) - data.qfrc_bias - damping * qd - extra(q)
             qd = qd + h * np.linalg.solve(mass + h * np.diag(damping + case.kv), force)
             q = q + h * qd
         at.append(q.astype(np.float32))
-        steps.append(tuple(np.float32(v) for v in (qd, control_law(case, q, qd), force)))
+        steps.append(tuple(np.float32(v) for v in (qd, control_law(now, q, qd), force)))
     states = zip(at, *(np.float32(pose) for pose in link_poses(np.stack(at), links)), strict=True)
-    start_force = np.float32(control_law(case, case.q_start, np.zeros(dofs)))
+    first = replace(case, q_target=commands[0])
+    start_force = np.float32(control_law(first, case.q_start, np.zeros(dofs)))
     limit, zero = np.float32(case.effort_limit), np.zeros(dofs, np.float32)
-    return assemble(
-        case, list(states), steps, [case.q_target] * case.steps, zero, start_force, limit
-    )
+    return assemble(case, list(states), steps, list(commands), zero, start_force, limit)
 
 
 def assigned(case: ControlCase, links: Sequence[str]) -> Trace:

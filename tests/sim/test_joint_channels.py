@@ -1,5 +1,7 @@
 """Channels and levels of a joint are the record and what was read back."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -42,3 +44,16 @@ def test_an_unknown_joint_is_refused(traces, joints):
 def test_the_motion_is_described_by_the_record(traces, joints):
     sentence = "`joint4` starts at −2.0000 rad and gets the target −1.7500 rad."
     assert motion(traces["G2"], joints, STEPPED_JOINT) == sentence
+
+
+def test_a_target_that_changes_is_shown_one_after_the_other(traces, joints):
+    k, trace = joints.entry(STEPPED_JOINT), traces["G2"]
+    command = np.array(trace.target)
+    command[60:, k] = -1.5
+    run = {"G2": replace(trace, target=command)}
+    target, _ = levels(run, joints, STEPPED_JOINT, SETTLING_BAND)
+    assert target.values["G2"] == (-1.75, -1.5)
+    assert target.texts["G2"] == "−1.7500 rad, then −1.5000 rad"
+    assert motion(run["G2"], joints, STEPPED_JOINT).endswith(
+        "target −1.7500 rad, then −1.5000 rad."
+    )

@@ -69,3 +69,33 @@ def test_start_and_answer_have_the_order_of_the_map(joints):
 def test_a_question_of_the_wrong_form_is_refused(joints, given, message):
     with pytest.raises(of.KinematicsError, match=message):
         ask(joints, **given)
+
+
+def ask_rows(joints, rows, envs=None):
+    robot = Robot(environments=4)
+    tiled = (np.tile(values, (rows, 1)) for values in (*POSE, Q_START))
+    return of.solve_ik(
+        robot, joints, "hand", *tiled, JOINT_NAMES[:7], of.IkSettings(), envs
+    ), robot.question
+
+
+def test_rows_belong_to_all_environments_or_to_those_that_are_named(joints):
+    found, question = ask_rows(joints, 4)
+    assert found.q.shape == (4, 9)
+    assert "envs_idx" not in question
+    found, question = ask_rows(joints, 2, [3, 1])
+    assert found.q.shape == (2, 9)
+    assert question["envs_idx"] == [3, 1]
+
+
+@pytest.mark.parametrize(("rows", "envs"), [(3, None), (1, [1, 3]), (4, [1, 3])])
+def test_rows_that_the_engine_would_fit_to_environments_are_refused(joints, rows, envs):
+    with pytest.raises(of.KinematicsError, match="position has shape"):
+        ask_rows(joints, rows, envs)
+
+
+def test_a_question_without_rows_is_refused_with_environments(joints):
+    with pytest.raises(of.KinematicsError, match=r"expected \(4, 3\)"):
+        of.solve_ik(
+            Robot(environments=4), joints, "hand", *POSE, Q_START, JOINT_NAMES[:7], of.IkSettings()
+        )

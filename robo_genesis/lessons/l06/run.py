@@ -65,7 +65,7 @@ def ask(
     Args:
         robot: of a scene with environments, or of one without for a single world.
         joints: all its joints.
-        worlds: what is asked, all with equal settings of the solver.
+        worlds: the questions, all with equal settings of the solver.
         number: of the target in `positions`.
         envs: the environments of the worlds; 0, 1 … by default.
     """

@@ -130,8 +130,8 @@ MARKER_RADIUS = 0.03
 """Radius of the spheres that mark targets in the replay [m]."""
 
 VIEW = CAMERA | {"pos": (3.1, -1.7, 1.7), "lookat": (0.7, 0.45, 0.3), "fov": 32}
-"""The lesson's camera: all environments, apart from each other. The engine places it in the world of
-environment 0, which pictures show at a corner of the group."""
+"""The lesson's camera: all environments, apart from each other. The engine places it in the world
+of environment 0, which pictures show at a corner of the group."""
 
 RELATIONS = (
     (("plain", "stiff"), "final_distance", "lower", 1e-3),

@@ -2,11 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.channels import Run, Runs
+from robo_genesis.core.channels import Runs
 from robo_genesis.sim.visual_shape import WORLD, Part
+
+OF_LINKS = ("link_pos", "link_quat", "link_vel", "link_ang")
+"""The arrays with an axis of links; free bodies have them all, robots the first two."""
 
 
 def side_by_side(
@@ -30,12 +34,13 @@ def side_by_side(
             f"{len(places)} places given for {len(traces)} runs: {', '.join(runs.traces)}. Give "
             "each run a place in the lesson's declaration."
         )
-    moved = [
-        trace.link_pos.astype(np.float64) + np.array([x, y, 0.0])
-        for (_, trace), (x, y) in zip(traces, places, strict=True)
-    ]
-    positions = np.concatenate(moved, axis=1)
-    turns = np.concatenate([trace.link_quat for _, trace in traces], axis=1)
+    arrays: dict[str, Any] = {
+        name: np.concatenate([getattr(trace, name) for _, trace in traces], axis=1)
+        for name in OF_LINKS
+        if all(hasattr(trace, name) for _, trace in traces)
+    }
+    moved = [np.tile([x, y, 0.0], (len(runs.links), 1)) for x, y in places]
+    arrays["link_pos"] = arrays["link_pos"] + np.concatenate(moved)
     links = [name_of(case, link) for case, _ in traces for link in runs.links]
     parts = [
         replace(part, link=name_of(case, part.link))
@@ -44,9 +49,7 @@ def side_by_side(
         if part.link != WORLD
     ]
     still = [part for part in shape if part.link == WORLD]
-    together: dict[str, Run] = {
-        case: replace(trace, link_pos=positions, link_quat=turns) for case, trace in traces
-    }
+    together = {case: replace(trace, **arrays) for case, trace in traces}
     return replace(runs, traces=together, links=links), [*parts, *still]
 
 

@@ -1,0 +1,79 @@
+"""Worlds of L06 without Genesis: answers by damped least squares in NumPy, runs by MuJoCo."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from robot_runs import driven
+
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l06 import LECTURE, checks, spec, study
+from robo_genesis.lessons.l06.run import World
+from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim import mujoco_kinematics
+
+LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
+LIMITS = (
+    np.array([-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973]),
+    np.array([2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973]),
+)
+ROUNDING = np.float32(1.2e-7)
+
+
+def command(world: World, number: int) -> np.ndarray:
+    """Return joint positions (9,) for a target as a solver like the engine's answers."""
+    target = kinematics.Pose(world.positions[number], world.quat)
+    start = world.q_start[:7]
+    q = kinematics.solve(target, start, *LIMITS, iterations=50, damping=0.01)
+    return np.float32([*q, *world.q_start[7:]]).astype(float)
+
+
+def run_of(world: World) -> Trace:
+    """Return the run of one world."""
+    targets = np.repeat(command(world, 0)[None], world.steps, axis=0)
+    targets[world.switch :] = command(world, -1)
+
+    def weight(q):
+        bare = mujoco_kinematics.gravity_effort(q)[:7]
+        return np.array([*(study.torque_at_rest(q, world.load) - bare), 0, 0])
+
+    return driven(world.commanding(targets), LINKS, weight) if world.load else driven(
+        world.commanding(targets), LINKS
+    )  # fmt: skip
+
+
+def shortened(trace: Trace, steps: int) -> Trace:
+    """Return the first steps of a run."""
+    arrays = {field.name: getattr(trace, field.name) for field in fields(Trace)}
+    counts = {trace.steps: steps, trace.steps + 1: steps + 1}
+    return Trace(**{name: a[: counts.get(len(a), len(a))] for name, a in arrays.items()})
+
+
+@pytest.fixture(scope="session")
+def worlds(joints) -> Experiment:
+    """A run of the lecture, without a camera, that passes its checks."""
+    runs = {name: run_of(world) for name, world in spec.WORLDS.items()}
+    runs |= {
+        f"alone_{k}": replace(runs[f"env_{k}"], q=runs[f"env_{k}"].q + ROUNDING) for k in spec.ENVS
+    }
+    runs |= {name: run_of(w) for name, w in spec.VARIANTS.items() if name != "plain"}
+    runs["plain"] = shortened(runs["env_0"], spec.SWITCH)
+    for name, world in spec.COPIES.items():
+        runs[name] = shortened(runs[f"env_{name[-1]}"], world.steps)
+    masses = {name: spec.HAND_MASS + world.load for name, world in spec.VARIANTS.items()}
+    residuals = [2.3 if (t == spec.BEYOND_REACH).all() else 1e-4 for t in spec.MIXED]
+    return Experiment(
+        page=replace(LECTURE, checks=checks.WITHOUT_CAMERA),
+        traces={name: runs[name] for name in LECTURE.runs},
+        links=LINKS,
+        readings={
+            "model": spec.EXPECTED_MODEL,
+            "shapes": study.SHAPES,
+            "mixed": dict(zip(study.MIXED, residuals, strict=True)),
+            "hand_mass": masses,
+        },
+        frames={},
+        rendered=False,
+        joints=joints,
+    )

@@ -1,0 +1,138 @@
+"""The named checks pass for plausible worlds, and each fails when one input changes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.lessons.l06 import plausibility, spec, study
+from robo_genesis.lessons.l06.metrics import HAND, world_metrics
+from robo_genesis.lessons.l06.run import NotAccepted, commands
+from robo_genesis.sim.kinematics import IkAnswer
+
+
+def failed(run):
+    return {check.name for check in run.outcomes() if not check.passed}
+
+
+def changed(run, name, **arrays):
+    return replace(run, traces={**run.traces, name: replace(run.traces[name], **arrays)})
+
+
+def with_reading(run, group, name, value):
+    return replace(
+        run, readings={**run.readings, group: {**run.readings[group], name: value}}
+    )  # fmt: skip
+
+
+def shifted(run, name, array, by, samples=slice(None)):
+    """Change one array of a run by a number, in all samples or in some."""
+    values = np.array(getattr(run.traces[name], array))
+    values[samples] += by
+    return changed(run, name, **{array: values})
+
+
+def moved_hand(run, name, by, samples):
+    places = np.array(run.traces[name].link_pos)
+    places[samples, HAND, 0] += by
+    return changed(run, name, link_pos=places)
+
+
+CHANGES = {
+    "mapping": lambda run: with_reading(run, "model", "dofs", 8),
+    "stamps": lambda run: changed(run, "env_3", t=run.traces["env_3"].t * 2),
+    "shapes": lambda run: with_reading(run, "shapes", "rows_of_an_answer_for_two", 4),
+    "acceptance_per_row": lambda run: with_reading(run, "mixed", "row_2_m", 1e-5),
+    "arrived": lambda run: moved_hand(run, "alone_1", 0.05, slice(-1, None)),
+    "row_equals_alone": lambda run: shifted(run, "alone_2", "qd", 1e-4, 40),
+    "permuted_rows": lambda run: shifted(run, "permuted_3", "q", 1e-6, 7),
+    "untouched_keep_their_state": lambda run: moved_hand(run, "env_0", 2e-5, slice(300, None)),
+    "partial_reset": lambda run: shifted(run, "again_1", "q", 1e-6, 3),
+    "own_gains_and_mass": lambda run: with_reading(run, "hand_mass", "loaded", spec.HAND_MASS),
+}
+
+
+def test_plausible_worlds_pass(worlds):
+    assert failed(worlds) == set()
+    plausibility.require_possible_runs(worlds)
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_check_fails_when_its_input_changes(worlds, name):
+    assert name in failed(CHANGES[name](worlds))
+
+
+def test_each_check_of_the_page_has_such_a_change(worlds):
+    assert {check.__name__ for check in worlds.page.checks} == CHANGES.keys()
+
+
+OTHERS = {
+    "a neighbour that leaked into a row": (
+        "untouched_keep_their_state", lambda run: shifted(run, "beside_2", "q", 1e-6, 35)),
+    "a command that differs": (
+        "row_equals_alone", lambda run: shifted(run, "alone_0", "target", 1e-7)),
+    "an environment that did not get its second command": (
+        "untouched_keep_their_state", lambda run: still(run, "env_1")),
+    "a load that another row carries": (
+        "own_gains_and_mass", lambda run: replace(run, traces=swapped(run, "stiff", "loaded"))),
+    "a plain row with a neighbour's gains": (
+        "own_gains_and_mass", lambda run: changed(run, "plain", q=run.traces["stiff"].q)),
+}  # fmt: skip
+
+
+def still(run, name):
+    places = np.array(run.traces[name].link_pos)
+    places[spec.SWITCH :] = places[spec.SWITCH]
+    return changed(run, name, link_pos=places)
+
+
+def swapped(run, one, other):
+    return {**run.traces, one: run.traces[other], other: run.traces[one]}
+
+
+@pytest.mark.parametrize("how", OTHERS)
+def test_other_faults_are_found(worlds, how):
+    name, change = OTHERS[how]
+    assert name in failed(change(worlds))
+
+
+def test_the_lab_says_which_checks_fail_if_two_rows_are_swapped(worlds):
+    expected = CHANGES.keys() - {"stamps", "shapes", "mapping"}
+    assert failed(replace(worlds, traces=swapped(worlds, "env_0", "env_1"))) == expected
+
+
+def test_a_row_that_is_not_accepted_is_not_commanded():
+    worlds = [spec.WORLDS[f"env_{k}"] for k in spec.ENVS]
+    q, error = np.tile(np.float32(spec.FIRST.q_start), (4, 1)), np.zeros((4, 6), np.float32)
+    assert commands(worlds, IkAnswer(q, error)) == pytest.approx(q)
+    error[2, 0] = 1e-3
+    q[3, 0] = np.nan
+    with pytest.raises(NotAccepted, match=r"Rows \[2, 3\] are refused"):
+        commands(worlds, IkAnswer(q, error))
+
+
+def test_a_run_with_the_gains_of_another_world_is_refused(worlds):
+    run = replace(worlds, traces=swapped(worlds, "stiff", "plain"))
+    with pytest.raises(BundleRefused, match="control_force"):
+        plausibility.require_possible_runs(run)
+
+
+def test_the_metrics_tell_when_a_hand_moved(worlds):
+    m = worlds.metrics
+    assert m["env_0"].moved_later < 1e-5 < 0.1 < m["env_1"].moved_later
+    assert m["plain"].moved_later is None
+    assert m["plain"].final_distance == m["plain"].first_distance
+    assert m["env_3"].first_distance < 0.02 > m["env_3"].final_distance
+    empty = {"link_pos": np.zeros((361, 3, 3)), "link_quat": np.zeros((361, 3, 4))}
+    few = replace(worlds.traces["env_0"], **empty)
+    with pytest.raises(ValueError, match="3 links and 360 steps"):
+        world_metrics(few, spec.WORLDS["env_0"])
+
+
+def test_a_load_adds_its_weight_times_the_lever():
+    q = spec.FIRST.q_start.astype(float)
+    more = study.torque_at_rest(q, 2.0) - study.torque_at_rest(q, 1.0)
+    assert more == pytest.approx(study.torque_at_rest(q, 1.0) - study.torque_at_rest(q, 0.0))
+    assert more[0] == pytest.approx(0, abs=1e-9)  # joint1 turns about the vertical
+    assert more[1] < -3

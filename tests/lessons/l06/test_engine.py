@@ -1,0 +1,107 @@
+"""Worlds in the real engine: rows, subsets, refusals."""
+
+from dataclasses import fields, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from robo_genesis.core.scene import DT, SUBSTEPS
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l06 import LECTURE, checks, spec, study
+from robo_genesis.lessons.l06.run import NotAccepted, ask, reach
+from robo_genesis.sim.batch import Batch, set_link_mass
+from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.joint_control import CaseError
+from robo_genesis.sim.joints import resolve_joints
+
+pytestmark = pytest.mark.engine
+
+WORLDS = list(spec.WORLDS.values())
+
+
+def build(gs, size):
+    """The scene of the lecture."""
+    scene = gs.Scene(
+        sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS),
+        rigid_options=gs.options.RigidOptions(batch_dofs_info=True, batch_links_info=True),
+        show_viewer=False,
+    )
+    scene.add_entity(gs.morphs.Plane())
+    robot = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
+    scene.build(n_envs=size)
+    return scene, robot
+
+
+@pytest.fixture(scope="module")
+def four(real_engine):
+    scene, robot = build(real_engine.gs, len(WORLDS))
+    return SimpleNamespace(scene=scene, robot=robot, joints=resolve_joints(robot, JOINT_NAMES))
+
+
+@pytest.fixture(scope="module")
+def measured(real_engine, four):
+    """The runs and readings of the lecture, without a camera."""
+    page = SimpleNamespace(traces={}, readings={}, links=[], joints=None)
+    page.capture = lambda camera, name: None
+    alone, single = build(real_engine.gs, 0)
+    study.describe(page, four.robot)
+    study.read_shapes(page, single, build(real_engine.gs, 1)[1], four.robot)
+    study.read_mixed(page, four.robot)
+    study.record(page, four.scene, four.robot, None)
+    study.record_alone(page, alone, single)
+    study.record_copies(page, four.scene, four.robot)
+    study.record_variants(page, four.scene, four.robot)
+    declared = replace(LECTURE, checks=checks.WITHOUT_CAMERA)
+    traces = {name: page.traces[name] for name in LECTURE.runs}
+    return Experiment(declared, traces, page.links, page.readings, {}, False, page.joints)
+
+
+def test_runs_without_a_camera_pass_their_checks_and_are_possible(measured):
+    assert [check.detail for check in measured.outcomes() if not check.passed] == []
+    LECTURE.validate(measured)
+
+
+def test_a_second_run_is_equal_to_the_last_bit_and_inherits_no_load(four, measured):
+    again = reach(four.scene, four.robot, four.joints, WORLDS)
+    for name, trace in zip(spec.WORLDS, again, strict=True):
+        first = measured.traces[name]
+        assert all((getattr(trace, f.name) == getattr(first, f.name)).all() for f in fields(Trace))
+
+
+def test_answers_of_some_environments_are_those_of_all(four):
+    every = ask(four.robot, four.joints, WORLDS)
+    some = ask(four.robot, four.joints, [WORLDS[3], WORLDS[1]], envs=[3, 1])
+    assert (some.q == every.q[[3, 1]]).all()
+    assert (some.error == every.error[[3, 1]]).all()
+
+
+def test_a_refused_row_stops_the_command_of_all(four):
+    worlds = [*WORLDS[:3], replace(WORLDS[3], positions=spec.BEYOND_REACH[None])]
+    with pytest.raises(NotAccepted, match=r"Rows \[3\] are refused"):
+        reach(four.scene, four.robot, four.joints, worlds)
+
+
+@pytest.mark.parametrize(
+    ("rows", "envs", "message"),
+    [
+        (1, [1, 3], r"shape \(1, 9\), expected one row"),
+        (4, [1, 3], r"shape \(4, 9\), expected one row"),
+        (2, [1, 1], r"Environments \[1, 1\]"),
+        (1, [4], r"Environments \[4\]"),
+        (0, [], r"Environments \[\]"),
+    ],
+)
+def test_a_command_that_would_broadcast_is_refused(four, rows, envs, message):
+    cases = [world.commanding(world.q_start) for world in WORLDS]
+    batch = Batch(four.scene, four.robot, four.joints, cases)
+    with pytest.raises(CaseError, match=message):
+        batch.command(np.tile(spec.FIRST.q_start, (rows, 1)), envs)
+
+
+def test_a_mass_is_that_of_one_environment_and_survives_a_reset(four):
+    found = set_link_mass(four.robot, "hand", [0.73, 1.0, 0.73, 0.73])
+    four.scene.reset()
+    assert found == pytest.approx([0.73, 1.0, 0.73, 0.73])
+    assert set_link_mass(four.robot, "hand", [0.73] * 4) == pytest.approx([0.73] * 4)

@@ -1,0 +1,94 @@
+"""Tables, figures and bundles of the lecture, with a camera and without; the lab's functions."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bundles import written
+from lessons.exercise_cells import require_exercise, solutions
+from lessons.lesson_bundles import in_archive, metric, refused
+
+from robo_genesis.core.palette import MARKS
+from robo_genesis.evidence.verify import verify_bundle
+from robo_genesis.lessons.l06 import LECTURE, exercises, plots, spec, study, target_parts, text
+
+
+@pytest.fixture(scope="module", params=[True, False], ids=["camera", "RENDER=0"])
+def run(request, worlds, frames):
+    """The lecture."""
+    return replace(
+        worlds, page=LECTURE, frames=frames if request.param else {}, rendered=request.param
+    )
+
+
+def test_the_checks_hold_and_a_schematic_replaces_frames(run):
+    assert [check.detail for check in run.outcomes() if not check.passed] == []
+    assert len(plots.posture(run).axes) == (2 if run.rendered else 1)
+
+
+def test_tables_give_the_numbers_of_the_runs(run):
+    m = run.metrics
+    last = [f"{1000 * m[name].final_distance:.2f}" for name in spec.WORLDS]
+    rows = text.row_table(run).splitlines()[2:]
+    assert all(value in row for value, row in zip(last, rows, strict=True))
+    assert text.mixed_table(run).count("**refused**") == 1
+    assert "| 0.24 |" in text.alone_table(run)  # the rounding that the fixture adds
+    zeros = [line.endswith("| 0 |") for line in text.equal_table(run).splitlines()[2:]]
+    assert zeros == [True] * len(study.pairs())
+    assert "(rows, 9)" in text.shape_table(run)
+    assert f"{1000 * m['loaded'].final_distance:.2f} |" in text.variant_table(run)
+    assert "– |" not in text.metric_table(run)
+
+
+def test_the_conclusions_follow_the_runs(run):
+    said = text.conclusions(run)
+    assert "rows 0, 1 and 3 are accepted" in said
+    assert "4 of 4 comparisons" in said
+    assert "KP doubled: the hand stops" in said
+    assert "nearer to its target" in said
+    assert "farther from its target" in said
+    other = replace(run.traces["permuted_1"], q=run.traces["permuted_1"].q + 1)
+    changed = replace(run, traces={**run.traces, "permuted_1": other})
+    assert "3 of 4 comparisons" in text.conclusions(changed)
+
+
+def test_figures_draw_what_the_tables_say(run):
+    lines = plots.distance(run).axes[0].lines
+    last = [line.get_ydata()[-1] for line in lines[: len(spec.WORLDS)]]
+    assert last == pytest.approx([1000 * run.metrics[n].final_distance for n in spec.WORLDS])
+    assert plots.alone(run).axes[0].lines[0].get_ydata().max() == pytest.approx(2.4e-7, rel=0.1)
+    assert len(plots.variants(run).axes[0].lines) == len(spec.VARIANTS)
+
+
+def test_the_replay_has_a_sphere_at_each_target_in_the_colour_of_its_run():
+    parts = target_parts()
+    assert len(parts) == 6
+    centre = parts[1].vertices.mean(axis=0)
+    assert centre == pytest.approx(spec.TARGETS[1] + np.array([*spec.PLACES[1], 0]), abs=1e-6)
+    assert parts[1].rgb == tuple(bytes.fromhex(MARKS["first"].light[1:]))
+
+
+SPOILED = {
+    "a hand that was moved": ("link_pos", in_archive(
+        "beside_0", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01))),
+    "a force of another gain": ("control_force", in_archive(
+        "stiff", lambda arrays: arrays["control_force_Nm_or_N"].__imul__(0.5))),
+    "a residual that was written": ("checks", metric("mixed", "row_0_m", 1.0)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("run", [True], indirect=True)
+@pytest.mark.parametrize("how", SPOILED)
+def test_a_sound_bundle_is_accepted_and_a_spoiled_one_is_refused(engine, tmp_path, run, how):
+    folder = written(engine, tmp_path, "l06", "lecture", run)
+    assert all(check.passed for check in verify_bundle(folder).predicate.checks)
+    code, spoil = SPOILED[how]
+    spoil(folder)
+    assert code in refused(folder)
+
+
+@pytest.mark.parametrize(("name", "test"), [("accept", "acceptance"), ("command", "subset")])
+def test_the_labs_solutions_pass_the_tests_that_students_have(name, test):
+    require_exercise("l06", name)
+    (check,) = getattr(exercises, test)(solutions("l06")[name])
+    assert check.passed, check.detail
