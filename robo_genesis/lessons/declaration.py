@@ -40,11 +40,13 @@ class Specification(Protocol):
 class Drawn:
     """Cases that share one plot and one replay.
 
-    `until` is the end of the time axis of the small plot [s], None for the end of the runs.
+    `until` is the end of the time axis of the small plot [s], None for the end of the runs. With
+    `places`, horizontal positions (x, y) [m], the replay shows all cases at once, each at its own.
     """
 
     cases: tuple[str, ...]
     until: float | None = field(default=None, kw_only=True)
+    places: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
 
     @property
     def names(self) -> str:

@@ -1,6 +1,6 @@
 """Runs of a joint as channels: position, velocity, control force, target and effort limit."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -35,10 +35,9 @@ def levels(traces: Mapping[str, Trace], joints: JointMap, joint: str, band: floa
     """Return the target with its settling band of half width `band`, and the force limit."""
     k = joints.entry(joint)
     unit, effort = joints.position_units[k], joints.effort_units[k]
-    target = {case: float(trace.target[0, k]) for case, trace in traces.items()}
+    values = {case: targets(trace, k) for case, trace in traces.items()}
     limit = {case: float(trace.effort_limit[k]) for case, trace in traces.items()}
-    values = {case: (value,) for case, value in target.items()}
-    texts = {case: with_unit(value, unit) for case, value in target.items()}
+    texts = {case: one_by_one(found, unit) for case, found in values.items()}
     limits = {case: (-value, value) for case, value in limit.items()}
     limit_texts = {case: f"±{with_unit(value, effort, 0)}" for case, value in limit.items()}
     legend = "Short dashes, at the edges of the control force: its limits."
@@ -49,8 +48,20 @@ def levels(traces: Mapping[str, Trace], joints: JointMap, joint: str, band: floa
 
 
 def motion(trace: Trace, joints: JointMap, joint: str) -> str:
-    """Return a sentence with the start and the target of one joint."""
+    """Return a sentence with the start and the targets of one joint."""
     k = joints.entry(joint)
-    ends = (trace.q[0, k], trace.target[0, k])
-    start, target = (with_unit(q, joints.position_units[k]) for q in ends)
+    unit = joints.position_units[k]
+    start, target = with_unit(trace.q[0, k], unit), one_by_one(targets(trace, k), unit)
     return f"`{joint}` starts at {start} and gets the target {target}."
+
+
+def targets(trace: Trace, entry: int) -> tuple[float, ...]:
+    """Return the commands of one joint in their order, equal ones in a row once."""
+    command = trace.target[:, entry]
+    begins = [0, *(np.flatnonzero(np.diff(command)) + 1).tolist()]
+    return tuple(float(command[k]) for k in begins)
+
+
+def one_by_one(values: Sequence[float], unit: str) -> str:
+    """Return values as text: `0.5 rad`, or `0.5 rad, then 0.7 rad`."""
+    return ", then ".join(with_unit(value, unit) for value in values)

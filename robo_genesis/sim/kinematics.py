@@ -35,8 +35,9 @@ class IkSettings:
 class IkAnswer:
     """What the engine's solver returned, accepted or not.
 
-    `q` (d,) has the order of the joint map. `error` (6,) leads from the pose of the answer to the
-    target: a translation [m] and a rotation vector [rad], both in the axes of the world.
+    `q` (…, d) has the order of the joint map. `error` (…, 6) leads from the pose of the answer to
+    the target: a translation [m] and a rotation vector [rad], both in the axes of the world. The
+    leading axis has one row for each environment; without environments there is none.
     """
 
     q: FloatArray
@@ -46,26 +47,33 @@ class IkAnswer:
 def solve_ik(
     robot: Any, joints: JointMap, link: str, position: FloatArray, quat: FloatArray,
     q_start: FloatArray, moved: Sequence[str], settings: IkSettings,
+    envs: Sequence[int] | None = None,
 ) -> IkAnswer:  # fmt: skip
     """Ask the engine for joint positions that bring a link to a pose. Nothing is commanded.
 
+    In a scene with environments all arrays have one row for each asked environment, and so has the
+    answer. The engine would broadcast some other shapes; here they are errors.
+
     Args:
-        robot: rigid entity of a built scene, without parallel environments.
+        robot: rigid entity of a built scene.
         joints: all its joints.
         link: name of the link whose origin has the target.
-        position: (3,) target in the world [m].
-        quat: (4,) target orientation, (w, x, y, z).
-        q_start: (d,) first start [rad or m].
+        position: (…, 3) target in the world [m].
+        quat: (…, 4) target orientation, (w, x, y, z).
+        q_start: (…, d) first start [rad or m].
         moved: names of the joints that the solver may move.
         settings: of the solver.
+        envs: numbers of the environments that are asked, all by default.
 
     Raises:
         KinematicsError: an array has the wrong shape, or a value that is not finite.
     """
-    d = len(joints.names)
-    require_finite("position", position, (3,))
-    require_finite("quat", quat, (4,))
-    require_finite("q_start", q_start, (d,))
+    d, count = len(joints.names), robot.scene.n_envs
+    rows = () if count == 0 else (count if envs is None else len(envs),)
+    require_finite("position", position, (*rows, 3))
+    require_finite("quat", quat, (*rows, 4))
+    require_finite("q_start", q_start, (*rows, d))
+    chosen = {} if envs is None else {"envs_idx": list(envs)}
     dofs = [int(joints.dofs_idx_local[joints.entry(name)]) for name in moved]
     q, error = robot.inverse_kinematics(
         link=robot.get_link(link),
@@ -81,8 +89,9 @@ def solve_ik(
         max_step_size=settings.largest_step,
         dofs_idx_local=dofs,
         return_error=True,
+        **chosen,
     )
-    return IkAnswer(to_numpy(q)[joints.qs_idx_local], to_numpy(error))
+    return IkAnswer(to_numpy(q)[..., joints.qs_idx_local], to_numpy(error))
 
 
 def link_poses_at(
@@ -125,9 +134,9 @@ def jacobian(robot: Any, joints: JointMap, link: str) -> FloatArray:
 
 
 def in_model_order(joints: JointMap, q: FloatArray) -> FloatArray:
-    """Return joint positions (d,) in the order of the model, for one entity with d qpos."""
-    ordered = np.empty(len(joints.names), dtype=np.float32)
-    ordered[joints.qs_idx_local] = q
+    """Return joint positions (…, d) in the order of the model, for one entity with d qpos."""
+    ordered = np.empty(np.shape(q), dtype=np.float32)
+    ordered[..., joints.qs_idx_local] = q
     return ordered
 
 

@@ -15,6 +15,9 @@ POSE = np.array([0.45, 0.0, 0.35]), np.array([0.0, 1.0, 0.0, 0.0])
 class Robot:
     """A robot that keeps its question, and answers with its start."""
 
+    def __init__(self, environments=0):
+        self.scene = SimpleNamespace(n_envs=environments)
+
     def get_link(self, name):
         return SimpleNamespace(name=name)
 

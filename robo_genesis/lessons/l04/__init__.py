@@ -35,7 +35,7 @@ from robo_genesis.lessons.l04 import (
     text,
     theory_text,
 )
-from robo_genesis.lessons.l04.batch import run_batch
+from robo_genesis.sim.batch import run_batch
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
 from robo_genesis.sim import mujoco_joints
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES

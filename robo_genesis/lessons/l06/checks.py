@@ -1,30 +1,117 @@
-"""Named checks of a box that lands."""
+"""Named checks of L06."""
 
 from collections.abc import Iterator
 
-from robo_genesis.core.checks import Finding, at_most, model_counts, sample_times, within
+import numpy as np
+
+from robo_genesis.core.check_spec import MASS_SHARE
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    below,
+    equal,
+    model_counts,
+    sample_times,
+    within,
+)
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l06 import spec
+from robo_genesis.lessons.l06 import spec, study
+from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import end_state
+from robo_genesis.sim.arm_kinematics import ARM, Pose
+from robo_genesis.sim.franka import JOINT_NAMES
 
 
-def structure(run: Experiment) -> Iterator[Finding]:
-    return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
+def mapping(run: Experiment) -> Iterator[Finding]:
+    yield from model_counts(run.readings["model"], spec.EXPECTED_MODEL)
+    yield equal("joint_names", run.joints.names, JOINT_NAMES)
 
 
-def times(run: Experiment) -> Iterator[Finding]:
-    return sample_times(run.cases, run.traces)
+def stamps(run: Experiment) -> Iterator[Finding]:
+    yield from sample_times(run.cases, run.traces)
 
 
-def lands(run: Experiment) -> Iterator[Finding]:
-    end = run.metrics["baseline"]
-    height = spec.BASELINE.size / 2
-    yield within("baseline.final_height_m", end.final_height, height, spec.HEIGHT_TOLERANCE)
-    yield at_most("baseline.final_speed_m_s", end.final_speed, spec.AT_REST)
+def shapes(run: Experiment) -> Iterator[Finding]:
+    yield from model_counts(run.readings["shapes"], study.SHAPES)
+
+
+def acceptance_per_row(run: Experiment) -> Iterator[Finding]:
+    limits = spec.IK.position_tolerance, spec.IK.rotation_tolerance
+    for name, world in spec.WORLDS.items():
+        commands = study.commanded(run.traces[name], world)
+        for number, (q, position) in enumerate(zip(commands, world.positions, strict=True)):
+            target = Pose(position, world.quat)
+            error = kinematics.pose_error(target, kinematics.hand_pose(q))
+            apart, angle = kinematics.distances(error)
+            label = f"{name}.target_{number}"
+            yield at_most(f"{label}.residual_m", float(apart), limits[0] + spec.SAME_POSE[0])
+            yield at_most(f"{label}.residual_rad", float(angle), limits[1] + spec.SAME_POSE[1])
+    for k, (name, residual) in enumerate(run.readings["mixed"].items()):
+        beyond = (spec.MIXED[k] == spec.BEYOND_REACH).all()
+        yield (above if beyond else at_most)(f"mixed.{name}", residual, limits[0])
+
+
+def arrived(run: Experiment) -> Iterator[Finding]:
+    for name in spec.CASES:
+        m = run.metrics[name]
+        yield below(f"{name}.final_distance_m", m.final_distance, m.start_distance)
+        yield at_most(f"{name}.first_distance_m", m.first_distance, spec.REACHED[0])
+        yield at_most(f"{name}.final_distance_at_most_m", m.final_distance, spec.REACHED[0])
+        yield at_most(f"{name}.final_angle_rad", m.final_angle, spec.REACHED[1])
+
+
+def row_equals_alone(run: Experiment) -> Iterator[Finding]:
+    for k in spec.ENVS:
+        row, alone = run.traces[f"env_{k}"], run.traces[f"alone_{k}"]
+        differ = int((row.target != alone.target).sum())
+        yield equal(f"env_{k}.entries_of_the_command_that_differ", differ, 0)
+        for name, found in study.largest_differences(row, alone).items():
+            yield at_most(f"env_{k}.{name}", found, spec.SAME_RUN[name])
+
+
+def same_to_the_last_bit(run: Experiment, claim: str) -> Iterator[Finding]:
+    """Require equal entries in the samples that two runs share."""
+    for one, other in study.pairs()[claim]:
+        differ, _ = study.entries_that_differ(run.traces[one], run.traces[other])
+        yield equal(f"{one}.entries_that_differ_from_{other}", differ, 0)
+
+
+def permuted_rows(run: Experiment) -> Iterator[Finding]:
+    yield from same_to_the_last_bit(run, "permuted")
+
+
+def untouched_keep_their_state(run: Experiment) -> Iterator[Finding]:
+    yield from same_to_the_last_bit(run, "beside")
+    for name, world in spec.WORLDS.items():
+        moved = run.metrics[name].moved_later
+        if len(world.positions) > 1:
+            yield above(f"{name}.moved_later_m", moved, spec.RESOLUTION["m"])
+        else:
+            yield at_most(f"{name}.moved_later_m", moved, spec.RESOLUTION["m"])
+
+
+def partial_reset(run: Experiment) -> Iterator[Finding]:
+    yield from same_to_the_last_bit(run, "again")
+
+
+def own_gains_and_mass(run: Experiment) -> Iterator[Finding]:
+    yield from same_to_the_last_bit(run, "plain")
+    for name, world in spec.VARIANTS.items():
+        trace, mass = run.traces[name], spec.HAND_MASS + world.load
+        found = run.readings["hand_mass"][name]
+        yield within(f"{name}.hand_mass_kg", found, mass, MASS_SHARE * mass)
+        expected = study.torque_at_rest(trace.q[-1].astype(float), world.load)
+        apart = np.abs(trace.control_force[-1, :ARM] - expected).max()
+        yield at_most(f"{name}.torque_unexplained_N_m", float(apart), spec.HELD)
 
 
 def posture(run: Experiment) -> Iterator[Finding]:
-    return end_state.findings(run.rendered, run.frames, run.traces["baseline"].link_pos)
+    return end_state.findings(run.rendered, run.frames, run.traces["env_0"].link_pos)
 
 
-CHECKS = (structure, times, lands, posture)
+WITHOUT_CAMERA = (
+    mapping, stamps, shapes, acceptance_per_row, arrived, row_equals_alone, permuted_rows,
+    untouched_keep_their_state, partial_reset, own_gains_and_mass,
+)  # fmt: skip
+CHECKS = (*WITHOUT_CAMERA, posture)

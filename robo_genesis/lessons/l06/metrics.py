@@ -1,24 +1,81 @@
-"""Metrics of a box that lands, from its trace alone."""
+"""Distances of the hand from its targets in one environment, from its trace alone."""
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from robo_genesis.core.metrics import CaseMetrics, metric
-from robo_genesis.core.trace import BodyTrace
-from robo_genesis.sim.rigid_bodies import Drop
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l06.run import World
+from robo_genesis.sim.arm_kinematics import Pose, distances, hand_pose, pose_error
+from robo_genesis.sim.franka import LINK_PARENTS
+
+HAND = LINK_PARENTS[-1]
+"""Index of the hand among the links of the arrays: the parent of both fingers."""
+
+MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
 
 
 @dataclass(frozen=True, slots=True)
-class LandingMetrics(CaseMetrics):
-    """What one box did; heights are those of its centre."""
+class WorldMetrics(CaseMetrics):
+    """Where the hand began and ended, and whether it moved after the second command was sent."""
 
-    duration: float = metric("s", "duration", "t_s")
-    drop: float = metric("m", "distance fallen", "link_pos_m")
-    final_height: float = metric("m", "height at the end", "link_pos_m")
-    final_speed: float = metric("m/s", "vertical speed at the end", "link_vel_m_s")
+    start_distance: float = metric("m", "start to first target", *MEASURED)
+    residual: float = metric("m", "last command to its target", *COMMANDED)
+    residual_angle: float = metric("rad", "last command to its target, angle", *COMMANDED)
+    first_distance: float = metric(
+        "m", "first target after 1.8 s", *MEASURED,
+        noun="distance of the hand from its first target after 1.8 s",
+    )  # fmt: skip
+    final_distance: float = metric(
+        "m", "last target at the end", *MEASURED,
+        noun="distance of the hand from its target at the end",
+    )  # fmt: skip
+    final_angle: float = metric("rad", "last target at the end, angle", *MEASURED)
+    moved_later: float | None = metric(
+        "m", "motion after 1.8 s", "link_pos_m", noun="motion of the hand after 1.8 s"
+    )
 
 
-def landing_metrics(trace: BodyTrace, case: Drop) -> LandingMetrics:
-    """Measure one landing."""
-    start, end = float(trace.link_pos[0, 0, 2]), float(trace.link_pos[-1, 0, 2])
-    speed = abs(float(trace.link_vel[-1, 0, 2]))
-    return LandingMetrics(float(trace.t[-1]), start - end, end, speed)
+def measured_hand(trace: Trace, state: int) -> Pose:
+    """Return the pose of the hand in a state of a run, as the engine reported it."""
+    quat = trace.link_quat[state, HAND].astype(np.float64)
+    return Pose(trace.link_pos[state, HAND].astype(np.float64), quat / np.linalg.norm(quat))
+
+
+def world_metrics(trace: Trace, world: World) -> WorldMetrics:
+    """Measure the run of one environment.
+
+    Raises:
+        ValueError: the trace lacks the hand, or ends before its second command.
+    """
+    if trace.link_pos.shape[1] <= HAND or trace.steps < world.switch:
+        raise ValueError(
+            f"The trace has {trace.link_pos.shape[1]} links and {trace.steps} steps, expected the "
+            f"{len(LINK_PARENTS)} of the robot and {world.switch} steps or more."
+        )
+    first, last = (Pose(world.positions[k], world.quat) for k in (0, -1))
+    command, angle = apart(last, hand_pose(trace.target[-1]))
+    final, final_angle = apart(last, measured_hand(trace, -1))
+    later = trace.link_pos[world.switch :, HAND].astype(np.float64)
+    return WorldMetrics(
+        start_distance=apart(first, measured_hand(trace, 0))[0],
+        residual=command,
+        residual_angle=angle,
+        first_distance=apart(first, measured_hand(trace, world.switch))[0],
+        final_distance=final,
+        final_angle=final_angle,
+        moved_later=farthest(later) if len(later) > 1 else None,
+    )
+
+
+def apart(target: Pose, pose: Pose) -> tuple[float, float]:
+    """Return distance [m] and angle [rad] between two poses."""
+    distance, angle = distances(pose_error(target, pose))
+    return float(distance), float(angle)
+
+
+def farthest(positions: FloatArray) -> float:
+    """Return the largest distance of positions (n, 3) from the first [m]."""
+    return float(np.linalg.norm(positions - positions[0], axis=1).max())

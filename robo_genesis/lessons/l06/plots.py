@@ -1,15 +1,77 @@
-"""Figures of a box that lands, each a function of the experiment."""
+"""Figures of L06's lecture and lab, each a function of the experiment."""
 
+from collections.abc import Iterable
+
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
+from robo_genesis.core.plotting import LINE, look
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l06 import spec
+from robo_genesis.lessons.l06.metrics import HAND
+from robo_genesis.lessons.l06.run import World
+from robo_genesis.sim.franka import LINK_PARENTS
+
+FLOOR = 1e-9
+"""Smallest difference on a logarithmic axis; smaller ones, zeros among them, are drawn here."""
 
 
-def height(run: Experiment) -> Figure:
-    """Draw the height of the box's centre at every sample."""
-    figure, trace = plotting.figure(3.2), run.traces["baseline"]
+def posture(run: Experiment) -> Figure:
+    """Show the camera frames of both ends, without a camera the link origins of environment 0."""
+    if run.rendered:
+        return plotting.both_ends({name: run.frames[name] for name in ("initial", "final")})
+    figure = plotting.figure(5)
+    plotting.schematic(figure.subplots(), run.traces["env_0"], LINK_PARENTS)
+    return figure
+
+
+def to_target(run: Experiment, name: str, world: World) -> FloatArray:
+    """Return the distance (n+1,) of the hand from the target that was commanded last [mm]."""
+    trace = run.traces[name]
+    target = np.repeat(world.positions[:1], trace.steps + 1, axis=0)
+    target[world.switch + 1 :] = world.positions[-1]
+    apart = np.linalg.norm(trace.link_pos[:, HAND].astype(float) - target, axis=1)
+    return np.asarray(1000 * apart)
+
+
+def distances(run: Experiment, names: Iterable[str], title: str) -> tuple[Figure, Axes]:
+    """Draw the distance of the hand from its target in some runs, on a logarithmic scale."""
+    figure = plotting.figure(3.6)
     ax = figure.subplots()
-    ax.plot(trace.t, trace.link_pos[:, 0, 2], label="centre")
-    plotting.finish(ax, "Height of the box", "height z [m]", "best")
+    for name in names:
+        style = look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
+        apart = to_target(run, name, run.cases[name])
+        ax.semilogy(run.traces[name].t, apart, label=spec.LABELS[name], **style)
+    ax.set(xlabel="time [s]", ylabel="hand to target [mm]")
+    plotting.legend_above(ax, title)
+    return figure, ax
+
+
+def distance(run: Experiment) -> Figure:
+    """Draw the distance of each hand from its target, and the time of the second command."""
+    figure, ax = distances(run, spec.WORLDS, "Distance of each hand from its target")
+    ax.axvline(spec.SWITCH * spec.FIRST.dt, **LINE)
+    return figure
+
+
+def variants(run: Experiment) -> Figure:
+    """Draw the distance of the hand from one target in four robots."""
+    title = "One target, four robots"
+    return distances(run, spec.VARIANTS, title)[0]
+
+
+def alone(run: Experiment) -> Figure:
+    """Draw the largest difference of a joint position between each row and its run alone."""
+    figure = plotting.figure(3.4)
+    ax = figure.subplots()
+    for k, name in enumerate(spec.WORLDS):
+        row, other = run.traces[name], run.traces[f"alone_{k}"]
+        apart = np.abs(row.q.astype(float) - other.q).max(axis=1)
+        style = look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
+        ax.semilogy(row.t, np.maximum(apart, FLOOR), label=spec.LABELS[name], **style)
+    ax.set(xlabel="time [s]", ylabel="largest difference [rad]")
+    plotting.legend_above(ax, "A row and the same run alone")
     return figure

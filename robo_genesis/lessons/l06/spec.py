@@ -1,27 +1,189 @@
-"""Specification of lesson L06: a box falls a short way and comes to rest. Data only."""
+"""Specification of lesson L06: environments, their targets, gains and loads, and tolerances.
 
-from dataclasses import asdict
+Pages, checks, verification and tests read the experiment here. The module is data and computes
+nothing. `parameters()` has the values that decide what runs; all other values only judge.
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict, replace
 from typing import Any
 
-from robo_genesis.core.scene import CAMERA, DT
-from robo_genesis.sim.rigid_bodies import Drop
+import numpy as np
+
+from robo_genesis.core.scene import CAMERA, FloatArray
+from robo_genesis.lessons.l06.run import World
+from robo_genesis.sim import franka
+from robo_genesis.sim.kinematics import IkSettings
 
 MINIMUM_HARDWARE = "cpu"
-BASELINE = Drop(size=0.10, density=500.0, height=0.06, steps=50)
-CASES = {"baseline": BASELINE}
-LINK = "box_baselink"
-EXPECTED_MODEL = {"entities": 2, "links": 1, "geoms": 1, "joints": 1, "dofs": 6, "qpos": 7}
-VIEW = CAMERA | {"pos": (0.5, -0.5, 0.3), "lookat": (0.0, 0.0, 0.05), "fov": 40}
 
-HEIGHT_TOLERANCE = 2e-3  # between the ground and the underside at the end [m]
-AT_REST = 1e-2  # a lower speed counts as rest [m/s]
-RESOLUTION = {"m": 1e-5, "m/s": 1e-3, "s": DT / 2, "1": 0.5}
-TOLERANCES = {"m": (1e-4, 0.0), "m/s": (1e-3, 0.0), "s": (0.0, 0.0)}
-RELATIONS = ()
+EXPECTED_MODEL = franka.MODEL_COUNTS
+
+HAND_MASS = 0.73
+"""Mass of the hand in the model file [kg]."""
+
+IK = IkSettings()
+"""Tolerances 0.5 mm and 5 mrad; up to 50 starts of 20 iterations each."""
+
+ONE_START = replace(IK, samples=1, iterations=100)
+"""The same without starts of the engine's choice, so that an answer depends on its start alone."""
+
+
+def fixed(*rows: Any) -> FloatArray:
+    """Return a read-only array of the rows."""
+    array = np.array(rows, dtype=np.float64)
+    array.setflags(write=False)
+    return array
+
+
+DOWN = fixed(0.0, 1.0, 0.0, 0.0)
+"""Target orientation (w, x, y, z): half a turn about x, so the fingers point down."""
+
+TARGETS = fixed((0.42, -0.12, 0.35), (0.48, -0.04, 0.40), (0.48, 0.06, 0.32), (0.40, 0.14, 0.38))
+"""First target of the hand in each environment [m]."""
+
+LATER = {1: fixed(0.44, -0.16, 0.32), 3: fixed(0.50, 0.12, 0.40)}
+"""Second target of the hand in some environments [m]."""
+
+SWITCH, STEPS = 180, 360
+"""Outer steps until the second command, and of the whole run."""
+
+RESET_AFTER = 30
+"""Outer steps until the partial reset, while all arms are moving."""
+
+BEYOND_REACH = fixed(2.0, 0.0, 2.0)
+"""A target that no posture of the arm comes near to [m]."""
+
+MIXED = fixed(TARGETS[0], TARGETS[1], BEYOND_REACH, TARGETS[3])
+"""Targets of which one is refused [m]."""
+
+FIRST = World(
+    positions=TARGETS[:1],
+    quat=DOWN,
+    q_start=franka.Q_START,
+    kp=franka.KP_BASELINE,
+    kv=franka.KV_BASELINE,
+    effort_limit=franka.EFFORT_LIMIT,
+    settings=IK,
+    steps=STEPS,
+    switch=SWITCH,
+)
+ENVS = tuple(range(len(TARGETS)))
+"""Numbers of the environments."""
+
+WORLDS = {
+    f"env_{k}": replace(FIRST, positions=fixed(TARGETS[k], *([LATER[k]] if k in LATER else [])))
+    for k in ENVS
+}
+ALONE = {f"alone_{k}": WORLDS[f"env_{k}"] for k in ENVS}
+"""The same worlds, each in a scene with one robot and without environments."""
+
+SHORT = replace(FIRST, steps=SWITCH)
+VARIANTS = {
+    "plain": SHORT,
+    "stiff": replace(SHORT, kp=2 * franka.KP_BASELINE),
+    "loaded": replace(SHORT, load=1.0),
+    "stiff_loaded": replace(SHORT, kp=2 * franka.KP_BASELINE, load=1.0),
+}
+"""One target, and four robots that differ in their gains or in the mass of the hand."""
+
+CASES = WORLDS | ALONE | VARIANTS
+
+ORDER = (2, 0, 3, 1)
+"""Row k of the permuted batch is the world of this environment."""
+
+PERMUTED = {f"permuted_{k}": WORLDS[f"env_{k}"] for k in ENVS}
+BESIDE = {
+    f"beside_{k}": replace(WORLDS[f"env_{k}"], steps=RESET_AFTER + SWITCH)
+    for k in ENVS
+    if k not in LATER
+}
+"""Environments that are not touched while their neighbours are reset and commanded."""
+
+AGAIN = {f"again_{k}": replace(FIRST, positions=TARGETS[[k]], steps=SWITCH) for k in LATER}
+"""Environments from their partial reset on."""
+
+COPIES = PERMUTED | BESIDE | AGAIN
+"""Runs that must repeat another one; they are recorded, and have no metrics."""
+
+MARKS = ("baseline", "first", "second", "third")
+CASE_MARKS = {
+    name: mark for group in (WORLDS, VARIANTS) for name, mark in zip(group, MARKS, strict=True)
+}
+"""The mark of each case in the palette."""
+
+LABELS = {name: name.replace("env_", "environment ") for name in WORLDS} | {
+    "plain": "plain",
+    "stiff": "KP doubled",
+    "loaded": "1 kg in the hand",
+    "stiff_loaded": "KP doubled, 1 kg",
+} | {name: name.replace("alone_", "run alone, ") for name in ALONE}  # fmt: skip
+"""Words of a reader for runs."""
+
+SPACING = 1.0
+"""Distance of neighbouring environments in pictures [m]; no state depends on it."""
+
+PLACES = tuple((SPACING * x, SPACING * y) for x in (-0.5, 0.5) for y in (-0.5, 0.5))
+"""Where the replay draws the environments [m]."""
+
+VIEW = CAMERA | {"pos": (2.9, -2.3, 1.9), "lookat": (0.15, 0.0, 0.25), "fov": 38}
+"""The lesson's camera: all environments, apart from each other."""
+
+RELATIONS = (
+    (("plain", "stiff"), "final_distance", "lower", 1e-3),
+    (("plain", "loaded"), "final_distance", "higher", 5e-4),
+    (("plain", "stiff_loaded"), "final_distance", "lower", 1e-3),
+)
+"""Written down before the runs: how the second case of a pair compares with the first [m]."""
+
+RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
+"""By unit: values that differ by no more than this are called equal, the noise floor."""
+
+TOLERANCES = {
+    "m": (1e-5, 1e-3),
+    "rad": (1e-5, 1e-3),
+    "rad/s": (1e-3, 1e-3),
+    "N·m": (1e-2, 1e-3),
+    "N": (1e-2, 1e-3),
+    "kg": (1e-6, 0.0),
+    "1": (1e-6, 0.0),
+    "link_quat_wxyz": (1e-4, 0.0),
+}
+"""By unit, or by array: (atol, rtol) of a value between engine versions or backends."""
+
+REACHED = (0.02, 0.05)
+"""The hand counts as arrived within these distances of its target [m] and [rad]."""
+
+SAME_POSE = (5e-6, 5e-6)
+"""Largest difference of a pose between two computations, one of them in float32 [m, rad]."""
+
+SAME_RUN = {"q": 5e-6, "qd": 5e-5, "control_force": 2e-2}
+"""By array: largest difference between a row of a batch and the same run alone [rad or m, rad/s or
+m/s, N·m or N]. Both are computed in float32."""
+
+HELD = 0.05
+"""Largest difference of a torque at rest from gravity and load by MuJoCo [N·m]."""
+
+
+def case_parameters(cases: Mapping[str, World]) -> dict[str, dict[str, Any]]:
+    """Return every field of every case as JSON values."""
+    return {
+        name: {key: np.asarray(value).tolist() for key, value in asdict(case).items()}
+        for name, case in cases.items()
+    }
 
 
 def parameters() -> dict[str, Any]:
-    """Return every configured input as JSON values, for the evidence key."""
-    view = {name: value for name, value in VIEW.items() if name != "GUI"}
-    cases = {name: asdict(case) for name, case in CASES.items()}
-    return {"cases": cases, "counted": list(EXPECTED_MODEL), "view": view}
+    """Return every configured input of the lab as JSON values, for the evidence key."""
+    return {
+        "joints": list(franka.JOINT_NAMES),
+        "model": franka.FRANKA_MJCF,
+        "counted": list(EXPECTED_MODEL),
+        "cases": case_parameters(CASES | COPIES),
+        "order": list(ORDER),
+        "reset_after": RESET_AFTER,
+        "mixed": {"targets": MIXED.tolist(), "settings": asdict(ONE_START)},
+        "hand_mass": HAND_MASS,
+        "spacing": SPACING,
+        "view": {name: value for name, value in VIEW.items() if name != "GUI"},
+    }

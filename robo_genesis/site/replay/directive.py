@@ -77,13 +77,18 @@ def replay_block(
     from robo_genesis.site.replay import model as replay_model  # these load slowly
     from robo_genesis.site.replay.poster import picture
     from robo_genesis.site.replay.scenery import scenery
+    from robo_genesis.site.replay.side_by_side import side_by_side
 
     env, lesson = directive.env, key.split("/")[0]
     name = "-".join(("replay", *key.split("/"), *filter(None, [further])))
     try:
-        runs = labelled(read_runs(folder, drawn_cases(lesson, further)), lesson)
+        drawn = drawn_cases(lesson, further)
+        runs = labelled(read_runs(folder, drawn), lesson)
         shape = shape_file(lesson, runs.view.thing)
-        around = scenery(visual_shape.load_shape(shape), runs)
+        parts = visual_shape.load_shape(shape)
+        if drawn.places:
+            runs, parts = side_by_side(runs, parts, drawn.places)
+        around = scenery(parts, runs, hinged=not drawn.places)
         inputs = [*model_inputs(shape, folder, runs)]
         what = around, runs.links, runs.traces, runs.view.credit
         model = derived("replay", inputs, lambda: replay_model.glb(*what))

@@ -1,0 +1,35 @@
+"""What the named checks of lesson L06 require."""
+
+CLAIMS: dict[str, str] = {
+    "mapping": "The engine has the expected links, joints and DOFs.",
+    "stamps": "Each run has its configured steps and states at times k · dt from zero.",
+    "shapes": (
+        "Arrays have no leading axis without environments, and one with one environment or more; "
+        "an answer has one row for each asked environment."
+    ),
+    "acceptance_per_row": (
+        "Each commanded row is within both tolerances by forward kinematics. Of the question with "
+        "one target beyond reach, this row alone is beyond its tolerance."
+    ),
+    "arrived": "Each hand ends nearer to its target than it starts, and within 2 cm and 0.05 rad.",
+    "row_equals_alone": (
+        "Each row of the batch and the same run alone have the same command to the last bit, and "
+        "positions, velocities and control forces within the declared bounds."
+    ),
+    "permuted_rows": (
+        "With the worlds in another order, each gives the same arrays to the last bit."
+    ),
+    "untouched_keep_their_state": (
+        "Environments that are not named keep their hand in place while others get a second "
+        "command. While others are reset and commanded in mid-motion, they give the same arrays to "
+        "the last bit."
+    ),
+    "partial_reset": (
+        "After a reset in mid-motion, an environment repeats its first run to the last bit."
+    ),
+    "own_gains_and_mass": (
+        "The row without changes equals its run beside equal neighbours to the last bit. Each hand "
+        "has its own mass, and each row holds its own gravity and load at rest."
+    ),
+    "posture": "Two different camera frames, or a schematic whose links moved, show the end state.",
+}

@@ -1,0 +1,118 @@
+"""Checks of the functions on rows that a student writes in L06's lab; see `core/exercises.py`."""
+
+from collections.abc import Callable, Iterator, Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.checks import Check, Finding, equal
+from robo_genesis.core.exercises import outcome
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.lessons.l06 import spec
+
+ANSWERS: dict[str, tuple[float, tuple[float, ...], bool]] = {
+    "exact": (0.1, (0.0,) * 6, True),
+    "at_both_limits": (0.1, (5e-4, 0, 0, 0, 0, 5e-3), True),
+    "too_far": (0.1, (6e-4, 0, 0, 0, 0, 0), False),
+    "too_far_along_the_diagonal": (0.1, (4e-4, 4e-4, 0, 0, 0, 0), False),
+    "beyond_reach": (0.1, (0, 0, -2.0, 0, 0, 0), False),
+    "turned_too_far": (0.1, (0, 0, 0, 0, -6e-3, 0), False),
+    "not_a_number": (np.nan, (0.0,) * 6, False),
+    "residual_not_a_number": (0.1, (np.nan, 0, 0, 0, 0, 0), False),
+    "small": (0.1, (1e-6,) * 6, True),
+}
+"""One joint position of a row, its residual, and whether the row may be commanded."""
+
+
+def acceptance(accept: Callable[..., Any]) -> list[Check]:
+    """Check `accept(q, error, position_tolerance, rotation_tolerance)` on rows (k, d) and (k, 6).
+
+    It returns one truth value for each row, (k,).
+    """
+
+    def findings(_: None) -> Iterator[Finding]:
+        tolerances = spec.IK.position_tolerance, spec.IK.rotation_tolerance
+        names = list(ANSWERS)
+        for label, rows in (("all", names), ("backwards", names[::-1]), ("one", names[2:3])):
+            q = np.array([[0.1] * 8 + [ANSWERS[name][0]] for name in rows])
+            error = np.array([ANSWERS[name][1] for name in rows], dtype=float)
+            found = np.asarray(accept(q, error, *tolerances))
+            yield equal(f"{label}.shape", list(found.shape), [len(rows)])
+            if found.shape == (len(rows),):
+                for name, value in zip(rows, found, strict=True):
+                    yield equal(f"{label}.{name}", bool(value), ANSWERS[name][2])
+        loose = accept(np.zeros((2, 9)), np.full((2, 6), 0.1), 0.2, 0.2)
+        yield equal("looser_tolerances", np.asarray(loose, dtype=bool).tolist(), [True, True])
+
+    return outcome("acceptance", findings)
+
+
+class Robot:
+    """Keeps the commands of four environments, and broadcasts as the engine does."""
+
+    def __init__(self) -> None:
+        self.scene = SimpleNamespace(n_envs=4)
+        self.target = np.zeros((4, 3))
+        self.calls = 0
+
+    def control_dofs_position(
+        self, position: Any, dofs_idx_local: Any = None, envs_idx: Any = None
+    ) -> None:
+        """Keep positions of some DOFs in some environments."""
+        dofs = range(3) if dofs_idx_local is None else dofs_idx_local
+        envs = range(4) if envs_idx is None else np.atleast_1d(envs_idx)
+        self.target[np.ix_(list(envs), list(dofs))] = position
+        self.calls += 1
+
+
+VALID: dict[str, tuple[Sequence[int], Sequence[int]]] = {
+    "two_rows": ([0, 1, 2], [1, 3]),
+    "other_order": ([0, 1, 2], [3, 1]),
+    "some_dofs": ([2, 0], [0, 2]),
+    "all_rows": ([0, 1, 2], [0, 1, 2, 3]),
+}
+"""DOFs and environments of commands that must be sent."""
+
+REFUSED: dict[str, tuple[tuple[int, ...], Sequence[int]]] = {
+    "one_row_for_two": ((1, 3), [1, 3]),
+    "no_rows_for_two": ((3,), [1, 3]),
+    "rows_of_all_for_two": ((4, 3), [1, 3]),
+    "two_rows_for_one": ((2, 3), [1]),
+    "named_twice": ((2, 3), [1, 1]),
+    "does_not_exist": ((2, 3), [1, 4]),
+}
+"""Shapes and environments that must raise a ValueError; the engine would send many of them."""
+
+
+def subset(command: Callable[..., Any]) -> list[Check]:
+    """Check `command(robot, dofs, q, envs)`: row k of `q` for environment `envs[k]`."""
+
+    def findings(_: None) -> Iterator[Finding]:
+        for name, (dofs, envs) in VALID.items():
+            robot, expected = Robot(), np.zeros((4, 3))
+            q = np.arange(1.0, 1 + len(envs) * len(dofs)).reshape(len(envs), len(dofs))
+            expected[np.ix_(envs, dofs)] = q
+            command(robot, dofs, q, np.array(envs))
+            yield equal(f"{name}.wrong_entries", int((robot.target != expected).sum()), 0)
+        for name, (shape, envs) in REFUSED.items():
+            robot = Robot()
+            raised = refused(command, robot, np.ones(shape), envs)
+            yield equal(f"{name}.raises_value_error", raised, True)
+            yield equal(f"{name}.commands_sent", robot.calls, 0)
+        robot = Robot()
+        command(robot, [0, 1, 2], np.zeros((0, 3)), [])
+        yield equal("no_environments.commands_sent", robot.calls, 0)
+
+    return outcome("subset", findings)
+
+
+def refused(command: Callable[..., Any], robot: Robot, q: FloatArray, envs: Sequence[int]) -> bool:
+    """Return whether a command raises a ValueError."""
+    try:
+        command(robot, [0, 1, 2], q, envs)
+    except ValueError:
+        return True
+    except IndexError:
+        return False
+    return False

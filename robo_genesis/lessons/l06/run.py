@@ -1,0 +1,141 @@
+"""Runs of L06: ask, accept and command all environments of a scene, or some of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim import franka
+from robo_genesis.sim.arm_kinematics import ARM, accepted
+from robo_genesis.sim.batch import Batch, set_link_mass
+from robo_genesis.sim.joint_control import ControlCase
+from robo_genesis.sim.joints import JointMap
+from robo_genesis.sim.kinematics import IkAnswer, IkSettings, solve_ik
+
+END_EFFECTOR = "hand"
+MOVED = franka.JOINT_NAMES[:ARM]
+"""The joints that the solver may move."""
+
+
+class NotAccepted(ValueError):  # noqa: N818 - read aloud: not accepted
+    """The answer of at least one row is refused; nothing was commanded."""
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """One environment: the targets of its hand in their order, its start, controller and load.
+
+    `positions` (p, 3) [m] and `quat` (4,) are in the world; the other arrays have one entry for
+    each joint: `q_start` [rad or m], `kp` [N·m/rad or N/m], `kv` [N·m·s/rad or N·s/m],
+    `effort_limit` [N·m or N]. A second target is commanded after `switch` of the `steps`. `load`
+    is added to the mass of the hand [kg].
+    """
+
+    positions: FloatArray
+    quat: FloatArray
+    q_start: FloatArray
+    kp: FloatArray
+    kv: FloatArray
+    effort_limit: FloatArray
+    settings: IkSettings
+    steps: int
+    switch: int
+    load: float = 0.0
+    dt: float = DT
+    substeps: int = SUBSTEPS
+    seed: int = SEED
+
+    def commanding(self, q_target: FloatArray) -> ControlCase:
+        """Return the control case that commands joint positions (d,) or (n, d) [rad or m]."""
+        return ControlCase(
+            self.q_start, q_target, self.kp, self.kv, self.effort_limit,
+            self.steps, self.dt, self.substeps, self.seed,
+        )  # fmt: skip
+
+
+def ask(
+    robot: Any, joints: JointMap, worlds: Sequence[World], number: int = 0,
+    envs: Sequence[int] | None = None,
+) -> IkAnswer:  # fmt: skip
+    """Ask in one call for a target of each world; row k of the answer belongs to `worlds[k]`.
+
+    Args:
+        robot: of a scene with environments, or of one without for a single world.
+        joints: all its joints.
+        worlds: what is asked, all with equal settings of the solver.
+        number: of the target in `positions`.
+        envs: the environments of the worlds; 0, 1 … by default.
+    """
+    rows = [(world.positions[number], world.quat, world.q_start) for world in worlds]
+    asked = [np.stack(values) for values in zip(*rows, strict=True)]
+    if robot.scene.n_envs == 0:
+        asked = [values[0] for values in asked]
+    found = solve_ik(robot, joints, END_EFFECTOR, *asked, MOVED, worlds[0].settings, envs)
+    rows_of = (len(worlds), -1)
+    return IkAnswer(found.q.reshape(rows_of), found.error.reshape(rows_of))
+
+
+def commands(worlds: Sequence[World], answer: IkAnswer) -> FloatArray:
+    """Return the joint positions (k, d) that accepted answers command; the fingers stay.
+
+    Raises:
+        NotAccepted: an answer is not finite, or a residual is beyond its tolerance; the message
+            names the rows.
+    """
+    settings = worlds[0].settings
+    limits = settings.position_tolerance, settings.rotation_tolerance
+    refused = np.flatnonzero(~accepted(answer.q, answer.error, *limits))
+    if refused.size:
+        raise NotAccepted(
+            f"Rows {refused.tolist()} are refused: their residuals are beyond {limits[0]:g} m or "
+            f"{limits[1]:g} rad, or their joint positions are not finite. Command the other rows "
+            "alone, or choose other targets."
+        )
+    q = answer.q.astype(np.float64)
+    q[:, ARM:] = [world.q_start[ARM:] for world in worlds]
+    return q
+
+
+def reach(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World]) -> list[Trace]:
+    """Command the first target of all worlds, later the second target of those that have one.
+
+    Returns:
+        The run of each world, in their order.
+    """
+    batch = Batch(scene, robot, joints, [world.commanding(world.q_start) for world in worlds])
+    batch.command(commands(worlds, ask(robot, joints, worlds)))
+    batch.step(worlds[0].switch)
+    envs = [k for k, world in enumerate(worlds) if len(world.positions) > 1]
+    if envs:
+        again = [worlds[k] for k in envs]
+        some = envs if scene.n_envs else None
+        batch.command(commands(again, ask(robot, joints, again, 1, some)), envs)
+    batch.step(worlds[0].steps - worlds[0].switch)
+    return [batch.trace(k) for k in range(len(worlds))]
+
+
+def reset_some(
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World],
+    envs: Sequence[int], after: int,
+) -> list[Trace]:  # fmt: skip
+    """Reset some environments while all are moving, and command their first target again.
+
+    Returns:
+        The run of each world: of `envs` from their reset on, of the others from the start on.
+    """
+    batch = Batch(scene, robot, joints, [world.commanding(world.q_start) for world in worlds])
+    q_target = commands(worlds, ask(robot, joints, worlds))
+    batch.command(q_target)
+    batch.step(after)
+    batch.reset_rows(envs)
+    batch.command(q_target[list(envs)], envs)
+    batch.step(worlds[0].switch)
+    return [batch.trace(k) for k in range(len(worlds))]
+
+
+def set_loads(robot: Any, worlds: Sequence[World], hand_mass: float) -> FloatArray:
+    """Give each hand its mass [kg] with the load of its world; return what reads back (B,)."""
+    return set_link_mass(robot, END_EFFECTOR, np.array([hand_mass + w.load for w in worlds]))
