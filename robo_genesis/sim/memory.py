@@ -1,14 +1,17 @@
 """Memory that is in use where the engine computes."""
 
+import gc
 import importlib
 import os
 from pathlib import Path
 
 MIB = 2**20
+"""Bytes of one MiB."""
 
 
 def used_memory() -> float:
     """Return the memory in use [MiB]: of this process, on an accelerator of the whole device."""
+    gc.collect()
     torch = importlib.import_module("torch")
     if importlib.import_module("genesis").device.type == "cuda":  # ROCm calls its device so as well
         free, total = torch.cuda.mem_get_info()

@@ -2,20 +2,29 @@
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.experiment import Readings
+from robo_genesis.lessons.experiment import Readings, counts
+from robo_genesis.sim.franka import Q_START
 from robo_genesis.sim.joints import to_numpy
 from robo_genesis.sim.memory import used_memory
 
-GROUP = "throughput"
-"""Group of a bundle's metrics: elapsed times and memory of each number of environments."""
+GROUP, EQUAL = "throughput", "rows_that_differ"
+"""Groups of a bundle's metrics: elapsed times and memory of each number of environments, and how
+many environments ended in another state than the first."""
+
+UNITS = {"build": "s", "step": "s", "fastest": "s", "slowest": "s", "memory": "MiB"}
+"""What is kept of each number of environments; `step` is the median over the repeats."""
+
+RAISED = 0.1
+"""Angle by which the timed command turns each arm joint from its start [rad]."""
 
 Call = Callable[[], Any]
+Clock = Callable[[], float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,21 +37,25 @@ class Protocol:
     """
 
     sizes: tuple[int, ...]
-    warm_up: int
-    steps: int
-    repeats: int
+    warm_up: int = 10
+    steps: int = 20
+    repeats: int = 7
+
+    def parameters(self) -> dict[str, Any]:
+        """Return every configured input as JSON values, for the evidence key."""
+        return {"throughput": asdict(self) | {"sizes": list(self.sizes), "raised": RAISED}}
+
+    def readings(self) -> dict[str, Readings]:
+        """Return the groups of readings. No check judges a time."""
+        units = {f"{name}_{size}": unit for size in self.sizes for name, unit in UNITS.items()}
+        return {GROUP: Readings(units, "performance"), EQUAL: counts(map(str, self.sizes))}
 
 
-PROTOCOL = Protocol(sizes=(1, 4, 16, 64, 256, 1024), warm_up=20, steps=20, repeats=7)
-
-UNITS = {
-    "build": "s", "first_step": "s", "step": "s", "fastest": "s", "slowest": "s", "memory": "MiB",
-}  # fmt: skip
-"""What is kept of each size, with units; `step` is the median over the repeats."""
+PROTOCOL = Protocol((1, 4, 16, 64, 256, 1024))
 
 
-def seconds_per_step(step: Call, finish: Call, steps: int, clock: Callable[[], float]) -> float:
-    """Return the mean time of one of some steps [s].
+def seconds_per_step(step: Call, finish: Call, steps: int, clock: Clock) -> float:
+    """Return the mean time of a step over some steps [s].
 
     Args:
         step: starts a step; on an accelerator it returns before the step is done.
@@ -58,59 +71,81 @@ def seconds_per_step(step: Call, finish: Call, steps: int, clock: Callable[[], f
     return (clock() - begin) / steps
 
 
+def in_turn(
+    timed: Mapping[str, tuple[Call, Call]], protocol: Protocol, clock: Clock
+) -> dict[str, float]:
+    """Time several scenes in turn, so that a slow second of the machine touches all of them.
+
+    Args:
+        timed: `step` and `finish` of each scene by name, see `seconds_per_step`.
+        protocol: what is timed.
+        clock: returns a time [s].
+
+    Returns:
+        Median, fastest and slowest of the repeats: `step_NAME`, `fastest_NAME`, `slowest_NAME` [s].
+    """
+    for calls in timed.values():
+        seconds_per_step(*calls, protocol.warm_up, clock)
+    times: dict[str, list[float]] = {name: [] for name in timed}
+    for _ in range(protocol.repeats):
+        for name, calls in timed.items():
+            times[name].append(seconds_per_step(*calls, protocol.steps, clock))
+    kept = {"step": np.median, "fastest": np.min, "slowest": np.max}
+    return {f"{what}_{n}": float(of(t)) for n, t in times.items() for what, of in kept.items()}
+
+
+def calls_of(scene: Any, robot: Any) -> tuple[Call, Call]:
+    """Return how to start a step of a scene, and how to wait for all started ones."""
+    return scene.step, lambda: to_numpy(robot.get_dofs_position())
+
+
+def start(robot: Any) -> None:
+    """Bring the arms of all environments to the course's start, and command a small motion."""
+    shape = to_numpy(robot.get_dofs_position()).shape
+    robot.set_dofs_position(np.broadcast_to(Q_START, shape).copy(), zero_velocity=True)
+    robot.control_dofs_position(np.broadcast_to(Q_START + RAISED, shape)[..., :7], range(7))
+
+
 def measure(
     build: Callable[[int], tuple[Any, Any]],
-    start: Callable[[Any, Any], Any],
     protocol: Protocol = PROTOCOL,
-    clock: Callable[[], float] = time.perf_counter,
+    clock: Clock = time.perf_counter,
     memory: Callable[[], float] = used_memory,
-) -> dict[str, float]:
+) -> tuple[dict[str, float], dict[str, int]]:
     """Time building and stepping of a scene for each number of environments.
 
-    All scenes exist at the same time, and each repeat visits all of them. So a slow minute of the
-    machine touches every size.
+    All scenes exist at the same time.
 
     Args:
         build: returns a built scene with so many environments, and its robot.
-        start: assigns the state and the command of all environments; its time is not used.
         protocol: what is timed.
         clock: returns a time [s].
         memory: returns the memory in use [MiB].
 
     Returns:
-        The readings of the group, see `names`.
+        Both groups of readings.
     """
-    found: dict[str, float] = {}
-    timed: dict[int, tuple[Call, Call]] = {}
+    found, built = {}, {}
     for size in protocol.sizes:
         before, begin = memory(), clock()
-        scene, robot = build(size)
+        scene, robot = built[str(size)] = build(size)
         found[f"build_{size}"] = clock() - begin
-        start(scene, robot)
-        calls = timed[size] = scene.step, lambda robot=robot: to_numpy(robot.get_dofs_position())
-        found[f"first_step_{size}"] = seconds_per_step(*calls, 1, clock)
-        seconds_per_step(*calls, protocol.warm_up, clock)
+        start(robot)
+        calls_of(scene, robot)[1]()
         found[f"memory_{size}"] = memory() - before
-    repeats = [
-        {size: seconds_per_step(*calls, protocol.steps, clock) for size, calls in timed.items()}
-        for _ in range(protocol.repeats)
-    ]
-    for size in protocol.sizes:
-        times = [repeat[size] for repeat in repeats]
-        kept = float(np.median(times)), min(times), max(times)
-        found |= dict(zip((f"{n}_{size}" for n in ("step", "fastest", "slowest")), kept))
-    return found
+    found |= in_turn({name: calls_of(*of) for name, of in built.items()}, protocol, clock)
+    ends = {name: to_numpy(robot.get_dofs_position()) for name, (_, robot) in built.items()}
+    return found, {name: int((q != q[0]).any(axis=1).sum()) for name, q in ends.items()}
 
 
-def readings(protocol: Protocol = PROTOCOL) -> dict[str, Readings]:
-    """Return the group of readings: no check judges them."""
-    units = {f"{name}_{size}": unit for name, unit in UNITS.items() for size in protocol.sizes}
-    return {GROUP: Readings(units, "performance")}
+def sizes_of(found: Mapping[str, float]) -> list[int]:
+    """Return the numbers of environments of a group of readings."""
+    return [int(name.removeprefix("build_")) for name in found if name.startswith("build_")]
 
 
-def column(found: Mapping[str, float], name: str, protocol: Protocol = PROTOCOL) -> FloatArray:
-    """Return one kind of reading (sizes,)."""
-    return np.array([found[f"{name}_{size}"] for size in protocol.sizes])
+def column(found: Mapping[str, float], name: str) -> FloatArray:
+    """Return one kind of reading for each number of environments."""
+    return np.array([found[f"{name}_{size}"] for size in sizes_of(found)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,11 +165,11 @@ class Model:
         return self.fixed / self.each
 
 
-def fit(sizes: FloatArray, times: FloatArray) -> Model:
+def fit(sizes: Any, times: Any) -> Model:
     """Return the model with the least squares of relative errors.
 
     Args:
-        sizes: numbers of environments (n,), n ≥ 2.
+        sizes: numbers of environments (n,), at least two different ones.
         times: of one step (n,) [s].
     """
     sizes, times = np.asarray(sizes, float), np.asarray(times, float)

@@ -16,13 +16,21 @@ class Scene:
 
     def __init__(self, machine, size):
         self.machine, self.size, self.steps = machine, size, 0
+        self.q = np.zeros((size, 9))
 
     def step(self):
         self.machine.now += 2.0 if self.steps == 0 else 0.001 + 0.0001 * self.size
         self.steps += 1
 
     def get_dofs_position(self):
-        return np.zeros(9)
+        return self.q
+
+    def set_dofs_position(self, q, zero_velocity):
+        self.machine.now += 1000
+        self.q = q
+
+    def control_dofs_position(self, q, dofs):
+        assert q.shape == (self.size, len(dofs))
 
 
 @pytest.fixture
@@ -34,31 +42,46 @@ def measured():
         scenes[size] = Scene(machine, size)
         return scenes[size], scenes[size]
 
-    def start(scene, robot):
-        machine.now += 1000
-
     memory = lambda: 50.0 + 3 * sum(scenes)  # noqa: E731
-    found = throughput.measure(build, start, SHORT, machine.clock, memory)
-    return found, scenes
+    return *throughput.measure(build, SHORT, machine.clock, memory), scenes
 
 
 @pytest.mark.parametrize("size", SHORT.sizes)
-def test_building_first_step_and_stepping_are_timed_apart(measured, size):
-    found, scenes = measured
-    expected = {
-        "build": 10 + size, "first_step": 2.0, "memory": 3 * size,
-        **dict.fromkeys(("step", "fastest", "slowest"), 0.001 + 0.0001 * size),
-    }  # fmt: skip
+def test_building_and_stepping_are_timed_apart_and_after_a_warm_up(measured, size):
+    found, differ, scenes = measured
+    time = dict.fromkeys(("step", "fastest", "slowest"), 0.001 + 0.0001 * size)
+    expected = {"build": 10 + size, "memory": 3 * size, **time}
     assert {n: found[f"{n}_{size}"] for n in expected} == pytest.approx(expected)
-    assert scenes[size].steps == 1 + SHORT.warm_up + SHORT.steps * SHORT.repeats
+    assert scenes[size].steps == SHORT.warm_up + SHORT.steps * SHORT.repeats
+    assert differ[str(size)] == 0
 
 
-def test_all_readings_are_declared_and_no_check_judges_them(measured):
-    found, _ = measured
-    (declared,) = throughput.readings(SHORT).values()
-    assert declared.kind == "performance"
-    assert set(found) == set(declared.units)
-    assert throughput.column(found, "build", SHORT).tolist() == [11, 14]
+def test_all_readings_are_declared_and_no_check_judges_a_time(measured):
+    found, differ, _ = measured
+    declared = SHORT.readings()
+    assert declared[throughput.GROUP].kind == "performance"
+    assert set(found) == set(declared[throughput.GROUP].units)
+    assert set(differ) == set(declared[throughput.EQUAL].units)
+    assert throughput.sizes_of(found) == [1, 4]
+    assert throughput.column(found, "build").tolist() == [11, 14]
+
+
+def test_a_row_that_ends_elsewhere_is_counted(measured):
+    *_, scenes = measured
+
+    def build(size):
+        scenes[size].set_dofs_position = lambda q, zero_velocity: scenes[size].q[-1:].fill(1)
+        return scenes[size], scenes[size]
+
+    _, differ = throughput.measure(build, SHORT, iter(range(999)).__next__, lambda: 0.0)
+    assert differ == {"1": 0, "4": 1}
+
+
+def test_scenes_are_timed_in_turn():
+    made, machine = [], Machine({})
+    calls = {n: (lambda n=n: made.append(n), lambda: None) for n in "ab"}
+    throughput.in_turn(calls, Protocol((), warm_up=1, steps=2, repeats=2), machine.clock)
+    assert "".join(made) == "ab" + 2 * "aabb"
 
 
 def test_a_fit_finds_the_model_that_made_the_times():
