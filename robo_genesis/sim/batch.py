@@ -167,10 +167,11 @@ def reset_batch(
         )
     dofs = joints.dofs_idx_local.tolist()
     arrays: dict[str, Any] = {
-        name: np.stack([getattr(case, name) for case in cases]) if rows else getattr(cases[0], name)
+        name: np.array(np.stack(each) if rows else each[0])
         for name in ("q_start", "q_target", "kp", "kv", "effort_limit")
+        for each in [[getattr(case, name) for case in cases]]
     }
-    batch = replace(cases[0], **{name: np.array(values) for name, values in arrays.items()})
+    batch = replace(cases[0], **arrays)
     scene.reset()
     robot.set_dofs_kp(batch.kp, dofs)
     robot.set_dofs_kv(batch.kv, dofs)

@@ -35,9 +35,9 @@ from robo_genesis.lessons.l04 import (
     text,
     theory_text,
 )
-from robo_genesis.sim.batch import run_batch
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
 from robo_genesis.sim import mujoco_joints
+from robo_genesis.sim.batch import run_batch
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import (
     assign_path,

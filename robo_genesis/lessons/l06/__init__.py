@@ -1,13 +1,12 @@
 """L06: many worlds at once."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from robo_genesis.core.channels import View
 from robo_genesis.core.palette import MARKS
-from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, on_demand
 from robo_genesis.lessons.experiment import MeasuringPage, Run, runs_of
@@ -21,34 +20,34 @@ from robo_genesis.lessons.l06 import (
     text,
 )
 from robo_genesis.lessons.l06.metrics import WorldMetrics, world_metrics
-from robo_genesis.lessons.l06.run import ask, commands, reach, reset_some, set_loads
-from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim.batch import set_link_mass
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joints import resolve_joints
 from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
 
 if TYPE_CHECKING:
     from robo_genesis.lessons.l06 import plots
 
 __all__ = [
-    "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LECTURE", "LESSON", "SUBSTEPS", "ask", "commands",
-    "exercises", "kinematics", "plots", "reach", "read_shape", "reset_some", "resolve_joints",
-    "set_loads", "spec", "study", "target_parts", "text",
+    "FRANKA_MJCF", "LAB", "LECTURE", "LESSON", "exercises", "plots", "read_shape", "set_link_mass",
+    "spec", "study", "target_parts", "text",
 ]  # fmt: skip
 
 __getattr__ = on_demand(__name__, "plots")
 
 
-def target_parts(marker: Any) -> list[Part]:
-    """Return the shape of a sphere at each target, in the colour of its environment."""
-    (part,) = read_shape(marker)
-    found = []
-    for k, name in enumerate(spec.WORLDS):
-        rgb = tuple(bytes.fromhex(MARKS[spec.CASE_MARKS[name]].light[1:]))
-        for position in spec.WORLDS[name].positions:
-            at = part.vertices + np.float32(position + (*spec.PLACES[k], 0))
-            found.append(replace(part, link=WORLD, rgb=rgb, vertices=at))
-    return found
+def target_parts() -> list[Part]:
+    """Return a sphere at each target for the replay, in the colour of its environment."""
+    import trimesh  # loads slowly
+
+    sphere = trimesh.creation.icosphere(3, spec.MARKER_RADIUS)
+    parts = []
+    for k, (name, world) in enumerate(spec.WORLDS.items()):
+        red, green, blue = bytes.fromhex(MARKS[spec.CASE_MARKS[name]].light[1:])
+        for position in world.positions:
+            at = position + np.array([*spec.PLACES[k], 0])
+            vertices = np.asarray(sphere.vertices + at, dtype=np.float32)
+            parts.append(Part(WORLD, (red, green, blue), vertices, np.array(sphere.faces)))
+    return parts
 
 
 COPY_NOTE = "repeats another run of this page, and has no metrics of its own"
@@ -68,6 +67,7 @@ LECTURE = MeasuringPage(
     validate=plausibility.require_possible_runs,
 )
 LAB = replace(LECTURE)
+"""Page of the throughput and of the mistakes: here, and in `pages` below."""
 
 LESSON = Lesson(
     spec=spec,

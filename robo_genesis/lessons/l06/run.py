@@ -70,12 +70,13 @@ def ask(
         envs: the environments of the worlds; 0, 1 … by default.
     """
     rows = [(world.positions[number], world.quat, world.q_start) for world in worlds]
-    asked = [np.stack(values) for values in zip(*rows, strict=True)]
+    position, quat, q_start = (np.stack(values) for values in zip(*rows, strict=True))
     if robot.scene.n_envs == 0:
-        asked = [values[0] for values in asked]
-    found = solve_ik(robot, joints, END_EFFECTOR, *asked, MOVED, worlds[0].settings, envs)
-    rows_of = (len(worlds), -1)
-    return IkAnswer(found.q.reshape(rows_of), found.error.reshape(rows_of))
+        position, quat, q_start = position[0], quat[0], q_start[0]
+    found = solve_ik(
+        robot, joints, END_EFFECTOR, position, quat, q_start, MOVED, worlds[0].settings, envs
+    )
+    return IkAnswer(found.q.reshape(len(worlds), -1), found.error.reshape(len(worlds), -1))
 
 
 def commands(worlds: Sequence[World], answer: IkAnswer) -> FloatArray:
@@ -99,13 +100,18 @@ def commands(worlds: Sequence[World], answer: IkAnswer) -> FloatArray:
     return q
 
 
+def start(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World]) -> Batch:
+    """Reset every environment to the start of its world, with its gains."""
+    return Batch(scene, robot, joints, [world.commanding(world.q_start) for world in worlds])
+
+
 def reach(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World]) -> list[Trace]:
     """Command the first target of all worlds, later the second target of those that have one.
 
     Returns:
         The run of each world, in their order.
     """
-    batch = Batch(scene, robot, joints, [world.commanding(world.q_start) for world in worlds])
+    batch = start(scene, robot, joints, worlds)
     batch.command(commands(worlds, ask(robot, joints, worlds)))
     batch.step(worlds[0].switch)
     envs = [k for k, world in enumerate(worlds) if len(world.positions) > 1]
@@ -126,7 +132,7 @@ def reset_some(
     Returns:
         The run of each world: of `envs` from their reset on, of the others from the start on.
     """
-    batch = Batch(scene, robot, joints, [world.commanding(world.q_start) for world in worlds])
+    batch = start(scene, robot, joints, worlds)
     q_target = commands(worlds, ask(robot, joints, worlds))
     batch.command(q_target)
     batch.step(after)

@@ -126,6 +126,9 @@ SPACING = 1.0
 PLACES = tuple((SPACING * x, SPACING * y) for x in (-0.5, 0.5) for y in (-0.5, 0.5))
 """Where the replay draws the environments [m]."""
 
+MARKER_RADIUS = 0.03
+"""Radius of the spheres that mark targets in the replay [m]."""
+
 VIEW = CAMERA | {"pos": (2.9, -2.3, 1.9), "lookat": (0.15, 0.0, 0.25), "fov": 38}
 """The lesson's camera: all environments, apart from each other."""
 

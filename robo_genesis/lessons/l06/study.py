@@ -10,7 +10,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Readings, counts
 from robo_genesis.lessons.l06 import spec
-from robo_genesis.lessons.l06.run import World, ask, reach, reset_some, set_loads
+from robo_genesis.lessons.l06.run import World, ask, reach, reset_some, set_loads, start
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM
@@ -81,6 +81,15 @@ def read_mixed(page: Any, robot: Any) -> None:
     worlds = [replace(world, positions=target[None]) for target in spec.MIXED]
     apart, _ = kinematics.distances(ask(robot, page.joints, worlds).error)
     page.readings["mixed"] = dict(zip(MIXED, map(float, apart), strict=True))
+
+
+def record(page: Any, scene: Any, robot: Any, camera: Any) -> None:
+    """Record the four environments, with a frame before the first step and after the last."""
+    worlds = list(spec.WORLDS.values())
+    start(scene, robot, page.joints, worlds)
+    page.capture(camera, "initial")
+    page.traces |= dict(zip(spec.WORLDS, reach(scene, robot, page.joints, worlds), strict=True))
+    page.capture(camera, "final")
 
 
 def record_alone(page: Any, scene: Any, robot: Any) -> None:
@@ -154,5 +163,3 @@ def pairs() -> Mapping[str, Sequence[tuple[str, str]]]:
 def commanded(trace: Trace, world: World) -> list[FloatArray]:
     """Return the commands (9,) of a run in the order of its targets [rad or m]."""
     return [trace.target[0], trace.target[-1]][: len(world.positions)]
-
-

@@ -142,9 +142,7 @@ def metric_table(run: Experiment) -> str:
     return tables.markdown(
         [
             {"metric": f"{label} [m{units[metric]}]"}
-            | {
-                spec.LABELS[name]: mm(getattr(run.metrics[name], metric), 3) for name in spec.WORLDS
-            }
+            | {spec.LABELS[name]: mm(getattr(run.metrics[name], metric), 3) for name in spec.WORLDS}
             for metric, label in labels.items()
         ]
     )
@@ -193,4 +191,3 @@ def conclusions(run: Experiment) -> str:
             "its target than the plain one."
         )
     return bullets(lines)
-

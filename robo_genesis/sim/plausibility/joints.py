@@ -120,8 +120,12 @@ def poses(trace: Trace, links: Sequence[str]) -> Iterator[Breach]:
     yield from apart("pose", "link_quat", trace.link_quat, orientation, POSE)
 
 
-def dynamics(trace: Trace, case: ControlCase) -> Iterator[Breach]:
+def dynamics(
+    trace: Trace, case: ControlCase, net_force: FloatArray = NET_FORCE
+) -> Iterator[Breach]:
     """Yield an internal force that is not the net force, and motion that the samples do not have.
+
+    `net_force` (d,) are the tolerances of the first [N·m or N].
 
     Semi-implicit Euler gives the state before the last solver step from the state after it: the
     position is q − h q̇, and the velocity is q̇ − h a with (M + h D) a = f, the internal force, where
@@ -133,7 +137,7 @@ def dynamics(trace: Trace, case: ControlCase) -> Iterator[Breach]:
     q_before = q[1:] - h * speeds[1:]
     qd_before, force = last_step(trace, case, q_before)
     name = "internal_force [N·m or N]"
-    yield from apart("motion", name, trace.internal_force, force, NET_FORCE)
+    yield from apart("motion", name, trace.internal_force, force, net_force)
     if n <= 2:  # then the step began at a sample, or the only other step did
         middle = (q_before - q[:-1]) / h if n == 2 else speeds[:-1]
         name = "velocity before the last solver step [rad/s or m/s]"

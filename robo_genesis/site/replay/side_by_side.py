@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from robo_genesis.core.channels import Runs
+from robo_genesis.core.channels import Run, Runs
 from robo_genesis.sim.visual_shape import WORLD, Part
 
 
@@ -31,13 +31,11 @@ def side_by_side(
             "each run a place in the lesson's declaration."
         )
     moved = [
-        trace.link_pos.astype(np.float64) + (x, y, 0.0)
+        trace.link_pos.astype(np.float64) + np.array([x, y, 0.0])
         for (_, trace), (x, y) in zip(traces, places, strict=True)
     ]
-    together = {
-        "link_pos": np.concatenate(moved, axis=1),
-        "link_quat": np.concatenate([trace.link_quat for _, trace in traces], axis=1),
-    }
+    positions = np.concatenate(moved, axis=1)
+    turns = np.concatenate([trace.link_quat for _, trace in traces], axis=1)
     links = [name_of(case, link) for case, _ in traces for link in runs.links]
     parts = [
         replace(part, link=name_of(case, part.link))
@@ -46,8 +44,10 @@ def side_by_side(
         if part.link != WORLD
     ]
     still = [part for part in shape if part.link == WORLD]
-    all_traces = {case: replace(trace, **together) for case, trace in traces}
-    return replace(runs, traces=all_traces, links=links), [*parts, *still]
+    together: dict[str, Run] = {
+        case: replace(trace, link_pos=positions, link_quat=turns) for case, trace in traces
+    }
+    return replace(runs, traces=together, links=links), [*parts, *still]
 
 
 def name_of(case: str, link: str) -> str:

@@ -7,8 +7,8 @@ import pytest
 
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l04 import spec, study_spec
-from robo_genesis.sim.batch import run_batch
 from robo_genesis.lessons.l04.metrics import step_metrics
+from robo_genesis.sim.batch import run_batch
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import CaseError, run_case
 from robo_genesis.sim.joints import resolve_joints
