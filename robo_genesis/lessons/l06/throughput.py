@@ -20,6 +20,9 @@ many environments ended in another state than the first."""
 UNITS = {"build": "s", "step": "s", "fastest": "s", "slowest": "s", "memory": "MiB"}
 """What is kept of each number of environments; `step` is the median over the repeats."""
 
+KEPT = {"step": np.median, "fastest": np.min, "slowest": np.max}
+"""What is kept of the repeats."""
+
 RAISED = 0.1
 """Angle by which the timed command turns each arm joint from its start [rad]."""
 
@@ -33,25 +36,34 @@ class Protocol:
 
     `sizes` are numbers of environments, in the order in which their scenes are built. Each scene
     makes `warm_up` steps whose time is not used. Then each makes `steps` steps, in turn, and all
-    of that is done `repeats` times.
+    of that is done `repeats` times. `others` are names of further scenes that are timed with them.
     """
 
     sizes: tuple[int, ...]
+    others: tuple[str, ...] = ()
     warm_up: int = 10
     steps: int = 20
     repeats: int = 7
 
     def parameters(self) -> dict[str, Any]:
         """Return every configured input as JSON values, for the evidence key."""
-        return {"throughput": asdict(self) | {"sizes": list(self.sizes), "raised": RAISED}}
+        lists = {"sizes": list(self.sizes), "others": list(self.others)}
+        return {"throughput": asdict(self) | lists | {"raised": RAISED}}
 
     def readings(self) -> dict[str, Readings]:
         """Return the groups of readings. No check judges a time."""
         units = {f"{name}_{size}": unit for size in self.sizes for name, unit in UNITS.items()}
+        units |= {f"{name}_{other}": "s" for other in self.others for name in KEPT}
         return {GROUP: Readings(units, "performance"), EQUAL: counts(map(str, self.sizes))}
 
 
 PROTOCOL = Protocol((1, 4, 16, 64, 256, 1024))
+DEEPER = Protocol((1, 4, 16, 64, 256, 512, 1024), ("sphere_1", "sphere_256", "four_scenes"))
+"""The same with one more size; with a sphere in place of the robot, and with four scenes of 256
+environments in place of one of 1024."""
+
+FITTED = (1, 16, 64)
+"""Numbers of environments from which the model is fitted. It predicts the others."""
 
 
 def seconds_per_step(step: Call, finish: Call, steps: int, clock: Clock) -> float:
@@ -90,8 +102,7 @@ def in_turn(
     for _ in range(protocol.repeats):
         for name, calls in timed.items():
             times[name].append(seconds_per_step(*calls, protocol.steps, clock))
-    kept = {"step": np.median, "fastest": np.min, "slowest": np.max}
-    return {f"{what}_{n}": float(of(t)) for n, t in times.items() for what, of in kept.items()}
+    return {f"{what}_{n}": float(of(t)) for n, t in times.items() for what, of in KEPT.items()}
 
 
 def calls_of(scene: Any, robot: Any) -> tuple[Call, Call]:
@@ -103,39 +114,59 @@ def start(robot: Any) -> None:
     """Bring the arms of all environments to the course's start, and command a small motion."""
     shape = to_numpy(robot.get_dofs_position()).shape
     robot.set_dofs_position(np.broadcast_to(Q_START, shape).copy(), zero_velocity=True)
-    robot.control_dofs_position(np.broadcast_to(Q_START + RAISED, shape)[..., :7], range(7))
+    robot.control_dofs_position(np.broadcast_to(Q_START + RAISED, shape)[..., :7].copy(), range(7))
 
 
 def measure(
-    build: Callable[[int], tuple[Any, Any]],
+    build: Callable[[int], tuple[Any, ...]],
     protocol: Protocol = PROTOCOL,
     clock: Clock = time.perf_counter,
     memory: Callable[[], float] = used_memory,
+    others: Callable[[Mapping[int, Any]], Mapping[str, tuple[Call, Call]]] = lambda built: {},
 ) -> tuple[dict[str, float], dict[str, int]]:
     """Time building and stepping of a scene for each number of environments.
 
     All scenes exist at the same time.
 
     Args:
-        build: returns a built scene with so many environments, and its robot.
+        build: returns a built scene with so many environments, its robot, and what else it has.
         protocol: what is timed.
         clock: returns a time [s].
         memory: returns the memory in use [MiB].
+        others: returns `step` and `finish` of further scenes, given scene and robot of each size.
 
     Returns:
         Both groups of readings.
     """
-    found, built = {}, {}
+    found: dict[str, float] = {}
+    built: dict[int, tuple[Any, Any]] = {}
     for size in protocol.sizes:
         before, begin = memory(), clock()
-        scene, robot = built[str(size)] = build(size)
+        scene, robot, *_ = build(size)
+        built[size] = scene, robot
         found[f"build_{size}"] = clock() - begin
         start(robot)
         calls_of(scene, robot)[1]()
         found[f"memory_{size}"] = memory() - before
-    found |= in_turn({name: calls_of(*of) for name, of in built.items()}, protocol, clock)
-    ends = {name: to_numpy(robot.get_dofs_position()) for name, (_, robot) in built.items()}
+    timed = {str(size): calls_of(*of) for size, of in built.items()}
+    found |= in_turn(timed | dict(others(built)), protocol, clock)
+    ends = {str(size): to_numpy(robot.get_dofs_position()) for size, (_, robot) in built.items()}
     return found, {name: int((q != q[0]).any(axis=1).sum()) for name, q in ends.items()}
+
+
+def explanations(
+    built: Mapping[int, Any], build: Callable[[int], tuple[Any, ...]],
+    build_sphere: Callable[[int], tuple[Any, ...]],
+) -> dict[str, tuple[Call, Call]]:  # fmt: skip
+    """Return the other scenes of `DEEPER`, given scene and robot of each size."""
+    four = [calls_of(*built[256])]
+    for _ in range(3):
+        scene, robot, *_ = build(256)
+        start(robot)
+        four.append(calls_of(scene, robot))
+    spheres = {f"sphere_{size}": calls_of(*build_sphere(size)[:2]) for size in (1, 256)}
+    step, finish = (lambda k=k: [calls[k]() for calls in four] for k in (0, 1))
+    return spheres | {"four_scenes": (step, finish)}
 
 
 def sizes_of(found: Mapping[str, float]) -> list[int]:
