@@ -92,7 +92,11 @@ def resolve_joints(robot: Any, names: Sequence[str]) -> JointMap:
     if len(set(dofs_idx_local.tolist())) != len(names):
         raise JointError(f"Names {', '.join(names)} share DOFs: {dofs_idx_local.tolist()}.")
     limits = robot.get_dofs_limit(dofs_idx_local.tolist())
-    lower, upper = (to_numpy(bound).astype(np.float64) for bound in limits)  # as JSON keeps them
+    # With `batch_dofs_info` there is one row for each environment, all equal in a new scene. JSON
+    # keeps float64.
+    lower, upper = (
+        to_numpy(bound).astype(np.float64).reshape(-1, len(names))[0] for bound in limits
+    )
     for array in (dofs_idx_local, qs_idx_local, lower, upper):
         array.setflags(write=False)
     types = tuple(joint.type.name for joint in joints)
