@@ -4,7 +4,7 @@ Every function makes one mistake and measures its symptom. Do not copy them.
 """
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,11 +12,12 @@ import numpy as np
 
 from robo_genesis.core.mistakes import Failure, quoted, refused
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.metrics import measured_hand
 from robo_genesis.lessons.l06.run import World, ask, commands
-from robo_genesis.lessons.l06.throughput import seconds_per_step
+from robo_genesis.lessons.l06.throughput import calls_of, seconds_per_step, start
 from robo_genesis.sim.arm_kinematics import ARM
 from robo_genesis.sim.batch import Batch
 from robo_genesis.sim.joints import JointMap, to_numpy
@@ -40,22 +41,27 @@ def distances(trace: Trace, target: FloatArray) -> FloatArray:
 
 
 def one_value_each(
-    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World], opened: dict[int, float]
-) -> Failure:
-    """Give one opening for each environment [m] to both fingers of their grippers."""
-    batch = begin(scene, robot, joints, worlds)
-    fingers, envs = batch.dofs[ARM:], list(opened)
-    robot.control_dofs_position(list(opened.values()), fingers, envs_idx=envs)  # the mistake
-    batch.step(100)
-    found = to_numpy(robot.get_dofs_position(fingers))[envs]  # (k, 2)
-    meant = np.array(list(opened.values()))[:, None]
-    shown = bool(np.abs(found - meant).max() > 1e-3)
-    text = " ".join(
-        f"In environment {k}, {1000 * opened[k]:.0f} mm were meant; the fingers end at "
-        f"{1000 * left:.1f} mm and {1000 * right:.1f} mm."
-        for k, (left, right) in zip(envs, found, strict=True)
-    )
-    return Failure("one_value_each", shown, text)
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World],
+    *openings: Mapping[int, float],
+) -> Failure:  # fmt: skip
+    """Give one opening for each environment [m] to both fingers, for several lists of environments.
+
+    The symptom is expected of the first list alone.
+    """
+    text, apart = [], []
+    for opened in openings:
+        batch = begin(scene, robot, joints, worlds)
+        fingers, envs = batch.dofs[ARM:], list(opened)
+        robot.control_dofs_position(list(opened.values()), fingers, envs_idx=envs)  # the mistake
+        batch.step(100)
+        found = to_numpy(robot.get_dofs_position(fingers))[envs]  # (k, 2)
+        meant = np.array(list(opened.values()))
+        apart.append(float(np.abs(found - meant[:, None]).max()))
+        rows = zip(envs, 1000 * meant, 1000 * found.mean(axis=1), strict=True)
+        ends = listed([f"{end:.1f} mm for {goal:.0f} mm in {k}" for k, goal, end in rows])
+        text.append(f"With the environments {envs}, the fingers end at {ends}.")
+    shown = bool(apart[0] > 1e-3 and max(apart[1:], default=0) < 1e-3)
+    return Failure("one_value_each", shown, " ".join(text))
 
 
 def numbers_as_rows(
@@ -103,14 +109,13 @@ def mean_of_rows(
 
 
 def timed_with_building(
-    build: Callable[[int], tuple[Any, Any]], start: Callable[[Any, Any], Any],
-    lines: Sequence[Any], sizes: tuple[int, int], steps: int,
+    build: Callable[[int], tuple[Any, ...]], lines: Sequence[Any], sizes: tuple[int, int],
+    steps: int,
 ) -> Failure:  # fmt: skip
     """Start the clock before the scene is built. No time decides whether the symptom appeared.
 
     Args:
-        build: returns a built scene with so many environments, and its robot.
-        start: assigns state and command.
+        build: returns a built scene with so many environments, and its robot and more.
         lines: of the engine's log, which grows.
         sizes: numbers of environments.
         steps: that are timed.
@@ -118,16 +123,15 @@ def timed_with_building(
     wrong, right, compiled = [], [], []
     for size in sizes:
         known, clock = len(lines), time.perf_counter()
-        scene, robot = build(size)  # the mistake: the clock is running
+        scene, robot, *_ = build(size)  # the mistake: the clock is running
         for _ in range(steps):
             scene.step()
         to_numpy(robot.get_dofs_position())
         wrong.append((time.perf_counter() - clock) / steps)
         compiled.append(compilations(lines[known:]))
         known = len(lines)
-        start(scene, robot)
-        calls = scene.step, lambda robot=robot: to_numpy(robot.get_dofs_position())
-        right.append(seconds_per_step(*calls, steps, time.perf_counter))
+        start(robot)
+        right.append(seconds_per_step(*calls_of(scene, robot), steps, time.perf_counter))
         compiled.append(compilations(lines[known:]))
     few, many = sizes
     text = (
