@@ -9,30 +9,36 @@ from robo_genesis.core.channels import View
 from robo_genesis.core.palette import MARKS
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, on_demand
-from robo_genesis.lessons.experiment import MeasuringPage, Run, runs_of
+from robo_genesis.lessons.experiment import MeasuringPage, Run, counts, runs_of
 from robo_genesis.lessons.l06 import (
     checks,
     claims_text,
     exercises,
+    mistakes,
     plausibility,
     spec,
     study,
     text,
+    throughput,
+    throughput_exercises,
+    throughput_text,
 )
 from robo_genesis.lessons.l06.metrics import WorldMetrics, world_metrics
 from robo_genesis.sim.batch import set_link_mass
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.joints import resolve_joints
 from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
 
 if TYPE_CHECKING:
-    from robo_genesis.lessons.l06 import plots
+    from robo_genesis.lessons.l06 import plots, throughput_plots
 
 __all__ = [
-    "FRANKA_MJCF", "LAB", "LECTURE", "LESSON", "exercises", "plots", "read_shape", "set_link_mass",
-    "spec", "study", "target_parts", "text",
+    "FRANKA_MJCF", "LAB", "LECTURE", "LESSON", "MISTAKES", "THROUGHPUT", "exercises", "mistakes",
+    "plots", "read_shape", "resolve_joints", "set_link_mass", "spec", "study", "target_parts",
+    "text", "throughput", "throughput_exercises", "throughput_plots", "throughput_text",
 ]  # fmt: skip
 
-__getattr__ = on_demand(__name__, "plots")
+__getattr__ = on_demand(__name__, "plots", "throughput_plots")
 
 
 def target_parts() -> list[Part]:
@@ -66,13 +72,36 @@ LECTURE = MeasuringPage(
     parameters=spec.parameters,
     validate=plausibility.require_possible_runs,
 )
-LAB = replace(LECTURE)
+LAB = replace(
+    LECTURE,
+    readings=lambda rendered: study.readings(rendered) | throughput.PROTOCOL.readings(),
+    checks=(*checks.CHECKS, checks.equal_work),
+    parameters=lambda: spec.parameters() | throughput.PROTOCOL.parameters(),
+)
+MISTAKES = replace(
+    LECTURE,
+    runs={},
+    readings=lambda rendered: {"model": counts(spec.EXPECTED_MODEL)},
+    checks=(checks.mapping,),
+    camera=False,
+)
+THROUGHPUT = replace(
+    MISTAKES,
+    readings=lambda rendered: (
+        {"model": counts(spec.EXPECTED_MODEL)} | throughput.DEEPER.readings()
+    ),
+    checks=(checks.mapping, checks.equal_work),
+    parameters=lambda: spec.parameters() | throughput.DEEPER.parameters(),
+)
+"""The page that explains why the curve of throughput bends."""
 """Page of the throughput and of the mistakes: here, and in `pages` below."""
 
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, WorldMetrics),
-    pages={"lab": LAB, "lecture": LECTURE},
+    pages={
+        "lab": LAB, "lecture": LECTURE, "mistakes": MISTAKES, "throughput": THROUGHPUT,
+    },  # fmt: skip
     filmed=Filmed("the robots of all environments", "the batch"),
     marks=spec.CASE_MARKS,
     compared=Compared(

@@ -16,7 +16,7 @@ from robo_genesis.core.checks import (
     within,
 )
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l06 import spec, study
+from robo_genesis.lessons.l06 import spec, study, throughput
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import end_state
 from robo_genesis.sim.arm_kinematics import ARM, Pose
@@ -108,6 +108,11 @@ def own_gains_and_mass(run: Experiment) -> Iterator[Finding]:
 
 def posture(run: Experiment) -> Iterator[Finding]:
     return end_state.findings(run.rendered, run.frames, run.traces["env_0"].link_pos)
+
+
+def equal_work(run: Experiment) -> Iterator[Finding]:
+    for size, differ in run.readings[throughput.EQUAL].items():
+        yield equal(f"{size}_environments.that_differ_from_the_first", differ, 0)
 
 
 WITHOUT_CAMERA = (

@@ -31,5 +31,9 @@ CLAIMS: dict[str, str] = {
         "The row without changes equals its run beside equal neighbours to the last bit. Each hand "
         "has its own mass, and each row holds its own gravity and load at rest."
     ),
+    "equal_work": (
+        "All environments whose steps were timed end in the same state, to the last bit: each made "
+        "the whole motion. No time is judged."
+    ),
     "posture": "Two different camera frames, or a schematic whose links moved, show the end state.",
 }

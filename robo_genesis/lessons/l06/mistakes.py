@@ -1,0 +1,150 @@
+"""Mistakes made on purpose with many environments.
+
+Every function makes one mistake and measures its symptom. Do not copy them.
+"""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.mistakes import Failure, quoted, refused
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.text import listed
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l06 import spec
+from robo_genesis.lessons.l06.metrics import measured_hand
+from robo_genesis.lessons.l06.run import World, ask, commands
+from robo_genesis.lessons.l06.throughput import calls_of, seconds_per_step, start
+from robo_genesis.sim.arm_kinematics import ARM
+from robo_genesis.sim.batch import Batch
+from robo_genesis.sim.joints import JointMap, to_numpy
+
+COMPILING = "Compiling"
+"""How a line of the engine's log begins when `build` compiles kernels, or loads stored ones."""
+
+
+def begin(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World]) -> Batch:
+    """Return a batch at the start of its worlds, commanded to stay there."""
+    cases = [world.commanding(world.q_start) for world in worlds]
+    batch = Batch(scene, robot, joints, cases)
+    batch.command(np.stack([case.q_target for case in cases]))
+    return batch
+
+
+def distances(trace: Trace, target: FloatArray) -> FloatArray:
+    """Return the distance of the hand from a point in all states (n+1,) [m]."""
+    hand = [measured_hand(trace, k).position for k in range(trace.steps + 1)]
+    return np.asarray(np.linalg.norm(np.stack(hand) - target, axis=1))
+
+
+def one_value_each(
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World],
+    *openings: Mapping[int, float],
+) -> Failure:  # fmt: skip
+    """Give one opening for each environment [m] to both fingers, for several lists of environments.
+
+    The symptom is expected of the first list alone.
+    """
+    text, apart = [], []
+    for opened in openings:
+        batch = begin(scene, robot, joints, worlds)
+        fingers, envs = batch.dofs[ARM:], list(opened)
+        robot.control_dofs_position(list(opened.values()), fingers, envs_idx=envs)  # the mistake
+        batch.step(100)
+        found = to_numpy(robot.get_dofs_position(fingers))[envs]  # (k, 2)
+        meant = np.array(list(opened.values()))
+        apart.append(float(np.abs(found - meant[:, None]).max()))
+        rows = zip(envs, 1000 * meant, 1000 * found.mean(axis=1), strict=True)
+        ends = listed([f"{end:.1f} mm for {goal:.0f} mm in {k}" for k, goal, end in rows])
+        text.append(f"With the environments {envs}, the fingers end at {ends}.")
+    shown = bool(apart[0] > 1e-3 and max(apart[1:], default=0) < 1e-3)
+    return Failure("one_value_each", shown, " ".join(text))
+
+
+def numbers_as_rows(
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World], envs: Sequence[int]
+) -> Failure:
+    """Ask for some environments, and take the row with the number of the first of them."""
+    batch, first = begin(scene, robot, joints, worlds), envs[0]
+    q = commands([worlds[k] for k in envs], ask(robot, joints, [worlds[k] for k in envs], 1, envs))
+    other = refused(lambda: q[envs[-1]])
+    batch.command(q[[first]], [first])  # the mistake: row 0 is the answer for envs[0]
+    batch.step(spec.SWITCH)
+    trace = batch.trace(first)
+    own, theirs = (distances(trace, worlds[k].positions[1])[-1] for k in (first, envs[-1]))
+    text = (
+        f"The hand of environment {first} ends {1000 * own:.1f} mm from its target and "
+        f"{1000 * theirs:.1f} mm from the target of environment {envs[-1]}. The line for "
+        f"environment {envs[-1]}: {quoted(other)}"
+    )
+    return Failure("numbers_as_rows", bool(own > 0.05 and theirs < spec.REACHED[0]), text)
+
+
+def mean_of_rows(
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World], row: int, position: Any
+) -> Failure:
+    """Give one environment a target beyond its reach, and judge the mean over all environments."""
+    worlds = [replace(world, settings=spec.ONE_START) for world in worlds]
+    worlds[row] = replace(worlds[row], positions=np.array([position], dtype=float))
+    answer = ask(robot, joints, worlds)
+    verdict = quoted(refused(lambda: commands(worlds, answer)))
+    batch = begin(scene, robot, joints, worlds)
+    q = answer.q.astype(float)
+    q[:, ARM:] = worlds[0].q_start[ARM:]
+    batch.command(q)
+    batch.step(spec.SWITCH)
+    traces = [batch.trace(k) for k in range(len(worlds))]
+    apart = np.stack([distances(t, w.positions[0]) for t, w in zip(traces, worlds, strict=True)])
+    limit, mean, ends = spec.REACHED[0], apart.mean(axis=0), apart[:, -1]  # the mistake: a mean
+    text = (
+        f"The mean distance at the end is {1000 * mean[-1]:.1f} mm, below {1000 * limit:g} mm. "
+        f"The distances are {', '.join(f'{1000 * end:.1f}' for end in ends)} mm. "
+        f"Asked before the run, the rule for each row says: {verdict}"
+    )
+    curves = {"mean of all": (traces[0].t, mean), f"environment {row}": (traces[0].t, apart[row])}
+    return Failure("mean_of_rows", bool(mean[-1] < limit < ends[row]), text, curves)
+
+
+def timed_with_building(
+    build: Callable[[int], tuple[Any, ...]], lines: Sequence[Any], sizes: tuple[int, int],
+    steps: int,
+) -> Failure:  # fmt: skip
+    """Start the clock before the scene is built. No time decides whether the symptom appeared.
+
+    Args:
+        build: returns a built scene with so many environments, and its robot and more.
+        lines: of the engine's log, which grows.
+        sizes: numbers of environments.
+        steps: that are timed.
+    """
+    wrong, right, compiled = [], [], []
+    for size in sizes:
+        known, clock = len(lines), time.perf_counter()
+        scene, robot, *_ = build(size)  # the mistake: the clock is running
+        for _ in range(steps):
+            scene.step()
+        to_numpy(robot.get_dofs_position())
+        wrong.append((time.perf_counter() - clock) / steps)
+        compiled.append(compilations(lines[known:]))
+        known = len(lines)
+        start(robot)
+        right.append(seconds_per_step(*calls_of(scene, robot), steps, time.perf_counter))
+        compiled.append(compilations(lines[known:]))
+    few, many = sizes
+    text = (
+        f"Timed together with building, a step takes {1000 * wrong[0]:.1f} ms with {few} "
+        f"environment and {1000 * wrong[1]:.1f} ms with {many}, {wrong[1] / wrong[0]:.2f} times as "
+        f"much. After building and a warm-up it takes {1000 * right[0]:.2f} ms and "
+        f"{1000 * right[1]:.2f} ms, {right[1] / right[0]:.2f} times as much. The engine's log "
+        f"announces compilation {sum(compiled[::2])} times in the first two measurements and "
+        f"{sum(compiled[1::2])} times in the other two."
+    )
+    return Failure("timed_with_building", all(compiled[::2]) and not any(compiled[1::2]), text)
+
+
+def compilations(lines: Sequence[Any]) -> int:
+    """Return how many lines of the engine's log announce compilation."""
+    return sum(text.startswith(COMPILING) for _, text in lines)

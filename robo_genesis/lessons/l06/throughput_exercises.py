@@ -1,0 +1,68 @@
+"""Check of the throughput measurement that a student writes in L06's lab.
+
+It runs on pretended machines whose clock is known, so the time of the real machine decides nothing.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from robo_genesis.core.checks import Check, Finding, equal, within
+from robo_genesis.core.exercises import outcome
+
+STEP, TINY = 0.01, 1e-9
+"""Time of one undisturbed step of a pretended machine, and what rounding explains [s]."""
+
+
+class Machine:
+    """A machine that queues steps and does them when somebody waits for them, as a GPU does.
+
+    `slow` gives steps another duration [s] by their number.
+    """
+
+    def __init__(self, slow: dict[int, float]) -> None:
+        self.slow, self.now, self.started, self.done = slow, 100.0, 0, 0
+
+    def step(self) -> None:
+        self.started += 1
+
+    def finish(self) -> None:
+        self.now += sum(self.slow.get(n, STEP) for n in range(self.done, self.started))
+        self.done = self.started
+
+    def clock(self) -> float:
+        return self.now
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """One call of the student's function, and the slow steps of its machine."""
+
+    warm_up: int
+    steps: int
+    repeats: int
+    slow: tuple[tuple[int, float], ...] = ()
+
+
+TRIALS = {
+    "steady": Trial(3, 10, 5),
+    "slow_first_steps": Trial(4, 10, 3, ((0, 8.0), (1, 0.5))),
+    "one_repeat": Trial(6, 5, 1, ((0, 8.0),)),
+    "one_disturbed_repeat": Trial(2, 10, 5, ((25, 3.0),)),
+    "no_warm_up": Trial(0, 4, 3),
+}
+
+
+def throughput(measure: Callable[..., Any]) -> list[Check]:
+    """Check `measure(step, finish, clock, warm_up, steps, repeats)`: the median of a step [s]."""
+
+    def findings(_: None) -> Iterator[Finding]:
+        for name, trial in TRIALS.items():
+            machine = Machine(dict(trial.slow))
+            numbers = trial.warm_up, trial.steps, trial.repeats
+            found = measure(machine.step, machine.finish, machine.clock, *numbers)
+            yield within(f"{name}.step_s", float(found), STEP, TINY)
+            total = trial.warm_up + trial.steps * trial.repeats
+            yield equal(f"{name}.number_of_steps", machine.started, total)
+
+    return outcome("throughput", findings)
