@@ -94,7 +94,6 @@ THROUGHPUT = replace(
     parameters=lambda: spec.parameters() | throughput.DEEPER.parameters(),
 )
 """The page that explains why the curve of throughput bends."""
-"""Page of the throughput and of the mistakes: here, and in `pages` below."""
 
 LESSON = Lesson(
     spec=spec,
