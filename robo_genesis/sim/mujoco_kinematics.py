@@ -68,15 +68,23 @@ def jacobian(q: FloatArray, link: str) -> FloatArray:
     return np.asarray(rows[:, dof_at])
 
 
-def gravity_effort(q: FloatArray) -> FloatArray:
-    """Return the effort (d,) [N·m or N] that holds posture `q` (d,) against gravity at rest."""
+def gravity_effort(q: FloatArray, load: float = 0.0) -> FloatArray:
+    """Return the effort (d,) [N·m or N] that holds posture `q` (d,) against gravity at rest.
+
+    Args:
+        q: (d,) positions [rad or m].
+        load: mass at the hand's centre of mass, beside its own [kg].
+    """
     import mujoco
 
     model, data, q_at, dof_at = bare_robot()
     data.qpos[q_at], data.qvel[:] = q, 0.0
+    hand, own = model.body("hand").id, model.body("hand").mass[0]
+    model.body_mass[hand] = own + load
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     mujoco.mj_comVel(model, data)
     effort = np.zeros(model.nv)
     mujoco.mj_rne(model, data, 0, effort)
+    model.body_mass[hand] = own
     return np.asarray(effort[dof_at])

@@ -91,6 +91,21 @@ def slab(size: Sequence[float], top: float) -> Part:
     return Part(WORLD, FLOOR_RGB, np.array(apart, np.float32), indices)
 
 
+def ball(centre: Sequence[float], radius: float, rgb: tuple[int, int, int]) -> Part:
+    """Return a fixed sphere, such as a marker at a target.
+
+    Args:
+        centre: (3,) [m].
+        radius: [m].
+        rgb: colour, 0 to 255.
+    """
+    import trimesh  # loads slowly
+
+    mesh = trimesh.creation.icosphere(3, radius)
+    vertices = np.asarray(mesh.vertices + np.asarray(centre), dtype=np.float32)
+    return Part(WORLD, rgb, vertices, np.array(mesh.faces, dtype=np.int32))
+
+
 def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
     """Require that each part belongs to one link of the record, or to the world.
 

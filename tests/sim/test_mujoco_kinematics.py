@@ -27,3 +27,11 @@ def test_gravity_is_that_of_the_model_with_actuators_whatever_was_asked_before()
 
 def test_links_are_those_of_the_robot():
     assert {"link0", "hand", "left_finger"} <= of.link_names()
+
+
+def test_a_load_adds_its_weight_times_the_lever_and_leaves_the_model_as_it_was():
+    bare, one, two = (of.gravity_effort(Q_START, load) for load in (0.0, 1.0, 2.0))
+    assert two - one == pytest.approx(one - bare)
+    assert (one - bare)[0] == pytest.approx(0, abs=1e-9)  # joint1 turns about the vertical
+    assert (one - bare)[1] < -3
+    assert (of.gravity_effort(Q_START) == bare).all()

@@ -27,7 +27,7 @@ from robo_genesis.lessons.l06.metrics import WorldMetrics, world_metrics
 from robo_genesis.sim.batch import set_link_mass
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joints import resolve_joints
-from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
+from robo_genesis.sim.visual_shape import Part, ball, read_shape
 
 if TYPE_CHECKING:
     from robo_genesis.lessons.l06 import plots, throughput_plots
@@ -43,16 +43,11 @@ __getattr__ = on_demand(__name__, "plots", "throughput_plots")
 
 def target_parts() -> list[Part]:
     """Return a sphere at each target for the replay, in the colour of its environment."""
-    import trimesh  # loads slowly
-
-    sphere = trimesh.creation.icosphere(3, spec.MARKER_RADIUS)
     parts = []
-    for k, (name, world) in enumerate(spec.WORLDS.items()):
+    for (x, y), (name, world) in zip(spec.PLACES, spec.WORLDS.items(), strict=True):
         red, green, blue = bytes.fromhex(MARKS[spec.CASE_MARKS[name]].light[1:])
-        for position in world.positions:
-            at = position + np.array([*spec.PLACES[k], 0])
-            vertices = np.asarray(sphere.vertices + at, dtype=np.float32)
-            parts.append(Part(WORLD, (red, green, blue), vertices, np.array(sphere.faces)))
+        centres = world.positions + np.array([x, y, 0])
+        parts += [ball(centre, spec.MARKER_RADIUS, (red, green, blue)) for centre in centres]
     return parts
 
 
@@ -87,9 +82,7 @@ MISTAKES = replace(
 )
 THROUGHPUT = replace(
     MISTAKES,
-    readings=lambda rendered: (
-        {"model": counts(spec.EXPECTED_MODEL)} | throughput.DEEPER.readings()
-    ),
+    readings=lambda rendered: {"model": counts(spec.EXPECTED_MODEL)} | throughput.DEEPER.readings(),
     checks=(checks.mapping, checks.equal_work),
     parameters=lambda: spec.parameters() | throughput.DEEPER.parameters(),
 )
@@ -99,7 +92,10 @@ LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, WorldMetrics),
     pages={
-        "lab": LAB, "lecture": LECTURE, "mistakes": MISTAKES, "throughput": THROUGHPUT,
+        "lab": LAB,
+        "lecture": LECTURE,
+        "mistakes": MISTAKES,
+        "throughput": THROUGHPUT,
     },  # fmt: skip
     filmed=Filmed("the robots of all environments", "the batch"),
     marks=spec.CASE_MARKS,

@@ -3,10 +3,6 @@
 CLAIMS: dict[str, str] = {
     "mapping": "The engine has the expected links, joints and DOFs.",
     "stamps": "Each run has its configured steps and states at times k · dt from zero.",
-    "shapes": (
-        "Arrays have no leading axis without environments, and one with one environment or more; "
-        "an answer has one row for each asked environment."
-    ),
     "acceptance_per_row": (
         "Each commanded row is within both tolerances by forward kinematics. Of the question with "
         "one target beyond reach, this row alone is beyond its tolerance."

@@ -111,8 +111,6 @@ def refused(command: Callable[..., Any], robot: Robot, q: FloatArray, envs: Sequ
     """Return whether a command raises a ValueError."""
     try:
         command(robot, [0, 1, 2], q, envs)
-    except ValueError:
-        return True
-    except IndexError:
-        return False
+    except (ValueError, IndexError) as error:
+        return isinstance(error, ValueError)
     return False

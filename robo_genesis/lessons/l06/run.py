@@ -10,7 +10,7 @@ from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim import franka
 from robo_genesis.sim.arm_kinematics import ARM, accepted
-from robo_genesis.sim.batch import Batch, set_link_mass
+from robo_genesis.sim.batch import Batch
 from robo_genesis.sim.joint_control import ControlCase
 from robo_genesis.sim.joints import JointMap
 from robo_genesis.sim.kinematics import IkAnswer, IkSettings, solve_ik
@@ -140,8 +140,3 @@ def reset_some(
     batch.command(q_target[list(envs)], envs)
     batch.step(worlds[0].switch)
     return [batch.trace(k) for k in range(len(worlds))]
-
-
-def set_loads(robot: Any, worlds: Sequence[World], hand_mass: float) -> FloatArray:
-    """Give each hand its mass [kg] with the load of its world; return what reads back (B,)."""
-    return set_link_mass(robot, END_EFFECTOR, np.array([hand_mass + w.load for w in worlds]))

@@ -1,12 +1,10 @@
 """Tables and sentences of L06's lecture and lab, each a function of the experiment."""
 
-from collections.abc import Sequence
-
 from robo_genesis.core import tables
 from robo_genesis.core.text import bullets, listed
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study
-from robo_genesis.lessons.l06.metrics import WorldMetrics
+from robo_genesis.sim import mujoco_kinematics
 
 SHOWN_TORQUES = (1, 3)
 """The joints with a torque in the table of variants: joint2 and joint4."""
@@ -15,23 +13,6 @@ SHOWN_TORQUES = (1, 3)
 def mm(value: float | None, digits: int = 2) -> str:
     """Return a length as millimetres; a dash where none was observed."""
     return "–" if value is None else f"{1000 * value:.{digits}f}"
-
-
-def shape_table(run: Experiment) -> str:
-    """Return the number of axes and rows by the number of environments."""
-    found = run.readings["shapes"]
-    axes = {
-        "`build()`": found["axes_without_environments"],
-        "`build(n_envs=1)`": found["axes_with_one_environment"],
-        "`build(n_envs=4)`": found["axes_with_four_environments"],
-    }
-    forms = {1: "(9,)", 2: "(rows, 9)"}
-    return tables.markdown(
-        [
-            {"scene": scene, "axes": f"{n:g}", "shape of `get_dofs_position`": forms[int(n)]}
-            for scene, n in axes.items()
-        ]
-    )
 
 
 def mixed_table(run: Experiment) -> str:
@@ -123,7 +104,7 @@ def variant_table(run: Experiment) -> str:
     rows = []
     for name, world in spec.VARIANTS.items():
         trace, m = run.traces[name], run.metrics[name]
-        expected = study.torque_at_rest(trace.q[-1].astype(float), world.load)
+        expected = mujoco_kinematics.gravity_effort(trace.q[-1].astype(float), world.load)
         row = {
             "row": spec.LABELS[name],
             "KP of joint2 [N·m/rad]": f"{world.kp[1]:.0f}",
@@ -136,58 +117,26 @@ def variant_table(run: Experiment) -> str:
     return tables.markdown(rows)
 
 
-def metric_table(run: Experiment) -> str:
-    """Return the metrics of the four environments in millimetres and milliradians."""
-    labels, units = (WorldMetrics.about(what) for what in ("label", "unit"))
-    return tables.markdown(
-        [
-            {"metric": f"{label} [m{units[metric]}]"}
-            | {spec.LABELS[name]: mm(getattr(run.metrics[name], metric), 3) for name in spec.WORLDS}
-            for metric, label in labels.items()
-        ]
-    )
-
-
-def span(values: Sequence[float]) -> str:
-    """Return the smallest and the largest of some lengths in millimetres."""
-    return f"{mm(min(values))} to {mm(max(values))} mm"
-
-
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the lab's runs."""
-    m = run.metrics
-    kept = [m[f"env_{name[-1]}"].moved_later for name in spec.BESIDE]
-    later = [m[f"env_{name[-1]}"].moved_later for name in spec.AGAIN]
-    limit = spec.IK.position_tolerance
+    m, limit = run.metrics, spec.IK.position_tolerance
     accepted = [f"{k}" for k, r in enumerate(run.readings["mixed"].values()) if r <= limit]
+    moved = {k: m[f"env_{k}"].moved_later for k in spec.ENVS}
     apart = max(
         study.largest_differences(run.traces[f"env_{k}"], run.traces[f"alone_{k}"])["q"]
         for k in spec.ENVS
     )
-    differ = {
-        claim: sum(
-            study.entries_that_differ(run.traces[one], run.traces[other])[0] for one, other in names
-        )
-        for claim, names in study.pairs().items()
-    }
-    same = [claim for claim, count in differ.items() if not count]
+    named, others = ([moved[k] for k in spec.ENVS if (k in spec.LATER) == is_] for is_ in (1, 0))
     lines = [
-        f"Of the question with one target beyond reach, rows {listed(accepted)} are accepted. "
-        "No mean over the rows says that.",
-        f"The hands end {span([m[name].final_distance for name in spec.WORLDS])} from their last "
-        "targets.",
-        f"After the second command, the named environments moved by {span(later)}, the others by "
-        f"{span(kept)}.",
+        f"Of the question with one target beyond reach, rows {listed(accepted)} are accepted.",
+        f"After the second command, the named environments moved by {mm(min(named))} mm or more, "
+        f"the others by {mm(max(others))} mm or less.",
         f"Joint positions of a row and of the same run alone differ by up to {1e6 * apart:.2f} "
         "µrad (or µm of a finger).",
-        f"{len(same)} of {len(differ)} comparisons within batches are equal to the last bit.",
+        *(
+            f"{spec.LABELS[name].capitalize()}: the hand stops {mm(m[name].final_distance)} mm "
+            "from its target."
+            for name in spec.VARIANTS
+        ),
     ]
-    for name in list(spec.VARIANTS)[1:]:
-        found, plain = m[name].final_distance, m["plain"].final_distance
-        verb = "nearer to" if found < plain else "farther from"
-        label = spec.LABELS[name]
-        lines.append(
-            f"{label[0].upper()}{label[1:]}: the hand stops {mm(abs(found - plain))} mm {verb} "
-            "its target than the plain one."
-        )
     return bullets(lines)

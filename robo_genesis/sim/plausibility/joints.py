@@ -18,6 +18,7 @@ used: a page measures without it.
 """
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -46,16 +47,19 @@ NEXT = 2e-6, 6e-4
 """Tolerances of position [rad or m] and velocity [rad/s or m/s] after one outer step in MuJoCo."""
 
 
-def driven_run(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+def driven_run(
+    trace: Trace, case: ControlCase, links: Sequence[str], net_force: FloatArray = NET_FORCE
+) -> Iterator[Breach]:
     """Yield what no run of `joint_control.run_case` has.
 
     Args:
         trace: the run.
-        case: its settings.
+        case: its settings; the target is one for all steps, (d,), or one for each, (n, d).
         links: names of the links of the trace.
+        net_force: (d,) tolerances of the internal force [N·m or N].
     """
     yield from commanded(trace, case, links)
-    yield from dynamics(trace, case)
+    yield from dynamics(trace, case, net_force)
 
 
 def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
@@ -63,7 +67,8 @@ def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator
     yield from times(trace, case.steps, case.dt)
     yield from start_and_limits(trace, case)
     yield from apart("start", "target [rad or m]", trace.target, case.q_target, 0.0)
-    start = control_law(case, trace.q[0], trace.start_qd)
+    first = replace(case, q_target=np.atleast_2d(case.q_target)[0])
+    start = control_law(first, trace.q[0], trace.start_qd)
     yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, start, LAW)
     law = control_law(case, trace.q[1:], trace.qd)
     yield from apart("law", "control_force [N·m or N]", trace.control_force, law, LAW)

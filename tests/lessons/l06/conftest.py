@@ -35,12 +35,12 @@ def run_of(world: World) -> Trace:
     targets[world.switch :] = command(world, -1)
 
     def weight(q):
-        bare = mujoco_kinematics.gravity_effort(q)[:7]
-        return np.array([*(study.torque_at_rest(q, world.load) - bare), 0, 0])
+        if not world.load:
+            return np.zeros(len(q))
+        of = mujoco_kinematics.gravity_effort
+        return of(q, world.load) - of(q)
 
-    return driven(world.commanding(targets), LINKS, weight) if world.load else driven(
-        world.commanding(targets), LINKS
-    )  # fmt: skip
+    return driven(world.commanding(targets), LINKS, weight)
 
 
 def shortened(trace: Trace, steps: int) -> Trace:
@@ -69,7 +69,6 @@ def worlds(joints) -> Experiment:
         links=LINKS,
         readings={
             "model": spec.EXPECTED_MODEL,
-            "shapes": study.SHAPES,
             "mixed": dict(zip(study.MIXED, residuals, strict=True)),
             "hand_mass": masses,
         },

@@ -47,7 +47,6 @@ def measured(real_engine, four):
     page.capture = lambda camera, name: None
     alone, single = build(real_engine.gs, 0)
     study.describe(page, four.robot)
-    study.read_shapes(page, single, build(real_engine.gs, 1)[1], four.robot)
     study.read_mixed(page, four.robot)
     study.record(page, four.scene, four.robot, None)
     study.record_alone(page, alone, single)
