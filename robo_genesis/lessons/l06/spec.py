@@ -123,8 +123,8 @@ LABELS = {name: name.replace("env_", "environment ") for name in WORLDS} | {
 SPACING = 1.0
 """Distance of neighbouring environments in pictures [m]; no state depends on it."""
 
-PLACES = tuple((SPACING * x, SPACING * y) for x in (-0.5, 0.5) for y in (-0.5, 0.5))
-"""Where the replay draws the environments [m]."""
+PLACES = ((-0.81, -0.75), (-0.54, 0.09), (0.34, -0.09), (0.61, 0.75))
+"""Where the replay draws the environments [m]: from left to right, none hides another."""
 
 MARKER_RADIUS = 0.03
 """Radius of the spheres that mark targets in the replay [m]."""
