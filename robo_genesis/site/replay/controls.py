@@ -16,8 +16,11 @@ if TYPE_CHECKING:
     from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
 
 SPEEDS = {"1": "real time", "0.25": "1/4", "0.1": "1/10"}
-SLOW = "0.1"
-"""The initial speed: most of the motion happens in a small part of the window."""
+SLOW, SLOW_FOR_LONG = "0.1", "0.25"
+"""The initial speed: most of the motion happens in a small part of the window. The other is for
+runs of more than `LONG` seconds."""
+
+LONG = 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +97,7 @@ def panel(name: str, runs: Runs, weight: int) -> str:
         weight: of what loads with the first Play, compressed [kB].
     """
     name = escape(name)
-    speeds = options(SPEEDS, SLOW)
+    speeds = options(SPEEDS, SLOW_FOR_LONG if runs.t[-1] > LONG else SLOW)
     terms = ["time", *(c.name for c in runs.channels), *(level.name for level in runs.levels)]
     return (
         '<div class="panel" hidden><p role="status">'
