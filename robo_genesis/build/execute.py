@@ -48,6 +48,8 @@ def execute_pages(
 ) -> list[PageResult]:
     """Execute the pages that the store does not have yet; try all of them, the longest first.
 
+    A page that declares `alone` runs when no other page does.
+
     A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
     behind on Ctrl-C.
 
@@ -81,7 +83,7 @@ def execute_pages(
         own = Path(scratch)
         try:
             while waiting or running:
-                while waiting and len(running) < jobs:
+                while waiting and may_start(waiting[0], running, jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(cell_sources(page))
                     log = (logs or own) / f"{place.parent.name}.log"
@@ -120,7 +122,7 @@ def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -
 
 
 def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> list[Page]:
-    """Return pages in the order in which they start.
+    """Return pages in the order in which they start; those that run alone come last.
 
     Args:
         pages: the pages to execute.
@@ -128,11 +130,18 @@ def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> l
             and among them those with the most cells.
     """
 
-    def sooner(page: Page) -> tuple[float, int]:
+    def sooner(page: Page) -> tuple[bool, float, int]:
         record = last[page.docname]
-        return (-record.seconds if record else float("-inf")), -len(cell_sources(page))
+        seconds = -record.seconds if record else float("-inf")
+        return page.alone, seconds, -len(cell_sources(page))
 
     return sorted(pages, key=sooner)
+
+
+def may_start(page: Page, running: Running, jobs: int) -> bool:
+    """Return whether a page may start beside those that run."""
+    alone = page.alone or any(worker.run.page.alone for worker in running.values())
+    return len(running) < (1 if alone else jobs)
 
 
 def _reused(

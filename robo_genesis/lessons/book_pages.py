@@ -30,7 +30,8 @@ class Page:
     """One page whose code cells are executed.
 
     `lesson` and `page` come from the front matter's `robo_genesis: {lesson, page}`: such a page
-    runs the engine and must leave an evidence bundle. Both are None on other pages.
+    runs the engine and must leave an evidence bundle. Both are None on other pages. A page with
+    `alone: true` there measures time: no other page is executed meanwhile.
     """
 
     docname: str
@@ -38,6 +39,7 @@ class Page:
     notebook: NotebookNode
     lesson: str | None = None
     page: str | None = None
+    alone: bool = False
 
     @property
     def declares_bundle(self) -> bool:
@@ -125,18 +127,25 @@ def _parsed(path: Path, text: str) -> NotebookNode:
     return cast(NotebookNode, pickle.loads(read))
 
 
-def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None]:
-    """Return lesson and page from the front matter, both None without a declaration."""
+def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None, bool]:
+    """Return lesson and page from the front matter, and whether the page runs alone.
+
+    Lesson and page are None without a declaration.
+    """
     declared = notebook.metadata.get(PACKAGE)
     if declared is None:
-        return None, None
-    parts = [declared.get(key) for key in ("lesson", "page")] if isinstance(declared, dict) else []
-    if not parts or not all(isinstance(part, str) and part.isidentifier() for part in parts):
+        return None, None, False
+    given = dict(declared) if isinstance(declared, dict) else {}
+    alone = given.pop("alone", False)
+    parts = [given.get(key) for key in ("lesson", "page")]
+    words = all(isinstance(part, str) and part.isidentifier() for part in parts)
+    if not (words and isinstance(alone, bool)):
         raise PageError(
             f"{name}: front matter has `{PACKAGE}: {declared!r}`. "
-            f"Valid is `{PACKAGE}: {{lesson: l04, page: lab}}`, both plain words."
+            f"Valid is `{PACKAGE}: {{lesson: l04, page: lab}}`, both plain words. A page that no "
+            "other page may disturb adds `alone: true`."
         )
-    return parts[0], parts[1]
+    return parts[0], parts[1], alone
 
 
 def cell_sources(page: Page) -> list[str]:

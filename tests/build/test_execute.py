@@ -231,6 +231,21 @@ def test_pages_run_at_the_same_time_and_save_what_they_compiled_even_where_they_
     assert sorted(path.name for path in folder.iterdir()) == ["bad", "good"]
 
 
+def test_a_page_that_measures_time_runs_when_no_other_page_does(tmp_path):
+    alone = LAB_FRONT.replace("}", ", alone: true}")
+    pause = cell("import time\ntime.sleep(1)")
+    make_book(
+        tmp_path, a=notebook(cell(WRITE_BUNDLE), front=alone), b=notebook(pause), c=notebook(pause)
+    )
+    said = []
+    results = execute(tmp_path, jobs=2, report=Lines(lambda *words: said.append(words)))
+    assert {result.status for result in results.values()} == {"executed"}
+    begun_or_ended = [(name, event.split()[0]) for name, event in said]
+    assert begun_or_ended[:2] == [("b", "started:"), ("c", "started:")]
+    assert begun_or_ended[-2:] == [("a", "started:"), ("a", "executed")]
+    assert len(begun_or_ended) == 6
+
+
 @pytest.mark.parametrize(
     "spoil",
     [Path.touch, lambda page: page.symlink_to("no folder/page")],
