@@ -170,12 +170,11 @@ NEEDED = genesis jupyter_book pytest xdist ruff mypy importlinter codespell_lib 
 
 .PHONY: has-packages
 has-packages:
-	@"$(PY)" -c 'import sys' &>/dev/null || { echo "PYTHON=$(PY) is not a Python command. Give the path of an" \
-	  "interpreter with the packages of requirements.lock, or leave PYTHON out to use .venv." >&2; exit 1; }
-	@"$(PY)" -c 'import sys; from importlib.util import find_spec; \
-	  missing = [name for name in "$(NEEDED)".split() if find_spec(name) is None]; \
-	  sys.exit("PYTHON=%s lacks %s. Install the lock there: pip install -r requirements.lock" \
-	  % (sys.argv[1], ", ".join(missing)) if missing else 0)' "$(PY)"
+	@missing=$$("$(PY)" -c 'from importlib.util import find_spec; \
+	  print(*(name for name in "$(NEEDED)".split() if find_spec(name) is None), sep=", ")' 2>/dev/null) || { \
+	  echo "PYTHON=$(PY) is not a Python command. Give the path of an interpreter with the packages of" \
+	  "requirements.lock, or leave PYTHON out to use .venv." >&2; exit 1; }; test -z "$$missing" || { \
+	  echo "PYTHON=$(PY) lacks $$missing. Install the lock there: pip install -r requirements.lock" >&2; exit 1; }
 
 # The file is touched last, so an interrupted installation starts again.
 .venv/.installed: requirements.lock

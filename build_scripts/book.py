@@ -54,17 +54,17 @@ def main() -> int:
         options = ["--to", str(args.book), "--timeout", str(args.timeout)]
         return run_status(lambda: build_fresh(options, args.cache, executed=executed), "published")
     published = args.book / PUBLISHED
-    if not (release or executed) and (lines := nothing_changed(ROOT, args.book, published)):
-        print("\n".join(lines))
-        return 0
-    sphinx = SphinxProcess(args.book, args.cache / LOG)
-    collect_rarely()
-    # Jupyter's packages are loaded only now, beside those of Sphinx.
-    from robo_genesis.build.stages import Build, run_build
+    with SphinxProcess(args.book, args.cache / LOG) as sphinx:  # it loads Sphinx from here on
+        if not (release or executed) and (lines := nothing_changed(ROOT, args.book, published)):
+            print("\n".join(lines))
+            return 0
+        collect_rarely()
+        # Jupyter's packages are loaded only now, beside those of Sphinx.
+        from robo_genesis.build.stages import Build, run_build
 
-    settings = {"jobs": int(jobs) if jobs else None, "release": release, "executed": executed}
-    build = Build(**vars(args), **settings, sphinx=sphinx)
-    return run(lambda: run_build(build), "published")
+        settings = {"jobs": int(jobs) if jobs else None, "release": release, "executed": executed}
+        build = Build(**vars(args), **settings, sphinx=sphinx)
+        return run(lambda: run_build(build), "published")
 
 
 if __name__ == "__main__":

@@ -23,11 +23,13 @@ class BuiltPages(Strict):
     """A file that the environment names.
 
     `folders` has the folder in the store of each executed page by name, and `outputs` the files
-    that the run of each measuring page left, by `lesson/page`.
+    that the run of each measuring page left, by `lesson/page`. `states` is a folder that keeps the
+    states of runs for the next render; None keeps nothing.
     """
 
     folders: dict[str, Path] = Field(default_factory=dict)
     outputs: dict[str, Path] = Field(default_factory=dict)
+    states: Path | None = None
 
     @classmethod
     def of(cls, results: Iterable[PageResult]) -> Self:
@@ -40,6 +42,10 @@ class BuiltPages(Strict):
             if page.declares_bundle:
                 found.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
         return found
+
+    def keeping(self, states: Path) -> Self:
+        """Return these pages with a folder for the states of their runs."""
+        return self.model_copy(update={"states": states})
 
     def write(self, path: Path) -> dict[str, str]:
         """Write the file and return the variable that names it."""

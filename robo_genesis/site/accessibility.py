@@ -3,9 +3,12 @@
 `tests/site/test_accessible.py` checks the result with axe-core.
 """
 
+import re
+
 from bs4 import BeautifulSoup, Tag
 
-ICONS = "i[class*='fa-'], span.fa-solid"
+ICON = re.compile("^fa-")
+"""How the classes of an icon's element begin."""
 NAMED_BY_TEXT = "button.search-button-field, details.hide > summary"
 """The button of the search field, and the folds around code and outputs."""
 
@@ -13,7 +16,7 @@ NAMED_BY_TEXT = "button.search-button-field, details.hide > summary"
 def make_accessible(page: BeautifulSoup) -> None:
     """Correct the attributes of a complete page, in place."""
     # The control around an icon has its name as text or label.
-    for icon in page.select(ICONS):
+    for icon in page.find_all(["i", "span"], class_=ICON):
         icon["aria-hidden"] = "true"
     # A fold of code shows an icon; its text is for screen readers and, as a title, for the mouse.
     for fold in page.select("details.hide.above-input > summary"):

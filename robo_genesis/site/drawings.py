@@ -25,6 +25,7 @@ VARIABLES = {
 WIDE = 480
 """Width above which a drawing is not made for a phone: it scrolls sideways there [CSS px]."""
 
+DRAWING = re.compile(r"\.svg$")
 COLOUR = re.compile(r'(?<=[:"])( ?)(#[0-9a-fA-F]{3,8})(?=[;"])')
 DROPPED = re.compile(r"<!--.*?-->|<(metadata|style|title)\b.*?</\1>|\s+xmlns:\w+=\"[^\"]*\"", re.S)
 REFERENCE = re.compile(r'(?<=url\(#)[^)]+|(?<=href="#)[^"]+')
@@ -46,7 +47,8 @@ def inline_drawings(page: BeautifulSoup, folder: Path) -> None:
         page: the complete page.
         folder: the folder that the page's addresses are relative to.
     """
-    for number, image in enumerate(page.select('article img[src$=".svg"]')):
+    images = page.article.find_all("img", src=DRAWING) if page.article else []
+    for number, image in enumerate(images):
         address = str(image["src"])
         file = folder / unquote(urlsplit(address).path)
         text = file.read_text("utf8") if file.is_file() else "<image"

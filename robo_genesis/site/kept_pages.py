@@ -26,6 +26,7 @@ from pathlib import Path
 from typing import Any
 
 from docutils import nodes
+from jinja2 import FileSystemBytecodeCache
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 
@@ -104,6 +105,14 @@ def plain(value: Any) -> Any:
     return repr(value)
 
 
+def keep_templates(app: Sphinx) -> None:
+    """Compile the theme's templates once for all renders in the kept folder."""
+    folder = Path(app.doctreedir).with_name("templates")
+    folder.mkdir(exist_ok=True)
+    templates = vars(app.builder)["templates"]
+    templates.environment.bytecode_cache = FileSystemBytecodeCache(str(folder))
+
+
 def drop_static_files(app: Sphinx) -> None:
     """Remove the style sheets and scripts before any is written: pages contain their digests.
 
@@ -146,6 +155,7 @@ def setup(app: Sphinx) -> None:
     """Register the steps."""
     app.setup_extension("robo_genesis.site.page_files")
     app.connect("builder-inited", drop_static_files, priority=0)
+    app.connect("builder-inited", keep_templates)
     app.connect("env-get-outdated", including_pages)
     app.connect("env-before-read-docs", note_reading)
     app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected

@@ -109,7 +109,7 @@ def choose_theme(page: BeautifulSoup) -> None:
     the page would change its colours and move when the deferred scripts run. Without scripts the
     page is light.
     """
-    for script in page.select("html > head > script:not([src])"):
+    for script in page.head.find_all("script", src=False) if page.head else ():
         if "dataset.theme" in script.get_text():
             script.append(CHOOSE_THEME)
             script.find_parents("html")[0]["data-theme"] = "light"

@@ -57,7 +57,7 @@ def link_joined(page: BeautifulSoup) -> None:
     depends on the names in all pages, and a browser asks the server whether it changed.
     """
     links = [
-        link for link in page.select('link[rel="stylesheet"]') if _is_joined(str(link["href"]))
+        link for link in page.find_all("link", rel="stylesheet") if _is_joined(str(link["href"]))
     ]
     if links:
         start = str(links[0]["href"]).partition("_static/")[0]

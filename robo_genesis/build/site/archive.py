@@ -15,6 +15,8 @@ OFFER = ".offline-offer"
 """A page's offer of the archive; the archive's own copy of the page must not have it."""
 COMPRESSED = {".jpg", ".npz", ".png", ".webp", ".whl", ".woff2", ".zip"}
 """Suffixes of files that compression makes no smaller."""
+LEVEL = 3
+"""Of compression: level 6 takes 1.6 times as long, and makes the archive 2 % smaller."""
 DATE = (1980, 1, 1, 0, 0, 0)  # the earliest one: the same site makes the same archive
 
 
@@ -36,7 +38,7 @@ def pack(html: Path) -> Path:
             packs = path.suffix not in COMPRESSED
             entry.compress_type = zipfile.ZIP_DEFLATED if packs else zipfile.ZIP_STORED
             entry.external_attr = 0o644 << 16
-            packed.writestr(entry, content(path))
+            packed.writestr(entry, content(path), compresslevel=LEVEL)
     return archive
 
 

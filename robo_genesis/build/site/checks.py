@@ -1,6 +1,7 @@
 """Checks on the built site that need no browser: links, alt texts, scripts, leftovers."""
 
 import json
+import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -16,6 +17,8 @@ ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
 # A link of these kinds names a page for readers or crawlers; the browser does not load it.
 NOT_LOADED = {"canonical", "alternate", "author", "license", "next", "prev", "index", "search"}
 ELSEWHERE = re.compile(r"^(?:https?|wss?|ftp):|^//", re.IGNORECASE)
+OUTSIDE = re.compile(r"[a-z][a-z\d+.-]*:|//", re.IGNORECASE)
+"""How an address begins that has a scheme, or names a host."""
 CSS_ADDRESS = re.compile(r"""(?:(?:@import\s+)?url\(|@import)\s*["']?([^"')\s;]+)""", re.IGNORECASE)
 CSS_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 SCRIPT_ADDRESS = re.compile(r"""["'`]((?:https?:)?//[\w.-]+\.[a-z]{2,}[^"'`]*)""", re.IGNORECASE)
@@ -61,6 +64,7 @@ class Site:
 
     def __init__(self, html: Path, base: str = "/"):
         self.root, self.base = html.resolve(), base
+        self.files: dict[str, Path | None] = {}
         self.pages = {path: self._facts(path) for path in sorted(self.root.rglob("*.html"))}
         self.anchors = {path: set(page.anchors) for path, page in self.pages.items()}
         self.style_addresses = [
@@ -80,6 +84,16 @@ class Site:
             return json.dumps(asdict(page_facts(page))).encode()
 
         return PageFacts(**json.loads(derived("checked", [text.encode(), place, *sources], make)))
+
+    def file(self, folder: Path, place: str) -> Path | None:
+        """Return the file at a place relative to a folder, None if the site has no such file."""
+        named = os.path.normpath(folder / place)
+        if named not in self.files:
+            found = Path(named).resolve()
+            found = found / "index.html" if found.is_dir() else found
+            inside = found.is_relative_to(self.root) and found.is_file()
+            self.files[named] = found if inside else None
+        return self.files[named]
 
     def name(self, path: Path) -> str:
         """Return a file's name for messages."""
@@ -126,7 +140,7 @@ def check_links(site: Site) -> SiteCheck:
     """Every address inside the site leads to a file, and every fragment to an element."""
     found = [(path, url) for path, page in site.pages.items() for url, _ in page.addresses]
     found += site.style_addresses
-    inside = [(path, url) for path, url in found if not urlsplit(url).scheme and url[:2] != "//"]
+    inside = [(path, url) for path, url in found if not OUTSIDE.match(url)]
     problems = {
         f"{site.name(path)}: {url!r} {reason}"
         for path, url in dict.fromkeys(inside)
@@ -142,9 +156,8 @@ def _broken(site: Site, page: Path, url: str) -> str | None:
     if place.startswith("/") and not place.startswith(site.base):
         return f"leads out of {site.base}, the path of the site."
     base = site.root if place.startswith("/") else page.parent
-    target = (base / place.removeprefix(site.base)).resolve() if place else page
-    target = target / "index.html" if target.is_dir() else target
-    if not target.is_relative_to(site.root) or not target.is_file():
+    target = site.file(base, place.removeprefix(site.base)) if place else page
+    if target is None:
         return "leads to no file of the site."
     known = site.anchors.get(target)
     if fragment and fragment != "top" and known is not None and unquote(fragment) not in known:

@@ -11,6 +11,8 @@ from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.site.kept import copy_site, fit, keep, prepare, read_state
 from robo_genesis.build.site.sphinx_process import SphinxProcess
 
+STATES = "states"
+"""The folder of the states of runs, which depend on nothing that does not empty the kept folder."""
 BUILD_INFO = ".buildinfo"
 """A note of Sphinx for its next build, which depends on the checkout's path."""
 
@@ -57,7 +59,7 @@ def _render_changes(
     """Render what changed since the last render in a folder; return the folder of the pages."""
     before = read_state(sphinx.book, built)
     was_kept = prepare(folder, before)
-    rendered = sphinx.render(folder, built, meanwhile)
+    rendered = sphinx.render(folder, built.keeping(folder / STATES), meanwhile)
     if was_kept and not fit(folder):  # the state is gone, so this one starts from nothing
         with SphinxProcess(sphinx.book, sphinx.log) as another:
             return _render_changes(another, folder, built)

@@ -14,18 +14,21 @@ Roles and a directive, as pages write them:
 """
 
 import importlib.metadata
-from collections.abc import Sequence
+import pickle
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
-from robo_genesis.build.built_pages import page_outputs
+from robo_genesis.build.built_pages import built_pages, page_outputs
 from robo_genesis.core import project
+from robo_genesis.core.files import write_whole
 from robo_genesis.core.quantities import format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.status import (
@@ -38,6 +41,7 @@ from robo_genesis.evidence.status import (
 )
 from robo_genesis.site.evidence.ledger_data import Run
 
+T = TypeVar("T")
 BACKEND = project.BUILD_BACKEND
 REFERENCE = "amdgpu"
 READABLE = {"cpu": "CPU", "amdgpu": "AMD GPU", "cuda": "CUDA GPU"}
@@ -92,13 +96,32 @@ class Measured(SphinxRole):
         return [node], []
 
 
+def kept(name: str, find: Callable[[], T]) -> T:
+    """Return what a render before this one found, if its folder is kept, or find it now.
+
+    The build itself verifies all bundles each time.
+    """
+    states = built_pages().states
+    if states is None:
+        return find()
+    with suppress(OSError):
+        return cast(T, pickle.loads((states / name).read_bytes()))
+    found = find()
+    write_whole(states / name, pickle.dumps(found))
+    return found
+
+
 @lru_cache(maxsize=64)
 def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> Run:
     """Return a page's run of this build; it does not change while Sphinx runs."""
     folder = page_outputs(f"{lesson}/{page}") / BACKEND
     absent = f"No bundle was recorded for {lesson}/{page}."
-    status = bundle_status(folder, lesson, page, absent, book, once=True)
-    return Run(f"{lesson}/{page}", folder, status)
+
+    def run() -> Run:
+        status = bundle_status(folder, lesson, page, absent, book, once=True)
+        return Run(f"{lesson}/{page}", folder, status)
+
+    return kept(f"{lesson}-{page}", run)
 
 
 @lru_cache(maxsize=64)
@@ -113,7 +136,8 @@ def recorded_runs(book: Path, lesson: str) -> tuple[Run, ...]:
         status = recorded_status(book, lesson, backend, cpu_runs=runs)
         return Run(name, folder / backend, status, recorded=True)
 
-    return tuple(run(backend) for backend in dict.fromkeys((REFERENCE, *recorded)))
+    backends = dict.fromkeys((REFERENCE, *recorded))
+    return kept(f"{lesson}-recorded", lambda: tuple(run(backend) for backend in backends))
 
 
 def lesson_statuses(book: Path, lesson: str) -> list[Status]:
