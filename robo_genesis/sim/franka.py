@@ -10,6 +10,12 @@ FRANKA_MJCF = "xml/franka_emika_panda/panda.xml"
 JOINT_NAMES = (*(f"joint{number}" for number in range(1, 8)), "finger_joint1", "finger_joint2")
 """The nine one-DOF joints, in the order of every array of the course."""
 
+CREDIT = (
+    "Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from franka_description, "
+    "© Franka Robotics GmbH; decimated and converted"
+)
+"""The authors of the robot's shape, below pictures that are drawn from it."""
+
 MODEL_COUNTS = {"links": 11, "joints": 9, "dofs": 9, "qpos": 9}
 """Counts of the robot's model, as the engine reports them."""
 

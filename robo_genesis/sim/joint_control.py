@@ -9,6 +9,7 @@ import numpy as np
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE
 from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import Trace
+from robo_genesis.sim import franka
 from robo_genesis.sim.joints import JointMap, to_numpy
 from robo_genesis.sim.session import require_built
 
@@ -34,6 +35,12 @@ class ControlCase:
     dt: float = DT
     substeps: int = SUBSTEPS
     seed: int = SEED
+
+
+def course_case(q_target: FloatArray, steps: int) -> ControlCase:
+    """Return the case of the course's robot with its gains, from its start to `q_target` (9,)."""
+    gains = franka.KP_BASELINE, franka.KV_BASELINE, franka.EFFORT_LIMIT
+    return ControlCase(franka.Q_START, q_target, *gains, steps)
 
 
 def differences(one: ControlCase, other: ControlCase, joints: JointMap) -> list[str]:

@@ -38,7 +38,7 @@ from robo_genesis.lessons.l04 import (
 from robo_genesis.lessons.l04.batch import run_batch
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
 from robo_genesis.sim import mujoco_joints
-from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import (
     assign_path,
     differences,
@@ -166,8 +166,7 @@ LESSON = Lesson(
             thing="robot",
             alt="The robot in 3D, in the posture of the sample that is shown. "
             f"{spec.STEPPED_JOINT} moves.",
-            credit="Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from "
-            "franka_description, © Franka Robotics GmbH; decimated and converted",
+            credit=CREDIT,
         ),
         alt=f"Position of {spec.STEPPED_JOINT} over time with the gains of "
         f"{listed(tuple(study_spec.COMPARED))}, its target and the settling band around it.",

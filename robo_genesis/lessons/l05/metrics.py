@@ -40,11 +40,6 @@ def measured_hand(trace: Trace, state: int) -> Pose:
     return Pose(trace.link_pos[state, HAND].astype(np.float64), quat / np.linalg.norm(quat))
 
 
-def commanded_hand(trace: Trace) -> Pose:
-    """Return the pose of the hand at the last command, by forward kinematics."""
-    return hand_pose(trace.target[-1])
-
-
 def reach_metrics(trace: Trace, position: FloatArray, quat: FloatArray) -> ReachMetrics:
     """Measure a run that commands one constant target.
 
@@ -64,7 +59,7 @@ def reach_metrics(trace: Trace, position: FloatArray, quat: FloatArray) -> Reach
     if (trace.target != trace.target[0]).any():
         raise ValueError("The command changes during the run. Measure a run with a constant one.")
     target = Pose(np.asarray(position, float), np.asarray(quat, float))
-    command, end = commanded_hand(trace), measured_hand(trace, -1)
+    command, end = hand_pose(trace.target[-1]), measured_hand(trace, -1)
     start_distance, _ = distances(pose_error(target, measured_hand(trace, 0)))
     pairs = ((target, command), (command, end), (target, end))
     apart, angle = zip(*(distances(pose_error(to, at)) for to, at in pairs), strict=True)

@@ -20,7 +20,7 @@ AROUND = 45
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured link origins."""
     if run.rendered:
-        return plotting.both_ends({name: run.frames[name] for name in ("initial", "final")})
+        return plotting.both_ends(run.frames)
     figure = plotting.figure(5)
     plotting.schematic(figure.subplots(), run.traces["baseline"], LINK_PARENTS)
     return figure
@@ -43,22 +43,15 @@ def distance(run: Experiment) -> Figure:
 def picture(run: Experiment) -> Figure:
     """Show the picture around the marker, with its centre as projected by hand."""
     view, sphere = view_of(run, spec.VIEWED), marker(run)
-    u, v = cameras.project(np.array(sphere.centre), view.intrinsics, view.transform)
+    u, v = cameras.project(sphere.centre, view.intrinsics, view.transform)
     figure = plotting.figure(plotting.WIDTH)
     ax = figure.subplots()
     if view.rgb is not None:
         height, width = view.rgb.shape[:2]
         shown = run.frames[frame_names(spec.VIEWED)[0]]
         ax.imshow(shown, extent=(0, width, height, 0), interpolation="nearest")
-    ax.plot(
-        [u],
-        [v],
-        "+",
-        markersize=16,
-        markeredgewidth=2,
-        color=look("target")["color"],
-        label="projected by hand",
-    )
+    cross = {"markersize": 16, "markeredgewidth": 2, "color": look("target")["color"]}
+    ax.plot([u], [v], "+", label="projected by hand", **cross)
     ax.set(xlim=(u - AROUND, u + AROUND), ylim=(v + AROUND, v - AROUND), aspect="equal")
     ax.set(xlabel="u [pixel]", ylabel="v [pixel]")
     ax.grid(visible=False)

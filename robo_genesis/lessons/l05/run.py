@@ -9,7 +9,7 @@ from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim import franka, mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, accepted, distances
-from robo_genesis.sim.joint_control import ControlCase, assign_postures, run_case
+from robo_genesis.sim.joint_control import ControlCase, assign_postures, course_case, run_case
 from robo_genesis.sim.joints import JointMap
 from robo_genesis.sim.kinematics import IkAnswer, IkSettings, solve_ik
 
@@ -64,8 +64,6 @@ class SolveCase:
     starts: FloatArray
     settings: IkSettings
     dt: float = DT
-    substeps: int = SUBSTEPS
-    seed: int = SEED
 
     @property
     def steps(self) -> int:
@@ -75,10 +73,12 @@ class SolveCase:
     @property
     def start(self) -> ControlCase:
         """The settings from which the answers are assigned: those of the course, at its start."""
-        return ControlCase(
-            franka.Q_START, franka.Q_START, franka.KP_BASELINE, franka.KV_BASELINE,
-            franka.EFFORT_LIMIT, self.steps, self.dt, self.substeps, self.seed,
-        )  # fmt: skip
+        return course_case(franka.Q_START, self.steps)
+
+
+def tolerances(settings: IkSettings) -> tuple[float, float]:
+    """Return the largest accepted residuals of position [m] and rotation [rad]."""
+    return settings.position_tolerance, settings.rotation_tolerance
 
 
 def ask(robot: Any, joints: JointMap, case: ReachCase) -> IkAnswer:
@@ -95,8 +95,7 @@ def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:
         NotAccepted: the answer is not finite, or a residual is beyond its tolerance; the message
             gives both residuals and both tolerances.
     """
-    settings = case.settings
-    limits = settings.position_tolerance, settings.rotation_tolerance
+    limits = tolerances(case.settings)
     if not accepted(answer.q, answer.error, *limits):
         apart, angle = distances(answer.error)
         raise NotAccepted(

@@ -4,6 +4,7 @@ import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.text import decimal
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.sim import arm_kinematics as kinematics
@@ -35,20 +36,19 @@ def records(run: Experiment, name: str) -> list[dict[str, str]]:
     case, q = spec.QUESTIONS[name], run.traces[name].q[1:, :ARM]
     found, (lower, upper) = study.answers(run.traces[name], case), spec.ARM_LIMITS
     nearest = np.minimum(q - lower, upper - q).argmin(axis=1)
-    return [
-        {
+    rows = []
+    for k in range(case.steps):
+        row = {
             "answer": str(k + 1),
             "target x, y, z [m]": ", ".join(f"{value:g}" for value in case.positions[k]),
             "accepted": "yes" if found["accepted"][k] else "no",
-            "joint1 [rad]": f"{q[k, 0]:.3f}".replace("-", "−"),
+            "joint1 [rad]": decimal(q[k, 0], 3),
             "nearest to a limit": JOINT_NAMES[nearest[k]],
         }
-        | {
-            label: f"{round(max(factor * found[key][k], 0), 6):.{digits}g}"
-            for label, (key, factor, digits) in MEASURES.items()
-        }
-        for k in range(case.steps)
-    ]
+        for label, (key, factor, digits) in MEASURES.items():
+            row[label] = f"{round(max(factor * found[key][k], 0), 6):.{digits}g}"
+        rows.append(row)
+    return rows
 
 
 def chosen(run: Experiment) -> dict[str, int]:
@@ -85,8 +85,7 @@ def family_table(run: Experiment) -> str:
 
 def span(values: FloatArray, digits: int) -> str:
     """Return the smallest and the largest of values (n,)."""
-    low, high = (f"{value:.{digits}f}".replace("-", "−") for value in (values.min(), values.max()))
-    return f"{low} … {high}"
+    return f"{decimal(values.min(), digits)} … {decimal(values.max(), digits)}"
 
 
 def choice_table(run: Experiment) -> str:
@@ -104,14 +103,9 @@ def unreachable_table(run: Experiment) -> str:
         "engine's answer": (found["position"][0], found["rotation"][0]),
         "nearest that we found": kinematics.distances(study.nearest()[1]),
     }
-    heads = ("distance [m]", "angle [rad]", "weighted distance [m]")
+    heads = dict.fromkeys(("distance [m]", "angle [rad]", "weighted distance [m]"), 3)
     rows = {name: (*pair, study.weighted(*pair)) for name, pair in pairs.items()}
-    return tables.markdown(
-        [
-            {"posture": name} | {h: f"{v:.3f}" for h, v in zip(heads, row, strict=True)}
-            for name, row in rows.items()
-        ]
-    )
+    return tables.numbers("posture", heads, rows)
 
 
 def reach_table(run: Experiment) -> str:

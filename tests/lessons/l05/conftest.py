@@ -45,9 +45,10 @@ def reaches(joints) -> Experiment:
     refused = answer(spec.BEYOND_REACH, 20).q.astype(float)[None]
     apart, angle = kinematics.distances(found.error)
     solver = {"residual_m": float(apart), "residual_rad": float(angle), "jacobian_difference": 0.0}
+    runs["unreachable"] = assigned(spec.UNREACHABLE, refused)
     return Experiment(
-        page=SOLUTIONS,
-        traces=runs | {"unreachable": assigned(spec.UNREACHABLE, refused)},
+        page=replace(SOLUTIONS, runs={name: SOLUTIONS.runs[name] for name in runs}),
+        traces=runs,
         links=LINKS,
         readings={
             "model": spec.EXPECTED_MODEL, "ik": solver, "ik_repeated": {"entries_that_differ": 0},
