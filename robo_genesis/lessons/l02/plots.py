@@ -8,8 +8,8 @@ from robo_genesis.core.free_fall import continuous_drop
 from robo_genesis.core.plotting import look
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02 import spec, trials
-from robo_genesis.lessons.l02.metrics import fallen, predicted
 from robo_genesis.lessons.l02.study import step_study
+from robo_genesis.sim.falls import fallen, predicted
 
 
 def posture(run: Experiment) -> Figure:

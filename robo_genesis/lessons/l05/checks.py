@@ -135,7 +135,9 @@ def sphere_surface(run: Experiment) -> Iterator[Finding]:
 
 def plane_surface(run: Experiment) -> Iterator[Finding]:
     number = int(run.readings[SEGMENTS]["plane"])
-    return camera_checks.plane_surface(spec.VIEWED, view_of(run, spec.VIEWED), number)
+    for name in (spec.VIEWED, "hand"):
+        if f"view_{name}" in run.readings:  # the camera on the hand has a page of its own
+            yield from camera_checks.plane_surface(name, view_of(run, name), number)
 
 
 def mounted_camera(run: Experiment) -> Iterator[Finding]:
