@@ -81,6 +81,13 @@ def mounted_camera(
     yield at_most(f"{label}.axes_error", float(apart[:3, :3].max()), SAME_POSE)
 
 
+def computed(view: View, marker: Marker) -> tuple[FloatArray, FloatArray]:
+    """Return where a marker's centre and the centre of its silhouette are, (2,) each [pixel]."""
+    camera = view.intrinsics, view.transform
+    ellipse = cameras.silhouette_centre(marker.centre, marker.radius, *camera)
+    return cameras.project(marker.centre, *camera), ellipse
+
+
 def projection(label: str, view: View, marker: Marker) -> Iterator[Finding]:
     """Require the centroid of a whole marker in the segmentation to be where a sphere's picture is.
 
@@ -92,12 +99,10 @@ def projection(label: str, view: View, marker: Marker) -> Iterator[Finding]:
     mask = view.segmentation == marker.number
     yield equal(f"{label}.pixels_at_the_border", int(mask.sum() - mask[1:-1, 1:-1].sum()), 0)
     yield above(f"{label}.pixels", int(mask.sum()), FEWEST_PIXELS)
-    found, camera = cameras.centroid(mask), (view.intrinsics, view.transform)
-    ellipse = cameras.silhouette_centre(marker.centre, marker.radius, *camera)
-    centre = cameras.project(marker.centre, *camera)
-    yield noted(f"{label}.centroid_to_centre_px", float(np.linalg.norm(found - centre)))
-    apart = float(np.linalg.norm(found - ellipse))
-    yield at_most(f"{label}.centroid_to_silhouette_px", apart, CENTROID)
+    found = cameras.centroid(mask)
+    to_centre, to_ellipse = (float(np.linalg.norm(found - of)) for of in computed(view, marker))
+    yield noted(f"{label}.centroid_to_centre_px", to_centre)
+    yield at_most(f"{label}.centroid_to_silhouette_px", to_ellipse, CENTROID)
 
 
 def from_sphere(view: View, marker: Marker) -> Residuals | None:

@@ -41,6 +41,7 @@ from robo_genesis.sim import mujoco_joints
 from robo_genesis.sim.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import (
     assign_path,
+    describe,
     differences,
     reset,
     run_case,
@@ -54,8 +55,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BATCH", "CAMERA", "DT", "FORMULA", "FRANKA_MJCF", "INTEGRATOR", "JOINT_NAMES", "LAB",
-    "LECTURE", "LESSON", "MISTAKES", "SUBSTEPS", "assign_path", "backend_mistake", "differences",
-    "engine_comparison", "exercises", "explorer",
+    "LECTURE", "LESSON", "MISTAKES", "SUBSTEPS", "assign_path", "backend_mistake", "describe",
+    "differences", "engine_comparison", "exercises", "explorer",
     "lecture_text", "mistakes", "mujoco_joints", "plots", "read_shape", "reset", "resolve_joints",
     "run_batch", "run_case", "spec", "study", "study_plots", "study_spec", "text", "theory_text",
     "validate",

@@ -15,7 +15,6 @@ from robo_genesis.lessons.l05 import (
     checks,
     claims_text,
     exercises,
-    explorer,
     mistakes,
     plausibility,
     solutions_text,
@@ -23,26 +22,25 @@ from robo_genesis.lessons.l05 import (
     study,
     text,
 )
-from robo_genesis.lessons.l05.metrics import ReachMetrics
-from robo_genesis.lessons.l05.run import ask, control_case, reach, solve_all
+from robo_genesis.lessons.l05.metrics import ReachMetrics, reach_metrics
+from robo_genesis.lessons.l05.run import ask, reach, solve_all
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim.camera_views import look, segment_number
 from robo_genesis.sim.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joint_control import reset
+from robo_genesis.sim.joint_control import describe, reset
 from robo_genesis.sim.joints import resolve_joints
 from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
 
 if TYPE_CHECKING:
-    from robo_genesis.lessons.l05 import plots, solutions_plots
+    from robo_genesis.lessons.l05 import plots
 
 __all__ = [
-    "DT", "FRANKA_MJCF", "JOINT_NAMES", "SUBSTEPS", "ask", "control_case", "exercises", "explorer",
-    "kinematics", "look", "mistakes", "plots", "reach", "read_shape", "reset", "resolve_joints",
-    "segment_number", "solutions_plots", "solutions_text", "solve_all", "spec", "study", "text",
-    "view_record",
+    "DT", "FRANKA_MJCF", "JOINT_NAMES", "SUBSTEPS", "ask", "describe", "exercises", "kinematics",
+    "look", "mistakes", "plots", "reach", "read_shape", "reset", "resolve_joints",
+    "segment_number", "solutions_text", "solve_all", "spec", "study", "text", "view_record",
 ]  # fmt: skip
 
-__getattr__ = on_demand(__name__, "plots", "solutions_plots")
+__getattr__ = on_demand(__name__, "plots")
 
 
 def target_part(marker: Any) -> list[Part]:
@@ -59,7 +57,7 @@ MOTION = MeasuringPage(
     kind=Trace,
     joints=JOINT_NAMES,
     readings=lambda rendered: MODEL | study.READINGS,
-    measure=study.measure,
+    measure=reach_metrics,
     checks=checks.WITHOUT_CAMERA,
     claims=claims_text.CLAIMS,
     parameters=spec.parameters,

@@ -4,15 +4,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import (
-    Finding,
-    above,
-    at_most,
-    below,
-    equal,
-    model_counts,
-    stamps,
-)
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, stamps
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study

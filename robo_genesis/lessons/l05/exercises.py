@@ -7,7 +7,6 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding, at_most, below, equal
 from robo_genesis.core.exercises import alike, tested
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.metrics import measured_hand
@@ -132,9 +131,10 @@ def project(function: Callable[..., Any]) -> Iterator[Finding]:
     """
     seen = np.array([[0, 0, 1], [0.3, 0, 1], [0, 0.2, 1], [-0.4, 0.1, 2], [0.1, 0.3, 0.5]])
     for name, (K, transform) in CAMERAS.items():
-        expected = (seen / seen[:, 2:] @ K.T)[:, :2]
-        found = function(world_points(transform, seen), K, transform)
-        yield from alike(name, found, expected, ROUNDED)
+        pose = cameras.other_axes(transform)
+        points = seen @ pose[:3, :3].T + pose[:3, 3]
+        expected = cameras.project(points, K, transform)
+        yield from alike(name, function(points, K, transform), expected, ROUNDED)
 
 
 @tested
@@ -146,20 +146,9 @@ def back_project(function: Callable[..., Any]) -> Iterator[Finding]:
     """
     width, height = SIZE
     rows, columns = np.mgrid[:height, :width]
-    depths = {
-        "flat": np.full((height, width), 1.5),
-        "sloping": 1 + 0.02 * rows + 0.01 * columns,
-    }
-    for name, (K, transform) in CAMERAS.items():
-        right = (columns + 0.5 - K[0, 2]) / K[0, 0]
-        down = (rows + 0.5 - K[1, 2]) / K[1, 1]
+    depths = {"flat": np.full((height, width), 1.5), "sloping": 1 + 0.02 * rows + 0.01 * columns}
+    for name, camera in CAMERAS.items():
         for kind, depth in depths.items():
-            expected = world_points(transform, np.dstack([right * depth, down * depth, depth]))
-            found = function(depth.copy(), K, transform)
+            expected = cameras.back_project(depth, *camera)
+            found = function(depth.copy(), *camera)
             yield from alike(f"{name}.{kind}", found, expected, ROUNDED)
-
-
-def world_points(transform: FloatArray, seen: FloatArray) -> FloatArray:
-    """Return points (…, 3) of the world from coordinates in a camera: right, down, forwards."""
-    pose = cameras.other_axes(transform)
-    return seen @ pose[:3, :3].T + pose[:3, 3]

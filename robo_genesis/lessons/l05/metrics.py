@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l05.run import ReachCase
 from robo_genesis.sim.arm_kinematics import Pose, distances, hand_pose, pose_error
 from robo_genesis.sim.franka import LINK_PARENTS
 
@@ -40,13 +40,8 @@ def measured_hand(trace: Trace, state: int) -> Pose:
     return Pose(trace.link_pos[state, HAND].astype(np.float64), quat / np.linalg.norm(quat))
 
 
-def reach_metrics(trace: Trace, position: FloatArray, quat: FloatArray) -> ReachMetrics:
-    """Measure a run that commands one constant target.
-
-    Args:
-        trace: the run, with all links of the robot.
-        position: (3,) target of the hand [m].
-        quat: (4,) its target orientation.
+def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
+    """Measure a run of a case, which commands constant joint positions, with all links.
 
     Raises:
         ValueError: the trace lacks the hand, or the command changes.
@@ -58,7 +53,7 @@ def reach_metrics(trace: Trace, position: FloatArray, quat: FloatArray) -> Reach
         )
     if (trace.target != trace.target[0]).any():
         raise ValueError("The command changes during the run. Measure a run with a constant one.")
-    target = Pose(np.asarray(position, float), np.asarray(quat, float))
+    target = Pose(case.position, case.quat)
     command, end = hand_pose(trace.target[-1]), measured_hand(trace, -1)
     start_distance, _ = distances(pose_error(target, measured_hand(trace, 0)))
     pairs = ((target, command), (command, end), (target, end))

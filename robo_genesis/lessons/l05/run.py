@@ -1,6 +1,6 @@
 """Reaches of L05: ask for joint positions, accept or refuse them, command them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -27,18 +27,19 @@ class ReachCase:
     """A target of the hand, the start, and the controller that brings the arm there.
 
     `position` (3,) [m] and `quat` (4,) are in the world; the other arrays have one entry for each
-    joint: `q_start` [rad or m], `kp` [N·m/rad or N/m], `kv` [N·m·s/rad or N·s/m], `effort_limit`
-    [N·m or N]. With `compensated`, each arm joint's command is gravity / KP beyond the answer.
+    joint, by default the course's: `q_start` [rad or m], `kp` [N·m/rad or N/m], `kv` [N·m·s/rad or
+    N·s/m], `effort_limit` [N·m or N]. With `compensated`, each arm joint's command is gravity / KP
+    beyond the answer.
     """
 
     position: FloatArray
     quat: FloatArray
-    q_start: FloatArray
-    kp: FloatArray
-    kv: FloatArray
-    effort_limit: FloatArray
     settings: IkSettings
     steps: int
+    q_start: FloatArray = field(default_factory=lambda: franka.Q_START)
+    kp: FloatArray = field(default_factory=lambda: franka.KP_BASELINE)
+    kv: FloatArray = field(default_factory=lambda: franka.KV_BASELINE)
+    effort_limit: FloatArray = field(default_factory=lambda: franka.EFFORT_LIMIT)
     compensated: bool = False
     dt: float = DT
     substeps: int = SUBSTEPS

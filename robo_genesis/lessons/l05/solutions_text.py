@@ -8,7 +8,6 @@ from robo_genesis.core.text import decimal
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim.arm_kinematics import ARM
 from robo_genesis.sim.franka import JOINT_NAMES
 
 THRESHOLDS = (0.05, 0.1, 0.3, 0.5, 1.0)
@@ -33,7 +32,7 @@ MEASURES = {
 
 def records(run: Experiment, name: str) -> list[dict[str, str]]:
     """Return what is known of each answer of a run as rows of a table."""
-    case, q = spec.QUESTIONS[name], run.traces[name].q[1:, :ARM]
+    case, q = spec.QUESTIONS[name], run.traces[name].q[1:, : kinematics.ARM]
     found, (lower, upper) = study.answers(run.traces[name], case), spec.ARM_LIMITS
     nearest = np.minimum(q - lower, upper - q).argmin(axis=1)
     rows = []
@@ -67,7 +66,7 @@ def many_answers(run: Experiment) -> dict[str, FloatArray]:
 
 def count_table(run: Experiment) -> str:
     """Return how many answers are distinct for several thresholds."""
-    q = run.traces["many_starts"].q[1:, :ARM][many_answers(run)["accepted"]]
+    q = run.traces["many_starts"].q[1:, : kinematics.ARM][many_answers(run)["accepted"]]
     return tables.markdown(
         [{"threshold [rad]": t, "distinct answers": study.clusters(q, t)} for t in THRESHOLDS]
     )

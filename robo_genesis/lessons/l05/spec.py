@@ -49,16 +49,7 @@ DOWN = fixed(0.0, 1.0, 0.0, 0.0)
 BEYOND_REACH = fixed(2.0, 0.0, 2.0)
 """A target that no posture of the arm comes near to [m]."""
 
-BASELINE = ReachCase(
-    position=TARGET,
-    quat=DOWN,
-    q_start=franka.Q_START,
-    kp=franka.KP_BASELINE,
-    kv=franka.KV_BASELINE,
-    effort_limit=franka.EFFORT_LIMIT,
-    settings=IK,
-    steps=180,
-)
+BASELINE = ReachCase(TARGET, DOWN, IK, steps=180)
 CASES = {
     "baseline": BASELINE,
     "kp_doubled": replace(BASELINE, kp=2 * franka.KP_BASELINE),

@@ -9,15 +9,14 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment, Readings, counts
 from robo_genesis.lessons.l05 import spec
-from robo_genesis.lessons.l05.metrics import ReachMetrics, measured_hand, reach_metrics
-from robo_genesis.lessons.l05.run import END_EFFECTOR, ReachCase, SolveCase, ask, tolerances
+from robo_genesis.lessons.l05.metrics import measured_hand
+from robo_genesis.lessons.l05.run import END_EFFECTOR, SolveCase, ask, tolerances
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import kinematics as engine
 from robo_genesis.sim import mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, Pose
-from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import reset
-from robo_genesis.sim.joints import JointMap, resolve_joints, to_numpy
+from robo_genesis.sim.joints import JointMap, to_numpy
 
 GROUP, REPEAT_GROUP = "ik", "ik_repeated"
 """Groups of a bundle's metrics: what the engine's solver reported, and counts of two answers."""
@@ -29,20 +28,6 @@ READINGS = {
 """Residuals of the baseline's answer; the largest difference of the engine's Jacobian from that of
 MuJoCo, in m/rad or without a unit; entries of q and residual that differ between two equal
 questions."""
-
-
-def measure(trace: Trace, case: ReachCase) -> ReachMetrics:
-    """Return the distances of a reach."""
-    return reach_metrics(trace, case.position, case.quat)
-
-
-def describe(page: Any, robot: Any) -> JointMap:
-    """Give a page the counts, links and joints of the robot, and return its joints."""
-    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    page.readings["model"] = dict(zip(spec.EXPECTED_MODEL, counted, strict=True))
-    page.links = [link.name for link in robot.links]
-    page.joints = resolve_joints(robot, JOINT_NAMES)
-    return page.joints
 
 
 def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:

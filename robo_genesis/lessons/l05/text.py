@@ -15,8 +15,7 @@ from robo_genesis.lessons.view_record import SEGMENTS, view_of
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_geometry as cameras
 from robo_genesis.sim import mujoco_kinematics
-from robo_genesis.sim.arm_kinematics import ARM
-from robo_genesis.sim.camera_checks import PLANE_FAR, from_plane, from_sphere
+from robo_genesis.sim.camera_checks import PLANE_FAR, computed, from_plane, from_sphere
 from robo_genesis.sim.franka import JOINT_NAMES
 
 NO_PICTURE = "SKIP: no camera"
@@ -62,8 +61,8 @@ def joint_table(run: Experiment) -> str:
         "position − command, computed [mrad]": 2,
         "moves the hand along z by [mm]": 2,
     }
-    q, kp = run.traces["baseline"].target[-1].astype(float), spec.BASELINE.kp[:ARM]
-    effort = mujoco_kinematics.gravity_effort(q)[:ARM]
+    q, kp = run.traces["baseline"].target[-1].astype(float), spec.BASELINE.kp[: kinematics.ARM]
+    effort = mujoco_kinematics.gravity_effort(q)[: kinematics.ARM]
     angles = -effort / kp
     ways = kinematics.jacobian(q)[2] * angles
     most = sorted(np.abs(ways).argsort()[-SHOWN:])
@@ -77,13 +76,9 @@ def joint_table(run: Experiment) -> str:
 def marker_table(run: Experiment) -> str:
     """Return where the marker is in the picture: computed twice, and counted."""
     view, sphere = view_of(run, spec.VIEWED), marker(run)
-    camera = view.intrinsics, view.transform
-    ellipse = cameras.silhouette_centre(sphere.centre, sphere.radius, *camera)
-    rows: dict[str, Any] = {
-        "projection of its centre": cameras.project(sphere.centre, *camera),
-        "centre of its silhouette": ellipse,
-        "centroid of its pixels": (NO_PICTURE, NO_PICTURE),
-    }
+    words = ("projection of its centre", "centre of its silhouette")
+    rows: dict[str, Any] = dict(zip(words, computed(view, sphere), strict=True))
+    rows["centroid of its pixels"] = NO_PICTURE, NO_PICTURE
     if view.segmentation is not None:
         rows["centroid of its pixels"] = cameras.centroid(view.segmentation == sphere.number)
     return tables.numbers("what", {"u [pixel]": 3, "v [pixel]": 3}, rows)

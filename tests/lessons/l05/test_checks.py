@@ -111,10 +111,10 @@ def test_the_metrics_of_a_run_are_three_distances(reaches):
     trace = reaches.traces["baseline"]
     changing = replace(trace, target=trace.target + np.linspace(0, 0.1, trace.steps)[:, None])
     with pytest.raises(ValueError, match="The command changes"):
-        reach_metrics(changing, spec.TARGET, spec.DOWN)
+        reach_metrics(changing, spec.BASELINE)
     few = replace(trace, link_pos=trace.link_pos[:, :3], link_quat=trace.link_quat[:, :3])
     with pytest.raises(ValueError, match="3 links, expected the 11"):
-        reach_metrics(few, spec.TARGET, spec.DOWN)
+        reach_metrics(few, spec.BASELINE)
 
 
 def test_twice_the_gain_halves_the_sag():

@@ -11,6 +11,7 @@ from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import LAB, checks, spec, study
 from robo_genesis.lessons.l05.run import NotAccepted, reach, solve_all
 from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim.joint_control import describe
 from robo_genesis.sim.kinematics import link_poses_at
 
 pytestmark = pytest.mark.engine
@@ -24,7 +25,7 @@ def measured(lab):
     scene, robot, joints = lab.scene, lab.franka, lab.joints
     traces = {n: reach(scene, robot, joints, case) for n, case in spec.CASES.items()}
     page = SimpleNamespace(readings={})
-    study.describe(page, robot)
+    describe(page, robot)
     study.read(page, scene, robot, joints)
     return Experiment(
         replace(LAB, checks=checks.WITHOUT_CAMERA), traces, page.links, page.readings, {},
