@@ -1,8 +1,6 @@
 """Constants of the Franka Panda of the course, with units."""
 
-import numpy as np
-
-from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.scene import FloatArray, read_only
 
 FRANKA_MJCF = "xml/franka_emika_panda/panda.xml"
 """The Franka Panda that Genesis bundles, relative to the engine's asset folder."""
@@ -30,9 +28,7 @@ def per_joint(*values: float) -> FloatArray:
     """Return a read-only array of shape (9,), one value for each of `JOINT_NAMES`."""
     if len(values) != len(JOINT_NAMES):
         raise ValueError(f"{len(values)} values given, one for each of {len(JOINT_NAMES)} joints")
-    array = np.array(values, dtype=np.float64)
-    array.setflags(write=False)
-    return array
+    return read_only(values)
 
 
 Q_START = per_joint(0, -0.3, 0, -2.0, 0, 1.7, 0.79, 0.04, 0.04)

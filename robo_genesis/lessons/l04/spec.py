@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.scene import DT, FloatArray
+from robo_genesis.core.scene import DT, FloatArray, read_only
 from robo_genesis.lessons.experiment import inputs
 from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
 from robo_genesis.sim import franka
@@ -41,8 +41,7 @@ def with_entry(values: FloatArray, value: float) -> FloatArray:
     """Return a read-only copy of `values` (9,) in which only the stepped joint's entry differs."""
     changed = np.array(values)
     changed[ENTRY] = value
-    changed.setflags(write=False)
-    return changed
+    return read_only(changed)
 
 
 START_OF_STEP = float(franka.Q_START[ENTRY])

@@ -49,9 +49,8 @@ def forward_kinematics(run: Experiment) -> Iterator[Finding]:
 
 
 def second_engine(run: Experiment) -> Iterator[Finding]:
-    yield from same_links(
-        run, lambda q: Pose(*mujoco_kinematics.link_poses(q, run.links[OF_CHAIN]))
-    )
+    links = run.links[OF_CHAIN]
+    yield from same_links(run, lambda q: mujoco_kinematics.link_poses(q, links))
     found = run.readings[study.GROUP]["jacobian_difference"]
     yield at_most("jacobian_difference", found, spec.SAME_POSE[0])
 

@@ -84,8 +84,7 @@ def step(damped: Callable[..., Any]) -> Iterator[Finding]:
     """
     start = np.array(spec.BASELINE.q_start[:ARM])
     target = Pose(spec.TARGET, spec.DOWN)
-    postures = {"start": start, "nearly_singular": SINGULAR}
-    for name, q in postures.items():
+    for name, q in (("start", start), ("nearly_singular", SINGULAR)):
         of = kinematics.jacobian(q)
         error = kinematics.pose_error(target, kinematics.hand_pose(q))
         for damping in (0.01, 0.3):

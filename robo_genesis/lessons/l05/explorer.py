@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.solutions_text import MEASURES, records
@@ -55,12 +57,10 @@ def posture_maps(run: Experiment, which: str) -> list[dict[str, Any]]:
 def plane_map(name: str) -> dict[str, Any]:
     """Return run, caption, axes, rows and columns of a map of targets."""
     caption, axes, upwards = PLACES[name]
-    width = len(spec.GRID_X)
-    rows = [
-        {"label": f"{value:g}", "cells": [*range(k * width + 1, (k + 1) * width + 1)]}
-        for k, value in enumerate(upwards)
-    ]
     columns = spec.GRID_X
+    numbers = np.arange(1, len(columns) * len(upwards) + 1).reshape(-1, len(columns)).tolist()
+    cells = zip(upwards, numbers, strict=True)
+    rows = [{"label": f"{value:g}", "cells": of} for value, of in cells]
     return {"run": name, "caption": caption, "axes": axes, "rows": rows[::-1], "columns": columns}
 
 

@@ -8,9 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from robo_genesis.core.scene import CAMERA, FloatArray
+from robo_genesis.core.scene import CAMERA, read_only
 from robo_genesis.lessons.experiment import inputs
 from robo_genesis.lessons.l05.run import ReachCase, SolveCase
 from robo_genesis.sim import franka
@@ -33,20 +32,13 @@ ONE_START = replace(IK, samples=1, iterations=100)
 """The same without starts of the engine's choice, so that an answer depends on its start alone."""
 
 
-def fixed(*values: ArrayLike) -> FloatArray:
-    """Return a read-only array of the values."""
-    array = np.array(values, dtype=np.float64)
-    array.setflags(write=False)
-    return array
-
-
-TARGET = fixed(0.45, 0.0, 0.35)
+TARGET = read_only((0.45, 0.0, 0.35))
 """Target of the hand's origin in the world [m]."""
 
-DOWN = fixed(0.0, 1.0, 0.0, 0.0)
+DOWN = read_only((0.0, 1.0, 0.0, 0.0))
 """Target orientation (w, x, y, z): half a turn about x, so the fingers point down."""
 
-BEYOND_REACH = fixed(2.0, 0.0, 2.0)
+BEYOND_REACH = read_only((2.0, 0.0, 2.0))
 """A target that no posture of the arm comes near to [m]."""
 
 BASELINE = ReachCase(TARGET, DOWN, IK, steps=180)
@@ -109,8 +101,8 @@ HEIGHT = 0.35
 """Height of the horizontal plane of the reach map [m]; the vertical plane is y = 0."""
 
 PLANES = {
-    "vertical": fixed(*((x, 0.0, z) for z in GRID_Z for x in GRID_X)),
-    "horizontal": fixed(*((x, y, HEIGHT) for y in GRID_Y for x in GRID_X)),
+    "vertical": read_only([(x, 0.0, z) for z in GRID_Z for x in GRID_X]),
+    "horizontal": read_only([(x, y, HEIGHT) for y in GRID_Y for x in GRID_X]),
 }
 """Targets (63, 3) of the reach map, row by row [m]."""
 
@@ -160,14 +152,8 @@ BEYOND_NEAREST = 0.01
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    return inputs(
-        CASES,
-        VIEW,
-        joints=list(franka.JOINT_NAMES),
-        model=franka.FRANKA_MJCF,
-        counted=list(EXPECTED_MODEL),
-        marker=MARKER_RADIUS,
-    )
+    robot = {"joints": list(franka.JOINT_NAMES), "model": franka.FRANKA_MJCF}
+    return inputs(CASES, VIEW, counted=list(EXPECTED_MODEL), marker=MARKER_RADIUS, **robot)
 
 
 def view_parameters() -> dict[str, Any]:

@@ -65,25 +65,16 @@ def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
     return np.asarray(-kinematics.jacobian(q) @ angles)
 
 
-def measured_sag(trace: Trace) -> FloatArray:
-    """Return the motion (6,) of the hand [m and rad] from the command's pose to its last one."""
-    command = kinematics.hand_pose(trace.target[-1])
-    return kinematics.pose_error(measured_hand(trace, -1), command)
-
-
 def sags(trace: Trace, kp: FloatArray) -> tuple[float, float, float]:
     """Return the lengths of the measured motion from command to end and of the expected one [m].
 
     The third number is the length of their difference as a share of the expected one.
     """
-    found, expected = measured_sag(trace)[:3], sag(trace.target[-1].astype(float), kp)[:3]
+    command = trace.target[-1].astype(float)
+    found = measured_hand(trace, -1).position - kinematics.hand_pose(command).position
+    expected = sag(command, kp)[:3]
     lengths = [float(np.linalg.norm(way)) for way in (found, expected, found - expected)]
     return lengths[0], lengths[1], lengths[2] / lengths[1]
-
-
-def targets(case: SolveCase) -> Pose:
-    """Return the targets of all questions, (m, 3) and (m, 4)."""
-    return Pose(case.positions, np.tile(case.quat, (case.steps, 1)))
 
 
 def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
@@ -96,7 +87,7 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
     """
     hand = [measured_hand(trace, k) for k in range(1, case.steps + 1)]
     poses = Pose(np.stack([h.position for h in hand]), np.stack([h.quat for h in hand]))
-    error = kinematics.pose_error(targets(case), poses)
+    error = kinematics.pose_error(Pose(case.positions, case.quat), poses)
     q = trace.q[1:].astype(np.float64)
     apart, angle = kinematics.distances(error)
     accepted = kinematics.accepted(q, error, *tolerances(case.settings))

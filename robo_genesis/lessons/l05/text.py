@@ -128,11 +128,10 @@ def conclusions(run: Experiment) -> str:
         "mm from the pose of its command.",
     ]
     for name in tuple(spec.CASES)[1:]:
-        verb = "less" if m[name].final_distance < base.final_distance else "not less"
-        label = spec.LABELS[name]
+        left = m[name].final_distance
+        verb = "less" if left < base.final_distance else "not less"
         lines.append(
-            f"{label[0].upper()}{label[1:]}: {1000 * m[name].final_distance:.2f} mm are left, "
-            f"{verb} than in the baseline."
+            f"With {spec.LABELS[name]}, {1000 * left:.2f} mm are left, {verb} than in the baseline."
         )
     lines += [
         f"The pixels of the {name} are {1000 * found.largest:.3f} mm or less from its surface."
