@@ -65,8 +65,7 @@ def same_links(run: Experiment, poses: Callable[[FloatArray], Pose]) -> Iterator
     for name in spec.CASES:
         trace = run.traces[name]
         measured = (of[:, OF_CHAIN].astype(float) for of in (trace.link_pos, trace.link_quat))
-        error = kinematics.pose_error(Pose(*measured), poses(trace.q))
-        apart, angle = kinematics.distances(error)
+        apart, angle = kinematics.distances(kinematics.pose_error(Pose(*measured), poses(trace.q)))
         yield at_most(f"{name}.links_apart_m", float(apart.max()), spec.SAME_POSE[0])
         yield at_most(f"{name}.links_apart_rad", float(angle.max()), spec.SAME_POSE[1])
 

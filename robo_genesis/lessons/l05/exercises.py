@@ -69,8 +69,7 @@ def near(label: str, found: Any, expected: Pose, tiny: float) -> Iterator[Findin
     yield equal(f"{label}.shapes", [list(position.shape), list(quat.shape)], [[3], [4]])
     if (position.shape, quat.shape) == ((3,), (4,)):
         yield at_most(f"{label}.norm_error", abs(float(np.linalg.norm(quat)) - 1), 1e-5)
-        error = kinematics.pose_error(expected, Pose(position, quat))
-        apart, angle = kinematics.distances(error)
+        apart, angle = kinematics.distances(kinematics.pose_error(expected, Pose(position, quat)))
         yield at_most(f"{label}.distance_m", float(apart), tiny)
         yield at_most(f"{label}.angle_rad", float(angle), tiny)
 

@@ -59,8 +59,7 @@ def plane_map(name: str) -> dict[str, Any]:
     caption, axes, upwards = PLACES[name]
     columns = spec.GRID_X
     numbers = np.arange(1, len(columns) * len(upwards) + 1).reshape(-1, len(columns)).tolist()
-    cells = zip(upwards, numbers, strict=True)
-    rows = [{"label": f"{value:g}", "cells": of} for value, of in cells]
+    rows = [{"label": f"{v:g}", "cells": of} for v, of in zip(upwards, numbers, strict=True)]
     return {"run": name, "caption": caption, "axes": axes, "rows": rows[::-1], "columns": columns}
 
 

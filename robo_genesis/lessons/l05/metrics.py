@@ -53,18 +53,14 @@ def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
         )
     if (trace.target != trace.target[0]).any():
         raise ValueError("The command changes during the run. Measure a run with a constant one.")
-    target = Pose(case.position, case.quat)
-    command, end = hand_pose(trace.target[-1]), measured_hand(trace, -1)
-    start_distance, _ = distances(pose_error(target, measured_hand(trace, 0)))
-    pairs = ((target, command), (command, end), (target, end))
-    apart, angle = zip(*(distances(pose_error(to, at)) for to, at in pairs), strict=True)
-    return ReachMetrics(
-        start_distance=float(start_distance),
-        command_distance=float(apart[0]),
-        command_angle=float(angle[0]),
-        tracking_distance=float(apart[1]),
-        tracking_angle=float(angle[1]),
-        final_distance=float(apart[2]),
-        final_angle=float(angle[2]),
-        final_speed=float(np.abs(trace.qd[-1]).max()),
-    )
+    target, command = Pose(case.position, case.quat), hand_pose(trace.target[-1])
+    end, speed = measured_hand(trace, -1), float(np.abs(trace.qd[-1]).max())
+    start, _ = between(target, measured_hand(trace, 0))
+    parts = (*between(target, command), *between(command, end), *between(target, end))
+    return ReachMetrics(start, *parts, speed)
+
+
+def between(target: Pose, pose: Pose) -> tuple[float, float]:
+    """Return distance [m] and angle [rad] of a pose from another one."""
+    apart, angle = distances(pose_error(target, pose))
+    return float(apart), float(angle)

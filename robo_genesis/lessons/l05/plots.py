@@ -5,14 +5,13 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import PARTS
-from robo_genesis.core.plotting import look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
 from robo_genesis.lessons.l05.metrics import HAND
 from robo_genesis.lessons.l05.solutions_text import CRITERIA, chosen
-from robo_genesis.lessons.view_record import frame_names, view_of
+from robo_genesis.lessons.view_record import view_of
 from robo_genesis.sim import camera_geometry as cameras
 from robo_genesis.sim.arm_kinematics import ARM
 from robo_genesis.sim.franka import LINK_PARENTS
@@ -33,21 +32,16 @@ PANELS = {
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured link origins."""
-    if run.rendered:
-        return plotting.both_ends(run.frames)
-    figure = plotting.figure(5)
-    plotting.schematic(figure.subplots(), run.traces["baseline"], LINK_PARENTS)
-    return figure
+    return plotting.robot_ends(run, LINK_PARENTS)
 
 
 def distance(run: Experiment) -> Figure:
     """Draw the distance of the hand from its target over time, on a logarithmic scale."""
-    figure = plotting.figure(3.6)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(3.6)
     for name in spec.CASES:
         trace = run.traces[name]
         apart = np.linalg.norm(trace.link_pos[:, HAND] - spec.TARGET, axis=-1)
-        style = look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
+        style = plotting.look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
         ax.semilogy(trace.t, 1000 * apart, label=spec.LABELS[name], **style)
     ax.set(xlabel="time [s]", ylabel="hand to target [mm]")
     plotting.legend_above(ax, "Distance of the hand from its target")
@@ -58,13 +52,10 @@ def picture(run: Experiment) -> Figure:
     """Show the picture around the marker, with its centre as projected by hand."""
     view, sphere = view_of(run, spec.VIEWED), marker(run)
     u, v = cameras.project(sphere.centre, view.intrinsics, view.transform)
-    figure = plotting.figure(plotting.WIDTH)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(plotting.WIDTH)
     if view.rgb is not None:
-        height, width = view.rgb.shape[:2]
-        shown = run.frames[frame_names(spec.VIEWED)[0]]
-        ax.imshow(shown, extent=(0, width, height, 0), interpolation="nearest")
-    cross = {"markersize": 16, "markeredgewidth": 2, "color": look("target")["color"]}
+        ax.imshow(view.rgb, extent=(0, *view.size, 0), interpolation="nearest")
+    cross = {"markersize": 16, "markeredgewidth": 2, "color": plotting.look("target")["color"]}
     ax.plot([u], [v], "+", label="projected by hand", **cross)
     ax.set(xlim=(u - AROUND, u + AROUND), ylim=(v + AROUND, v - AROUND), aspect="equal")
     ax.set(xlabel="u [pixel]", ylabel="v [pixel]")
@@ -86,7 +77,7 @@ def solutions(run: Experiment) -> Figure:
     for ax, (label, key) in zip(axes, PANELS.items(), strict=True):
         ax.set_ylabel(label)
         for n, (mark, (curve, inside)) in enumerate(zip(FAMILIES, families, strict=False), 1):
-            style = look(mark, linestyle="-", linewidth=1)
+            style = plotting.look(mark, linestyle="-", linewidth=1)
             ax.plot(curve[:, 0], known(curve)[key], **style)
             ax.plot(q[inside, 0], known(q[inside])[key], "o", markersize=3.5, color=style["color"])
             if ax is axes[0]:

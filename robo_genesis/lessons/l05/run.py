@@ -84,9 +84,8 @@ def tolerances(settings: IkSettings) -> tuple[float, float]:
 
 def ask(robot: Any, joints: JointMap, case: ReachCase) -> IkAnswer:
     """Return the engine's answer for the target of a case; the fingers stay at its start."""
-    return solve_ik(
-        robot, joints, END_EFFECTOR, case.position, case.quat, case.q_start, MOVED, case.settings
-    )
+    pose = case.position, case.quat
+    return solve_ik(robot, joints, END_EFFECTOR, *pose, case.q_start, MOVED, case.settings)
 
 
 def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:

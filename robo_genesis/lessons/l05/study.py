@@ -40,12 +40,11 @@ def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
     apart, angle = kinematics.distances(first.error)
     q = to_numpy(robot.get_dofs_position(joints.dofs_idx_local.tolist())).astype(np.float64)
     rows = engine.jacobian(robot, joints, END_EFFECTOR)
+    differences = np.abs(rows - mujoco_kinematics.jacobian(q, END_EFFECTOR))
     page.readings[GROUP] = {
         "residual_m": float(apart),
         "residual_rad": float(angle),
-        "jacobian_difference": float(
-            np.abs(rows - mujoco_kinematics.jacobian(q, END_EFFECTOR)).max()
-        ),
+        "jacobian_difference": float(differences.max()),
     }
     differ = (first.q != second.q).sum() + (first.error != second.error).sum()
     page.readings[REPEAT_GROUP] = {"entries_that_differ": int(differ)}
