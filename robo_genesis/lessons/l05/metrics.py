@@ -57,7 +57,7 @@ def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
     end, speed = measured_hand(trace, -1), float(np.abs(trace.qd[-1]).max())
     start, _ = between(target, measured_hand(trace, 0))
     parts = (*between(target, command), *between(command, end), *between(target, end))
-    return ReachMetrics(start, *parts, speed)
+    return ReachMetrics(start, *parts, speed)  # in the order of its fields
 
 
 def between(target: Pose, pose: Pose) -> tuple[float, float]:
