@@ -121,7 +121,8 @@ def differences(here: Mapping[str, str], recorded: Mapping[str, str]) -> list[st
     elif here.get("backend", recorded["backend"]) != recorded["backend"]:
         lines.append("Another backend rounds differently. Orderings of runs should agree.")
     else:
-        lines.append("The engine is the same. Other differences change last digits at most.")
+        same = "engine is" if "backend" in here else "engine's version is"
+        lines.append(f"The {same} the same. Other differences usually change last digits only.")
     return lines
 
 

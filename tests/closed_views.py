@@ -1,13 +1,21 @@
-"""Camera views in closed form: a ground at height 0 and one sphere."""
+"""Camera views in closed form: a ground at height 0 and one sphere; and a camera for tests."""
 
 import numpy as np
 
+from robo_genesis.lessons.l05.exercises import TURNED
 from robo_genesis.sim import camera_geometry as cameras
 from robo_genesis.sim.camera_checks import Marker
 from robo_genesis.sim.camera_views import View
 
 PLANE, FAR = 1, 20.0
 """Number of the ground in the segmentation, and where the view ends [m]."""
+
+SIZE, FOV, TRANSFORM = (160, 120), 42.0, TURNED
+"""Columns and rows, vertical field of view [degree] and pose of the camera; it looks down."""
+
+K = cameras.intrinsics(FOV, SIZE)
+MARKER = Marker(3, (TRANSFORM @ (0.3, 0.2, -1.2, 1.0))[:3], 0.1)
+"""A sphere in its view [m]."""
 
 
 def looking(pos, at) -> np.ndarray:
@@ -19,17 +27,34 @@ def looking(pos, at) -> np.ndarray:
     return transform
 
 
-def closed_view(fov: float, size: tuple[int, int], transform, marker: Marker) -> View:
+def plane_depth(start, directions, height=0.0) -> np.ndarray:
+    """Return the depth (…) of the plane z = height along rays (…, 3) [m], NaN where behind."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        depth = (height - start[2]) / directions[..., 2]
+    return np.where(depth > 0, depth, np.nan)
+
+
+def sphere_depth(start, directions, centre, radius) -> np.ndarray:
+    """Return the depth (…) of the near side of a sphere along rays (…, 3), NaN for a miss [m]."""
+    away = start - centre
+    a = (directions**2).sum(axis=-1)
+    half_b = directions @ away
+    discriminant = half_b**2 - a * (away @ away - radius**2)
+    depth = (-half_b - np.sqrt(np.where(discriminant >= 0, discriminant, np.nan))) / a
+    return np.where(depth > 0, depth, np.nan)
+
+
+def closed_view(marker: Marker = MARKER, fov=FOV, size=SIZE, transform=TRANSFORM) -> View:
     """Return the view that a camera has to find; its colours are the numbers as grey."""
-    K = cameras.intrinsics(fov, size)
-    start, directions = cameras.rays(K, transform, size)
-    plane = cameras.plane_depth(start, directions)
-    sphere = cameras.sphere_depth(start, directions, np.array(marker.centre), marker.radius)
+    matrix = cameras.intrinsics(fov, size)
+    start, directions = cameras.rays(matrix, transform, size)
+    plane = plane_depth(start, directions)
+    sphere = sphere_depth(start, directions, marker.centre, marker.radius)
     hit = np.isfinite(sphere) & ~(sphere > plane)
     depth = np.where(hit, sphere, np.where(plane < FAR, plane, FAR))
     numbers = np.where(hit, marker.number, np.where(depth < FAR, PLANE, 0))
     grey = np.repeat(numbers[..., None], 3, axis=2).astype(np.uint8)
     limits = (0.1, FAR)
     return View(
-        K, transform, size, limits, grey, depth.astype(np.float32), numbers.astype(np.int32)
+        matrix, transform, size, limits, grey, depth.astype(np.float32), numbers.astype(np.int32)
     )

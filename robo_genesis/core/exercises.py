@@ -1,4 +1,4 @@
-"""Outcome of the test of a function that a student writes.
+"""Tests of the functions that a student writes.
 
 A lesson's `exercises` module has one test for each function. It takes the function and calls it, so
 it can be run again after every change, and returns a list with one `Check`, as `page.require` takes
@@ -6,11 +6,26 @@ it.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any
+from functools import wraps
+from typing import Any, ParamSpec
+
+import numpy as np
 
 from robo_genesis.core.checks import Check, Finding, at_most, equal, evaluate
 
 CLAIM = "The function does what its docstring says."
+
+Given = ParamSpec("Given")
+
+
+def tested(findings: Callable[Given, Iterable[Finding]]) -> Callable[Given, list[Check]]:
+    """Make a test of a function that yields findings about a student's function."""
+
+    @wraps(findings)
+    def test(*given: Given.args, **named: Given.kwargs) -> list[Check]:
+        return outcome(findings.__name__, lambda _: findings(*given, **named))
+
+    return test
 
 
 def outcome(name: str, findings: Callable[[None], Iterable[Finding]]) -> list[Check]:
@@ -25,6 +40,21 @@ def outcome(name: str, findings: Callable[[None], Iterable[Finding]]) -> list[Ch
         return list(evaluate((findings,), None, {name: CLAIM}))
     except Exception as error:  # whatever a student's function raises
         return [Check(name, False, f"it raised {type(error).__name__}: {error}")]
+
+
+def alike(label: str, found: Any, expected: np.ndarray, tiny: float) -> Iterator[Finding]:
+    """Require an array of the shape of the expected one, which differs from it by rounding.
+
+    Args:
+        label: the beginning of the labels.
+        found: what the student's function returned.
+        expected: the right result.
+        tiny: largest difference that rounding explains.
+    """
+    values = np.asarray(found, dtype=float)
+    yield equal(f"{label}.shape", list(values.shape), list(expected.shape))
+    if values.shape == expected.shape:
+        yield at_most(f"{label}.largest_error", float(np.abs(values - expected).max()), tiny)
 
 
 def compared(

@@ -34,6 +34,12 @@ def figure(height: float) -> Figure:
     return Figure(figsize=(WIDTH, height))
 
 
+def axes(height: float) -> tuple[Figure, Axes]:
+    """Return a figure of the course's width with one pair of axes; `height` [inch]."""
+    drawn = figure(height)
+    return drawn, drawn.subplots()
+
+
 def look(name: str, **more: Any) -> dict[str, Any]:
     """Return the line style of a mark of the palette in the light theme."""
     mark = MARKS[name]
@@ -153,6 +159,20 @@ def both_ends(pictures: Mapping[str, np.ndarray]) -> Figure:
     drawn.set_layout_engine("none")
     places = {"left": 0, "right": 1, "bottom": 0, "top": 1, "hspace": 0.04}
     frames(drawn.subplots(len(shown), 1, gridspec_kw=places), shown)
+    return drawn
+
+
+def robot_ends(run: Any, parents: Sequence[int]) -> Figure:
+    """Show the camera frames of both ends of the baseline, without a camera its link origins.
+
+    Args:
+        run: the experiment.
+        parents: as for `schematic`.
+    """
+    if run.rendered:
+        return both_ends(run.frames)
+    drawn, ax = axes(5)
+    schematic(ax, run.traces["baseline"], parents)
     return drawn
 
 

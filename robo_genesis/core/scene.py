@@ -1,7 +1,7 @@
 """Constants of the course scene, with units."""
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 FloatArray = NDArray[np.floating]
 
@@ -28,3 +28,10 @@ CAMERA = {
 
 FRAME_SHAPE = (CAMERA_RES[1], CAMERA_RES[0], 3)
 """Rows, columns and colour channels of one camera frame."""
+
+
+def read_only(values: ArrayLike) -> FloatArray:
+    """Return a copy of values in float64 that cannot be changed."""
+    array = np.array(values, dtype=np.float64)
+    array.setflags(write=False)
+    return array

@@ -1,12 +1,13 @@
 """Markdown tables of measured values, metrics and checks."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from robo_genesis.core import quantities
 from robo_genesis.core.checks import Check
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.quantities import format_value
+from robo_genesis.core.text import decimal
 
 
 def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
@@ -31,6 +32,26 @@ def _cell(value: Any) -> str:
         text = f"{value:.4f}".rstrip("0").rstrip(".")
         return "0" if text == "-0" else text.replace("-", "−")
     return str(value)
+
+
+def numbers(first: str, heads: Mapping[str, int], rows: Mapping[str, Iterable[Any]]) -> str:
+    """Return a table of numbers beside a column of words.
+
+    Args:
+        first: the head of the words.
+        heads: by head of another column, the digits of its numbers after the point.
+        rows: by word, a number for each of these columns, or a text that stays as it is.
+    """
+    return markdown(
+        [
+            {first: word}
+            | {
+                head: cell if isinstance(cell, str) else decimal(cell, digits)
+                for (head, digits), cell in zip(heads.items(), cells, strict=True)
+            }
+            for word, cells in rows.items()
+        ]
+    )
 
 
 def six_digits(metrics: Mapping[str, CaseMetrics]) -> str:

@@ -32,11 +32,15 @@ def signed(value: float, digits: int) -> str:
     return f"{value:+.{digits}f}".replace("-", "−") if value else "0"
 
 
-def with_unit(value: float, unit: str, digits: int = 4) -> str:
-    """Return a value with its unit; the minus sign is U+2212, and zero has no sign."""
+def decimal(value: float, digits: int) -> str:
+    """Return a value with digits after the point; the minus sign is U+2212, and zero has none."""
     text = f"{value:.{digits}f}"
-    text = text.removeprefix("-") if float(text) == 0 else text.replace("-", "−")
-    return f"{text} {unit}"
+    return text.removeprefix("-") if float(text) == 0 else text.replace("-", "−")
+
+
+def with_unit(value: float, unit: str, digits: int = 4) -> str:
+    """Return a value with its unit, written as by `decimal`."""
+    return f"{decimal(value, digits)} {unit}"
 
 
 def time_digits(dt: float) -> int:

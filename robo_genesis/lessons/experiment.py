@@ -1,7 +1,7 @@
 """The declaration of a page that measures, and the experiment that one run of it is."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -34,6 +34,30 @@ class Run:
 def runs_of(cases: Mapping[str, Any]) -> dict[str, Run]:
     """Return an ordinary run of each case."""
     return {name: Run(case) for name, case in cases.items()}
+
+
+def inputs(
+    cases: Mapping[str, Any], view: Mapping[str, Any] | None = None, **further: Any
+) -> dict[str, Any]:
+    """Return configured inputs as JSON values, for the evidence key.
+
+    Args:
+        cases: by name, dataclasses.
+        view: the arguments of the camera, None without one.
+        further: other inputs by name.
+    """
+    found = {"cases": case_inputs(cases)} | further
+    if view is not None:
+        found["view"] = {name: value for name, value in view.items() if name != "GUI"}
+    return found
+
+
+def case_inputs(cases: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return every field of every case, which are dataclasses, as JSON values."""
+    return {
+        name: {field: np.asarray(value).tolist() for field, value in asdict(case).items()}
+        for name, case in cases.items()
+    }
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,11 +53,6 @@ def quat_multiply(first: FloatArray, second: FloatArray) -> FloatArray:
     return np.stack(parts, axis=-1)
 
 
-def quat_inverse(quat: FloatArray) -> FloatArray:
-    """Return the quaternion (…, 4) of the opposite rotation."""
-    return np.asarray(quat, dtype=float) * (1.0, -1.0, -1.0, -1.0)
-
-
 def rotate(quat: FloatArray, vector: FloatArray) -> FloatArray:
     """Return the vector (…, 3) turned by the quaternion (…, 4)."""
     quat, vector = np.asarray(quat, dtype=float), np.asarray(vector, dtype=float)
@@ -144,7 +139,8 @@ def pose_error(target: Pose, pose: Pose) -> FloatArray:
 
     The first three entries are a translation [m], the others a rotation vector [rad].
     """
-    turn = rotation_vector(quat_multiply(target.quat, quat_inverse(pose.quat)))
+    opposite = pose.quat * np.array([1.0, -1.0, -1.0, -1.0])
+    turn = rotation_vector(quat_multiply(target.quat, opposite))
     return np.concatenate([target.position - pose.position, turn], axis=-1)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from robo_genesis.core.checks import Finding, above, at_most, equal, noted
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim import camera_geometry as cameras
+from robo_genesis.sim.camera_geometry import Residuals
 from robo_genesis.sim.camera_views import View
 from robo_genesis.sim.visual_shape import rotate
 
@@ -51,7 +52,7 @@ class Marker:
     """A sphere in view: number in the segmentation, centre (3,) and radius [m]."""
 
     number: int
-    centre: tuple[float, float, float]
+    centre: FloatArray
     radius: float
 
 
@@ -80,6 +81,13 @@ def mounted_camera(
     yield at_most(f"{label}.axes_error", float(apart[:3, :3].max()), SAME_POSE)
 
 
+def computed(view: View, marker: Marker) -> tuple[FloatArray, FloatArray]:
+    """Return where a marker's centre and the centre of its silhouette are, (2,) each [pixel]."""
+    camera = view.intrinsics, view.transform
+    ellipse = cameras.silhouette_centre(marker.centre, marker.radius, *camera)
+    return cameras.project(marker.centre, *camera), ellipse
+
+
 def projection(label: str, view: View, marker: Marker) -> Iterator[Finding]:
     """Require the centroid of a whole marker in the segmentation to be where a sphere's picture is.
 
@@ -91,39 +99,53 @@ def projection(label: str, view: View, marker: Marker) -> Iterator[Finding]:
     mask = view.segmentation == marker.number
     yield equal(f"{label}.pixels_at_the_border", int(mask.sum() - mask[1:-1, 1:-1].sum()), 0)
     yield above(f"{label}.pixels", int(mask.sum()), FEWEST_PIXELS)
-    found, camera = cameras.centroid(mask), (view.intrinsics, view.transform)
-    ellipse = cameras.silhouette_centre(np.array(marker.centre), marker.radius, *camera)
-    centre = cameras.project(np.array(marker.centre), *camera)
-    yield noted(f"{label}.centroid_to_centre_px", float(np.linalg.norm(found - centre)))
-    apart = float(np.linalg.norm(found - ellipse))
-    yield at_most(f"{label}.centroid_to_silhouette_px", apart, CENTROID)
+    found = cameras.centroid(mask)
+    to_centre, to_ellipse = (float(np.linalg.norm(found - of)) for of in computed(view, marker))
+    yield noted(f"{label}.centroid_to_centre_px", to_centre)
+    yield at_most(f"{label}.centroid_to_silhouette_px", to_ellipse, CENTROID)
+
+
+def from_sphere(view: View, marker: Marker) -> Residuals | None:
+    """Return how far outside a marker its back-projected pixels are, None without pictures."""
+    if view.depth is None or view.segmentation is None:
+        return None
+    points = cameras.back_project(view.depth, view.intrinsics, view.transform)
+    apart = np.linalg.norm(points - marker.centre, axis=-1) - marker.radius
+    return cameras.residuals(apart[view.segmentation == marker.number])
+
+
+def from_plane(view: View, number: int, height: float = 0.0) -> Residuals | None:
+    """Return how far above a horizontal plane its back-projected pixels are.
+
+    Pixels deeper than `PLANE_FAR` are left out: the depth buffer resolves less there.
+
+    Args:
+        view: of the plane; without pictures, the result is None.
+        number: of the plane in the segmentation.
+        height: of the plane [m].
+    """
+    if view.depth is None or view.segmentation is None:
+        return None
+    points = cameras.back_project(view.depth, view.intrinsics, view.transform)
+    mask = (view.segmentation == number) & (view.depth < PLANE_FAR)
+    return cameras.residuals((points[..., 2] - height)[mask])
 
 
 def sphere_surface(label: str, view: View, marker: Marker) -> Iterator[Finding]:
     """Require the back-projected pixels of a marker, its edge included, to be on its surface."""
-    if view.depth is None or view.segmentation is None:
-        yield noted(f"{label}.depth", SKIP)
-        return
-    points = cameras.back_project(view.depth, view.intrinsics, view.transform)
-    radii = np.linalg.norm(points - np.array(marker.centre), axis=-1)
-    mask = view.segmentation == marker.number
-    found = cameras.residuals(radii, np.full(radii.shape, marker.radius), mask)
-    yield above(f"{label}.pixels", found.count, FEWEST_PIXELS)
-    yield noted(f"{label}.mean_m", found.mean)
-    yield at_most(f"{label}.largest_m", found.largest, MESH_SHARE * marker.radius)
+    return _surface(label, from_sphere(view, marker), MESH_SHARE * marker.radius)
 
 
 def plane_surface(label: str, view: View, number: int, height: float = 0.0) -> Iterator[Finding]:
-    """Require the back-projected pixels of a horizontal plane to be at its height [m].
+    """Require the back-projected pixels of a horizontal plane to be at its height [m]."""
+    return _surface(label, from_plane(view, number, height), PLANE)
 
-    Pixels deeper than `PLANE_FAR` are left out: the depth buffer resolves less there.
-    """
-    if view.depth is None or view.segmentation is None:
+
+def _surface(label: str, found: Residuals | None, most: float) -> Iterator[Finding]:
+    """Require pixels within a distance [m] of a surface; without pictures, they pass."""
+    if found is None:
         yield noted(f"{label}.depth", SKIP)
         return
-    mask = (view.segmentation == number) & (view.depth < PLANE_FAR)
-    points = cameras.back_project(view.depth, view.intrinsics, view.transform)
-    found = cameras.residuals(points[..., 2], np.full(mask.shape, height), mask)
     yield above(f"{label}.pixels", found.count, FEWEST_PIXELS)
     yield noted(f"{label}.mean_m", found.mean)
-    yield at_most(f"{label}.largest_m", found.largest, PLANE)
+    yield at_most(f"{label}.largest_m", found.largest, most)

@@ -1,4 +1,4 @@
-"""Camera geometry in NumPy: camera matrix, projection, back-projection, closed forms, masks.
+"""Camera geometry in NumPy: camera matrix, projection, back-projection, masks.
 
 A pixel has two coordinates, u to the right and v down. The corner of the picture is (0, 0), so the
 centre of column i and row j is (i + ½, j + ½). An array of pixels has shape (H, W): its first index
@@ -68,8 +68,8 @@ def silhouette_centre(
 
 
 def rays(
-    K: FloatArray, transform: FloatArray, size: tuple[int, int], shift: FloatArray | None = None
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    K: FloatArray, transform: FloatArray, size: tuple[int, int]
+) -> tuple[FloatArray, FloatArray]:
     """Return the camera's position (3,) and the direction (H, W, 3) through each pixel [m].
 
     The component of a direction along the optical axis is 1. So position + depth · direction is the
@@ -79,47 +79,19 @@ def rays(
         K: camera matrix.
         transform: of the camera.
         size: columns and rows.
-        shift: (2,) from the centre of each pixel to where its ray passes, none by default [pixel].
     """
     width, height = size
     u, v = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)  # (H, W)
-    pixels = np.stack([u, v], axis=-1) + (0.0 if shift is None else shift)
     pose = other_axes(transform)
-    directions = np.dstack([pixels, np.ones((height, width))]) @ np.linalg.inv(K).T
+    directions = np.dstack([u, v, np.ones((height, width))]) @ np.linalg.inv(K).T
     return pose[:3, 3], directions @ pose[:3, :3].T
 
 
-def back_project(
-    depth: FloatArray, K: FloatArray, transform: FloatArray
-) -> FloatArray:  # fmt: skip
+def back_project(depth: FloatArray, K: FloatArray, transform: FloatArray) -> FloatArray:
     """Return the point (H, W, 3) of the world that each pixel shows, from its depth (H, W) [m]."""
     height, width = np.shape(depth)
     start, directions = rays(K, transform, (width, height))
     return start + np.asarray(depth, dtype=float)[..., None] * directions
-
-
-def plane_depth(start: FloatArray, directions: FloatArray, height: float = 0.0) -> FloatArray:
-    """Return the depth (…) of the plane z = height along rays (…, 3) [m], NaN where behind."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        depth = (height - start[2]) / directions[..., 2]
-    return np.where(depth > 0, depth, np.nan)
-
-
-def sphere_depth(
-    start: FloatArray, directions: FloatArray, centre: FloatArray, radius: float
-) -> FloatArray:
-    """Return the depth (…) of the near side of a sphere along rays (…, 3), NaN for a miss [m]."""
-    away = start - np.asarray(centre, dtype=float)
-    a = (directions**2).sum(axis=-1)
-    half_b = directions @ away
-    discriminant = half_b**2 - a * (away @ away - radius**2)
-    depth = (-half_b - np.sqrt(np.where(discriminant >= 0, discriminant, np.nan))) / a
-    return np.where(depth > 0, depth, np.nan)
-
-
-def along_ray(depth: FloatArray, directions: FloatArray) -> FloatArray:
-    """Return the distance (…) from the camera of points at a depth (…) along rays (…, 3) [m]."""
-    return depth * np.linalg.norm(directions, axis=-1)
 
 
 def centroid(mask: np.ndarray) -> FloatArray:
@@ -132,22 +104,15 @@ def centroid(mask: np.ndarray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class Residuals:
-    """Distances between measured and computed values: their number, mean, RMS and largest size."""
+    """Distances of points from a surface [m]: their number, mean, and largest size."""
 
     count: int
     mean: float
-    rms: float
     largest: float
 
 
-def residuals(measured: FloatArray, computed: FloatArray, mask: np.ndarray) -> Residuals:
-    """Return the residuals of values (H, W) within a mask (H, W), where a value was computed.
-
-    The mean keeps the sign of measured − computed. Without pixels, all but the number are NaN.
-    """
-    apart = (np.asarray(measured, dtype=float) - computed)[mask]
-    apart = apart[np.isfinite(apart)]
+def residuals(apart: FloatArray) -> Residuals:
+    """Summarise signed distances (n,) [m]; without any, mean and largest are NaN."""
     if not apart.size:
-        return Residuals(0, np.nan, np.nan, np.nan)
-    rms = float(np.sqrt((apart**2).mean()))
-    return Residuals(apart.size, float(apart.mean()), rms, float(np.abs(apart).max()))
+        return Residuals(0, np.nan, np.nan)
+    return Residuals(apart.size, float(apart.mean()), float(np.abs(apart).max()))

@@ -3,8 +3,7 @@
 The functions that read the engine are the only ones that depend on its version.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -30,7 +29,6 @@ class View:
     | `rgb` | (H, W, 3) | colours, uint8 |
     | `depth` | (H, W) | distance along the optical axis [m], float32 |
     | `segmentation` | (H, W) | number of what each pixel shows, 0 for the background, int32 |
-    | `shown` | | by number, the engine's indices of entity, link and geom |
 
     Raises:
         ViewError: a shape is wrong, or the transform is not that of a rigid body.
@@ -43,15 +41,19 @@ class View:
     rgb: np.ndarray | None = None
     depth: FloatArray | None = None
     segmentation: np.ndarray | None = None
-    shown: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         width, height = self.size
-        shapes: dict[str, tuple[int, ...]] = {"intrinsics": (3, 3), "transform": (4, 4)}
-        pictures = {"rgb": (height, width, 3), "depth": (height, width)}
-        pictures["segmentation"] = height, width
-        shapes |= {name: of for name, of in pictures.items() if getattr(self, name) is not None}
+        shapes: dict[str, tuple[int, ...]] = {
+            "intrinsics": (3, 3),
+            "transform": (4, 4),
+            "rgb": (height, width, 3),
+            "depth": (height, width),
+            "segmentation": (height, width),
+        }
         for name, shape in shapes.items():
+            if getattr(self, name) is None:
+                continue
             array = np.array(getattr(self, name))
             if array.shape != shape:
                 raise ViewError(
@@ -68,17 +70,16 @@ class View:
             )
 
 
-def look(camera: Any, scene: Any, render: bool = True) -> View:
+def look(camera: Any, render: bool = True) -> View:
     """Return what a camera sees in the present state, and its pose at this moment.
 
-    A camera on a link must be placed first, with `place_on_link`. Depth is rendered without
+    A camera on a link must be moved there first, with `move_to_attach`. Depth is rendered without
     colours: with them, the engine takes it from one sample of a multisampled picture, which is not
     at the centre of the pixel. Rendering is forced, because the engine otherwise draws nothing new
     before the next step, not even after a position was assigned.
 
     Args:
         camera: of a built scene.
-        scene: the scene, for the meaning of the numbers in the segmentation.
         render: whether to take pictures.
 
     Raises:
@@ -86,13 +87,13 @@ def look(camera: Any, scene: Any, render: bool = True) -> View:
     """
     pictures: dict[str, Any] = {}
     if render:
-        first = camera.render(rgb=False, depth=True, segmentation=True, force_render=True)
-        _, depth, segmentation, _ = first
+        _, depth, segmentation, _ = camera.render(
+            rgb=False, depth=True, segmentation=True, force_render=True
+        )
         pictures = {
             "rgb": to_numpy(camera.render(force_render=True)[0]),
             "depth": to_numpy(depth),
             "segmentation": to_numpy(segmentation).astype(np.int32),
-            "shown": read_segments(scene),
         }
     return View(
         intrinsics=read_intrinsics(camera),
@@ -117,47 +118,17 @@ def read_transform(camera: Any) -> FloatArray:
     return to_numpy(camera.transform).astype(np.float64)
 
 
-def read_segments(scene: Any) -> dict[int, tuple[int, ...]]:
-    """Return by number in a segmentation the indices of entity, link and geom, without background.
-
-    There are as many indices as the scene's `segmentation_level` names: 1, 2 or 3.
-    """
-    keys = dict(scene.segmentation_idx_dict)
-    return {
-        int(number): tuple(map(int, key)) if isinstance(key, tuple) else (int(key),)
-        for number, key in keys.items()
-        if key != -1
-    }
-
-
 def segment_number(scene: Any, link: Any) -> int:
     """Return the number of a link in the segmentations of a scene, whose level is the link.
 
     Raises:
         ViewError: no segment is this link's; the message has those that exist.
     """
-    segments = read_segments(scene)
+    segments = scene.segmentation_idx_dict
     found = [number for number, key in segments.items() if key == (link.entity.idx, link.idx)]
     if len(found) != 1:
         raise ViewError(
             f"No single segment is that of entity {link.entity.idx}, link {link.idx}. The scene "
-            f"has {sorted(segments.values())}. Leave the scene's segmentation_level at 'link'."
+            f"has {list(segments.values())}. Leave the scene's segmentation_level at 'link'."
         )
-    return found[0]
-
-
-def read_link_pose(link: Any) -> tuple[FloatArray, FloatArray]:
-    """Return position (3,) [m] and orientation (4,), (w, x, y, z), of a link in the world."""
-    return to_numpy(link.get_pos()).reshape(3), to_numpy(link.get_quat()).reshape(4)
-
-
-def place_on_link(camera: Any, link: Any, offset: FloatArray) -> None:
-    """Attach a camera to a link and move it there. Repeat it after the link has moved.
-
-    Args:
-        camera: of a built scene.
-        link: of a rigid entity.
-        offset: (4, 4) the camera in the frame of the link, z backwards [m].
-    """
-    camera.attach(link, np.array(offset, dtype=np.float64))
-    camera.move_to_attach()
+    return int(found[0])

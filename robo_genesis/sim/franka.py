@@ -1,14 +1,18 @@
 """Constants of the Franka Panda of the course, with units."""
 
-import numpy as np
-
-from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.scene import FloatArray, read_only
 
 FRANKA_MJCF = "xml/franka_emika_panda/panda.xml"
 """The Franka Panda that Genesis bundles, relative to the engine's asset folder."""
 
 JOINT_NAMES = (*(f"joint{number}" for number in range(1, 8)), "finger_joint1", "finger_joint2")
 """The nine one-DOF joints, in the order of every array of the course."""
+
+CREDIT = (
+    "Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from franka_description, "
+    "© Franka Robotics GmbH; decimated and converted"
+)
+"""The authors of the robot's shape, below pictures that are drawn from it."""
 
 MODEL_COUNTS = {"links": 11, "joints": 9, "dofs": 9, "qpos": 9}
 """Counts of the robot's model, as the engine reports them."""
@@ -24,9 +28,7 @@ def per_joint(*values: float) -> FloatArray:
     """Return a read-only array of shape (9,), one value for each of `JOINT_NAMES`."""
     if len(values) != len(JOINT_NAMES):
         raise ValueError(f"{len(values)} values given, one for each of {len(JOINT_NAMES)} joints")
-    array = np.array(values, dtype=np.float64)
-    array.setflags(write=False)
-    return array
+    return read_only(values)
 
 
 Q_START = per_joint(0, -0.3, 0, -2.0, 0, 1.7, 0.79, 0.04, 0.04)

@@ -9,7 +9,8 @@ import numpy as np
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE
 from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.joints import JointMap, to_numpy
+from robo_genesis.sim import franka
+from robo_genesis.sim.joints import JointMap, resolve_joints, to_numpy
 from robo_genesis.sim.session import require_built
 
 
@@ -34,6 +35,21 @@ class ControlCase:
     dt: float = DT
     substeps: int = SUBSTEPS
     seed: int = SEED
+
+
+def describe(page: Any, robot: Any) -> JointMap:
+    """Give a page the counts, links and joints of the course's robot, and return its joints."""
+    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
+    page.readings["model"] = dict(zip(franka.MODEL_COUNTS, counted, strict=True))
+    page.links = [link.name for link in robot.links]
+    page.joints = resolve_joints(robot, franka.JOINT_NAMES)
+    return page.joints
+
+
+def course_case(q_target: FloatArray, steps: int) -> ControlCase:
+    """Return the case of the course's robot with its gains, from its start to `q_target` (9,)."""
+    gains = franka.KP_BASELINE, franka.KV_BASELINE, franka.EFFORT_LIMIT
+    return ControlCase(franka.Q_START, q_target, *gains, steps)
 
 
 def differences(one: ControlCase, other: ControlCase, joints: JointMap) -> list[str]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.arm_kinematics import Pose
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.session import asset
 
@@ -38,7 +39,7 @@ def link_names() -> set[str]:
     return {model.body(k).name for k in range(1, model.nbody)}
 
 
-def link_poses(q: FloatArray, links: Sequence[str]) -> tuple[FloatArray, FloatArray]:
+def link_poses(q: FloatArray, links: Sequence[str]) -> Pose:
     """Return positions (n, l, 3) [m] and orientations (n, l, 4) of links at `q` (n, d)."""
     import mujoco
 
@@ -52,7 +53,7 @@ def link_poses(q: FloatArray, links: Sequence[str]) -> tuple[FloatArray, FloatAr
         qpos[:] = values
         mujoco.mj_kinematics(model, data)
         places[:], turns[:] = xpos, xquat
-    return position[:, bodies], orientation[:, bodies]
+    return Pose(position[:, bodies], orientation[:, bodies])
 
 
 def jacobian(q: FloatArray, link: str) -> FloatArray:

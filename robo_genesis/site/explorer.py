@@ -5,6 +5,7 @@ All runs of the grid come from the bundle of the page that ran them.
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -16,6 +17,7 @@ from robo_genesis.core import project
 from robo_genesis.core.files import derived
 from robo_genesis.core.shown import ShownError, find
 from robo_genesis.evidence import bundle
+from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.site.evidence.measured import BACKEND
 
 
@@ -51,6 +53,29 @@ def bundle_of(directive: SphinxDirective, lesson_page: str) -> Path:
     if not (folder / "manifest.json").is_file():
         raise directive.error(f"{directive.name}: {lesson_page} has no bundle on {BACKEND}.")
     return folder
+
+
+def of_lesson(directive: SphinxDirective, function: str) -> tuple[Path, Experiment, Any]:
+    """Return what a directive shows whose arguments are a page and a name: `l05/cameras world`.
+
+    Args:
+        directive: the directive.
+        function: in the lesson's `explorer`; it gets the experiment and the name.
+
+    Returns:
+        The folder of the page's bundle, its experiment, and the result of the function.
+
+    Raises:
+        DirectiveError: there is no bundle, function, or thing of this name.
+    """
+    lesson_page, name = directive.arguments
+    folder = bundle_of(directive, lesson_page)
+    try:
+        found = find(f"robo_genesis.lessons.{lesson_page.split('/')[0]}.explorer.{function}")
+        experiment = accepted_experiment(folder, bundle.read_manifest(folder))
+        return folder, experiment, found(experiment, name)
+    except (ShownError, LookupError, ValueError) as error:
+        raise directive.error(f"{directive.name}: {lesson_page} {name}: {error}") from error
 
 
 def explorer_html(lesson: str, folder: Path) -> str:

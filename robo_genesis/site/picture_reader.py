@@ -15,12 +15,9 @@ from PIL import Image
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.shown import accepted_experiment
-from robo_genesis.core.shown import ShownError, find
-from robo_genesis.evidence import bundle
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import image
-from robo_genesis.site.explorer import bundle_of
+from robo_genesis.site.explorer import of_lesson
 from robo_genesis.site.replay.controls import as_json
 
 LINES = ("pixel", "shows", "depth", "point in the world", "closed form", "depth − closed form")
@@ -36,16 +33,10 @@ class PictureReaderDirective(SphinxDirective):
 
         Errors: the page has no bundle, or its lesson has no such view.
         """
+        folder, run, view = of_lesson(self, "picture")
+        if not run.rendered:
+            return [nodes.paragraph("", "SKIP: this run has no camera.")]
         lesson_page, name = self.arguments
-        lesson, folder = lesson_page.split("/")[0], bundle_of(self, lesson_page)
-        try:
-            about = find(f"robo_genesis.lessons.{lesson}.explorer.picture")
-            run = accepted_experiment(folder, bundle.read_manifest(folder))
-            if not run.rendered:
-                return [nodes.paragraph("", "SKIP: this run has no camera.")]
-            view = about(run, name)
-        except (ShownError, LookupError, ValueError) as error:
-            raise self.error(f"{self.name}: {lesson_page} {name}: {error}") from error
         return [reader_block(self, f"{lesson_page}/{BACKEND}", name, folder / "frames", view)]
 
 

@@ -15,21 +15,18 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.shown import accepted_experiment
 from robo_genesis.core import tables
 from robo_genesis.core.channels import View
 from robo_genesis.core.files import derived
 from robo_genesis.core.scene import DT, FloatArray
-from robo_genesis.core.shown import ShownError, find
 from robo_genesis.core.trace import Trace
-from robo_genesis.evidence import bundle
 from robo_genesis.lessons.declaration import Compared
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.registry import drawn_cases
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
-from robo_genesis.site.explorer import bundle_of, inputs
+from robo_genesis.site.explorer import inputs, of_lesson
 from robo_genesis.site.replay import controls
 from robo_genesis.site.replay.directive import (
     leave_model,
@@ -57,20 +54,18 @@ class PostureMapDirective(SphinxDirective):
 
         Errors: the page has no bundle, or its lesson has no such maps or wrote no shape.
         """
+        folder, experiment, maps = of_lesson(self, "posture_maps")
         lesson_page, which = self.arguments
-        lesson, folder = lesson_page.split("/")[0], bundle_of(self, lesson_page)
+        lesson = lesson_page.split("/")[0]
         try:
-            compared, maps = drawn_cases(lesson), f"robo_genesis.lessons.{lesson}.explorer"
+            compared = drawn_cases(lesson)
             if not isinstance(compared, Compared):
                 raise LookupError(f"{lesson} compares free bodies. Maps show a robot's postures.")
-            view = compared.view
-            shape = shape_file(lesson, view.thing)
-            experiment = accepted_experiment(folder, bundle.read_manifest(folder))
-            found = find(f"{maps}.posture_maps")(experiment, which)
-        except (ShownError, LookupError, ValueError) as error:
+            shape = shape_file(lesson, compared.view.thing)
+        except (LookupError, ValueError) as error:
             raise self.error(f"{self.name}: {lesson_page} {which}: {error}") from error
         key = f"{lesson_page}/{BACKEND}"
-        return [posture_block(self, key, which, folder, experiment, found, shape, view)]
+        return [posture_block(self, key, which, folder, experiment, maps, shape, compared.view)]
 
 
 def posture_block(
@@ -89,16 +84,17 @@ def posture_block(
         shape: file of the robot's shape.
         view: the words for its 3D view.
     """
-    from robo_genesis.site.replay.poster import picture  # loads slowly
+    from robo_genesis.site.replay.poster import picture  # these load slowly
+    from robo_genesis.site.replay.scenery import fitted
 
     env, name = directive.env, "-".join(("postures", *key.split("/"), which))
     traces = {
         one["run"]: with_target(experiment.traces[one["run"]], one["targets"]) for one in maps
     }
-    camera = camera_of(traces)
+    camera = fitted(np.concatenate([trace.link_pos.reshape(-1, 3) for trace in traces.values()]))
     built = [which.encode(), shape.read_bytes(), *inputs(folder)]
-    what = shape, experiment.links, traces, view, camera
-    model = derived("replay", built, lambda: model_of(*what))
+    parts = shape, experiment.links, traces, view, camera
+    model = derived("replay", built, lambda: model_of(*parts))
     still = derived("poster", built, lambda: picture(model, camera))
     files, weight = leave_model(env, name, model)
     alt = f"The {view.thing} at the start, drawn from the recorded poses."
@@ -135,13 +131,6 @@ def with_target(trace: Trace, targets: FloatArray) -> Trace:
     )
 
 
-def camera_of(traces: Mapping[str, Trace]) -> "Camera":
-    """Return the camera with all links and targets in its picture."""
-    from robo_genesis.site.replay.scenery import fitted  # loads slowly
-
-    return fitted(np.concatenate([trace.link_pos.reshape(-1, 3) for trace in traces.values()]))
-
-
 def model_of(
     shape: Path, links: Sequence[str], traces: Mapping[str, Trace], view: View, camera: "Camera"
 ) -> bytes:
@@ -160,12 +149,9 @@ def model_of(
 
 
 def opening(
-    name: str,
-    maps: Sequence[Mapping[str, Any]],
-    camera: "Camera",
-    files: controls.Files,
+    name: str, maps: Sequence[Mapping[str, Any]], camera: "Camera", files: controls.Files,
     view: View,
-) -> str:
+) -> str:  # fmt: skip
     """Return the start of the maps as HTML, with what `_static/posture-map.js` needs to know."""
     shown = ("run", "caption", "axes", "rows", "columns")
     words = {

@@ -179,7 +179,7 @@ CHANGES = [
     ("lessons/l02/text", DOCSTRING, NONE, NONE),
     ("lessons/l04/claims_text", ('"The baseline ', '"A baseline '), ("l04",), NONE),
     ("lessons/l02/checks", ('"""Named checks', '"""The checks'), NONE, NONE),
-    ("lessons/l02/metrics", ('"""Return how far', '"""Find how far'), NONE, NONE),
+    ("lessons/l02/metrics", ('"""Measure one', '"""Take one'), NONE, NONE),
 ]
 CHANGES += [  # a lesson can be removed with the folder of its tests alone
     (file, CONSTANT, ("l03",), ("l03",))

@@ -4,27 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from closed_views import PLANE, closed_view
+from closed_views import FOV, MARKER, PLANE, SIZE, TRANSFORM, K, closed_view
 
 from robo_genesis.sim import camera_checks
 from robo_genesis.sim import camera_geometry as cameras
-from robo_genesis.sim.camera_checks import Marker
 from robo_genesis.sim.camera_views import View
-
-SIZE = (160, 120)
-K = cameras.intrinsics(42.0, SIZE)
-TRANSFORM = np.array([
-    [0.6, -0.48, 0.64, 1.1],
-    [0.8, 0.36, -0.48, -0.7],
-    [0.0, 0.8, 0.6, 0.9],
-    [0.0, 0.0, 0.0, 1.0],
-])  # fmt: skip
-MARKER = Marker(3, tuple((TRANSFORM @ (0.3, 0.2, -1.2, 1.0))[:3].tolist()), 0.1)
-
-
-def seen(marker=MARKER):
-    """Return a view of a plane and one sphere, both in closed form."""
-    return closed_view(42.0, SIZE, TRANSFORM, marker)
 
 
 def problems(findings):
@@ -32,9 +16,9 @@ def problems(findings):
 
 
 def test_checks_pass_for_a_view_in_closed_form():
-    view = seen()
+    view = closed_view()
     findings = [
-        *camera_checks.camera_matrix("v", view, 42.0),
+        *camera_checks.camera_matrix("v", view, FOV),
         *camera_checks.projection("v", view, MARKER),
         *camera_checks.sphere_surface("v", view, MARKER),
         *camera_checks.plane_surface("v", view, PLANE),
@@ -43,7 +27,7 @@ def test_checks_pass_for_a_view_in_closed_form():
 
 
 def test_checks_of_pictures_say_skip_without_them():
-    view = replace(seen(), rgb=None, depth=None, segmentation=None)
+    view = replace(closed_view(), rgb=None, depth=None, segmentation=None)
     for check in (camera_checks.projection, camera_checks.sphere_surface):
         (finding,) = check("v", view, MARKER)
         assert (finding.passed, finding.found) == (True, "SKIP")
@@ -52,7 +36,7 @@ def test_checks_of_pictures_say_skip_without_them():
 
 def along(view):
     _, directions = cameras.rays(K, TRANSFORM, SIZE)
-    return replace(view, depth=cameras.along_ray(view.depth, directions))
+    return replace(view, depth=view.depth * np.linalg.norm(directions, axis=-1))
 
 
 def moved(view):
@@ -61,13 +45,13 @@ def moved(view):
 
 SMALL = replace(MARKER, radius=0.04)
 SPOILED = {
-    "another number": (camera_checks.projection, seen(), replace(MARKER, number=7)),
-    "another radius": (camera_checks.sphere_surface, seen(), replace(MARKER, radius=0.11)),
-    "too few pixels": (camera_checks.projection, seen(SMALL), SMALL),
-    "moved pose": (camera_checks.projection, moved(seen()), MARKER),
-    "depth along the ray": (camera_checks.sphere_surface, along(seen()), MARKER),
-    "another height": (camera_checks.plane_surface, seen(), PLANE, 0.01),
-    "another field of view": (camera_checks.camera_matrix, seen(), 43.0),
+    "another number": (camera_checks.projection, closed_view(), replace(MARKER, number=7)),
+    "another radius": (camera_checks.sphere_surface, closed_view(), replace(MARKER, radius=0.11)),
+    "too few pixels": (camera_checks.projection, closed_view(SMALL), SMALL),
+    "moved pose": (camera_checks.projection, moved(closed_view()), MARKER),
+    "depth along the ray": (camera_checks.sphere_surface, along(closed_view()), MARKER),
+    "another height": (camera_checks.plane_surface, closed_view(), PLANE, 0.01),
+    "another field of view": (camera_checks.camera_matrix, closed_view(), 43.0),
 }
 
 

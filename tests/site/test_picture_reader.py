@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from browsers import SOFTWARE, launched
+from closed_views import plane_depth, sphere_depth
 from playwright.sync_api import Browser, Page
 from watching import errors, violations
 from without_sphinx import Panel, page_of
@@ -12,7 +13,7 @@ from without_sphinx import Panel, page_of
 from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.evidence.picture_file import write_picture
 from robo_genesis.lessons import view_record
-from robo_genesis.sim.camera_geometry import intrinsics, plane_depth, rays, sphere_depth
+from robo_genesis.sim.camera_geometry import intrinsics, rays
 from robo_genesis.sim.camera_views import View
 from robo_genesis.site.picture_reader import reader_block
 

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from robo_genesis.core.checks import Check, Finding, equal, within
-from robo_genesis.core.exercises import outcome
+from robo_genesis.core.checks import Finding, equal, within
+from robo_genesis.core.exercises import tested
 from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim.joints import to_numpy
@@ -13,33 +13,27 @@ TINY = 1e-9
 """Largest difference that rounding explains in float64 [m]."""
 
 
-def height_after(height: Callable[..., Any]) -> list[Check]:
+@tested
+def height_after(height: Callable[..., Any]) -> Iterator[Finding]:
     """Check `height(z0, g, h, n)`: the height [m] after n solver steps from rest."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        case = spec.BASELINE
-        for name, z0, g, h, n in (
-            ("baseline", case.height, case.gravity, case.h, case.steps * case.substeps),
-            ("on_the_moon", 2.0, 1.62, 0.02, 7),
-            ("one_step", 0.5, case.gravity, 0.01, 1),
-            ("no_step", 0.5, case.gravity, 0.01, 0),
-        ):
-            expected = z0 - float(summed_drop(h, n, g))
-            yield within(f"{name}_m", float(height(z0, g, h, n)), expected, TINY)
-
-    return outcome("height_after", findings)
+    case = spec.BASELINE
+    for name, z0, g, h, n in (
+        ("baseline", case.height, case.gravity, case.h, case.steps * case.substeps),
+        ("on_the_moon", 2.0, 1.62, 0.02, 7),
+        ("one_step", 0.5, case.gravity, 0.01, 1),
+        ("no_step", 0.5, case.gravity, 0.01, 0),
+    ):
+        expected = z0 - float(summed_drop(h, n, g))
+        yield within(f"{name}_m", float(height(z0, g, h, n)), expected, TINY)
 
 
-def fall(run: Callable[..., Any], scene: Any, sphere: Any) -> list[Check]:
+@tested
+def fall(run: Callable[..., Any], scene: Any, sphere: Any) -> Iterator[Finding]:
     """Check `run(scene, sphere, steps)`: the last height [m] after a reset, twice and shorter."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        case = spec.BASELINE
-        for name, steps in (("first", case.steps), ("again", case.steps), ("shorter", 5)):
-            expected = case.height - float(summed_drop(case.h, steps * case.substeps, case.gravity))
-            found = float(run(scene, sphere, steps))
-            yield within(f"{name}.height_m", found, expected, spec.FORMULA_TOLERANCE)
-            now = float(to_numpy(sphere.get_pos())[2])
-            yield equal(f"{name}.is_the_height_of_the_sphere", found, now)
-
-    return outcome("fall", findings)
+    case = spec.BASELINE
+    for name, steps in (("first", case.steps), ("again", case.steps), ("shorter", 5)):
+        expected = case.height - float(summed_drop(case.h, steps * case.substeps, case.gravity))
+        found = float(run(scene, sphere, steps))
+        yield within(f"{name}.height_m", found, expected, spec.FORMULA_TOLERANCE)
+        now = float(to_numpy(sphere.get_pos())[2])
+        yield equal(f"{name}.is_the_height_of_the_sphere", found, now)

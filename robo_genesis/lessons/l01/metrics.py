@@ -2,11 +2,9 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from robo_genesis.core.free_fall import continuous_drop, summed_drop
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.falls import continuous_gap, fallen, formula_error
 from robo_genesis.sim.rigid_bodies import Drop
 
 
@@ -25,14 +23,10 @@ class FallMetrics(CaseMetrics):
 
 def fall_metrics(trace: BodyTrace, case: Drop) -> FallMetrics:
     """Measure one fall; gravity and solver step of the case enter the formulas alone."""
-    height = trace.link_pos[:, 0, 2].astype(np.float64)
-    drop = height[0] - height
-    n = case.substeps * np.arange(len(trace.t))
-    expected = summed_drop(case.h, n, case.gravity)
     return FallMetrics(
         duration=float(trace.t[-1]),
-        final_height=float(height[-1]),
-        drop=float(drop[-1]),
-        formula_error=float(np.abs(drop - expected).max()),
-        school_gap=float(drop[-1] - continuous_drop(trace.t[-1:], case.gravity)[0]),
+        final_height=float(trace.link_pos[-1, 0, 2]),
+        drop=float(fallen(trace)[-1]),
+        formula_error=formula_error(trace, case),
+        school_gap=continuous_gap(trace, case),
     )

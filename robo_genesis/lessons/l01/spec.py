@@ -3,10 +3,10 @@
 The module is data and computes nothing. `parameters()` has the values that decide what runs.
 """
 
-from dataclasses import asdict
 from typing import Any
 
 from robo_genesis.core.scene import CAMERA, DT
+from robo_genesis.lessons.experiment import inputs
 from robo_genesis.sim.rigid_bodies import Drop
 
 MINIMUM_HARDWARE = "cpu"
@@ -46,11 +46,7 @@ RELATIONS = ()
 
 def parameters() -> dict[str, Any]:
     """Return every configured input as JSON values, for the evidence key."""
-    return {
-        "cases": {name: asdict(case) for name, case in CASES.items()},
-        "counted": list(EXPECTED_MODEL),
-        "view": {name: value for name, value in VIEW.items() if name != "GUI"},
-    }
+    return inputs(CASES, VIEW, counted=list(EXPECTED_MODEL))
 
 
 def lecture_parameters() -> dict[str, Any]:

@@ -46,15 +46,12 @@ def doctor_table(run: Experiment) -> str:
 def start_table(run: Experiment) -> str:
     """Return the times of both starts, part by part [s]."""
     found = run.readings[machine.TIMES]
-    rows = [
-        {"part": words} | {f"{s} start [s]": f"{found[f'{s}_{part}']:.2f}" for s in machine.STARTS}
+    rows = {
+        words: [found[f"{start}_{part}"] for start in machine.STARTS]
         for part, words in PARTS.items()
-    ]
-    total = {
-        f"{s} start [s]": f"{sum(found[f'{s}_{part}'] for part in PARTS):.2f}"
-        for s in machine.STARTS
     }
-    return tables.markdown([*rows, {"part": "together"} | total])
+    rows["together"] = [sum(of) for of in zip(*rows.values(), strict=True)]
+    return tables.numbers("part", {f"{start} start [s]": 2 for start in machine.STARTS}, rows)
 
 
 def start_sentence(run: Experiment) -> str:

@@ -16,7 +16,8 @@ from robo_genesis.lessons.l02 import (
     text,
     trials,
 )
-from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics, fallen
+from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
+from robo_genesis.sim.falls import fallen
 from robo_genesis.sim.plausibility.falling import require_falls
 from robo_genesis.sim.rigid_bodies import read_model, run_drop
 from robo_genesis.sim.visual_shape import floor, read_shape

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.check_spec import START_TOLERANCE
 from robo_genesis.core.checks import (
     Finding,
     above,
@@ -12,13 +11,12 @@ from robo_genesis.core.checks import (
     equal,
     masses,
     model_counts,
-    sample_times,
-    within,
+    stamps,
 )
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
-from robo_genesis.lessons.l02.metrics import fallen
-from robo_genesis.sim import end_state
+from robo_genesis.sim.end_state import posture
+from robo_genesis.sim.falls import fallen, start
 
 
 def structure(run: Experiment) -> Iterator[Finding]:
@@ -27,19 +25,6 @@ def structure(run: Experiment) -> Iterator[Finding]:
 
 def mass(run: Experiment) -> Iterator[Finding]:
     return masses({"box": run.readings["body"]["mass"]}, {"box": spec.BASELINE.mass})
-
-
-def start(run: Experiment) -> Iterator[Finding]:
-    for name, case in run.cases.items():
-        trace = run.traces[name]
-        height = float(trace.link_pos[0, 0, 2])
-        yield within(f"{name}.start_height_m", height, case.height, START_TOLERANCE)
-        yield equal(f"{name}.start_velocity_m_s", np.abs(trace.link_vel[0]).max(), 0.0)
-        yield equal(f"{name}.start_turning_rad_s", np.abs(trace.link_ang[0]).max(), 0.0)
-
-
-def stamps(run: Experiment) -> Iterator[Finding]:
-    return sample_times(run.cases, run.traces)
 
 
 def falls(run: Experiment) -> Iterator[Finding]:
@@ -76,11 +61,6 @@ def straight_down(run: Experiment) -> Iterator[Finding]:
         yield at_most(f"{name}.turning_rad_s", of.turning, spec.AT_REST)
         yield at_most(f"{name}.quaternion_length_error", length_error, spec.AT_REST)
         yield at_most(f"{name}.quaternion_change", np.abs(quat - quat[0]).max(), spec.AT_REST)
-
-
-def posture(run: Experiment) -> Iterator[Finding]:
-    frames = {name: frame for name, frame in run.frames.items() if name != spec.TRAYS}
-    return end_state.findings(run.rendered, frames, run.traces["baseline"].link_pos)
 
 
 CHECKS = (

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, Finding, at_most, equal, within
-from robo_genesis.core.exercises import outcome
+from robo_genesis.core.checks import Finding, equal, within
+from robo_genesis.core.exercises import alike, tested
 from robo_genesis.core.free_fall import summed_drop
-from robo_genesis.core.scene import FRAME_SHAPE, FloatArray
+from robo_genesis.core.scene import FRAME_SHAPE
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.joints import to_numpy
@@ -24,29 +24,27 @@ UNTIL_REST = 100
 """Outer steps after which a dropped box lies on the ground."""
 
 
-def scene(make: Callable[..., Any], gs: Any, case: Drop) -> list[Check]:
+@tested
+def scene(make: Callable[..., Any], gs: Any, case: Drop) -> Iterator[Finding]:
     """Check `make(gs)`: a built scene with a ground, and the box of a case, which falls on it."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        built, box = make(gs)
-        yield equal("is_built", bool(built.is_built), True)
-        yield within("dt_s", float(built.dt), case.dt, 1e-9)
-        yield equal("substeps", int(built.substeps), case.substeps)
-        yield within("mass_kg", float(box.get_mass()), case.mass, 1e-3 * case.mass)
-        yield within("start_height_m", _height(box), case.height, TINY)
-        for _step in range(case.steps):
-            built.step()
-        fallen = case.height - _height(box)
-        expected = float(summed_drop(case.h, case.steps * case.substeps, case.gravity))
-        yield within("distance_fallen_m", fallen, expected, TINY)
-        for _step in range(UNTIL_REST):
-            built.step()
-        yield within("height_at_rest_m", _height(box), case.size / 2, spec.RESTING)
-
-    return outcome("scene", findings)
+    built, box = make(gs)
+    yield equal("is_built", bool(built.is_built), True)
+    yield within("dt_s", float(built.dt), case.dt, 1e-9)
+    yield equal("substeps", int(built.substeps), case.substeps)
+    yield within("mass_kg", float(box.get_mass()), case.mass, 1e-3 * case.mass)
+    yield within("start_height_m", _height(box), case.height, TINY)
+    for _step in range(case.steps):
+        built.step()
+    fallen = case.height - _height(box)
+    expected = float(summed_drop(case.h, case.steps * case.substeps, case.gravity))
+    yield within("distance_fallen_m", fallen, expected, TINY)
+    for _step in range(UNTIL_REST):
+        built.step()
+    yield within("height_at_rest_m", _height(box), case.size / 2, spec.RESTING)
 
 
-def record(read: Callable[..., Any], built: Any, box: Any, trace: BodyTrace) -> list[Check]:
+@tested
+def record(read: Callable[..., Any], built: Any, box: Any, trace: BodyTrace) -> Iterator[Finding]:
     """Check `read(scene, box, steps)`: heights [m] and speeds along z [m/s] of a run.
 
     Args:
@@ -55,70 +53,45 @@ def record(read: Callable[..., Any], built: Any, box: Any, trace: BodyTrace) -> 
         box: the box.
         trace: a run of this scene, from its reset.
     """
-
-    def findings(_: None) -> Iterator[Finding]:
-        heights, speeds = read(built, box, trace.steps)
-        expected = trace.link_pos[:, 0, 2], trace.link_vel[:, 0, 2]
-        yield from alike("heights_m", heights, expected[0], TINY)
-        yield from alike("speeds_m_s", speeds, expected[1], FAST)
-        again, _speeds = read(built, box, trace.steps)
-        yield from alike("second_run.heights_m", again, expected[0], TINY)
-
-    return outcome("record", findings)
+    heights, speeds = read(built, box, trace.steps)
+    expected = trace.link_pos[:, 0, 2], trace.link_vel[:, 0, 2]
+    yield from alike("heights_m", heights, expected[0], TINY)
+    yield from alike("speeds_m_s", speeds, expected[1], FAST)
+    again, _speeds = read(built, box, trace.steps)
+    yield from alike("second_run.heights_m", again, expected[0], TINY)
 
 
-def usable_frame(usable: Callable[..., Any]) -> list[Check]:
+@tested
+def usable_frame(usable: Callable[..., Any]) -> Iterator[Finding]:
     """Check `usable(rgb)`: whether a frame has the course's shape and type and shows something."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        background = np.empty(FRAME_SHAPE, np.uint8)
-        background[:] = (20, 30, 40)
-        box = background.copy()
-        box[200:300, 300:400] = (200, 120, 30)
-        pixel = background.copy()
-        pixel[-1, -1] = (21, 30, 40)
-        frames = {
-            "a_box": (box, True),
-            "one_pixel": (pixel, True),
-            "background_alone": (background, False),
-            "floats": (box / 255, False),
-            "rows_and_columns_exchanged": (box.swapaxes(0, 1), False),
-            "no_colours": (box[..., 0], False),
-        }
-        for name, (rgb, expected) in frames.items():
-            yield equal(name, bool(usable(rgb)), expected)
-
-    return outcome("usable_frame", findings)
+    background = np.empty(FRAME_SHAPE, np.uint8)
+    background[:] = (20, 30, 40)
+    box = background.copy()
+    box[200:300, 300:400] = (200, 120, 30)
+    pixel = background.copy()
+    pixel[-1, -1] = (21, 30, 40)
+    frames = {
+        "a_box": (box, True),
+        "one_pixel": (pixel, True),
+        "background_alone": (background, False),
+        "floats": (box / 255, False),
+        "rows_and_columns_exchanged": (box.swapaxes(0, 1), False),
+        "no_colours": (box[..., 0], False),
+    }
+    for name, (rgb, expected) in frames.items():
+        yield equal(name, bool(usable(rgb)), expected)
 
 
-def stepped(fall: Callable[..., Any]) -> list[Check]:
+@tested
+def stepped(fall: Callable[..., Any]) -> Iterator[Finding]:
     """Check `fall(g, h, n)`: distances by semi-implicit Euler, before and after each step."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        for name, g, h, n in (
-            ("baseline", spec.BASELINE.gravity, spec.BASELINE.h, 40),
-            ("on_the_moon", spec.MOON, 0.02, 7),
-            ("no_step", spec.BASELINE.gravity, 0.01, 0),
-        ):
-            expected = summed_drop(h, np.arange(n + 1), g)
-            yield from alike(f"{name}_m", fall(g, h, n), expected, 1e-9)
-
-    return outcome("stepped", findings)
-
-
-def alike(name: str, found: Any, expected: FloatArray, tiny: float) -> Iterator[Finding]:
-    """Require as many values as expected, each of them close.
-
-    Args:
-        name: the beginning of the labels.
-        found: what the student's function returned.
-        expected: (n,).
-        tiny: largest difference that rounding explains.
-    """
-    values = np.asarray(found, dtype=np.float64)
-    yield equal(f"{name}.shape", str(values.shape), str(expected.shape))
-    if values.shape == expected.shape:
-        yield at_most(f"{name}.error", float(np.abs(values - expected).max()), tiny)
+    for name, g, h, n in (
+        ("baseline", spec.BASELINE.gravity, spec.BASELINE.h, 40),
+        ("on_the_moon", spec.MOON, 0.02, 7),
+        ("no_step", spec.BASELINE.gravity, 0.01, 0),
+    ):
+        expected = summed_drop(h, np.arange(n + 1), g)
+        yield from alike(f"{name}_m", fall(g, h, n), expected, 1e-9)
 
 
 def _height(body: Any) -> float:

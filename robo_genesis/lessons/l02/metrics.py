@@ -4,13 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.free_fall import continuous_drop, summed_drop
-from robo_genesis.core.metrics import (
-    CaseMetrics,
-    metric,
-)
-from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.falls import continuous_gap, fallen, formula_error
 from robo_genesis.sim.rigid_bodies import Drop
 
 
@@ -30,18 +26,6 @@ class DropMetrics(CaseMetrics):
     turning: float = metric("rad/s", "largest angular speed", "link_ang_rad_s")
 
 
-def fallen(trace: BodyTrace) -> FloatArray:
-    """Return how far the first link is below its start at each sample, (n+1,) [m]."""
-    height = trace.link_pos[:, 0, 2].astype(np.float64)
-    return height[0] - height
-
-
-def predicted(trace: BodyTrace, case: Drop) -> FloatArray:
-    """Return the distance that semi-implicit Euler falls until each sample, (n+1,) [m]."""
-    solver_steps = case.substeps * np.arange(len(trace.t))
-    return summed_drop(case.h, solver_steps, case.gravity)
-
-
 def drop_metrics(trace: BodyTrace, case: Drop) -> DropMetrics:
     """Measure one drop; gravity and solver step of the case enter the formulas alone."""
     drop = fallen(trace)
@@ -51,8 +35,8 @@ def drop_metrics(trace: BodyTrace, case: Drop) -> DropMetrics:
         drop=float(drop[-1]),
         lowest=float(drop.max()),
         final_speed=float(-trace.link_vel[-1, 0, 2]),
-        formula_error=float(np.abs(drop - predicted(trace, case)).max()),
-        continuous_gap=float(drop[-1] - continuous_drop(trace.t[-1:], case.gravity)[0]),
+        formula_error=formula_error(trace, case),
+        continuous_gap=continuous_gap(trace, case),
         sideways=float(np.linalg.norm(xy - xy[0], axis=1).max()),
         turning=float(np.linalg.norm(trace.link_ang[:, 0].astype(np.float64), axis=1).max()),
     )

@@ -8,8 +8,8 @@ from robo_genesis.core.free_fall import continuous_drop
 from robo_genesis.core.plotting import look
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02 import spec, trials
-from robo_genesis.lessons.l02.metrics import fallen, predicted
 from robo_genesis.lessons.l02.study import step_study
+from robo_genesis.sim.falls import fallen, predicted
 
 
 def posture(run: Experiment) -> Figure:
@@ -31,8 +31,7 @@ def trays(run: Experiment) -> Figure:
         plotting.frames([drawn.add_axes((0, 0, 1, 1))], {spec.TRAYS: frame})
         drawn.set_facecolor("none")
         return drawn
-    figure = plotting.figure(2.6)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(2.6)
     found = run.readings[trials.TRAYS]
     ax.bar(list(found), list(found.values()), color=look("baseline")["color"], width=0.4)
     ax.axhline(spec.RIM, **plotting.LINE)
@@ -89,8 +88,7 @@ def three_drops(run: Experiment) -> Figure:
     trace, case = run.traces["baseline"], run.cases["baseline"]
     continuous = continuous_drop(trace.t, case.gravity)
     stepped = predicted(trace, case)
-    figure = plotting.figure(3.2)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(3.2)
     ax.axhline(0, label="continuous: g t² / 2", **plotting.LINE)
     ax.plot(trace.t, 1000 * (stepped - continuous), label="stepped: g h² n (n + 1) / 2",
             **look("target"))  # fmt: skip
@@ -105,8 +103,7 @@ def three_drops(run: Experiment) -> Figure:
 def gaps(run: Experiment) -> Figure:
     """Draw the distance ahead of continuous free fall at the end of the run by solver step."""
     study = step_study(run.metrics, run.cases)
-    figure = plotting.figure(3.4)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(3.4)
     h = 1000 * study.h
     ax.loglog(h, 1000 * study.expected, label="g h t / 2", **look("target"))
     ax.loglog(h, 1000 * study.gaps, "o", markersize=6, label="measured",

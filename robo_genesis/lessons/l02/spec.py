@@ -4,10 +4,11 @@ The module is data and computes nothing. `parameters()` has the values that deci
 what is read; only a change there makes evidence stale. All other values only judge.
 """
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
+from robo_genesis.lessons.experiment import case_inputs, inputs
 from robo_genesis.sim.rigid_bodies import Drop
 
 MINIMUM_HARDWARE = "cpu"
@@ -101,17 +102,13 @@ RELATIONS = ()
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    return {
-        "cases": {name: asdict(case) for name, case in CASES.items()},
-        "counted": list(EXPECTED_MODEL),
-        "view": {name: value for name, value in VIEW.items() if name != "GUI"},
-    }
+    return inputs(CASES, VIEW, counted=list(EXPECTED_MODEL))
 
 
 def study_parameters() -> dict[str, Any]:
     """Return the inputs of the lecture, which has more runs."""
     return parameters() | {
-        "studies": {name: asdict(case) for name, case in SUBSTEP_CASES.items()},
+        "studies": case_inputs(SUBSTEP_CASES),
         "calls": list(BELONGS),
         "shapes": list(SHAPES),
         "trays": {"rim": RIM, "ball": BALL},

@@ -77,16 +77,8 @@ def falls_table(run: Experiment) -> str:
         "moon": f"on the Moon, g = {spec.MOON:g} m/s²",
     }
     found, expected = run.readings[trials.FURTHER], trials.expected_falls()
-    return tables.markdown(
-        [
-            {
-                "fall": words[name],
-                "measured [m]": f"{found[name]:.6f}",
-                "stepped formula [m]": f"{expected[name]:.6f}",
-            }
-            for name in trials.FALLS
-        ]
-    )
+    rows = {words[name]: (found[name], expected[name]) for name in trials.FALLS}
+    return tables.numbers("fall", {"measured [m]": 6, "stepped formula [m]": 6}, rows)
 
 
 def interpretation(found: DropMetrics, case: Drop) -> tuple[Block, ...]:

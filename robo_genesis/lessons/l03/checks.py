@@ -13,15 +13,15 @@ from robo_genesis.core.checks import (
     factors,
     masses,
     model_counts,
-    sample_times,
+    stamps,
     within,
 )
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, spec
 from robo_genesis.lessons.l03.energy import kept_at_bounces
 from robo_genesis.lessons.l03.metrics import BounceMetrics, LandingMetrics, SlideMetrics
-from robo_genesis.sim import end_state
 from robo_genesis.sim.contacts import SETTINGS, TOP
+from robo_genesis.sim.end_state import posture
 
 
 def landings(run: Experiment) -> dict[str, LandingMetrics]:
@@ -53,10 +53,6 @@ def settings(run: Experiment) -> Iterator[Finding]:
         for case, value in read.items():
             yield within(f"{case}.{name}", value, getattr(run.cases[case], name), READ_BACK)
         yield above(f"number of cases with {name}", len(read), 0)
-
-
-def stamps(run: Experiment) -> Iterator[Finding]:
-    return sample_times(run.cases, run.traces)
 
 
 def start(run: Experiment) -> Iterator[Finding]:
@@ -155,10 +151,6 @@ def energy_converges(run: Experiment) -> Iterator[Finding]:
         yield Finding(f"{name}.first_kept_percent", kept[name], bounced, "a share")
     errors = [abs(share - expected) for share in kept.values() if share is not None]
     yield above("largest_difference_percent", max(errors, default=0.0), spec.COARSE_SHARE)
-
-
-def posture(run: Experiment) -> Iterator[Finding]:
-    return end_state.findings(run.rendered, run.frames, run.traces["baseline"].link_pos)
 
 
 CHECKS = (

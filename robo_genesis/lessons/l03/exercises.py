@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, Finding, at_most, equal, within
-from robo_genesis.core.exercises import compared, outcome
+from robo_genesis.core.checks import Finding, at_most, equal, within
+from robo_genesis.core.exercises import compared, tested
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03.energy import clearance
 from robo_genesis.lessons.l03.metrics import LandingMetrics, SlideMetrics
@@ -20,37 +20,37 @@ SUNK = 2e-3
 """How deep a cube at rest may be in the table [m]."""
 
 
-def scene(make: Callable[..., Any], gs: Any, case: ContactCase) -> list[Check]:
+@tested
+def scene(make: Callable[..., Any], gs: Any, case: ContactCase) -> Iterator[Finding]:
     """Check `make(gs)`: a built scene, a fixed table and the cube of a case, which lands on it."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        built, table, cube = make(gs)
-        yield equal("is_built", bool(built.is_built), True)
-        yield within("dt_s", float(built.dt), case.dt, 1e-9)
-        yield equal("substeps", int(built.substeps), case.substeps)
-        yield within("mass_of_the_cube_kg", float(cube.get_mass()), case.mass, 1e-3 * case.mass)
-        for name, body, mu in (
-            ("cube", cube, case.friction),
-            ("table", table, case.surface_friction),
-        ):
-            found = built.rigid_solver.get_geoms_friction([body.geoms[0].idx])
-            yield within(f"friction_of_the_{name}", float(to_numpy(found)[0]), mu, 1e-6)
-        height = float(to_numpy(cube.get_pos())[2])
-        yield within("start_height_m", height, case.start[2], TINY)
-        before = to_numpy(table.get_pos())
-        for _step in range(case.steps):
-            built.step()
-        moved = float(np.abs(to_numpy(table.get_pos()) - before).max())
-        yield at_most("the_table_moved_by_m", moved, TINY)
-        top = float(before[2]) + SURFACE_SIZE[2] / 2
-        yield within("upper_face_of_the_table_m", top, TOP, TINY)
-        resting = float(to_numpy(cube.get_pos())[2])
-        yield within("height_of_the_resting_cube_m", resting, case.rest_height, SUNK)
-
-    return outcome("scene", findings)
+    built, table, cube = make(gs)
+    yield equal("is_built", bool(built.is_built), True)
+    yield within("dt_s", float(built.dt), case.dt, 1e-9)
+    yield equal("substeps", int(built.substeps), case.substeps)
+    yield within("mass_of_the_cube_kg", float(cube.get_mass()), case.mass, 1e-3 * case.mass)
+    for name, body, mu in (
+        ("cube", cube, case.friction),
+        ("table", table, case.surface_friction),
+    ):
+        found = built.rigid_solver.get_geoms_friction([body.geoms[0].idx])
+        yield within(f"friction_of_the_{name}", float(to_numpy(found)[0]), mu, 1e-6)
+    height = float(to_numpy(cube.get_pos())[2])
+    yield within("start_height_m", height, case.start[2], TINY)
+    before = to_numpy(table.get_pos())
+    for _step in range(case.steps):
+        built.step()
+    moved = float(np.abs(to_numpy(table.get_pos()) - before).max())
+    yield at_most("the_table_moved_by_m", moved, TINY)
+    top = float(before[2]) + SURFACE_SIZE[2] / 2
+    yield within("upper_face_of_the_table_m", top, TOP, TINY)
+    resting = float(to_numpy(cube.get_pos())[2])
+    yield within("height_of_the_resting_cube_m", resting, case.rest_height, SUNK)
 
 
-def push(push_cube: Callable[..., Any], built: Any, cube: Any, case: ContactCase) -> list[Check]:
+@tested
+def push(
+    push_cube: Callable[..., Any], built: Any, cube: Any, case: ContactCase
+) -> Iterator[Finding]:
     """Check `push_cube(scene, cube, speed, settle)`: settle first, then a speed along x alone.
 
     Args:
@@ -59,22 +59,18 @@ def push(push_cube: Callable[..., Any], built: Any, cube: Any, case: ContactCase
         cube: the cube.
         case: gives speed, time to settle and outer step.
     """
-
-    def findings(_: None) -> Iterator[Finding]:
-        built.reset()
-        counted = _CountingScene(built)
-        before = to_numpy(cube.get_pos())
-        push_cube(counted, cube, case.speed, case.settle)
-        yield equal("steps_before_the_push", counted.steps, round(case.settle / case.dt))
-        velocity = np.append(to_numpy(cube.get_vel()), to_numpy(cube.get_ang()))
-        expected = np.array([case.speed, 0, 0, 0, 0, 0])
-        names = ("v_x", "v_y", "v_z", "w_x", "w_y", "w_z")
-        for name, value, right in zip(names, velocity, expected, strict=True):
-            yield within(name, float(value), float(right), 1e-3)
-        moved = float(abs(to_numpy(cube.get_pos())[0] - before[0]))
-        yield at_most("moved_before_the_push_m", moved, 1e-3)
-
-    return outcome("push", findings)
+    built.reset()
+    counted = _CountingScene(built)
+    before = to_numpy(cube.get_pos())
+    push_cube(counted, cube, case.speed, case.settle)
+    yield equal("steps_before_the_push", counted.steps, round(case.settle / case.dt))
+    velocity = np.append(to_numpy(cube.get_vel()), to_numpy(cube.get_ang()))
+    expected = np.array([case.speed, 0, 0, 0, 0, 0])
+    names = ("v_x", "v_y", "v_z", "w_x", "w_y", "w_z")
+    for name, value, right in zip(names, velocity, expected, strict=True):
+        yield within(name, float(value), float(right), 1e-3)
+    moved = float(abs(to_numpy(cube.get_pos())[0] - before[0]))
+    yield at_most("moved_before_the_push_m", moved, 1e-3)
 
 
 class _CountingScene:
@@ -91,23 +87,20 @@ class _CountingScene:
         return getattr(self.built, name)
 
 
-def contact_reading(read: Callable[..., Any]) -> list[Check]:
+@tested
+def contact_reading(read: Callable[..., Any]) -> Iterator[Finding]:
     """Check `read(cube, table)`: number of contacts with the table alone, and the deepest [m]."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        table, other = object(), object()
-        touching = {
-            "four_corners": {table: [0.001, 0.004, 0.002, 0.003]},
-            "nothing": {},
-            "another_body": {table: [0.002], other: [0.005, 0.006]},
-        }
-        for name, depths in touching.items():
-            expected = depths.get(table, [])
-            right = len(expected), max(expected, default=0.0)
-            found = read(_Touching(depths), table)
-            yield from compared(name, ("count", "deepest"), found, right, TINY)
-
-    return outcome("contact_reading", findings)
+    table, other = object(), object()
+    touching = {
+        "four_corners": {table: [0.001, 0.004, 0.002, 0.003]},
+        "nothing": {},
+        "another_body": {table: [0.002], other: [0.005, 0.006]},
+    }
+    for name, depths in touching.items():
+        expected = depths.get(table, [])
+        right = len(expected), max(expected, default=0.0)
+        found = read(_Touching(depths), table)
+        yield from compared(name, ("count", "deepest"), found, right, TINY)
 
 
 class _Touching:
@@ -125,44 +118,38 @@ class _Touching:
         return {"penetration": torch.tensor([depth for of in found for depth in of])}
 
 
+@tested
 def landing(
     measure: Callable[..., Any],
     runs: Iterable[tuple[ContactTrace, ContactCase, LandingMetrics]],
-) -> list[Check]:
+) -> Iterator[Finding]:
     """Check `measure(clear)`: penetration and rebound [m] of a landing, from its clearance (n,)."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        names = ("penetration", "rebound")
-        for number, (trace, case, of) in enumerate(runs):
-            found = measure(clearance(trace, case))
-            yield from compared(f"run_{number}", names, found, (of.penetration, of.rebound), TINY)
-        high = measure(np.array([0.3, 0.2, 0.1]))
-        yield from compared("never_lands", names, high, (0.0, 0.0), TINY)
-        jumps = measure(np.array([0.2, 0.0, -0.001, 0.003, -0.004, 0.001]))
-        yield from compared("jumps", names, jumps, (0.004, 0.003), TINY)
-
-    return outcome("landing", findings)
+    names = ("penetration", "rebound")
+    for number, (trace, case, of) in enumerate(runs):
+        found = measure(clearance(trace, case))
+        yield from compared(f"run_{number}", names, found, (of.penetration, of.rebound), TINY)
+    high = measure(np.array([0.3, 0.2, 0.1]))
+    yield from compared("never_lands", names, high, (0.0, 0.0), TINY)
+    jumps = measure(np.array([0.2, 0.0, -0.001, 0.003, -0.004, 0.001]))
+    yield from compared("jumps", names, jumps, (0.004, 0.003), TINY)
 
 
+@tested
 def stopping(
     measure: Callable[..., Any], runs: Iterable[tuple[ContactTrace, SlideMetrics]]
-) -> list[Check]:
+) -> Iterator[Finding]:
     """Check `measure(t, x, speed)`: stop time and distance by the rule with a hold, or None."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        names = ("stop_time", "stop_distance")
-        for number, (trace, of) in enumerate(runs):
-            x, speed = (a[:, 0, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel))
-            found = measure(trace.t, x, speed)
-            expected = of.stop_time, of.stop_distance
-            yield from compared(f"run_{number}", names, found, expected, TINY)
-        t = np.arange(30) * 0.01
-        x = np.linspace(1.0, 1.5, 30)
-        back = np.full(30, 0.0)
-        back[:2], back[6] = 1.0, -0.5
-        found = measure(t, x, back)
-        yield from compared("rocks_back", names, found, (t[7], x[7] - x[0]), TINY)
-        going = np.append(np.full(25, 0.5), np.zeros(5))
-        yield from compared("ends_too_early", names, measure(t, x, going), (None, None), TINY)
-
-    return outcome("stopping", findings)
+    names = ("stop_time", "stop_distance")
+    for number, (trace, of) in enumerate(runs):
+        x, speed = (a[:, 0, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel))
+        found = measure(trace.t, x, speed)
+        expected = of.stop_time, of.stop_distance
+        yield from compared(f"run_{number}", names, found, expected, TINY)
+    t = np.arange(30) * 0.01
+    x = np.linspace(1.0, 1.5, 30)
+    back = np.full(30, 0.0)
+    back[:2], back[6] = 1.0, -0.5
+    found = measure(t, x, back)
+    yield from compared("rocks_back", names, found, (t[7], x[7] - x[0]), TINY)
+    going = np.append(np.full(25, 0.5), np.zeros(5))
+    yield from compared("ends_too_early", names, measure(t, x, going), (None, None), TINY)

@@ -7,10 +7,11 @@ Source of the parameters of landing and sliding: the public course robo-genesis-
 (https://github.com/datawhalechina/robo-genesis-101), so that figures can be compared.
 """
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 from robo_genesis.core.scene import CAMERA
+from robo_genesis.lessons.experiment import inputs
 from robo_genesis.sim.contacts import SURFACE_SIZE, TOP, ContactCase
 
 MINIMUM_HARDWARE = "cpu"
@@ -135,9 +136,5 @@ RELATIONS = (
 
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    return {
-        "cases": {name: asdict(case) for name, case in CASES.items()},
-        "surface": {"size_m": SURFACE_SIZE, "top_m": TOP},
-        "counted": list(EXPECTED_MODEL),
-        "view": {name: value for name, value in VIEW.items() if name != "GUI"},
-    }
+    surface = {"size_m": SURFACE_SIZE, "top_m": TOP}
+    return inputs(CASES, VIEW, counted=list(EXPECTED_MODEL), surface=surface)

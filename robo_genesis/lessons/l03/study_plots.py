@@ -37,8 +37,7 @@ LABELS = {"low": "μ = 0.5", "high": "μ = 0.8"}
 
 def landings_by_step(run: Experiment) -> Figure:
     """Draw the landing from the baseline's height at four solver steps."""
-    figure = plotting.figure(3.6)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(3.6)
     for name, mark in STEP_MARKS.items():
         case, trace = run.cases[name], run.traces[name]
         every = max(1, round(0.001 / trace.dt))
@@ -133,8 +132,7 @@ def cones(run: Experiment) -> Figure:
 
 def stops(run: Experiment) -> Figure:
     """Draw the stopping distances of both pushed cubes by solver step, beside Coulomb's."""
-    figure = plotting.figure(3.4)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(3.4)
     for lane, mark in LANE_MARKS.items():
         cases = study_contact.runs_of_lane(lane)
         found = study_contact.stops_of_lane(run, lane)
@@ -156,8 +154,7 @@ def stops(run: Experiment) -> Figure:
 
 def releases(run: Experiment) -> Figure:
     """Draw the landing from the baseline's height for three time constants, beside the theory."""
-    figure = plotting.figure(3.8)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(3.8)
     for scene, mark in RELEASE_MARKS.items():
         name = f"{scene}_10000"
         case, trace = run.cases[name], run.traces[name]

@@ -1,8 +1,9 @@
 """Specification of L03's lecture, deeper pages and mistakes: cases beyond the lab, tolerances."""
 
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
+from robo_genesis.lessons.experiment import case_inputs
 from robo_genesis.lessons.l03.spec import BASELINE, BESIDE, BOUNCES, LANDINGS, PUSHED, SLIDES
 from robo_genesis.sim.contacts import ContactCase
 
@@ -247,31 +248,26 @@ REBOUND_SHARE = 0.25
 """Tolerance of a rebound against that of a linear contact, as a share."""
 
 
-def cases_of(cases: dict[str, ContactCase]) -> dict[str, Any]:
-    """Return cases as JSON values."""
-    return {name: asdict(case) for name, case in cases.items()}
-
-
 OWN: dict[str, dict[str, Any]] = {
     "lecture": {
-        "cases": cases_of(OF_LECTURE),
+        "cases": case_inputs(OF_LECTURE),
         "scenes": {name: list(of) for name, of in (STEP_CASES | STIFF_CASES).items()},
         "as_baseline": AS_BASELINE,
         "hops": {name: list(of) for name, of in HOP_STEP_CASES.items()},
         "hop_speeds": list(HOP_SPEED_CASES),
     },
     "contact": {
-        "cases": cases_of(OF_CONTACT),
+        "cases": case_inputs(OF_CONTACT),
         "in_mujoco": sorted(IN_MUJOCO),
         "with_its_own_contact": OWN_DEFAULTS,
         "engine_pairs": ENGINE_PAIRS,
         "stops": {name: list(of) for name, of in STOP_CASES.items()},
     },
     "energy": {
-        "cases": cases_of(OF_ENERGY),
+        "cases": case_inputs(OF_ENERGY),
         "releases": {name: list(of) for name, of in RELEASE_CASES.items()},
     },
-    "mistakes": {"cases": cases_of(OF_MISTAKES)},
+    "mistakes": {"cases": case_inputs(OF_MISTAKES)},
 }
 
 

@@ -38,9 +38,10 @@ from robo_genesis.lessons.l04 import (
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
 from robo_genesis.sim import mujoco_joints
 from robo_genesis.sim.batch import run_batch
-from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import (
     assign_path,
+    describe,
     differences,
     reset,
     run_case,
@@ -54,8 +55,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BATCH", "CAMERA", "DT", "FORMULA", "FRANKA_MJCF", "INTEGRATOR", "JOINT_NAMES", "LAB",
-    "LECTURE", "LESSON", "MISTAKES", "SUBSTEPS", "assign_path", "backend_mistake", "differences",
-    "engine_comparison", "exercises", "explorer",
+    "LECTURE", "LESSON", "MISTAKES", "SUBSTEPS", "assign_path", "backend_mistake", "describe",
+    "differences", "engine_comparison", "exercises", "explorer",
     "lecture_text", "mistakes", "mujoco_joints", "plots", "read_shape", "reset", "resolve_joints",
     "run_batch", "run_case", "spec", "study", "study_plots", "study_spec", "text", "theory_text",
     "validate",
@@ -166,8 +167,7 @@ LESSON = Lesson(
             thing="robot",
             alt="The robot in 3D, in the posture of the sample that is shown. "
             f"{spec.STEPPED_JOINT} moves.",
-            credit="Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from "
-            "franka_description, © Franka Robotics GmbH; decimated and converted",
+            credit=CREDIT,
         ),
         alt=f"Position of {spec.STEPPED_JOINT} over time with the gains of "
         f"{listed(tuple(study_spec.COMPARED))}, its target and the settling band around it.",

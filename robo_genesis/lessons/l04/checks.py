@@ -14,7 +14,7 @@ from robo_genesis.lessons.l04.metrics import (
     SATURATION_THRESHOLD,
     SETTLING_BAND,
 )  # fmt: skip
-from robo_genesis.sim import end_state
+from robo_genesis.sim.end_state import posture
 from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import differences
 from robo_genesis.sim.joints import EFFORT_UNIT, POSITION_UNIT
@@ -129,10 +129,6 @@ def saturation(run: Experiment) -> Iterator[Finding]:
         count = int((np.abs(trace.control_force[:, spec.ENTRY]).astype(float) >= threshold).sum())
         yield equal(f"{name}.saturation_samples", m.saturation_samples, count)
         yield equal(f"{name}.saturation_duration_s", m.saturation_duration, count * case.dt)
-
-
-def posture(run: Experiment) -> Iterator[Finding]:
-    return end_state.findings(run.rendered, run.frames, run.traces["baseline"].link_pos)
 
 
 CHECKS = (

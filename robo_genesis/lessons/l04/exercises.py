@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, Finding, at_most, equal
-from robo_genesis.core.exercises import compared, outcome
+from robo_genesis.core.checks import Finding, at_most, equal
+from robo_genesis.core.exercises import alike, compared, tested
 from robo_genesis.core.mistakes import refused
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import StepMetrics
@@ -33,27 +33,24 @@ INVENTED = {
 RESPONSE = ("rise_time", "overshoot", "settling_time")
 
 
-def resolver(resolve: Callable[..., Any], robot: Any, joints: JointMap) -> list[Check]:
+@tested
+def resolver(resolve: Callable[..., Any], robot: Any, joints: JointMap) -> Iterator[Finding]:
     """Check `resolve(robot, names)`: local DOFs in the order of the names, odd joints refused."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        names = list(joints.names)
-        yield equal("dofs", list(resolve(robot, names)), joints.dofs_idx_local.tolist())
-        backwards = joints.dofs_idx_local.tolist()[::-1]
-        yield equal("dofs_in_reverse", list(resolve(robot, names[::-1])), backwards)
-        shifted = SimpleNamespace(get_joint=lambda name: _joint(5 + names.index(name)))
-        expected = [5 + n for n in range(len(names))]
-        yield equal("dofs_of_a_shifted_robot", list(resolve(shifted, names)), expected)
-        odd = {"ball": _joint(0, 1, 2), "one DOF, two qpos": _joint(0, qpos=2)}
-        for label, joint in odd.items():
-            one = SimpleNamespace(get_joint={"wrist": joint}.__getitem__)
-            error = refused(partial(resolve, one, ["wrist"]))
-            named = isinstance(error, ValueError) and "wrist" in str(error)
-            yield equal(f"value_error_names_the_joint ({label})", named, True)
-        twice = refused(lambda: resolve(robot, [names[3], names[3]]))
-        yield equal("value_error_for_one_joint_twice", isinstance(twice, ValueError), True)
-
-    return outcome("resolver", findings)
+    names = list(joints.names)
+    yield equal("dofs", list(resolve(robot, names)), joints.dofs_idx_local.tolist())
+    backwards = joints.dofs_idx_local.tolist()[::-1]
+    yield equal("dofs_in_reverse", list(resolve(robot, names[::-1])), backwards)
+    shifted = SimpleNamespace(get_joint=lambda name: _joint(5 + names.index(name)))
+    expected = [5 + n for n in range(len(names))]
+    yield equal("dofs_of_a_shifted_robot", list(resolve(shifted, names)), expected)
+    odd = {"ball": _joint(0, 1, 2), "one DOF, two qpos": _joint(0, qpos=2)}
+    for label, joint in odd.items():
+        one = SimpleNamespace(get_joint={"wrist": joint}.__getitem__)
+        error = refused(partial(resolve, one, ["wrist"]))
+        named = isinstance(error, ValueError) and "wrist" in str(error)
+        yield equal(f"value_error_names_the_joint ({label})", named, True)
+    twice = refused(lambda: resolve(robot, [names[3], names[3]]))
+    yield equal("value_error_for_one_joint_twice", isinstance(twice, ValueError), True)
 
 
 def _joint(*dofs: int, qpos: int | None = None) -> SimpleNamespace:
@@ -82,89 +79,72 @@ class Counted:
         return getattr(self.robot, name)
 
 
+@tested
 def control_loop(
     record: Callable[..., Any], scene: Any, robot: Any, joints: JointMap, case: ControlCase,
     trace: Trace,
-) -> list[Check]:  # fmt: skip
+) -> Iterator[Finding]:  # fmt: skip
     """Check `record(scene, robot, dofs, q_target, steps)` against a run of the same case.
 
     Call it after a reset to the case. The function returns t (n+1,), q (n+1, d), qd (n, d) and the
     control force (n, d).
     """
-
-    def findings(_: None) -> Iterator[Finding]:
-        dofs, counted = joints.dofs_idx_local.tolist(), Counted(robot)
-        target = case.q_target.copy()
-        found = [np.asarray(part) for part in record(scene, counted, dofs, target, case.steps)]
-        yield equal("number_of_commands", counted.commands, case.steps)
-        expected = trace.t, trace.q, trace.qd, trace.control_force
-        yield equal("number_of_arrays", len(found), len(expected))
-        for name, values, right in zip(("t", "q", "qd", "force"), found, expected, strict=True):
-            yield equal(f"{name}.shape", list(values.shape), list(right.shape))
-            if values.shape == right.shape:
-                apart = float(np.abs(values.astype(float) - right).max())
-                yield at_most(f"{name}.distance_to_the_recorded_run", apart, TINY)
-
-    return outcome("control_loop", findings)
+    dofs, counted = joints.dofs_idx_local.tolist(), Counted(robot)
+    target = case.q_target.copy()
+    found = list(record(scene, counted, dofs, target, case.steps))
+    yield equal("number_of_commands", counted.commands, case.steps)
+    expected = trace.t, trace.q, trace.qd, trace.control_force
+    yield equal("number_of_arrays", len(found), len(expected))
+    for name, values, right in zip(("t", "q", "qd", "force"), found, expected, strict=True):
+        yield from alike(name, values, right, TINY)
 
 
-def pd_law(law: Callable[..., Any], traces: Iterable[tuple[Trace, ControlCase]]) -> list[Check]:
+@tested
+def pd_law(
+    law: Callable[..., Any], traces: Iterable[tuple[Trace, ControlCase]]
+) -> Iterator[Finding]:
     """Check `law(error, qd, kp, kv, limit)` with every recorded control force of joint4."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        for number, (trace, case) in enumerate(traces):
-            k = ENTRY
-            error, limit = case.q_target[k] - trace.q[1:, k], float(trace.effort_limit[k])
-            gains = float(case.kp[k]), float(case.kv[k])
-            found = [law(e, v, *gains, limit) for e, v in zip(error, trace.qd[:, k], strict=True)]
-            apart = np.abs(np.array(found, dtype=float) - trace.control_force[:, k]).max()
-            yield at_most(f"run_{number}.distance_to_control_force", apart, CONTROL_LAW_TOLERANCE)
-        yield equal("demand_of_1000_with_limit_87", float(law(1.0, 0.0, 1e3, 0.0, 87.0)), 87.0)
-        yield equal("demand_of_-1000_with_limit_87", float(law(-1.0, 0.0, 1e3, 0.0, 87.0)), -87.0)
-
-    return outcome("pd_law", findings)
+    for number, (trace, case) in enumerate(traces):
+        k = ENTRY
+        error, limit = case.q_target[k] - trace.q[1:, k], float(trace.effort_limit[k])
+        gains = float(case.kp[k]), float(case.kv[k])
+        found = [law(e, v, *gains, limit) for e, v in zip(error, trace.qd[:, k], strict=True)]
+        apart = np.abs(np.array(found, dtype=float) - trace.control_force[:, k]).max()
+        yield at_most(f"run_{number}.distance_to_control_force", apart, CONTROL_LAW_TOLERANCE)
+    yield equal("demand_of_1000_with_limit_87", float(law(1.0, 0.0, 1e3, 0.0, 87.0)), 87.0)
+    yield equal("demand_of_-1000_with_limit_87", float(law(-1.0, 0.0, 1e3, 0.0, 87.0)), -87.0)
 
 
+@tested
 def step_response(
     measure: Callable[..., Any], runs: Iterable[tuple[Trace, StepMetrics]]
-) -> list[Check]:
+) -> Iterator[Finding]:
     """Check `measure(t, q, q_target)`: rise time, overshoot, settling time; None if not observed.
 
     The runs are measured ones; two invented responses never rise, and leave the band at the end.
     """
-
-    def findings(_: None) -> Iterator[Finding]:
-        for number, (trace, of) in enumerate(runs):
-            q, target = trace.q[:, ENTRY].astype(float), float(trace.target[0, ENTRY])
-            expected = of.rise_time, of.overshoot, of.settling_time
-            yield from compared(
-                f"run_{number}", RESPONSE, measure(trace.t, q, target), expected, TINY
-            )
-        t = np.arange(6) * 0.01
-        slow = np.linspace(0.0, 0.1, 6)
-        yield from compared(
-            "never_rises", RESPONSE, measure(t, slow, 0.25), (None, 0.0, None), TINY
-        )
-        late = np.array([0.0, 0.25, 0.25, 0.25, 0.25, 0.30])
-        yield from compared(
-            "leaves_at_the_end", RESPONSE, measure(t, late, 0.25), (0.01, 0.05, None), TINY
-        )
-
-    return outcome("step_response", findings)
+    for number, (trace, of) in enumerate(runs):
+        q, target = trace.q[:, ENTRY].astype(float), float(trace.target[0, ENTRY])
+        expected = of.rise_time, of.overshoot, of.settling_time
+        yield from compared(f"run_{number}", RESPONSE, measure(trace.t, q, target), expected, TINY)
+    t = np.arange(6) * 0.01
+    slow = np.linspace(0.0, 0.1, 6)
+    yield from compared("never_rises", RESPONSE, measure(t, slow, 0.25), (None, 0.0, None), TINY)
+    late = np.array([0.0, 0.25, 0.25, 0.25, 0.25, 0.30])
+    yield from compared(
+        "leaves_at_the_end", RESPONSE, measure(t, late, 0.25), (0.01, 0.05, None), TINY
+    )
 
 
-def stepped(model: Callable[..., Any]) -> list[Check]:
+@tested
+def stepped(model: Callable[..., Any]) -> Iterator[Finding]:
     """Check `model(inertia, kp, kv, d, limit, g, step, h, n)`: n + 1 positions [rad]."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        for name, arguments in INVENTED.items():
-            inertia, kp, kv, d, limit, g, step, h, n = arguments
-            joint = IdealJoint(inertia, kv + d, kp)
-            expected = stepped_joint(joint, d, step, h, n, limit=limit, gravity=g)
-            found = np.asarray(model(*arguments), dtype=float)
-            yield equal(f"{name}.number_of_positions", found.size, n + 1)
-            if found.size == n + 1:
-                apart = float(np.abs(found.ravel() - expected).max())
-                yield at_most(f"{name}.distance_to_the_model", apart, TINY)
-
-    return outcome("stepped", findings)
+    for name, arguments in INVENTED.items():
+        inertia, kp, kv, d, limit, g, step, h, n = arguments
+        joint = IdealJoint(inertia, kv + d, kp)
+        expected = stepped_joint(joint, d, step, h, n, limit=limit, gravity=g)
+        found = np.asarray(model(*arguments), dtype=float)
+        yield equal(f"{name}.number_of_positions", found.size, n + 1)
+        if found.size == n + 1:
+            apart = float(np.abs(found.ravel() - expected).max())
+            yield at_most(f"{name}.distance_to_the_model", apart, TINY)

@@ -35,14 +35,7 @@ GAINS_LABELS: Mapping[str, Mapping[str, Label]] = {
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured link origins."""
-    return plotting.both_ends(run.frames) if run.rendered else links(run, "baseline")
-
-
-def links(run: Experiment, name: str) -> Figure:
-    """Draw the measured link origins at both ends of a run."""
-    figure = plotting.figure(5)
-    plotting.schematic(figure.subplots(), run.traces[name], LINK_PARENTS)
-    return figure
+    return plotting.robot_ends(run, LINK_PARENTS)
 
 
 def assigned(run: Experiment) -> Figure:

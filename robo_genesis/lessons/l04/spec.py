@@ -5,19 +5,18 @@ nothing. `parameters()` has the values that decide what runs and how a metric is
 change there makes evidence stale. All other values only judge.
 """
 
-from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.scene import DT, FloatArray
+from robo_genesis.core.scene import DT, FloatArray, read_only
+from robo_genesis.lessons.experiment import inputs
 from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
 from robo_genesis.sim import franka
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joint_control import ControlCase
+from robo_genesis.sim.joint_control import course_case
 
-LESSON = "l04"
 MINIMUM_HARDWARE = "cpu"
 
 STEPPED_JOINT = "joint4"
@@ -42,20 +41,12 @@ def with_entry(values: FloatArray, value: float) -> FloatArray:
     """Return a read-only copy of `values` (9,) in which only the stepped joint's entry differs."""
     changed = np.array(values)
     changed[ENTRY] = value
-    changed.setflags(write=False)
-    return changed
+    return read_only(changed)
 
 
 START_OF_STEP = float(franka.Q_START[ENTRY])
 
-BASELINE = ControlCase(
-    q_start=franka.Q_START,
-    q_target=with_entry(franka.Q_START, START_OF_STEP + STEP),
-    kp=franka.KP_BASELINE,
-    kv=franka.KV_BASELINE,
-    effort_limit=franka.EFFORT_LIMIT,
-    steps=STEPS,
-)
+BASELINE = course_case(with_entry(franka.Q_START, START_OF_STEP + STEP), STEPS)
 G1 = replace(BASELINE, kp=with_entry(BASELINE.kp, 3500.0), kv=with_entry(BASELINE.kv, 100.0))
 G2 = replace(G1, kp=with_entry(G1.kp, 7000.0))
 G3 = replace(G2, kv=with_entry(G2.kv, 300.0))
@@ -119,27 +110,19 @@ LIMIT_EXCESS = 1e-3
 """Tolerance of a control force above its limit [N·m or N]."""
 
 
-def case_parameters(cases: Mapping[str, ControlCase]) -> dict[str, dict[str, Any]]:
-    """Return every field of every case as JSON values."""
-    return {
-        name: {key: np.asarray(value).tolist() for key, value in asdict(case).items()}
-        for name, case in cases.items()
-    }
-
-
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lesson as JSON values, for the evidence key.
 
     Expected values, predictions, margins, tolerances and resolutions are not inputs: they judge the
     measurement and do not change it.
     """
-    return {
-        "joints": list(JOINT_NAMES),
-        "stepped_joint": STEPPED_JOINT,
-        "model": FRANKA_MJCF,
-        "counted": list(EXPECTED_MODEL),
-        "rise_fraction": RISE_FRACTION,
-        "settling_band_rad": SETTLING_BAND,
-        "saturation_threshold": SATURATION_THRESHOLD,
-        "cases": case_parameters(CASES),
-    }
+    return inputs(
+        CASES,
+        joints=list(JOINT_NAMES),
+        stepped_joint=STEPPED_JOINT,
+        model=FRANKA_MJCF,
+        counted=list(EXPECTED_MODEL),
+        rise_fraction=RISE_FRACTION,
+        settling_band_rad=SETTLING_BAND,
+        saturation_threshold=SATURATION_THRESHOLD,
+    )

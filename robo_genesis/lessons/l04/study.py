@@ -16,7 +16,7 @@ from robo_genesis.lessons.l04.theory import IdealJoint, step_share, stepped_join
 from robo_genesis.sim import dynamics, mujoco_joints
 from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import ControlCase, run_case
-from robo_genesis.sim.joints import JointMap, resolve_joints
+from robo_genesis.sim.joints import JointMap
 
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
 """Genesis, and MuJoCo by its integrator."""
@@ -45,16 +45,6 @@ GRAVITY = {f"gravity_{case}": "N·m" for case in spec.CASES}
 def measure(trace: Trace, case: ControlCase) -> StepMetrics:
     """Return the metrics of the stepped joint."""
     return step_metrics(trace, spec.ENTRY)
-
-
-def describe(page: Any, robot: Any) -> JointMap:
-    """Give a page the counts, links and joints of the robot, and return its joints."""
-    names = ("links", "joints", "dofs", "qpos")
-    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    page.readings["model"] = dict(zip(names, counted, strict=True))
-    page.links = [link.name for link in robot.links]
-    page.joints = resolve_joints(robot, JOINT_NAMES)
-    return page.joints
 
 
 def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:

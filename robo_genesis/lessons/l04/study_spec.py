@@ -1,10 +1,11 @@
 """Specification of L04's deeper pages: cases beyond the lab, a grid of steps, tolerances."""
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
 from robo_genesis.core.scene import DT, SUBSTEPS
+from robo_genesis.lessons.experiment import case_inputs
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 from robo_genesis.lessons.l04.spec import (
     ENTRY,
@@ -13,7 +14,6 @@ from robo_genesis.lessons.l04.spec import (
     G3,
     START_OF_STEP,
     STEP,
-    case_parameters,
     with_entry,
 )  # fmt: skip
 from robo_genesis.sim.joint_control import ControlCase
@@ -179,11 +179,11 @@ counts must be equal. A CPU showed 0 rad, 2e-7 rad/s and 6e-5 N·m."""
 def parameters(page: str) -> dict[str, Any]:
     """Return every configured input of a page's own runs as JSON values, for the evidence key."""
     own: dict[str, dict[str, Any]] = {
-        "lecture": {"cases": case_parameters(EXAMPLE_CASES | LONGER_CASES)},
-        "formula": {"cases": case_parameters(STEP_CASES)},
+        "lecture": {"cases": case_inputs(EXAMPLE_CASES | LONGER_CASES)},
+        "formula": {"cases": case_inputs(STEP_CASES)},
         "integrator": {
-            "cases": case_parameters(SUBSTEP_CASES),
-            "second_runs": {name: asdict(run) for name, run in SECOND_RUNS.items()},
+            "cases": case_inputs(SUBSTEP_CASES),
+            "second_runs": case_inputs(SECOND_RUNS),
         },
         "batch": {"grid": {"step_rad": list(STEP_SIZES), "kp": list(KP), "kv": list(KV)}},
     }

@@ -10,14 +10,11 @@ from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons import view_record
 from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, on_demand
-from robo_genesis.lessons.experiment import MeasuringPage, Readings, Run, counts, runs_of
+from robo_genesis.lessons.experiment import MeasuringPage, Run, case_inputs, counts, runs_of
 from robo_genesis.lessons.l05 import (
-    camera_exercises,
-    camera_spec,
     checks,
     claims_text,
     exercises,
-    explorer,
     mistakes,
     plausibility,
     solutions_text,
@@ -25,27 +22,25 @@ from robo_genesis.lessons.l05 import (
     study,
     text,
 )
-from robo_genesis.lessons.l05.metrics import ReachMetrics
-from robo_genesis.lessons.l05.run import ask, control_case, reach, solve_all
+from robo_genesis.lessons.l05.metrics import ReachMetrics, reach_metrics
+from robo_genesis.lessons.l05.run import ask, reach, solve_all
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim.camera_views import look, segment_number
-from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joint_control import reset
+from robo_genesis.sim.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.joint_control import describe, reset
 from robo_genesis.sim.joints import resolve_joints
 from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
 
 if TYPE_CHECKING:
-    from robo_genesis.lessons.l05 import plots, solutions_plots
+    from robo_genesis.lessons.l05 import plots
 
 __all__ = [
-    "CAMERAS", "DT", "FRANKA_MJCF", "JOINT_NAMES", "LAB", "LECTURE", "LESSON", "MISTAKES",
-    "SOLUTIONS", "SUBSTEPS", "ask", "camera_exercises", "camera_spec", "control_case",
-    "exercises", "explorer", "kinematics", "look", "mistakes", "plots", "reach",
-    "read_shape", "reset", "resolve_joints", "segment_number", "solutions_plots",
-    "solutions_text", "solve_all", "spec", "study", "target_part", "text", "view_record",
+    "DT", "FRANKA_MJCF", "JOINT_NAMES", "SUBSTEPS", "ask", "describe", "exercises", "kinematics",
+    "look", "mistakes", "plots", "reach", "read_shape", "reset", "resolve_joints",
+    "segment_number", "solutions_text", "solve_all", "spec", "study", "text", "view_record",
 ]  # fmt: skip
 
-__getattr__ = on_demand(__name__, "plots", "solutions_plots")
+__getattr__ = on_demand(__name__, "plots")
 
 
 def target_part(marker: Any) -> list[Part]:
@@ -54,21 +49,15 @@ def target_part(marker: Any) -> list[Part]:
     return [replace(p, link=WORLD, vertices=p.vertices + np.float32(spec.TARGET)) for p in parts]
 
 
-def readings(rendered: bool) -> dict[str, Readings]:
-    """Return the engine's counts of the robot, and what it reports of the baseline's question."""
-    return {
-        "model": counts(spec.EXPECTED_MODEL),
-        study.GROUP: Readings(study.IK_READINGS),
-        study.REPEAT_GROUP: counts(study.REPEATED),
-    }
-
+MODEL = {"model": counts(spec.EXPECTED_MODEL)}
+SEEN = {view_record.SEGMENTS: counts(spec.SEGMENTS)}
 
 MOTION = MeasuringPage(
     runs=runs_of(spec.CASES),
     kind=Trace,
     joints=JOINT_NAMES,
-    readings=readings,
-    measure=study.measure,
+    readings=lambda rendered: MODEL | study.READINGS,
+    measure=reach_metrics,
     checks=checks.WITHOUT_CAMERA,
     claims=claims_text.CLAIMS,
     parameters=spec.parameters,
@@ -77,42 +66,30 @@ MOTION = MeasuringPage(
 )
 LAB = replace(
     MOTION,
-    readings=lambda rendered: (
-        readings(rendered)
-        | view_record.groups(spec.VIEWED)
-        | {view_record.SEGMENTS: counts(spec.SEGMENTS)}
-    ),
+    readings=lambda rendered: MODEL | study.READINGS | SEEN | view_record.groups(spec.VIEWED),
     checks=checks.CHECKS,
     camera=True,
     frames=("initial", "final", *view_record.frame_names(spec.VIEWED)),
 )
-LECTURE = replace(LAB)
 
 ANSWERS_NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal"
+ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()}
 SOLUTIONS = replace(
     MOTION,
-    runs={
-        **runs_of(spec.CASES),
-        **{name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()},
-    },
+    runs={**MOTION.runs, **ANSWERS},
     checks=(*checks.WITHOUT_CAMERA, *checks.SOLUTIONS),
-    parameters=lambda: spec.parameters() | {"questions": spec.case_parameters(spec.QUESTIONS)},
+    parameters=lambda: spec.parameters() | {"questions": case_inputs(spec.QUESTIONS)},
 )
 """The page about many solutions, the map of targets and the target beyond reach."""
-
-MISTAKES = replace(MOTION, camera=True, frames=())
 
 CAMERAS = replace(
     MOTION,
     runs=runs_of({"baseline": spec.BASELINE}),
-    readings=lambda rendered: (
-        {"model": counts(spec.EXPECTED_MODEL), view_record.SEGMENTS: counts(spec.SEGMENTS)}
-        | view_record.groups(*camera_spec.VIEWS)
-    ),
+    readings=lambda rendered: MODEL | SEEN | view_record.groups(*spec.VIEWS),
     checks=checks.CAMERAS,
-    parameters=lambda: spec.parameters() | camera_spec.parameters(),
+    parameters=spec.view_parameters,
     camera=True,
-    frames=view_record.frame_names(*camera_spec.VIEWS),
+    frames=view_record.frame_names(*spec.VIEWS),
 )
 """The page about cameras; each view has colours, depth and segmentation."""
 
@@ -121,8 +98,8 @@ LESSON = Lesson(
     metrics=dict.fromkeys(spec.CASES, ReachMetrics),
     pages={
         "lab": LAB,
-        "lecture": LECTURE,
-        "mistakes": MISTAKES,
+        "lecture": LAB,
+        "mistakes": replace(MOTION, camera=True, frames=()),
         "solutions": SOLUTIONS,
         "cameras": CAMERAS,
     },
@@ -137,8 +114,7 @@ LESSON = Lesson(
             thing="robot",
             alt="The robot in 3D, in the posture of the sample that is shown. The sphere is at the "
             "target of the hand.",
-            credit="Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from "
-            "franka_description, © Franka Robotics GmbH; decimated and converted",
+            credit=CREDIT,
         ),
         alt="Position of joint4 over time in three runs, and its command.",
         caption="Position of joint4 in three runs, from get_dofs_position.",

@@ -1,94 +1,73 @@
 """Named checks of the kinematics of L05."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import (
-    Finding,
-    above,
-    at_most,
-    below,
-    equal,
-    model_counts,
-    sample_times,
-)
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, stamps
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import camera_spec, spec, study
+from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.metrics import HAND, measured_hand
+from robo_genesis.lessons.l05.run import tolerances
 from robo_genesis.lessons.view_record import SEGMENTS, view_of
 from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim import camera_checks, end_state, mujoco_kinematics
+from robo_genesis.sim import camera_checks, mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose
 from robo_genesis.sim.camera_checks import Marker
+from robo_genesis.sim.end_state import posture
 from robo_genesis.sim.franka import JOINT_NAMES
 
-FIRST = HAND - ARM
-"""Index of link1 among the links of the arrays."""
+OF_CHAIN = slice(HAND - ARM, HAND + 1)
+"""The links of the chain among those of the arrays."""
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:
     yield from model_counts(run.readings["model"], spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
     chain = tuple(name for name, *_ in CHAIN)
-    yield equal("links_of_the_chain", tuple(run.links[FIRST : HAND + 1]), chain)
+    yield equal("links_of_the_chain", tuple(run.links[OF_CHAIN]), chain)
     for name, values in zip(("lower", "upper"), spec.ARM_LIMITS, strict=True):
         apart = np.abs(getattr(run.joints, name)[:ARM] - values).max()
         yield at_most(f"{name}_limits_against_the_model_file", apart, spec.SAME_POSE[1])
 
 
-def stamps(run: Experiment) -> Iterator[Finding]:
-    yield from sample_times(spec.CASES, run.traces)
-
-
 def acceptance(run: Experiment) -> Iterator[Finding]:
-    found, limits = run.readings[study.GROUP], spec.IK
-    yield at_most("residual_m", found["residual_m"], limits.position_tolerance)
-    yield at_most("residual_rad", found["residual_rad"], limits.rotation_tolerance)
+    found, limits = run.readings[study.GROUP], tolerances(spec.IK)
+    yield at_most("residual_m", found["residual_m"], limits[0])
+    yield at_most("residual_rad", found["residual_rad"], limits[1])
     for name in ("baseline", "kp_doubled"):
         trace, m = run.traces[name], run.metrics[name]
         yield equal(f"{name}.command_not_finite", int((~np.isfinite(trace.target)).sum()), 0)
-        room = spec.SAME_POSE
-        most = limits.position_tolerance + room[0], limits.rotation_tolerance + room[1]
+        most = np.add(limits, spec.SAME_POSE)
         yield at_most(f"{name}.command_distance_m", m.command_distance, most[0])
         yield at_most(f"{name}.command_angle_rad", m.command_angle, most[1])
 
 
 def forward_kinematics(run: Experiment) -> Iterator[Finding]:
-    for name in spec.CASES:
-        trace = run.traces[name]
-        apart, angle = differences(trace.link_pos, trace.link_quat, *kinematics.link_poses(trace.q))
-        yield at_most(f"{name}.links_apart_m", apart, spec.SAME_POSE[0])
-        yield at_most(f"{name}.links_apart_rad", angle, spec.SAME_POSE[1])
+    return same_links(run, kinematics.link_poses)
 
 
 def second_engine(run: Experiment) -> Iterator[Finding]:
-    links = run.links[FIRST : HAND + 1]
-    for name in spec.CASES:
-        trace = run.traces[name]
-        other = mujoco_kinematics.link_poses(trace.q, links)
-        apart, angle = differences(trace.link_pos, trace.link_quat, *other)
-        yield at_most(f"{name}.links_apart_m", apart, spec.SAME_POSE[0])
-        yield at_most(f"{name}.links_apart_rad", angle, spec.SAME_POSE[1])
+    links = run.links[OF_CHAIN]
+    yield from same_links(run, lambda q: mujoco_kinematics.link_poses(q, links))
     found = run.readings[study.GROUP]["jacobian_difference"]
     yield at_most("jacobian_difference", found, spec.SAME_POSE[0])
 
 
-def differences(
-    position: np.ndarray, quat: np.ndarray, other: np.ndarray, turned: np.ndarray
-) -> tuple[float, float]:
-    """Return the largest distance [m] and angle [rad] between the arm's links of two computations.
+def same_links(run: Experiment, poses: Callable[[FloatArray], Pose]) -> Iterator[Finding]:
+    """Compare the links of the chain in every state of the runs with another computation.
 
     Args:
-        position: (n, l, 3) of all links [m].
-        quat: (n, l, 4) of all links.
-        other: (n, 8, 3) of the links of the chain [m].
-        turned: (n, 8, 4) of the links of the chain.
+        run: the experiment.
+        poses: returns positions (n, 8, 3) [m] and orientations (n, 8, 4) at `q` (n, 9).
     """
-    chain = slice(FIRST, HAND + 1)
-    measured = Pose(position[:, chain].astype(float), quat[:, chain].astype(float))
-    apart, angle = kinematics.distances(kinematics.pose_error(measured, Pose(other, turned)))
-    return float(apart.max()), float(angle.max())
+    for name in spec.CASES:
+        trace = run.traces[name]
+        measured = (of[:, OF_CHAIN].astype(float) for of in (trace.link_pos, trace.link_quat))
+        apart, angle = kinematics.distances(kinematics.pose_error(Pose(*measured), poses(trace.q)))
+        yield at_most(f"{name}.links_apart_m", float(apart.max()), spec.SAME_POSE[0])
+        yield at_most(f"{name}.links_apart_rad", float(angle.max()), spec.SAME_POSE[1])
 
 
 def arrived(run: Experiment) -> Iterator[Finding]:
@@ -101,16 +80,13 @@ def arrived(run: Experiment) -> Iterator[Finding]:
 
 def sag_explains(run: Experiment) -> Iterator[Finding]:
     for name, case in spec.CASES.items():
-        trace = run.traces[name]
-        expected = study.sag(trace.target[-1].astype(float), case.kp)
-        rest = np.linalg.norm((study.measured_sag(trace) - expected)[:3])
-        share = rest / np.linalg.norm(expected[:3])
-        yield at_most(f"{name}.unexplained_share", float(share), spec.SAG_SHARE)
+        *_, share = study.sags(run.traces[name], case.kp)
+        yield at_most(f"{name}.unexplained_share", share, spec.SAG_SHARE)
 
 
 def repeatable(run: Experiment) -> Iterator[Finding]:
-    for name in study.REPEATED:
-        yield equal(name, run.readings[study.REPEAT_GROUP][name], 0)
+    for name, count in run.readings[study.REPEAT_GROUP].items():
+        yield equal(name, count, 0)
     first, second = (run.traces[name].target[0] for name in ("baseline", "kp_doubled"))
     yield equal("entries_that_differ_between_runs", int((first != second).sum()), 0)
 
@@ -130,20 +106,13 @@ def nearest_is_nearer(run: Experiment) -> Iterator[Finding]:
     yield above("engine_farther_by_m", float(of_engine[0] - of_nearest), spec.BEYOND_NEAREST)
 
 
-def posture(run: Experiment) -> Iterator[Finding]:
-    ends = {name: frame for name, frame in run.frames.items() if name in ("initial", "final")}
-    return end_state.findings(run.rendered, ends, run.traces["baseline"].link_pos)
-
-
 def marker(run: Experiment) -> Marker:
     """Return the sphere at the target as the camera must see it."""
-    number = int(run.readings[SEGMENTS]["marker"])
-    return Marker(number, tuple(spec.TARGET.tolist()), spec.MARKER_RADIUS)
+    return Marker(int(run.readings[SEGMENTS]["marker"]), spec.TARGET, spec.MARKER_RADIUS)
 
 
 def camera_matrix(run: Experiment) -> Iterator[Finding]:
-    view = view_of(run, spec.VIEWED)
-    return camera_checks.camera_matrix(spec.VIEWED, view, spec.FOV)
+    return camera_checks.camera_matrix(spec.VIEWED, view_of(run, spec.VIEWED), spec.FOV)
 
 
 def projection(run: Experiment) -> Iterator[Finding]:
@@ -156,11 +125,13 @@ def sphere_surface(run: Experiment) -> Iterator[Finding]:
 
 def plane_surface(run: Experiment) -> Iterator[Finding]:
     number = int(run.readings[SEGMENTS]["plane"])
-    return camera_checks.plane_surface(spec.VIEWED, view_of(run, spec.VIEWED), number)
+    for name in (spec.VIEWED, "hand"):
+        if f"view_{name}" in run.readings:  # the camera on the hand has a page of its own
+            yield from camera_checks.plane_surface(name, view_of(run, name), number)
 
 
 def mounted_camera(run: Experiment) -> Iterator[Finding]:
-    hand, offset = measured_hand(run.traces["baseline"], -1), np.array(camera_spec.ON_HAND)
+    hand, offset = measured_hand(run.traces["baseline"], -1), np.array(spec.ON_HAND)
     return camera_checks.mounted_camera("hand", view_of(run, "hand"), *hand, offset)
 
 

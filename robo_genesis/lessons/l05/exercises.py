@@ -1,16 +1,18 @@
-"""Checks of the kinematic functions that a student writes in L05's lab; see `core/exercises.py`."""
+"""Checks of the five functions that a student writes in L05's lab; see `core/exercises.py`."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, Finding, at_most, below, equal
-from robo_genesis.core.exercises import outcome
+from robo_genesis.core.checks import Finding, at_most, below, equal
+from robo_genesis.core.exercises import alike, tested
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.metrics import measured_hand
+from robo_genesis.lessons.l05.run import tolerances
 from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim import camera_geometry as cameras
 from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose
 
 CLOSE = 5e-6
@@ -22,26 +24,43 @@ TINY = 1e-9
 SINGULAR = np.array([0.0, 0.0, 0.0, -0.07, 0.0, 1.6, 0.0])
 """A nearly stretched arm: the smallest singular value of its Jacobian is about 0.01."""
 
+ROUNDED = 1e-6
+"""Largest difference of a pixel coordinate [pixel] or of a point [m] that rounding explains."""
 
-def forward(chain: Callable[..., Any], trace: Trace) -> list[Check]:
+SIZE = (32, 20)
+"""Columns and rows of the invented cameras."""
+
+TURNED = np.array([
+    [0.6, -0.48, 0.64, 1.1],
+    [0.8, 0.36, -0.48, -0.7],
+    [0.0, 0.8, 0.6, 0.9],
+    [0.0, 0.0, 0.0, 1.0],
+])  # fmt: skip
+"""The pose of an invented camera that looks down, z backwards [m]."""
+
+CAMERAS = {
+    "straight": (cameras.intrinsics(60.0, SIZE), np.eye(4)),
+    "turned": (cameras.intrinsics(42.0, SIZE), TURNED),
+}
+"""Camera matrix and pose of each invented camera."""
+
+
+@tested
+def forward(chain: Callable[..., Any], trace: Trace) -> Iterator[Finding]:
     """Check `chain(q, links)`: the pose of the last link, by the links of a chain.
 
     `q` (7,) are the joint positions; `links` are names, positions and orientations as in `CHAIN`.
     The function returns a position (3,) [m] and a quaternion (4,) of either sign. It is compared
     with the engine in recorded postures, and with two parts of the chain.
     """
-
-    def findings(_: None) -> Iterator[Finding]:
-        for state in (0, trace.steps // 8, trace.steps):
-            q = trace.q[state, :ARM].astype(float)
-            yield from near(f"state_{state}", chain(q, CHAIN), measured_hand(trace, state), CLOSE)
-        q = np.array([0.3, -0.4, 0.5, -1.6, 0.7, 1.1, -0.2])
-        poses = kinematics.link_poses(q)
-        for count in (1, 4):
-            expected = Pose(poses.position[count - 1], poses.quat[count - 1])
-            yield from near(f"first_{count}_links", chain(q, CHAIN[:count]), expected, TINY)
-
-    return outcome("forward", findings)
+    for state in (0, trace.steps // 8, trace.steps):
+        q = trace.q[state, :ARM].astype(float)
+        yield from near(f"state_{state}", chain(q, CHAIN), measured_hand(trace, state), CLOSE)
+    q = np.array([0.3, -0.4, 0.5, -1.6, 0.7, 1.1, -0.2])
+    poses = kinematics.link_poses(q)
+    for count in (1, 4):
+        expected = Pose(poses.position[count - 1], poses.quat[count - 1])
+        yield from near(f"first_{count}_links", chain(q, CHAIN[:count]), expected, TINY)
 
 
 def near(label: str, found: Any, expected: Pose, tiny: float) -> Iterator[Finding]:
@@ -50,38 +69,30 @@ def near(label: str, found: Any, expected: Pose, tiny: float) -> Iterator[Findin
     yield equal(f"{label}.shapes", [list(position.shape), list(quat.shape)], [[3], [4]])
     if (position.shape, quat.shape) == ((3,), (4,)):
         yield at_most(f"{label}.norm_error", abs(float(np.linalg.norm(quat)) - 1), 1e-5)
-        error = kinematics.pose_error(expected, Pose(position, quat))
-        apart, angle = kinematics.distances(error)
+        apart, angle = kinematics.distances(kinematics.pose_error(expected, Pose(position, quat)))
         yield at_most(f"{label}.distance_m", float(apart), tiny)
         yield at_most(f"{label}.angle_rad", float(angle), tiny)
 
 
-def step(damped: Callable[..., Any]) -> list[Check]:
+@tested
+def step(damped: Callable[..., Any]) -> Iterator[Finding]:
     """Check `damped(J, error, damping)`: one step (n,) of damped least squares.
 
     `J` is (m, n), `error` (m,). The postures are the start and a nearly singular one; a step with
     little damping must bring the hand nearer.
     """
-
-    def findings(_: None) -> Iterator[Finding]:
-        start = np.array(spec.BASELINE.q_start[:ARM])
-        target = Pose(spec.TARGET, spec.DOWN)
-        postures = {"start": start, "nearly_singular": SINGULAR}
-        for name, q in postures.items():
-            of = kinematics.jacobian(q)
-            error = kinematics.pose_error(target, kinematics.hand_pose(q))
-            for damping in (0.01, 0.3):
-                label, right = f"{name}_{damping:g}", kinematics.damped_step(of, error, damping)
-                found = np.asarray(damped(of, error, damping), dtype=float)
-                yield equal(f"{label}.shape", list(found.shape), [ARM])
-                if found.shape == (ARM,):
-                    yield at_most(f"{label}.distance_rad", float(np.abs(found - right).max()), TINY)
-        of, error = kinematics.jacobian(start)[:3], np.array([0.01, 0.0, -0.01])
-        moved = start + np.asarray(damped(of, error, 0.01), dtype=float).reshape(ARM)
-        left = kinematics.hand_pose(start).position + error - kinematics.hand_pose(moved).position
-        yield below("position_only.distance_left_m", float(np.linalg.norm(left)), 1e-3)
-
-    return outcome("step", findings)
+    start = np.array(spec.BASELINE.q_start[:ARM])
+    target = Pose(spec.TARGET, spec.DOWN)
+    for name, q in (("start", start), ("nearly_singular", SINGULAR)):
+        of = kinematics.jacobian(q)
+        error = kinematics.pose_error(target, kinematics.hand_pose(q))
+        for damping in (0.01, 0.3):
+            label, right = f"{name}_{damping:g}", kinematics.damped_step(of, error, damping)
+            yield from alike(label, damped(of, error, damping), right, TINY)
+    of, error = kinematics.jacobian(start)[:3], np.array([0.01, 0.0, -0.01])
+    moved = start + np.asarray(damped(of, error, 0.01), dtype=float).reshape(ARM)
+    left = kinematics.hand_pose(start).position + error - kinematics.hand_pose(moved).position
+    yield below("position_only.distance_left_m", float(np.linalg.norm(left)), 1e-3)
 
 
 ANSWERS: dict[str, tuple[tuple[float, ...], tuple[float, ...], bool]] = {
@@ -101,14 +112,41 @@ ANSWERS: dict[str, tuple[tuple[float, ...], tuple[float, ...], bool]] = {
 """Joint positions, residual, and whether they may be commanded with the tolerances of `IK`."""
 
 
-def acceptance(accept: Callable[..., Any]) -> list[Check]:
+@tested
+def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
     """Check `accept(q, error, position_tolerance, rotation_tolerance)` with invented answers."""
+    for name, (q, error, right) in ANSWERS.items():
+        found = accept(np.array(q), np.array(error, dtype=float), *tolerances(spec.IK))
+        yield equal(name, bool(found), right)
+    yield equal("looser_tolerances", bool(accept(np.zeros(9), np.full(6, 0.1), 0.2, 0.2)), True)
 
-    def findings(_: None) -> Iterator[Finding]:
-        tolerances = spec.IK.position_tolerance, spec.IK.rotation_tolerance
-        for name, (q, error, right) in ANSWERS.items():
-            found = accept(np.array(q), np.array(error, dtype=float), *tolerances)
-            yield equal(name, bool(found), right)
-        yield equal("looser_tolerances", bool(accept(np.zeros(9), np.full(6, 0.1), 0.2, 0.2)), True)
 
-    return outcome("acceptance", findings)
+@tested
+def project(function: Callable[..., Any]) -> Iterator[Finding]:
+    """Check `project(points, K, transform)`: pixel coordinates (n, 2) of points (n, 3).
+
+    The corner of the picture is (0, 0). `transform` is the engine's: x right, y up, z backwards.
+    """
+    seen = np.array([[0, 0, 1], [0.3, 0, 1], [0, 0.2, 1], [-0.4, 0.1, 2], [0.1, 0.3, 0.5]])
+    for name, (K, transform) in CAMERAS.items():
+        pose = cameras.other_axes(transform)
+        points = seen @ pose[:3, :3].T + pose[:3, 3]
+        expected = cameras.project(points, K, transform)
+        yield from alike(name, function(points, K, transform), expected, ROUNDED)
+
+
+@tested
+def back_project(function: Callable[..., Any]) -> Iterator[Finding]:
+    """Check `back_project(depth, K, transform)`: the point (H, W, 3) of each pixel's centre.
+
+    `depth` (H, W) is measured along the optical axis. The pictures are of a plane in front of the
+    camera, where depth is constant, and of a sloping one.
+    """
+    width, height = SIZE
+    rows, columns = np.mgrid[:height, :width]
+    depths = {"flat": np.full((height, width), 1.5), "sloping": 1 + 0.02 * rows + 0.01 * columns}
+    for name, camera in CAMERAS.items():
+        for kind, depth in depths.items():
+            expected = cameras.back_project(depth, *camera)
+            found = function(depth.copy(), *camera)
+            yield from alike(f"{name}.{kind}", found, expected, ROUNDED)

@@ -1,10 +1,11 @@
 """The maps of postures: the places of recorded answers in a map. What a recorded picture shows."""
 
-from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import camera_spec, spec, study
+from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.solutions_text import MEASURES, records
 from robo_genesis.lessons.view_record import DEPTH_UNIT, SEGMENTS, view_of
 from robo_genesis.sim.camera_geometry import other_axes
@@ -20,6 +21,20 @@ PLACES = {
 }  # fmt: skip
 """Caption, axes and values from the bottom of the maps of targets."""
 
+PICTURES = {
+    spec.VIEWED: {
+        "alt": "Camera frame of the robot at its start. An orange ball is below its hand.",
+        "caption": "Depth and point are those of the recorded arrays, in the pixel's centre.",
+    },
+    "cut": {
+        "alt": "Camera frame of the robot. The floor exists only in a band. The hand and the wrist "
+        "are cut open.",
+        "caption": "Surfaces nearer than the near limit or farther than the far one are missing: "
+        "the hand is cut open, and the floor is a band.",
+    },
+}
+"""Alternative text and caption of the pictures that a reader can read."""
+
 
 def posture_maps(run: Experiment, which: str) -> list[dict[str, Any]]:
     """Return the maps called `reach`, or `solutions`.
@@ -29,41 +44,39 @@ def posture_maps(run: Experiment, which: str) -> list[dict[str, Any]]:
         `axes`, `rows` from the top with the numbers of their answers, the labels of `columns`, the
         columns of `records` that cells can show as `measures`, and `records`, one for each answer.
     """
-    names = ("many_starts",) if which == "solutions" else tuple(PLACES)
-    return [
-        {
-            "run": name,
-            "targets": spec.QUESTIONS[name].positions,
-            "caption": caption,
-            "axes": axes,
-            "rows": rows,
-            "columns": [f"{value:g}" for value in columns],
-            "measures": tuple(MEASURES),
-            "records": [row for row in records(run, name) if row["answer"] in shown],
-        }
-        for name in names
-        for caption, axes, rows, columns in [_places(run, name)]
-        for shown in [{str(key) for row in rows for key in row["cells"]}]
-    ]
+    maps = [solution_map(run)] if which == "solutions" else [plane_map(name) for name in PLACES]
+    for one in maps:
+        shown = {str(key) for row in one["rows"] for key in row["cells"]}
+        one["targets"] = spec.QUESTIONS[one["run"]].positions
+        one["columns"] = [f"{value:g}" for value in one["columns"]]
+        one["measures"] = tuple(MEASURES)
+        one["records"] = [row for row in records(run, one["run"]) if row["answer"] in shown]
+    return maps
 
 
-def _places(run: Experiment, name: str) -> tuple[str, tuple[str, str], list[Any], Sequence[float]]:
-    """Return caption, axes, rows and columns of a map."""
-    if name in PLACES:
-        caption, axes, upwards = PLACES[name]
-        width = len(spec.GRID_X)
-        rows = [
-            {"label": f"{value:g}", "cells": [*range(k * width + 1, (k + 1) * width + 1)]}
-            for k, value in enumerate(upwards)
-        ]
-        return caption, axes, rows[::-1], spec.GRID_X
+def plane_map(name: str) -> dict[str, Any]:
+    """Return run, caption, axes, rows and columns of a map of targets."""
+    caption, axes, upwards = PLACES[name]
+    columns = spec.GRID_X
+    numbers = np.arange(1, len(columns) * len(upwards) + 1).reshape(-1, len(columns)).tolist()
+    rows = [{"label": f"{v:g}", "cells": of} for v, of in zip(upwards, numbers, strict=True)]
+    return {"run": name, "caption": caption, "axes": axes, "rows": rows[::-1], "columns": columns}
+
+
+def solution_map(run: Experiment) -> dict[str, Any]:
+    """Return the same of the map of answers for one target."""
     rows = [
         {"label": str(number), "cells": [k + 1 for k in inside[at : at + COLUMNS]]}
         for number, (_, inside) in enumerate(study.solution_families(run), start=1)
         for at in range(0, len(inside), COLUMNS)
     ]
-    caption = "Answers for one target. Rows: their curve, and on it joint1 from low to high."
-    return caption, ("curve", "place"), rows, range(1, COLUMNS + 1)
+    return {
+        "run": "many_starts",
+        "caption": "Answers for one target. Rows: their curve, and on it joint1 from low to high.",
+        "axes": ("curve", "place"),
+        "rows": rows,
+        "columns": range(1, COLUMNS + 1),
+    }
 
 
 def picture(run: Experiment, name: str) -> dict[str, Any]:
@@ -84,5 +97,5 @@ def picture(run: Experiment, name: str) -> dict[str, Any]:
         "names": {0: "nothing"} | links | {numbers[name]: name for name in spec.SEGMENTS},
         "planes": {numbers["plane"]: 0.0},
         "spheres": {numbers["marker"]: [*spec.TARGET.tolist(), spec.MARKER_RADIUS]},
-        **camera_spec.PICTURES[name],
+        **PICTURES[name],
     }

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics, metric
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l05.run import ReachCase
 from robo_genesis.sim.arm_kinematics import Pose, distances, hand_pose, pose_error
 from robo_genesis.sim.franka import LINK_PARENTS
 
@@ -40,18 +40,8 @@ def measured_hand(trace: Trace, state: int) -> Pose:
     return Pose(trace.link_pos[state, HAND].astype(np.float64), quat / np.linalg.norm(quat))
 
 
-def commanded_hand(trace: Trace) -> Pose:
-    """Return the pose of the hand at the last command, by forward kinematics."""
-    return hand_pose(trace.target[-1])
-
-
-def reach_metrics(trace: Trace, position: FloatArray, quat: FloatArray) -> ReachMetrics:
-    """Measure a run that commands one constant target.
-
-    Args:
-        trace: the run, with all links of the robot.
-        position: (3,) target of the hand [m].
-        quat: (4,) its target orientation.
+def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
+    """Measure a run of a case, which commands constant joint positions, with all links.
 
     Raises:
         ValueError: the trace lacks the hand, or the command changes.
@@ -63,18 +53,14 @@ def reach_metrics(trace: Trace, position: FloatArray, quat: FloatArray) -> Reach
         )
     if (trace.target != trace.target[0]).any():
         raise ValueError("The command changes during the run. Measure a run with a constant one.")
-    target = Pose(np.asarray(position, float), np.asarray(quat, float))
-    command, end = commanded_hand(trace), measured_hand(trace, -1)
-    start_distance, _ = distances(pose_error(target, measured_hand(trace, 0)))
-    pairs = ((target, command), (command, end), (target, end))
-    apart, angle = zip(*(distances(pose_error(to, at)) for to, at in pairs), strict=True)
-    return ReachMetrics(
-        start_distance=float(start_distance),
-        command_distance=float(apart[0]),
-        command_angle=float(angle[0]),
-        tracking_distance=float(apart[1]),
-        tracking_angle=float(angle[1]),
-        final_distance=float(apart[2]),
-        final_angle=float(angle[2]),
-        final_speed=float(np.abs(trace.qd[-1]).max()),
-    )
+    target, command = Pose(case.position, case.quat), hand_pose(trace.target[-1])
+    end, speed = measured_hand(trace, -1), float(np.abs(trace.qd[-1]).max())
+    start, _ = between(target, measured_hand(trace, 0))
+    parts = (*between(target, command), *between(command, end), *between(target, end))
+    return ReachMetrics(start, *parts, speed)  # in the order of its fields
+
+
+def between(target: Pose, pose: Pose) -> tuple[float, float]:
+    """Return distance [m] and angle [rad] of a pose from another one."""
+    apart, angle = distances(pose_error(target, pose))
+    return float(apart), float(angle)

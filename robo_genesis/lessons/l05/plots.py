@@ -1,39 +1,47 @@
-"""Figures of L05's lecture and lab, each a function of the experiment."""
+"""Figures of L05, each a function of the experiment."""
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
-from robo_genesis.core.plotting import look
+from robo_genesis.core.palette import PARTS
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import spec
+from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
 from robo_genesis.lessons.l05.metrics import HAND
-from robo_genesis.lessons.view_record import frame_names, view_of
+from robo_genesis.lessons.l05.solutions_text import CRITERIA, chosen
+from robo_genesis.lessons.view_record import view_of
 from robo_genesis.sim import camera_geometry as cameras
+from robo_genesis.sim.arm_kinematics import ARM
 from robo_genesis.sim.franka import LINK_PARENTS
 
 AROUND = 45
 """Half the width of the shown part of the picture around the marker [pixel]."""
 
+FAMILIES = ("first", "second", "third", "other", "further")
+"""The mark of each curve of solutions, the longest first."""
+
+PANELS = {
+    "joint2 [rad]": "joint2",
+    "largest angle\nfrom start [rad]": "from_start",
+    "distance from\nlimits [rad]": "margin",
+    "manipulability": "manipulability",
+}
+
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured link origins."""
-    if run.rendered:
-        return plotting.both_ends({name: run.frames[name] for name in ("initial", "final")})
-    figure = plotting.figure(5)
-    plotting.schematic(figure.subplots(), run.traces["baseline"], LINK_PARENTS)
-    return figure
+    return plotting.robot_ends(run, LINK_PARENTS)
 
 
 def distance(run: Experiment) -> Figure:
     """Draw the distance of the hand from its target over time, on a logarithmic scale."""
-    figure = plotting.figure(3.6)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(3.6)
     for name in spec.CASES:
         trace = run.traces[name]
         apart = np.linalg.norm(trace.link_pos[:, HAND] - spec.TARGET, axis=-1)
-        style = look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
+        style = plotting.look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
         ax.semilogy(trace.t, 1000 * apart, label=spec.LABELS[name], **style)
     ax.set(xlabel="time [s]", ylabel="hand to target [mm]")
     plotting.legend_above(ax, "Distance of the hand from its target")
@@ -43,24 +51,40 @@ def distance(run: Experiment) -> Figure:
 def picture(run: Experiment) -> Figure:
     """Show the picture around the marker, with its centre as projected by hand."""
     view, sphere = view_of(run, spec.VIEWED), marker(run)
-    u, v = cameras.project(np.array(sphere.centre), view.intrinsics, view.transform)
-    figure = plotting.figure(plotting.WIDTH)
-    ax = figure.subplots()
+    u, v = cameras.project(sphere.centre, view.intrinsics, view.transform)
+    figure, ax = plotting.axes(plotting.WIDTH)
     if view.rgb is not None:
-        height, width = view.rgb.shape[:2]
-        shown = run.frames[frame_names(spec.VIEWED)[0]]
-        ax.imshow(shown, extent=(0, width, height, 0), interpolation="nearest")
-    ax.plot(
-        [u],
-        [v],
-        "+",
-        markersize=16,
-        markeredgewidth=2,
-        color=look("target")["color"],
-        label="projected by hand",
-    )
+        ax.imshow(view.rgb, extent=(0, *view.size, 0), interpolation="nearest")
+    cross = {"markersize": 16, "markeredgewidth": 2, "color": plotting.look("target")["color"]}
+    ax.plot([u], [v], "+", label="projected by hand", **cross)
     ax.set(xlim=(u - AROUND, u + AROUND), ylim=(v + AROUND, v - AROUND), aspect="equal")
     ax.set(xlabel="u [pixel]", ylabel="v [pixel]")
     ax.grid(visible=False)
     plotting.legend_above(ax, "The marker in the picture")
+    return figure
+
+
+def solutions(run: Experiment) -> Figure:
+    """Draw the accepted answers and their curves over joint1; a square is at the best answer."""
+    figure, q = plotting.figure(7.6), run.traces["many_starts"].q[1:, :ARM].astype(float)
+    start, families = run.traces["many_starts"].q[0, :ARM], study.solution_families(run)
+
+    def known(at: FloatArray) -> dict[str, FloatArray]:
+        return {"joint2": at[:, 1]} | study.qualities(at, start)
+
+    best = dict(zip((key for key, _ in CRITERIA.values()), chosen(run).values(), strict=True))
+    axes = figure.subplots(len(PANELS), 1, sharex=True)
+    for ax, (label, key) in zip(axes, PANELS.items(), strict=True):
+        ax.set_ylabel(label)
+        for n, (mark, (curve, inside)) in enumerate(zip(FAMILIES, families, strict=False), 1):
+            style = plotting.look(mark, linestyle="-", linewidth=1)
+            ax.plot(curve[:, 0], known(curve)[key], **style)
+            ax.plot(q[inside, 0], known(q[inside])[key], "o", markersize=3.5, color=style["color"])
+            if ax is axes[0]:
+                middle = curve[len(curve) // 2]
+                ax.text(middle[0], middle[1] - 0.5, f"curve {n}", ha="center", va="top")
+        if key in best:
+            square = {"markersize": 10, "fillstyle": "none", "color": PARTS["text"].light}
+            ax.plot(q[best[key], 0], known(q[[best[key]]])[key], "s", **square)
+    axes[-1].set_xlabel("joint1 [rad]")
     return figure

@@ -1,6 +1,6 @@
 """Reaches of L05: ask for joint positions, accept or refuse them, command them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -9,7 +9,7 @@ from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim import franka, mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, accepted, distances
-from robo_genesis.sim.joint_control import ControlCase, assign_postures, run_case
+from robo_genesis.sim.joint_control import ControlCase, assign_postures, course_case, run_case
 from robo_genesis.sim.joints import JointMap
 from robo_genesis.sim.kinematics import IkAnswer, IkSettings, solve_ik
 
@@ -27,18 +27,19 @@ class ReachCase:
     """A target of the hand, the start, and the controller that brings the arm there.
 
     `position` (3,) [m] and `quat` (4,) are in the world; the other arrays have one entry for each
-    joint: `q_start` [rad or m], `kp` [N·m/rad or N/m], `kv` [N·m·s/rad or N·s/m], `effort_limit`
-    [N·m or N]. With `compensated`, each arm joint's command is gravity / KP beyond the answer.
+    joint, by default the course's: `q_start` [rad or m], `kp` [N·m/rad or N/m], `kv` [N·m·s/rad or
+    N·s/m], `effort_limit` [N·m or N]. With `compensated`, each arm joint's command is gravity / KP
+    beyond the answer.
     """
 
     position: FloatArray
     quat: FloatArray
-    q_start: FloatArray
-    kp: FloatArray
-    kv: FloatArray
-    effort_limit: FloatArray
     settings: IkSettings
     steps: int
+    q_start: FloatArray = field(default_factory=lambda: franka.Q_START)
+    kp: FloatArray = field(default_factory=lambda: franka.KP_BASELINE)
+    kv: FloatArray = field(default_factory=lambda: franka.KV_BASELINE)
+    effort_limit: FloatArray = field(default_factory=lambda: franka.EFFORT_LIMIT)
     compensated: bool = False
     dt: float = DT
     substeps: int = SUBSTEPS
@@ -64,8 +65,6 @@ class SolveCase:
     starts: FloatArray
     settings: IkSettings
     dt: float = DT
-    substeps: int = SUBSTEPS
-    seed: int = SEED
 
     @property
     def steps(self) -> int:
@@ -75,17 +74,18 @@ class SolveCase:
     @property
     def start(self) -> ControlCase:
         """The settings from which the answers are assigned: those of the course, at its start."""
-        return ControlCase(
-            franka.Q_START, franka.Q_START, franka.KP_BASELINE, franka.KV_BASELINE,
-            franka.EFFORT_LIMIT, self.steps, self.dt, self.substeps, self.seed,
-        )  # fmt: skip
+        return course_case(franka.Q_START, self.steps)
+
+
+def tolerances(settings: IkSettings) -> tuple[float, float]:
+    """Return the largest accepted residuals of position [m] and rotation [rad]."""
+    return settings.position_tolerance, settings.rotation_tolerance
 
 
 def ask(robot: Any, joints: JointMap, case: ReachCase) -> IkAnswer:
     """Return the engine's answer for the target of a case; the fingers stay at its start."""
-    return solve_ik(
-        robot, joints, END_EFFECTOR, case.position, case.quat, case.q_start, MOVED, case.settings
-    )
+    pose = case.position, case.quat
+    return solve_ik(robot, joints, END_EFFECTOR, *pose, case.q_start, MOVED, case.settings)
 
 
 def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:
@@ -95,8 +95,7 @@ def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:
         NotAccepted: the answer is not finite, or a residual is beyond its tolerance; the message
             gives both residuals and both tolerances.
     """
-    settings = case.settings
-    limits = settings.position_tolerance, settings.rotation_tolerance
+    limits = tolerances(case.settings)
     if not accepted(answer.q, answer.error, *limits):
         apart, angle = distances(answer.error)
         raise NotAccepted(

@@ -4,10 +4,10 @@ import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.text import decimal
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim.arm_kinematics import ARM
 from robo_genesis.sim.franka import JOINT_NAMES
 
 THRESHOLDS = (0.05, 0.1, 0.3, 0.5, 1.0)
@@ -32,23 +32,22 @@ MEASURES = {
 
 def records(run: Experiment, name: str) -> list[dict[str, str]]:
     """Return what is known of each answer of a run as rows of a table."""
-    case, q = spec.QUESTIONS[name], run.traces[name].q[1:, :ARM]
+    case, q = spec.QUESTIONS[name], run.traces[name].q[1:, : kinematics.ARM]
     found, (lower, upper) = study.answers(run.traces[name], case), spec.ARM_LIMITS
     nearest = np.minimum(q - lower, upper - q).argmin(axis=1)
-    return [
-        {
+    rows = []
+    for k in range(case.steps):
+        row = {
             "answer": str(k + 1),
             "target x, y, z [m]": ", ".join(f"{value:g}" for value in case.positions[k]),
             "accepted": "yes" if found["accepted"][k] else "no",
-            "joint1 [rad]": f"{q[k, 0]:.3f}".replace("-", "−"),
+            "joint1 [rad]": decimal(q[k, 0], 3),
             "nearest to a limit": JOINT_NAMES[nearest[k]],
         }
-        | {
-            label: f"{round(max(factor * found[key][k], 0), 6):.{digits}g}"
-            for label, (key, factor, digits) in MEASURES.items()
-        }
-        for k in range(case.steps)
-    ]
+        for label, (key, factor, digits) in MEASURES.items():
+            row[label] = f"{round(max(factor * found[key][k], 0), 6):.{digits}g}"
+        rows.append(row)
+    return rows
 
 
 def chosen(run: Experiment) -> dict[str, int]:
@@ -67,7 +66,7 @@ def many_answers(run: Experiment) -> dict[str, FloatArray]:
 
 def count_table(run: Experiment) -> str:
     """Return how many answers are distinct for several thresholds."""
-    q = run.traces["many_starts"].q[1:, :ARM][many_answers(run)["accepted"]]
+    q = run.traces["many_starts"].q[1:, : kinematics.ARM][many_answers(run)["accepted"]]
     return tables.markdown(
         [{"threshold [rad]": t, "distinct answers": study.clusters(q, t)} for t in THRESHOLDS]
     )
@@ -85,8 +84,7 @@ def family_table(run: Experiment) -> str:
 
 def span(values: FloatArray, digits: int) -> str:
     """Return the smallest and the largest of values (n,)."""
-    low, high = (f"{value:.{digits}f}".replace("-", "−") for value in (values.min(), values.max()))
-    return f"{low} … {high}"
+    return f"{decimal(values.min(), digits)} … {decimal(values.max(), digits)}"
 
 
 def choice_table(run: Experiment) -> str:
@@ -104,14 +102,9 @@ def unreachable_table(run: Experiment) -> str:
         "engine's answer": (found["position"][0], found["rotation"][0]),
         "nearest that we found": kinematics.distances(study.nearest()[1]),
     }
-    heads = ("distance [m]", "angle [rad]", "weighted distance [m]")
+    heads = dict.fromkeys(("distance [m]", "angle [rad]", "weighted distance [m]"), 3)
     rows = {name: (*pair, study.weighted(*pair)) for name, pair in pairs.items()}
-    return tables.markdown(
-        [
-            {"posture": name} | {h: f"{v:.3f}" for h, v in zip(heads, row, strict=True)}
-            for name, row in rows.items()
-        ]
-    )
+    return tables.numbers("posture", heads, rows)
 
 
 def reach_table(run: Experiment) -> str:

@@ -4,18 +4,17 @@ Pages, checks, verification and tests read the experiment here. The module is da
 nothing. `parameters()` has the values that decide what runs; all other values only judge.
 """
 
-from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.scene import CAMERA, FloatArray
+from robo_genesis.core.scene import CAMERA, read_only
+from robo_genesis.lessons.experiment import inputs
 from robo_genesis.lessons.l05.run import ReachCase, SolveCase
 from robo_genesis.sim import franka
 from robo_genesis.sim.kinematics import IkSettings
 
-LESSON = "l05"
 MINIMUM_HARDWARE = "cpu"
 
 EXPECTED_MODEL = franka.MODEL_COUNTS
@@ -33,32 +32,16 @@ ONE_START = replace(IK, samples=1, iterations=100)
 """The same without starts of the engine's choice, so that an answer depends on its start alone."""
 
 
-def fixed(*values: float) -> FloatArray:
-    """Return a read-only array of the values."""
-    array = np.array(values, dtype=np.float64)
-    array.setflags(write=False)
-    return array
-
-
-TARGET = fixed(0.45, 0.0, 0.35)
+TARGET = read_only((0.45, 0.0, 0.35))
 """Target of the hand's origin in the world [m]."""
 
-DOWN = fixed(0.0, 1.0, 0.0, 0.0)
+DOWN = read_only((0.0, 1.0, 0.0, 0.0))
 """Target orientation (w, x, y, z): half a turn about x, so the fingers point down."""
 
-BEYOND_REACH = fixed(2.0, 0.0, 2.0)
+BEYOND_REACH = read_only((2.0, 0.0, 2.0))
 """A target that no posture of the arm comes near to [m]."""
 
-BASELINE = ReachCase(
-    position=TARGET,
-    quat=DOWN,
-    q_start=franka.Q_START,
-    kp=franka.KP_BASELINE,
-    kv=franka.KV_BASELINE,
-    effort_limit=franka.EFFORT_LIMIT,
-    settings=IK,
-    steps=180,
-)
+BASELINE = ReachCase(TARGET, DOWN, IK, steps=180)
 CASES = {
     "baseline": BASELINE,
     "kp_doubled": replace(BASELINE, kp=2 * franka.KP_BASELINE),
@@ -84,6 +67,23 @@ VIEW = CAMERA | {
 }  # fmt: skip
 """The lesson's camera: the robot, the marker and the ground."""
 
+CUT = (1.65, 2.2)
+"""Near and far limit of the view `cut` [m]: one is inside the hand, the other on the floor."""
+
+HAND_FOV = 60.0
+"""Vertical field of view of the camera on the hand [degree]."""
+
+ON_HAND = (
+    (0.0, -1.0, 0.0, 0.05),
+    (-1.0, 0.0, 0.0, 0.0),
+    (0.0, 0.0, -1.0, 0.0),
+    (0.0, 0.0, 0.0, 1.0),
+)
+"""The camera in the frame of the hand, z backwards: it looks along the fingers [m]."""
+
+VIEWS = (VIEWED, "cut", "hand")
+"""The views of the page about cameras: the first before the run, the others after it."""
+
 SEGMENTS = ("plane", "hand", "marker")
 """What is looked up in the segmentation."""
 
@@ -101,10 +101,8 @@ HEIGHT = 0.35
 """Height of the horizontal plane of the reach map [m]; the vertical plane is y = 0."""
 
 PLANES = {
-    "vertical": fixed(*(v for z in GRID_Z for x in GRID_X for v in (x, 0, z))).reshape(-1, 3),
-    "horizontal": fixed(*(v for y in GRID_Y for x in GRID_X for v in (x, y, HEIGHT))).reshape(
-        -1, 3
-    ),
+    "vertical": read_only([(x, 0.0, z) for z in GRID_Z for x in GRID_X]),
+    "horizontal": read_only([(x, y, HEIGHT) for y in GRID_Y for x in GRID_X]),
 }
 """Targets (63, 3) of the reach map, row by row [m]."""
 
@@ -131,15 +129,9 @@ RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
 """By unit: values that differ by no more than this are called equal, the noise floor."""
 
 TOLERANCES = {
-    "m": (1e-5, 1e-3),
-    "rad": (1e-5, 1e-3),
-    "rad/s": (1e-3, 1e-3),
-    "N·m": (1e-2, 1e-3),
-    "N": (1e-2, 1e-3),
-    "pixel": (1e-6, 0.0),
-    "1": (1e-6, 0.0),
-    "link_quat_wxyz": (1e-4, 0.0),
-}
+    "m": (1e-5, 1e-3), "rad": (1e-5, 1e-3), "rad/s": (1e-3, 1e-3), "N·m": (1e-2, 1e-3),
+    "N": (1e-2, 1e-3), "pixel": (1e-6, 0.0), "1": (1e-6, 0.0), "link_quat_wxyz": (1e-4, 0.0),
+}  # fmt: skip
 """By unit, or by array: (atol, rtol) of a value between engine versions or backends."""
 
 REACHED = (0.02, 0.05)
@@ -158,21 +150,12 @@ BEYOND_NEAREST = 0.01
 """The engine's answer for the target beyond reach is farther than the nearest pose by more [m]."""
 
 
-def case_parameters(cases: Mapping[str, ReachCase | SolveCase]) -> dict[str, dict[str, Any]]:
-    """Return every field of every case as JSON values."""
-    return {
-        name: {key: np.asarray(value).tolist() for key, value in asdict(case).items()}
-        for name, case in cases.items()
-    }
-
-
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    return {
-        "joints": list(franka.JOINT_NAMES),
-        "model": franka.FRANKA_MJCF,
-        "counted": list(EXPECTED_MODEL),
-        "cases": case_parameters(CASES),
-        "marker": MARKER_RADIUS,
-        "view": {name: value for name, value in VIEW.items() if name != "GUI"},
-    }
+    robot = {"joints": list(franka.JOINT_NAMES), "model": franka.FRANKA_MJCF}
+    return inputs(CASES, VIEW, counted=list(EXPECTED_MODEL), marker=MARKER_RADIUS, **robot)
+
+
+def view_parameters() -> dict[str, Any]:
+    """Return the inputs of the page about cameras."""
+    return parameters() | {"cut": CUT, "hand_fov": HAND_FOV, "on_hand": ON_HAND}

@@ -7,71 +7,47 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.experiment import Experiment, Readings, counts
 from robo_genesis.lessons.l05 import spec
-from robo_genesis.lessons.l05.metrics import ReachMetrics, measured_hand, reach_metrics
-from robo_genesis.lessons.l05.run import END_EFFECTOR, ReachCase, SolveCase, ask
+from robo_genesis.lessons.l05.metrics import measured_hand
+from robo_genesis.lessons.l05.run import END_EFFECTOR, SolveCase, ask, tolerances
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import kinematics as engine
 from robo_genesis.sim import mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, Pose
-from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import reset
-from robo_genesis.sim.joints import JointMap, resolve_joints, to_numpy
+from robo_genesis.sim.joints import JointMap, to_numpy
 
-GROUP = "ik"
-"""Group of a bundle's metrics: what the engine's solver reported, with units."""
+GROUP, REPEAT_GROUP = "ik", "ik_repeated"
+"""Groups of a bundle's metrics: what the engine's solver reported, and counts of two answers."""
 
-IK_READINGS = {"residual_m": "m", "residual_rad": "rad", "jacobian_difference": "m"}
-"""Residuals of the baseline's answer, and the largest difference of the engine's Jacobian from that
-of MuJoCo, in m/rad or without a unit."""
-
-REPEAT_GROUP = "ik_repeated"
-"""Group of counts: entries of q and residual that differ between two equal questions."""
-
-REPEATED = ("entries_that_differ",)
-
-
-def measure(trace: Trace, case: ReachCase) -> ReachMetrics:
-    """Return the distances of a reach."""
-    return reach_metrics(trace, case.position, case.quat)
-
-
-def describe(page: Any, robot: Any) -> JointMap:
-    """Give a page the counts, links and joints of the robot, and return its joints."""
-    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    page.readings["model"] = dict(zip(spec.EXPECTED_MODEL, counted, strict=True))
-    page.links = [link.name for link in robot.links]
-    page.joints = resolve_joints(robot, JOINT_NAMES)
-    return page.joints
+READINGS = {
+    GROUP: Readings({"residual_m": "m", "residual_rad": "rad", "jacobian_difference": "m"}),
+    REPEAT_GROUP: counts(["entries_that_differ"]),
+}
+"""Residuals of the baseline's answer; the largest difference of the engine's Jacobian from that of
+MuJoCo, in m/rad or without a unit; entries of q and residual that differ between two equal
+questions."""
 
 
 def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
-    """Give a page what the solver reports of the baseline's question; this resets the scene."""
+    """Give a page what the solver reports of the baseline's question, asked twice from the start.
+
+    This resets the scene. The engine's Jacobian is compared with MuJoCo's at the start.
+    """
     reset(scene, robot, joints, spec.UNREACHABLE.start)
-    page.readings[GROUP] = read_solver(robot, joints, spec.BASELINE)
-    page.readings[REPEAT_GROUP] = read_repeat(robot, joints, spec.BASELINE)
-
-
-def read_solver(robot: Any, joints: JointMap, case: ReachCase) -> dict[str, float]:
-    """Ask the engine for a case, and compare its Jacobian with MuJoCo's at the state now."""
-    apart, angle = kinematics.distances(ask(robot, joints, case).error)
-    dofs = joints.dofs_idx_local.tolist()
-    q = to_numpy(robot.get_dofs_position(dofs)).astype(np.float64)
+    first, second = (ask(robot, joints, spec.BASELINE) for _ in range(2))
+    apart, angle = kinematics.distances(first.error)
+    q = to_numpy(robot.get_dofs_position(joints.dofs_idx_local.tolist())).astype(np.float64)
     rows = engine.jacobian(robot, joints, END_EFFECTOR)
-    other = mujoco_kinematics.jacobian(q, END_EFFECTOR)
-    return {
+    differences = np.abs(rows - mujoco_kinematics.jacobian(q, END_EFFECTOR))
+    page.readings[GROUP] = {
         "residual_m": float(apart),
         "residual_rad": float(angle),
-        "jacobian_difference": float(np.abs(rows - other).max()),
+        "jacobian_difference": float(differences.max()),
     }
-
-
-def read_repeat(robot: Any, joints: JointMap, case: ReachCase) -> dict[str, int]:
-    """Ask the engine twice for a case, and count the entries that differ."""
-    first, second = ask(robot, joints, case), ask(robot, joints, case)
     differ = (first.q != second.q).sum() + (first.error != second.error).sum()
-    return dict.fromkeys(REPEATED, int(differ))
+    page.readings[REPEAT_GROUP] = {"entries_that_differ": int(differ)}
 
 
 def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
@@ -88,15 +64,16 @@ def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
     return np.asarray(-kinematics.jacobian(q) @ angles)
 
 
-def measured_sag(trace: Trace) -> FloatArray:
-    """Return the motion (6,) of the hand [m and rad] from the command's pose to its last one."""
-    command = kinematics.hand_pose(trace.target[-1])
-    return kinematics.pose_error(measured_hand(trace, -1), command)
+def sags(trace: Trace, kp: FloatArray) -> tuple[float, float, float]:
+    """Return the lengths of the measured motion from command to end and of the expected one [m].
 
-
-def targets(case: SolveCase) -> Pose:
-    """Return the targets of all questions, (m, 3) and (m, 4)."""
-    return Pose(case.positions, np.tile(case.quat, (case.steps, 1)))
+    The third number is the length of their difference as a share of the expected one.
+    """
+    command = trace.target[-1].astype(float)
+    found = measured_hand(trace, -1).position - kinematics.hand_pose(command).position
+    expected = sag(command, kp)[:3]
+    lengths = [float(np.linalg.norm(way)) for way in (found, expected, found - expected)]
+    return lengths[0], lengths[1], lengths[2] / lengths[1]
 
 
 def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
@@ -109,11 +86,10 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
     """
     hand = [measured_hand(trace, k) for k in range(1, case.steps + 1)]
     poses = Pose(np.stack([h.position for h in hand]), np.stack([h.quat for h in hand]))
-    error = kinematics.pose_error(targets(case), poses)
+    error = kinematics.pose_error(Pose(case.positions, case.quat), poses)
     q = trace.q[1:].astype(np.float64)
     apart, angle = kinematics.distances(error)
-    limits = case.settings.position_tolerance, case.settings.rotation_tolerance
-    accepted = kinematics.accepted(q, error, *limits)
+    accepted = kinematics.accepted(q, error, *tolerances(case.settings))
     found = {"position": apart, "rotation": angle, "accepted": accepted}
     return found | qualities(q[:, :ARM], trace.q[0, :ARM])
 
@@ -142,7 +118,7 @@ def self_motion(q: FloatArray, target: Pose, step: float = 0.05) -> FloatArray:
         target: of the hand.
         step: distance of neighbours on the curve [rad].
     """
-    there, back = (one_way(q, sign * null_vector(q), target, step) for sign in (1.0, -1.0))
+    there, back = (one_way(q, sign * null_vector(q), target, step) for sign in (1, -1))
     return np.array([*back[::-1], q, *there])
 
 
@@ -205,7 +181,7 @@ def clusters(solutions: FloatArray, threshold: float) -> int:
     groups = np.arange(len(solutions))
     for _ in solutions:
         groups = np.where(near, groups, len(groups)).min(axis=1)
-    return len(set(groups.tolist()))
+    return len(np.unique(groups))
 
 
 def solution_families(run: Experiment) -> list[tuple[FloatArray, list[int]]]:

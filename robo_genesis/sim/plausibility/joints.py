@@ -77,11 +77,16 @@ def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator
 
 def assigned_path(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
     """Yield what no run of `joint_control.assign_path` has; the arguments are as before."""
+    yield from assigned_postures(trace, case, links)
+    path = np.linspace(case.q_start, case.q_target, case.steps + 1)[1:]
+    yield from apart("start", "target [rad or m]", trace.target, path, 0.0)
+
+
+def assigned_postures(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+    """Yield what no run of `joint_control.assign_postures` has; the arguments are as before."""
     yield from times(trace, case.steps, case.dt)
     yield from start_and_limits(trace, case)
-    path = np.linspace(case.q_start, case.q_target, case.steps + 1)
-    yield from apart("start", "q [rad or m]", trace.q, path, LIMIT_TOLERANCE)
-    yield from apart("start", "target [rad or m]", trace.target, path[1:], 0.0)
+    yield from apart("start", "q [rad or m]", trace.q[1:], trace.target, LIMIT_TOLERANCE)
     yield from never_stepped(trace)
     yield from poses(trace, links)
 

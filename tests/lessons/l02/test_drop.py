@@ -17,7 +17,8 @@ from robo_genesis.core.free_fall import (
 )
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02 import LAB, LECTURE, plots, spec, study, text
-from robo_genesis.lessons.l02.metrics import drop_metrics, fallen
+from robo_genesis.lessons.l02.metrics import drop_metrics
+from robo_genesis.sim.falls import fallen
 from robo_genesis.sim.rigid_bodies import Drop, DropError, run_drop
 
 ALL_CASES = spec.CASES | spec.SUBSTEP_CASES

@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lessons.changed_runs import with_trace
 from lessons.lesson_bundles import differing_outputs
 
 from robo_genesis.core.checks import Check, CheckFailed, require
@@ -30,10 +31,6 @@ def with_joints(run, **fields):
 def with_case(run, name, **fields):
     cases = {**run.cases, name: replace(run.cases[name], **fields)}
     return replace(run, page=replace(run.page, runs=runs_of(cases)))
-
-
-def with_trace(run, name, **fields):
-    return replace(run, traces={**run.traces, name: replace(run.traces[name], **fields)})
 
 
 def case_value(run, name, field, index, value):

@@ -7,7 +7,7 @@ import pytest
 from robot_runs import driven
 
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import SOLUTIONS, spec, study
+from robo_genesis.lessons.l05 import SOLUTIONS, spec
 from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import mujoco_kinematics
@@ -45,9 +45,10 @@ def reaches(joints) -> Experiment:
     refused = answer(spec.BEYOND_REACH, 20).q.astype(float)[None]
     apart, angle = kinematics.distances(found.error)
     solver = {"residual_m": float(apart), "residual_rad": float(angle), "jacobian_difference": 0.0}
+    runs["unreachable"] = assigned(spec.UNREACHABLE, refused)
     return Experiment(
-        page=SOLUTIONS,
-        traces=runs | {"unreachable": assigned(spec.UNREACHABLE, refused)},
+        page=replace(SOLUTIONS, runs={name: SOLUTIONS.runs[name] for name in runs}),
+        traces=runs,
         links=LINKS,
         readings={
             "model": spec.EXPECTED_MODEL, "ik": solver, "ik_repeated": {"entries_that_differ": 0},
@@ -64,7 +65,9 @@ def solved(reaches):
     traces = dict(reaches.traces)
     for name in ("many_starts", *spec.PLANES):
         case = spec.QUESTIONS[name]
-        q = kinematics.solve(study.targets(case), case.starts[:, :7], *spec.ARM_LIMITS,
-                             iterations=100, damping=0.01)  # fmt: skip
+        target = kinematics.Pose(case.positions, case.quat)
+        q = kinematics.solve(
+            target, case.starts[:, :7], *spec.ARM_LIMITS, iterations=100, damping=0.01
+        )
         traces[name] = assigned(case, np.hstack([q, case.starts[:, 7:]]))
     return replace(reaches, traces=traces)

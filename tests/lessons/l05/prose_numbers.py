@@ -1,6 +1,6 @@
 """The decimal numbers that prose of L05 may hold: configured inputs and calculations by hand."""
 
-from robo_genesis.lessons.l05 import camera_spec, spec
+from robo_genesis.lessons.l05 import spec
 
 CONFIGURED = {
     "length of a run [s]": spec.BASELINE.steps * spec.BASELINE.dt,
@@ -13,8 +13,8 @@ CONFIGURED = {
     "its distance to the right [m]": 0.1,
     "another depth [m]": 1.51,
     "height of the target [m]": spec.TARGET[2],
-    "near limit that cuts the hand [m]": camera_spec.CUT[0],
-    "far limit that cuts the floor [m]": camera_spec.CUT[1],
+    "near limit that cuts the hand [m]": spec.CUT[0],
+    "far limit that cuts the floor [m]": spec.CUT[1],
     "damping of our search": 0.1,
     "largest step of our search [rad]": 0.2,
     "damping of the engine": spec.IK.damping,

@@ -1,6 +1,7 @@
 """Questions, answers and reaches in the real engine."""
 
 from dataclasses import fields, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import LAB, checks, spec, study
 from robo_genesis.lessons.l05.run import NotAccepted, reach, solve_all
 from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim.joint_control import reset
+from robo_genesis.sim.joint_control import describe
 from robo_genesis.sim.kinematics import link_poses_at
 
 pytestmark = pytest.mark.engine
@@ -23,15 +24,13 @@ def measured(lab):
     """The runs and readings of the lab, without a camera."""
     scene, robot, joints = lab.scene, lab.franka, lab.joints
     traces = {n: reach(scene, robot, joints, case) for n, case in spec.CASES.items()}
-    reset(scene, robot, joints, spec.UNREACHABLE.start)
-    readings = {
-        "model": spec.EXPECTED_MODEL,
-        study.GROUP: study.read_solver(robot, joints, spec.BASELINE),
-        study.REPEAT_GROUP: study.read_repeat(robot, joints, spec.BASELINE),
-    }
-    links = [link.name for link in robot.links]
-    page = replace(LAB, checks=checks.WITHOUT_CAMERA)
-    return Experiment(page, traces, links, readings, {}, rendered=False, joints=joints)
+    page = SimpleNamespace(readings={})
+    describe(page, robot)
+    study.read(page, scene, robot, joints)
+    return Experiment(
+        replace(LAB, checks=checks.WITHOUT_CAMERA), traces, page.links, page.readings, {},
+        rendered=False, joints=joints,
+    )  # fmt: skip
 
 
 def test_runs_without_a_camera_pass_their_checks(measured):

@@ -5,6 +5,7 @@ import pytest
 
 from robo_genesis.lessons.l05 import exercises
 from robo_genesis.sim import arm_kinematics as of
+from robo_genesis.sim import camera_geometry as cameras
 
 
 def forward(q, links, multiply=of.quat_multiply, turned=of.rotate, angle=1.0, fixed_last=True):
@@ -34,10 +35,32 @@ def xyzw(q, links):
     return position, np.roll(quat, -1)
 
 
+def not_written(*_):
+    raise NotImplementedError("write it")
+
+
 def negative(q, links):
     """The other quaternion of the same rotation."""
     position, quat = forward(q, links)
     return position, -quat
+
+
+def lifted(depth, K, transform, half=0.5, flip=cameras.FLIP, along=False, swap=False):
+    """Return back-projected pixels, with one mistake."""
+    v, u = np.indices(depth.shape) + half
+    u, v = (v, u) if swap else (u, v)
+    unit = np.dstack([u, v, np.ones(depth.shape)]) @ np.linalg.inv(K).T
+    if along:
+        unit /= np.linalg.norm(unit, axis=-1, keepdims=True)
+    pose = transform @ flip
+    return (unit * depth[..., None]) @ pose[:3, :3].T + pose[:3, 3]
+
+
+def flattened(points, K, transform, flip=cameras.FLIP):
+    """Return projected points, with the given turn of the axes."""
+    pose = transform @ flip
+    seen = (points - pose[:3, 3]) @ pose[:3, :3]
+    return (seen / seen[:, 2:] @ K.T)[:, :2]
 
 
 def accept(q, error, most, angle):
@@ -51,6 +74,8 @@ RIGHT = {
         "other side": lambda J, e, d: np.linalg.solve(J.T @ J + d**2 * np.eye(J.shape[1]), J.T @ e),
     },
     "acceptance": {"ours": accept},
+    "project": {"ours": cameras.project, "by hand": flattened},
+    "back_project": {"ours": cameras.back_project, "by hand": lifted},
 }
 WRONG = {
     "forward": {
@@ -63,7 +88,7 @@ WRONG = {
         "joint before offset": turned_before_offset,
         "xyzw": xyzw,
         "always the whole chain": lambda q, n: forward(q, of.CHAIN),
-        "not written": lambda q, n: None,
+        "nothing returned": lambda q, n: None,
     },
     "step": {
         "no damping": lambda J, e, d: np.linalg.pinv(J) @ e,
@@ -88,6 +113,24 @@ WRONG = {
             np.isfinite(q).all() and np.linalg.norm(e) <= most
         ),
         "typed tolerances": lambda q, e, most, angle: accept(q, e, 5e-4, 5e-3),
+    },
+    "project": {
+        "u and v swapped": lambda *given: flattened(*given)[:, ::-1],
+        "OpenGL axes": lambda *given: flattened(*given, flip=np.eye(4)),
+        "centre of pixels at whole numbers": lambda *given: flattened(*given) - 0.5,
+        "not divided by the depth": lambda p, k, t: (cameras.in_camera(p, t) @ k.T)[:, :2],
+        "from camera to world": lambda p, k, t: flattened(p, k, np.linalg.inv(t)),
+        "one point alone": lambda p, k, t: flattened(p[:1], k, t)[0],
+        "not written": not_written,
+    },
+    "back_project": {
+        "u and v swapped": lambda *given: lifted(*given, swap=True),
+        "rows and columns swapped": lambda *given: np.swapaxes(lifted(*given), 0, 1),
+        "OpenGL axes": lambda *given: lifted(*given, flip=np.eye(4)),
+        "depth along the ray": lambda *given: lifted(*given, along=True),
+        "half a pixel missing": lambda *given: lifted(*given, half=0.0),
+        "camera coordinates": lambda d, k, t: lifted(d, k, cameras.FLIP),
+        "not written": not_written,
     },
 }
 

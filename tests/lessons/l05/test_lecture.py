@@ -14,13 +14,13 @@ from robo_genesis.lessons import view_record
 from robo_genesis.lessons.l05 import LAB, plots, spec, text
 from robo_genesis.sim.camera_checks import Marker
 
-SPHERE = Marker(13, tuple(spec.TARGET), spec.MARKER_RADIUS)
+SPHERE = Marker(13, spec.TARGET, spec.MARKER_RADIUS)
 
 
 @pytest.fixture(scope="module", params=[True, False], ids=["camera", "RENDER=0"])
 def run(request, reaches):
     """The lab as a camera without errors sees it."""
-    view = closed_view(spec.FOV, CAMERA_RES, looking(spec.VIEW["pos"], spec.VIEW["lookat"]), SPHERE)
+    view = closed_view(SPHERE, spec.FOV, CAMERA_RES, looking(spec.VIEW["pos"], spec.VIEW["lookat"]))
     readings = reaches.readings | {
         "view_world": view_record.numbers(view),
         "segments": {"plane": PLANE, "hand": 10, "marker": SPHERE.number},
