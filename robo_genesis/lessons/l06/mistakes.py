@@ -4,7 +4,7 @@ Every function makes one mistake and measures its symptom. Do not copy them.
 """
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,10 +17,11 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.metrics import measured_hand
 from robo_genesis.lessons.l06.run import World, ask, commands
-from robo_genesis.lessons.l06.throughput import calls_of, seconds_per_step, start
+from robo_genesis.lessons.l06.throughput import Build, start
 from robo_genesis.sim.arm_kinematics import ARM
 from robo_genesis.sim.batch import Batch
 from robo_genesis.sim.joints import JointMap, to_numpy
+from robo_genesis.sim.throughput import calls_of, seconds_per_step
 
 COMPILING = "Compiling"
 """How a line of the engine's log begins when `build` compiles kernels, or loads stored ones."""
@@ -109,42 +110,30 @@ def mean_of_rows(
 
 
 def timed_with_building(
-    build: Callable[[int], tuple[Any, ...]], lines: Sequence[Any], sizes: tuple[int, int],
-    steps: int,
-) -> Failure:  # fmt: skip
+    build: Build, lines: Sequence[Any], sizes: Sequence[int], steps: int
+) -> Failure:
     """Start the clock before the scene is built. No time decides whether the symptom appeared.
 
     Args:
-        build: returns a built scene with so many environments, and its robot and more.
+        build: makes a scene.
         lines: of the engine's log, which grows.
-        sizes: numbers of environments.
+        sizes: two numbers of environments.
         steps: that are timed.
     """
     wrong, right, compiled = [], [], []
     for size in sizes:
         known, clock = len(lines), time.perf_counter()
         scene, robot, *_ = build(size)  # the mistake: the clock is running
-        for _ in range(steps):
-            scene.step()
-        to_numpy(robot.get_dofs_position())
-        wrong.append((time.perf_counter() - clock) / steps)
-        compiled.append(compilations(lines[known:]))
-        known = len(lines)
+        calls = calls_of(scene, robot)
+        seconds_per_step(calls, steps, time.perf_counter)
+        wrong.append(1000 * (time.perf_counter() - clock) / steps)
+        compiled.append(any(text.startswith(COMPILING) for _, text in lines[known:]))
         start(robot)
-        right.append(seconds_per_step(*calls_of(scene, robot), steps, time.perf_counter))
-        compiled.append(compilations(lines[known:]))
+        right.append(1000 * seconds_per_step(calls, steps, time.perf_counter))
     few, many = sizes
     text = (
-        f"Timed together with building, a step takes {1000 * wrong[0]:.1f} ms with {few} "
-        f"environment and {1000 * wrong[1]:.1f} ms with {many}, {wrong[1] / wrong[0]:.2f} times as "
-        f"much. After building and a warm-up it takes {1000 * right[0]:.2f} ms and "
-        f"{1000 * right[1]:.2f} ms, {right[1] / right[0]:.2f} times as much. The engine's log "
-        f"announces compilation {sum(compiled[::2])} times in the first two measurements and "
-        f"{sum(compiled[1::2])} times in the other two."
+        f"Result: {wrong[0]:.1f} ms with {few} environment and {wrong[1]:.1f} ms with {many}, "
+        f"{wrong[1] / wrong[0]:.2f} times as much. Timed after building and a warm-up, a step "
+        f"takes {right[0]:.2f} ms and {right[1]:.2f} ms, {right[1] / right[0]:.2f} times as much."
     )
-    return Failure("timed_with_building", all(compiled[::2]) and not any(compiled[1::2]), text)
-
-
-def compilations(lines: Sequence[Any]) -> int:
-    """Return how many lines of the engine's log announce compilation."""
-    return sum(text.startswith(COMPILING) for _, text in lines)
+    return Failure("timed_with_building", all(compiled), text)
