@@ -1,9 +1,10 @@
-"""Elapsed time of the steps of some scenes, and the memory in use."""
+"""Elapsed time of the steps of some scenes with a simple model of it, and the memory in use."""
 
 import gc
 import importlib
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +21,18 @@ returns when all started steps are done."""
 
 Clock = Callable[[], float]
 
-KEPT = {"step": np.median, "fastest": np.min, "slowest": np.max}
+KEPT: dict[str, Callable[..., Any]] = {"step": np.median, "fastest": np.min, "slowest": np.max}
 """What is kept of the repeats."""
 
 
 def calls_of(scene: Any, robot: Any) -> Calls:
     """Return how to start a step of a scene, and how to wait for it: by reading the state."""
     return scene.step, lambda: to_numpy(robot.get_dofs_position())
+
+
+def together(scenes: Sequence[Calls]) -> Calls:
+    """Return calls that step all scenes, and wait for all."""
+    return lambda: [step() for step, _ in scenes], lambda: [finish() for _, finish in scenes]
 
 
 def seconds_per_step(calls: Calls, steps: int, clock: Clock) -> float:
@@ -77,3 +83,28 @@ def used_memory() -> float:
         return float((total - free) / MIB)
     pages = int(Path("/proc/self/statm").read_text().split()[1])
     return pages * os.sysconf("SC_PAGESIZE") / MIB
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """The time of one step of B environments: `fixed` + B · `each` [s]."""
+
+    fixed: float
+    each: float
+
+    def step_time(self, size: Any) -> Any:
+        """Return the time of one step of so many environments [s]."""
+        return self.fixed + self.each * np.asarray(size)
+
+
+def fit(sizes: Any, times: Any) -> Model:
+    """Return the model with the least squares of relative errors.
+
+    Args:
+        sizes: numbers of environments (n,), at least two different ones.
+        times: of one step (n,) [s].
+    """
+    sizes, times = np.asarray(sizes, float), np.asarray(times, float)
+    columns = np.stack([1 / times, sizes / times], axis=1)  # (n, 2)
+    fixed, each = np.linalg.lstsq(columns, np.ones(len(times)), rcond=None)[0]
+    return Model(float(fixed), float(each))

@@ -52,17 +52,14 @@ def one_value_each(
     text, apart = [], []
     for opened in openings:
         batch = begin(scene, robot, joints, worlds)
-        fingers, envs = batch.dofs[ARM:], list(opened)
-        robot.control_dofs_position(list(opened.values()), fingers, envs_idx=envs)  # the mistake
+        fingers, envs, meant = batch.dofs[ARM:], list(opened), list(opened.values())
+        robot.control_dofs_position(meant, fingers, envs_idx=envs)  # the mistake
         batch.step(100)
-        found = to_numpy(robot.get_dofs_position(fingers))[envs]  # (k, 2)
-        meant = np.array(list(opened.values()))
-        apart.append(float(np.abs(found - meant[:, None]).max()))
-        rows = zip(envs, 1000 * meant, 1000 * found.mean(axis=1), strict=True)
-        ends = listed([f"{end:.1f} mm for {goal:.0f} mm in {k}" for k, goal, end in rows])
+        found = to_numpy(robot.get_dofs_position(fingers))[envs].mean(axis=1)
+        apart.append(np.abs(found - meant).max())
+        ends = listed([f"{1000 * end:.1f} mm in {k}" for k, end in zip(envs, found, strict=True)])
         text.append(f"With the environments {envs}, the fingers end at {ends}.")
-    shown = bool(apart[0] > 1e-3 and max(apart[1:], default=0) < 1e-3)
-    return Failure("one_value_each", shown, " ".join(text))
+    return Failure("one_value_each", bool(apart[0] > 1e-3 > max(apart[1:])), " ".join(text))
 
 
 def numbers_as_rows(
@@ -90,12 +87,8 @@ def mean_of_rows(
     """Give one environment a target beyond its reach, and judge the mean over all environments."""
     worlds = [replace(world, settings=spec.ONE_START) for world in worlds]
     worlds[row] = replace(worlds[row], positions=np.array([position], dtype=float))
-    answer = ask(robot, joints, worlds)
-    verdict = quoted(refused(lambda: commands(worlds, answer)))
-    batch = begin(scene, robot, joints, worlds)
-    q = answer.q.astype(float)
-    q[:, ARM:] = worlds[0].q_start[ARM:]
-    batch.command(q)
+    answer, batch = ask(robot, joints, worlds), begin(scene, robot, joints, worlds)
+    batch.command(np.hstack([answer.q[:, :ARM], batch.q_start[:, ARM:]]))
     batch.step(spec.SWITCH)
     traces = [batch.trace(k) for k in range(len(worlds))]
     apart = np.stack([distances(t, w.positions[0]) for t, w in zip(traces, worlds, strict=True)])
@@ -103,7 +96,8 @@ def mean_of_rows(
     text = (
         f"The mean distance at the end is {1000 * mean[-1]:.1f} mm, below {1000 * limit:g} mm. "
         f"The distances are {', '.join(f'{1000 * end:.1f}' for end in ends)} mm. "
-        f"Asked before the run, the rule for each row says: {verdict}"
+        f"Asked before the run, the rule for each row says: "
+        f"{quoted(refused(lambda: commands(worlds, answer)))}"
     )
     curves = {"mean of all": (traces[0].t, mean), f"environment {row}": (traces[0].t, apart[row])}
     return Failure("mean_of_rows", bool(mean[-1] < limit < ends[row]), text, curves)

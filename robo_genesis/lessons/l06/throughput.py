@@ -1,4 +1,4 @@
-"""Throughput of batches: the protocol of its measurement, and a model of the time of a step."""
+"""Throughput of batches: the protocol of its measurement."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.lessons.experiment import Readings, counts
+from robo_genesis.sim import throughput as timing
 from robo_genesis.sim.franka import Q_START
 from robo_genesis.sim.joints import to_numpy
-from robo_genesis.sim.throughput import KEPT, Calls, Clock, calls_of, in_turn, used_memory
+from robo_genesis.sim.throughput import Calls, Clock, calls_of
 
 GROUP, EQUAL = "throughput", "rows_that_differ"
 """Groups of a bundle's metrics: elapsed times and memory of each number of environments, and how
@@ -46,7 +47,7 @@ class Protocol:
     def readings(self) -> dict[str, Readings]:
         """Return the groups of readings. No check judges a time."""
         names = [*map(str, self.sizes), *self.others]
-        units = {f"{what}_{name}": "s" for name in names for what in KEPT}
+        units = {f"{what}_{name}": "s" for name in names for what in timing.KEPT}
         for size in self.sizes:
             units |= {f"build_{size}": "s", f"memory_{size}": "MiB"}
         return {GROUP: Readings(units, "performance"), EQUAL: counts(map(str, self.sizes))}
@@ -72,7 +73,7 @@ def measure(
     build: Build,
     protocol: Protocol = PROTOCOL,
     clock: Clock = time.perf_counter,
-    memory: Callable[[], float] = used_memory,
+    memory: Callable[[], float] = timing.used_memory,
     others: Callable[[Mapping[int, Any]], Mapping[str, Calls]] = lambda built: {},
 ) -> tuple[dict[str, float], dict[str, int]]:
     """Time building and stepping of a scene for each number of environments.
@@ -97,7 +98,7 @@ def measure(
         found[f"memory_{size}"] = memory() - before
         built[size] = scene, robot
     timed = {str(size): calls_of(*of) for size, of in built.items()} | dict(others(built))
-    found |= in_turn(timed, protocol.warm_up, protocol.steps, protocol.repeats, clock)
+    found |= timing.in_turn(timed, protocol.warm_up, protocol.steps, protocol.repeats, clock)
     ends = {str(size): to_numpy(robot.get_dofs_position()) for size, (_, robot) in built.items()}
     return found, {name: int((q != q[0]).any(axis=1).sum()) for name, q in ends.items()}
 
@@ -109,30 +110,5 @@ def explanations(built: Mapping[int, Any], build: Build, sphere: Build) -> dict[
         scene, robot, *_ = build(256)
         start(robot)
         four.append(calls_of(scene, robot))
-    together = tuple(lambda k=k: [calls[k]() for calls in four] for k in (0, 1))
-    return {f"sphere_{n}": calls_of(*sphere(n)) for n in (1, 256)} | {"four_scenes": together}
-
-
-@dataclass(frozen=True, slots=True)
-class Model:
-    """The time of one step of B environments: `fixed` + B · `each` [s]."""
-
-    fixed: float
-    each: float
-
-    def step_time(self, size: Any) -> Any:
-        """Return the time of one step of so many environments [s]."""
-        return self.fixed + self.each * np.asarray(size)
-
-
-def fit(sizes: Any, times: Any) -> Model:
-    """Return the model with the least squares of relative errors.
-
-    Args:
-        sizes: numbers of environments (n,), at least two different ones.
-        times: of one step (n,) [s].
-    """
-    sizes, times = np.asarray(sizes, float), np.asarray(times, float)
-    columns = np.stack([1 / times, sizes / times], axis=1)  # (n, 2)
-    fixed, each = np.linalg.lstsq(columns, np.ones(len(times)), rcond=None)[0]
-    return Model(float(fixed), float(each))
+    spheres = {f"sphere_{n}": calls_of(*sphere(n)) for n in (1, 256)}
+    return spheres | {"four_scenes": timing.together(four)}

@@ -7,7 +7,8 @@ from robo_genesis.core import tables
 from robo_genesis.core.scene import DT
 from robo_genesis.core.text import bullets
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l06.throughput import FITTED, GROUP, Model, fit
+from robo_genesis.lessons.l06.throughput import FITTED, GROUP
+from robo_genesis.sim.throughput import Model, fit
 
 
 def three(value: float) -> str:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.lessons.l06 import throughput
-from robo_genesis.lessons.l06.throughput import Model, Protocol, fit
+from robo_genesis.lessons.l06.throughput import Protocol
 from robo_genesis.lessons.l06.throughput_exercises import Machine
 from robo_genesis.lessons.l06.throughput_exercises import throughput as exercise
 
@@ -73,20 +73,6 @@ def test_a_row_that_ends_elsewhere_is_counted(measured):
 
     _, differ = throughput.measure(build, SHORT, iter(range(999)).__next__, lambda: 0.0)
     assert differ == {"1": 0, "4": 1}
-
-
-def test_a_fit_finds_the_model_that_made_the_times():
-    sizes = np.array([1, 16, 256])
-    found = fit(sizes, Model(0.002, 3e-5).step_time(sizes))
-    assert (found.fixed, found.each) == pytest.approx((0.002, 3e-5))
-
-
-def test_a_fit_minimises_relative_errors():
-    sizes, times = np.array([1, 1, 1000]), np.array([0.9, 1.1, 1000])
-    found = fit(sizes, times)
-    errors = lambda m: ((m.step_time(sizes) / times - 1) ** 2).sum()  # noqa: E731
-    for near in (Model(found.fixed * 1.01, found.each), Model(found.fixed, found.each * 1.01)):
-        assert errors(found) < errors(near)
 
 
 def written(step, finish, clock, warm_up, steps, repeats, *, middle=np.median, before=True,
