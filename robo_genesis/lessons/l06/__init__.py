@@ -96,7 +96,7 @@ LESSON = Lesson(
         "lecture": LECTURE,
         "mistakes": MISTAKES,
         "throughput": THROUGHPUT,
-    },  # fmt: skip
+    },
     filmed=Filmed("the robots of all environments", "the batch"),
     marks=spec.CASE_MARKS,
     compared=Compared(

@@ -4,7 +4,7 @@ Every function makes one mistake and measures its symptom. Do not copy them.
 """
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,10 +17,11 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.metrics import measured_hand
 from robo_genesis.lessons.l06.run import World, ask, commands
-from robo_genesis.lessons.l06.throughput import calls_of, seconds_per_step, start
+from robo_genesis.lessons.l06.throughput import Build, start
 from robo_genesis.sim.arm_kinematics import ARM
 from robo_genesis.sim.batch import Batch
 from robo_genesis.sim.joints import JointMap, to_numpy
+from robo_genesis.sim.throughput import calls_of, seconds_per_step
 
 COMPILING = "Compiling"
 """How a line of the engine's log begins when `build` compiles kernels, or loads stored ones."""
@@ -51,17 +52,14 @@ def one_value_each(
     text, apart = [], []
     for opened in openings:
         batch = begin(scene, robot, joints, worlds)
-        fingers, envs = batch.dofs[ARM:], list(opened)
-        robot.control_dofs_position(list(opened.values()), fingers, envs_idx=envs)  # the mistake
+        fingers, envs, meant = batch.dofs[ARM:], list(opened), list(opened.values())
+        robot.control_dofs_position(meant, fingers, envs_idx=envs)  # the mistake
         batch.step(100)
-        found = to_numpy(robot.get_dofs_position(fingers))[envs]  # (k, 2)
-        meant = np.array(list(opened.values()))
-        apart.append(float(np.abs(found - meant[:, None]).max()))
-        rows = zip(envs, 1000 * meant, 1000 * found.mean(axis=1), strict=True)
-        ends = listed([f"{end:.1f} mm for {goal:.0f} mm in {k}" for k, goal, end in rows])
+        found = to_numpy(robot.get_dofs_position(fingers))[envs].mean(axis=1)
+        apart.append(np.abs(found - meant).max())
+        ends = listed([f"{1000 * end:.1f} mm in {k}" for k, end in zip(envs, found, strict=True)])
         text.append(f"With the environments {envs}, the fingers end at {ends}.")
-    shown = bool(apart[0] > 1e-3 and max(apart[1:], default=0) < 1e-3)
-    return Failure("one_value_each", shown, " ".join(text))
+    return Failure("one_value_each", bool(apart[0] > 1e-3 > max(apart[1:])), " ".join(text))
 
 
 def numbers_as_rows(
@@ -89,12 +87,8 @@ def mean_of_rows(
     """Give one environment a target beyond its reach, and judge the mean over all environments."""
     worlds = [replace(world, settings=spec.ONE_START) for world in worlds]
     worlds[row] = replace(worlds[row], positions=np.array([position], dtype=float))
-    answer = ask(robot, joints, worlds)
-    verdict = quoted(refused(lambda: commands(worlds, answer)))
-    batch = begin(scene, robot, joints, worlds)
-    q = answer.q.astype(float)
-    q[:, ARM:] = worlds[0].q_start[ARM:]
-    batch.command(q)
+    answer, batch = ask(robot, joints, worlds), begin(scene, robot, joints, worlds)
+    batch.command(np.hstack([answer.q[:, :ARM], batch.q_start[:, ARM:]]))
     batch.step(spec.SWITCH)
     traces = [batch.trace(k) for k in range(len(worlds))]
     apart = np.stack([distances(t, w.positions[0]) for t, w in zip(traces, worlds, strict=True)])
@@ -102,49 +96,38 @@ def mean_of_rows(
     text = (
         f"The mean distance at the end is {1000 * mean[-1]:.1f} mm, below {1000 * limit:g} mm. "
         f"The distances are {', '.join(f'{1000 * end:.1f}' for end in ends)} mm. "
-        f"Asked before the run, the rule for each row says: {verdict}"
+        f"Asked before the run, the rule for each row says: "
+        f"{quoted(refused(lambda: commands(worlds, answer)))}"
     )
     curves = {"mean of all": (traces[0].t, mean), f"environment {row}": (traces[0].t, apart[row])}
     return Failure("mean_of_rows", bool(mean[-1] < limit < ends[row]), text, curves)
 
 
 def timed_with_building(
-    build: Callable[[int], tuple[Any, ...]], lines: Sequence[Any], sizes: tuple[int, int],
-    steps: int,
-) -> Failure:  # fmt: skip
+    build: Build, lines: Sequence[Any], sizes: Sequence[int], steps: int
+) -> Failure:
     """Start the clock before the scene is built. No time decides whether the symptom appeared.
 
     Args:
-        build: returns a built scene with so many environments, and its robot and more.
+        build: makes a scene.
         lines: of the engine's log, which grows.
-        sizes: numbers of environments.
+        sizes: two numbers of environments.
         steps: that are timed.
     """
     wrong, right, compiled = [], [], []
     for size in sizes:
         known, clock = len(lines), time.perf_counter()
         scene, robot, *_ = build(size)  # the mistake: the clock is running
-        for _ in range(steps):
-            scene.step()
-        to_numpy(robot.get_dofs_position())
-        wrong.append((time.perf_counter() - clock) / steps)
-        compiled.append(compilations(lines[known:]))
-        known = len(lines)
+        calls = calls_of(scene, robot)
+        seconds_per_step(calls, steps, time.perf_counter)
+        wrong.append(1000 * (time.perf_counter() - clock) / steps)
+        compiled.append(any(text.startswith(COMPILING) for _, text in lines[known:]))
         start(robot)
-        right.append(seconds_per_step(*calls_of(scene, robot), steps, time.perf_counter))
-        compiled.append(compilations(lines[known:]))
+        right.append(1000 * seconds_per_step(calls, steps, time.perf_counter))
     few, many = sizes
     text = (
-        f"Timed together with building, a step takes {1000 * wrong[0]:.1f} ms with {few} "
-        f"environment and {1000 * wrong[1]:.1f} ms with {many}, {wrong[1] / wrong[0]:.2f} times as "
-        f"much. After building and a warm-up it takes {1000 * right[0]:.2f} ms and "
-        f"{1000 * right[1]:.2f} ms, {right[1] / right[0]:.2f} times as much. The engine's log "
-        f"announces compilation {sum(compiled[::2])} times in the first two measurements and "
-        f"{sum(compiled[1::2])} times in the other two."
+        f"Result: {wrong[0]:.1f} ms with {few} environment and {wrong[1]:.1f} ms with {many}, "
+        f"{wrong[1] / wrong[0]:.2f} times as much. Timed after building and a warm-up, a step "
+        f"takes {right[0]:.2f} ms and {right[1]:.2f} ms, {right[1] / right[0]:.2f} times as much."
     )
-    return Failure("timed_with_building", all(compiled[::2]) and not any(compiled[1::2]), text)
-
-
-def compilations(lines: Sequence[Any]) -> int:
-    """Return how many lines of the engine's log announce compilation."""
-    return sum(text.startswith(COMPILING) for _, text in lines)
+    return Failure("timed_with_building", all(compiled), text)

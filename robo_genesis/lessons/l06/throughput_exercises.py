@@ -4,7 +4,6 @@ It runs on pretended machines whose clock is known, so the time of the real mach
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from robo_genesis.core.checks import Check, Finding, equal, within
@@ -24,45 +23,38 @@ class Machine:
         self.slow, self.now, self.started, self.done = slow, 100.0, 0, 0
 
     def step(self) -> None:
+        """Queue a step."""
         self.started += 1
 
     def finish(self) -> None:
+        """Do all queued steps."""
         self.now += sum(self.slow.get(n, STEP) for n in range(self.done, self.started))
         self.done = self.started
 
     def clock(self) -> float:
+        """Return the time [s]."""
         return self.now
 
 
-@dataclass(frozen=True, slots=True)
-class Trial:
-    """One call of the student's function, and the slow steps of its machine."""
-
-    warm_up: int
-    steps: int
-    repeats: int
-    slow: tuple[tuple[int, float], ...] = ()
-
-
-TRIALS = {
-    "steady": Trial(3, 10, 5),
-    "slow_first_steps": Trial(4, 10, 3, ((0, 8.0), (1, 0.5))),
-    "one_repeat": Trial(6, 5, 1, ((0, 8.0),)),
-    "one_disturbed_repeat": Trial(2, 10, 5, ((25, 3.0),)),
-    "no_warm_up": Trial(0, 4, 3),
+TRIALS: dict[str, tuple[tuple[int, int, int], dict[int, float]]] = {
+    "steady": ((3, 10, 5), {}),
+    "slow_first_steps": ((4, 10, 3), {0: 8.0, 1: 0.5}),
+    "one_repeat": ((6, 5, 1), {0: 8.0}),
+    "one_disturbed_repeat": ((2, 10, 5), {25: 3.0}),
+    "no_warm_up": ((0, 4, 3), {}),
 }
+"""Warm-up, steps and repeats of a call of the student's function, and its machine's slow steps."""
 
 
 def throughput(measure: Callable[..., Any]) -> list[Check]:
     """Check `measure(step, finish, clock, warm_up, steps, repeats)`: the median of a step [s]."""
 
     def findings(_: None) -> Iterator[Finding]:
-        for name, trial in TRIALS.items():
-            machine = Machine(dict(trial.slow))
-            numbers = trial.warm_up, trial.steps, trial.repeats
-            found = measure(machine.step, machine.finish, machine.clock, *numbers)
-            yield within(f"{name}.step_s", float(found), STEP, TINY)
-            total = trial.warm_up + trial.steps * trial.repeats
-            yield equal(f"{name}.number_of_steps", machine.started, total)
+        for name, ((warm_up, steps, repeats), slow) in TRIALS.items():
+            machine = Machine(slow)
+            calls = machine.step, machine.finish, machine.clock
+            found = float(measure(*calls, warm_up, steps, repeats))
+            yield within(f"{name}.step_s", found, STEP, TINY)
+            yield equal(f"{name}.number_of_steps", machine.started, warm_up + steps * repeats)
 
     return outcome("throughput", findings)

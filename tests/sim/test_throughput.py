@@ -1,0 +1,53 @@
+"""Times of steps on a clock that the test moves."""
+
+import numpy as np
+import pytest
+
+from robo_genesis.sim import throughput
+
+
+def test_a_step_is_timed_from_finish_to_finish():
+    now, waiting = [100.0], [7.0]
+
+    def finish():
+        now[0] += sum(waiting)
+        waiting.clear()
+
+    calls = lambda: waiting.append(0.5), finish
+    assert throughput.seconds_per_step(calls, 4, lambda: now[0]) == 0.5
+    assert now[0] == 109
+
+
+def test_scenes_are_timed_in_turn_after_their_warm_up():
+    made = []
+    calls = {name: (lambda n=name: made.append(n), lambda: None) for name in "ab"}
+    ticks = iter([0, 0, 0, 0, 0, 2, 2, 8, 8, 18, 18, 20, 20, 24, 24, 26])
+    found = throughput.in_turn(calls, 1, 2, 3, ticks.__next__)
+    assert "".join(made) == "ab" + 3 * "aabb"
+    assert found == {
+        "step_a": 2, "fastest_a": 1, "slowest_a": 5, "step_b": 1, "fastest_b": 1, "slowest_b": 3,
+    }  # fmt: skip
+
+
+def test_memory_grows_by_what_is_kept():
+    before = throughput.used_memory()
+    kept = np.ones(40 * throughput.MIB // 8)
+    assert throughput.used_memory() - before == pytest.approx(40, abs=8)
+    assert kept.all()
+
+
+def test_a_fit_finds_the_model_that_made_the_times():
+    sizes = np.array([1, 16, 256])
+    found = throughput.fit(sizes, throughput.Model(0.002, 3e-5).step_time(sizes))
+    assert (found.fixed, found.each) == pytest.approx((0.002, 3e-5))
+
+
+def test_a_fit_minimises_relative_errors():
+    sizes, times = np.array([1, 1, 1000]), np.array([0.9, 1.1, 1000])
+    found = throughput.fit(sizes, times)
+    errors = lambda m: ((m.step_time(sizes) / times - 1) ** 2).sum()  # noqa: E731
+    for near in (
+        throughput.Model(found.fixed * 1.01, found.each),
+        throughput.Model(found.fixed, found.each * 1.01),
+    ):
+        assert errors(found) < errors(near)
