@@ -25,7 +25,8 @@ from robo_genesis.lessons.l06 import (
 )
 from robo_genesis.lessons.l06.metrics import WorldMetrics, world_metrics
 from robo_genesis.sim.batch import set_link_mass
-from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.joint_control import describe
 from robo_genesis.sim.joints import resolve_joints
 from robo_genesis.sim.visual_shape import Part, ball, read_shape
 
@@ -33,9 +34,10 @@ if TYPE_CHECKING:
     from robo_genesis.lessons.l06 import plots, throughput_plots
 
 __all__ = [
-    "FRANKA_MJCF", "LAB", "LECTURE", "LESSON", "MISTAKES", "THROUGHPUT", "exercises", "mistakes",
-    "plots", "read_shape", "resolve_joints", "set_link_mass", "spec", "study", "target_parts",
-    "text", "throughput", "throughput_exercises", "throughput_plots", "throughput_text",
+    "FRANKA_MJCF", "LAB", "LECTURE", "LESSON", "MISTAKES", "THROUGHPUT", "describe", "exercises",
+    "mistakes", "plots", "read_shape", "resolve_joints", "set_link_mass", "spec", "study",
+    "target_parts", "text", "throughput", "throughput_exercises", "throughput_plots",
+    "throughput_text",
 ]  # fmt: skip
 
 __getattr__ = on_demand(__name__, "plots", "throughput_plots")
@@ -108,8 +110,7 @@ LESSON = Lesson(
             thing="robots",
             alt="Four robots in 3D, in the postures of the sample that is shown. Spheres in the "
             "colours of the runs are at the targets of the hands.",
-            credit="Franka Emika Panda model of MuJoCo Menagerie, Apache-2.0, from "
-            "franka_description, © Franka Robotics GmbH; decimated and converted",
+            credit=CREDIT,
         ),
         alt="Position of joint1 over time in four environments.",
         caption="Position of joint1 in four environments, from get_dofs_position.",

@@ -12,7 +12,7 @@ from robo_genesis.core.checks import (
     below,
     equal,
     model_counts,
-    sample_times,
+    stamps,
     within,
 )
 from robo_genesis.lessons.experiment import Experiment
@@ -26,10 +26,6 @@ from robo_genesis.sim.franka import JOINT_NAMES
 def mapping(run: Experiment) -> Iterator[Finding]:
     yield from model_counts(run.readings["model"], spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
-
-
-def stamps(run: Experiment) -> Iterator[Finding]:
-    yield from sample_times(run.cases, run.traces)
 
 
 def acceptance_per_row(run: Experiment) -> Iterator[Finding]:

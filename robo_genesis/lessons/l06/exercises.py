@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.checks import Check, Finding, equal
-from robo_genesis.core.exercises import outcome
+from robo_genesis.core.checks import Finding, equal
+from robo_genesis.core.exercises import tested
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l06 import spec
 
@@ -25,27 +25,24 @@ ANSWERS: dict[str, tuple[float, tuple[float, ...], bool]] = {
 """One joint position of a row, its residual, and whether the row may be commanded."""
 
 
-def acceptance(accept: Callable[..., Any]) -> list[Check]:
+@tested
+def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
     """Check `accept(q, error, position_tolerance, rotation_tolerance)` on rows (k, d) and (k, 6).
 
     It returns one truth value for each row, (k,).
     """
-
-    def findings(_: None) -> Iterator[Finding]:
-        tolerances = spec.IK.position_tolerance, spec.IK.rotation_tolerance
-        names = list(ANSWERS)
-        for label, rows in (("all", names), ("backwards", names[::-1]), ("one", names[2:3])):
-            q = np.array([[0.1] * 8 + [ANSWERS[name][0]] for name in rows])
-            error = np.array([ANSWERS[name][1] for name in rows], dtype=float)
-            found = np.asarray(accept(q, error, *tolerances))
-            yield equal(f"{label}.shape", list(found.shape), [len(rows)])
-            if found.shape == (len(rows),):
-                for name, value in zip(rows, found, strict=True):
-                    yield equal(f"{label}.{name}", bool(value), ANSWERS[name][2])
-        loose = accept(np.zeros((2, 9)), np.full((2, 6), 0.1), 0.2, 0.2)
-        yield equal("looser_tolerances", np.asarray(loose, dtype=bool).tolist(), [True, True])
-
-    return outcome("acceptance", findings)
+    tolerances = spec.IK.position_tolerance, spec.IK.rotation_tolerance
+    names = list(ANSWERS)
+    for label, rows in (("all", names), ("backwards", names[::-1]), ("one", names[2:3])):
+        q = np.array([[0.1] * 8 + [ANSWERS[name][0]] for name in rows])
+        error = np.array([ANSWERS[name][1] for name in rows], dtype=float)
+        found = np.asarray(accept(q, error, *tolerances))
+        yield equal(f"{label}.shape", list(found.shape), [len(rows)])
+        if found.shape == (len(rows),):
+            for name, value in zip(rows, found, strict=True):
+                yield equal(f"{label}.{name}", bool(value), ANSWERS[name][2])
+    loose = accept(np.zeros((2, 9)), np.full((2, 6), 0.1), 0.2, 0.2)
+    yield equal("looser_tolerances", np.asarray(loose, dtype=bool).tolist(), [True, True])
 
 
 class Robot:
@@ -85,26 +82,23 @@ REFUSED: dict[str, tuple[tuple[int, ...], Sequence[int]]] = {
 """Shapes and environments that must raise a ValueError; the engine would send many of them."""
 
 
-def subset(command: Callable[..., Any]) -> list[Check]:
+@tested
+def subset(command: Callable[..., Any]) -> Iterator[Finding]:
     """Check `command(robot, dofs, q, envs)`: row k of `q` for environment `envs[k]`."""
-
-    def findings(_: None) -> Iterator[Finding]:
-        for name, (dofs, envs) in VALID.items():
-            robot, expected = Robot(), np.zeros((4, 3))
-            q = np.arange(1.0, 1 + len(envs) * len(dofs)).reshape(len(envs), len(dofs))
-            expected[np.ix_(envs, dofs)] = q
-            command(robot, dofs, q, np.array(envs))
-            yield equal(f"{name}.wrong_entries", int((robot.target != expected).sum()), 0)
-        for name, (shape, envs) in REFUSED.items():
-            robot = Robot()
-            raised = refused(command, robot, np.ones(shape), envs)
-            yield equal(f"{name}.raises_value_error", raised, True)
-            yield equal(f"{name}.commands_sent", robot.calls, 0)
+    for name, (dofs, envs) in VALID.items():
+        robot, expected = Robot(), np.zeros((4, 3))
+        q = np.arange(1.0, 1 + len(envs) * len(dofs)).reshape(len(envs), len(dofs))
+        expected[np.ix_(envs, dofs)] = q
+        command(robot, dofs, q, np.array(envs))
+        yield equal(f"{name}.wrong_entries", int((robot.target != expected).sum()), 0)
+    for name, (shape, envs) in REFUSED.items():
         robot = Robot()
-        command(robot, [0, 1, 2], np.zeros((0, 3)), [])
-        yield equal("no_environments.commands_sent", robot.calls, 0)
-
-    return outcome("subset", findings)
+        raised = refused(command, robot, np.ones(shape), envs)
+        yield equal(f"{name}.raises_value_error", raised, True)
+        yield equal(f"{name}.commands_sent", robot.calls, 0)
+    robot = Robot()
+    command(robot, [0, 1, 2], np.zeros((0, 3)), [])
+    yield equal("no_environments.commands_sent", robot.calls, 0)
 
 
 def refused(command: Callable[..., Any], robot: Robot, q: FloatArray, envs: Sequence[int]) -> bool:

@@ -1,7 +1,7 @@
 """Runs of L06: ask, accept and command all environments of a scene, or some of them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -29,20 +29,20 @@ class World:
     """One environment: the targets of its hand in their order, its start, controller and load.
 
     `positions` (p, 3) [m] and `quat` (4,) are in the world; the other arrays have one entry for
-    each joint: `q_start` [rad or m], `kp` [N·m/rad or N/m], `kv` [N·m·s/rad or N·s/m],
-    `effort_limit` [N·m or N]. A second target is commanded after `switch` of the `steps`. `load`
-    is added to the mass of the hand [kg].
+    each joint, by default the course's: `q_start` [rad or m], `kp` [N·m/rad or N/m], `kv`
+    [N·m·s/rad or N·s/m], `effort_limit` [N·m or N]. A second target is commanded after `switch` of
+    the `steps`. `load` is added to the mass of the hand [kg].
     """
 
     positions: FloatArray
     quat: FloatArray
-    q_start: FloatArray
-    kp: FloatArray
-    kv: FloatArray
-    effort_limit: FloatArray
     settings: IkSettings
     steps: int
     switch: int
+    q_start: FloatArray = field(default_factory=lambda: franka.Q_START)
+    kp: FloatArray = field(default_factory=lambda: franka.KP_BASELINE)
+    kv: FloatArray = field(default_factory=lambda: franka.KV_BASELINE)
+    effort_limit: FloatArray = field(default_factory=lambda: franka.EFFORT_LIMIT)
     load: float = 0.0
     dt: float = DT
     substeps: int = SUBSTEPS

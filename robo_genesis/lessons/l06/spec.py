@@ -4,13 +4,11 @@ Pages, checks, verification and tests read the experiment here. The module is da
 nothing. `parameters()` has the values that decide what runs; all other values only judge.
 """
 
-from collections.abc import Mapping
 from dataclasses import asdict, replace
 from typing import Any
 
-import numpy as np
-
-from robo_genesis.core.scene import CAMERA, FloatArray
+from robo_genesis.core.scene import CAMERA, read_only
+from robo_genesis.lessons.experiment import inputs
 from robo_genesis.lessons.l06.run import World
 from robo_genesis.sim import franka
 from robo_genesis.sim.kinematics import IkSettings
@@ -29,20 +27,15 @@ ONE_START = replace(IK, samples=1, iterations=100)
 """The same without starts of the engine's choice, so that an answer depends on its start alone."""
 
 
-def fixed(*rows: Any) -> FloatArray:
-    """Return a read-only array of the rows."""
-    array = np.array(rows, dtype=np.float64)
-    array.setflags(write=False)
-    return array
-
-
-DOWN = fixed(0.0, 1.0, 0.0, 0.0)
+DOWN = read_only((0.0, 1.0, 0.0, 0.0))
 """Target orientation (w, x, y, z): half a turn about x, so the fingers point down."""
 
-TARGETS = fixed((0.42, -0.12, 0.35), (0.48, -0.04, 0.40), (0.48, 0.06, 0.32), (0.40, 0.14, 0.38))
+TARGETS = read_only(
+    [(0.42, -0.12, 0.35), (0.48, -0.04, 0.4), (0.48, 0.06, 0.32), (0.4, 0.14, 0.38)]
+)
 """First target of the hand in each environment [m]."""
 
-LATER = {1: fixed(0.44, -0.16, 0.32), 3: fixed(0.50, 0.12, 0.40)}
+LATER = {1: [(0.44, -0.16, 0.32)], 3: [(0.50, 0.12, 0.40)]}
 """Second target of the hand in some environments [m]."""
 
 SWITCH, STEPS = 180, 360
@@ -51,28 +44,20 @@ SWITCH, STEPS = 180, 360
 RESET_AFTER = 30
 """Outer steps until the partial reset, while all arms are moving."""
 
-BEYOND_REACH = fixed(2.0, 0.0, 2.0)
+BEYOND_REACH = read_only((2.0, 0.0, 2.0))
 """A target that no posture of the arm comes near to [m]."""
 
-MIXED = fixed(TARGETS[0], TARGETS[1], BEYOND_REACH, TARGETS[3])
+MIXED = read_only([TARGETS[0], TARGETS[1], BEYOND_REACH, TARGETS[3]])
 """Targets of which one is refused [m]."""
 
-FIRST = World(
-    positions=TARGETS[:1],
-    quat=DOWN,
-    q_start=franka.Q_START,
-    kp=franka.KP_BASELINE,
-    kv=franka.KV_BASELINE,
-    effort_limit=franka.EFFORT_LIMIT,
-    settings=IK,
-    steps=STEPS,
-    switch=SWITCH,
-)
+FIRST = World(TARGETS[:1], DOWN, IK, STEPS, SWITCH)
 ENVS = tuple(range(len(TARGETS)))
 """Numbers of the environments."""
 
 WORLDS = {
-    f"env_{k}": replace(FIRST, positions=fixed(TARGETS[k], *([LATER[k]] if k in LATER else [])))
+    f"env_{k}": replace(
+        FIRST, positions=read_only([TARGETS[k], *([LATER[k]] if k in LATER else [])])
+    )
     for k in ENVS
 }
 ALONE = {f"alone_{k}": WORLDS[f"env_{k}"] for k in ENVS}
@@ -144,15 +129,9 @@ RESOLUTION = {"m": 1e-5, "rad": 1e-5, "rad/s": 1e-3, "1": 0.5}
 """By unit: values that differ by no more than this are called equal, the noise floor."""
 
 TOLERANCES = {
-    "m": (1e-5, 1e-3),
-    "rad": (1e-5, 1e-3),
-    "rad/s": (1e-3, 1e-3),
-    "N·m": (1e-2, 1e-3),
-    "N": (1e-2, 1e-3),
-    "kg": (1e-6, 0.0),
-    "1": (1e-6, 0.0),
-    "link_quat_wxyz": (1e-4, 0.0),
-}
+    "m": (1e-5, 1e-3), "rad": (1e-5, 1e-3), "rad/s": (1e-3, 1e-3), "N·m": (1e-2, 1e-3),
+    "N": (1e-2, 1e-3), "kg": (1e-6, 0.0), "1": (1e-6, 0.0), "link_quat_wxyz": (1e-4, 0.0),
+}  # fmt: skip
 """By unit, or by array: (atol, rtol) of a value between engine versions or backends."""
 
 REACHED = (0.02, 0.05)
@@ -169,25 +148,10 @@ HELD = 0.05
 """Largest difference of a torque at rest from gravity and load by MuJoCo [N·m]."""
 
 
-def case_parameters(cases: Mapping[str, World]) -> dict[str, dict[str, Any]]:
-    """Return every field of every case as JSON values."""
-    return {
-        name: {key: np.asarray(value).tolist() for key, value in asdict(case).items()}
-        for name, case in cases.items()
-    }
-
-
 def parameters() -> dict[str, Any]:
     """Return every configured input of the lab as JSON values, for the evidence key."""
-    return {
-        "joints": list(franka.JOINT_NAMES),
-        "model": franka.FRANKA_MJCF,
-        "counted": list(EXPECTED_MODEL),
-        "cases": case_parameters(CASES | COPIES),
-        "order": list(ORDER),
-        "reset_after": RESET_AFTER,
-        "mixed": {"targets": MIXED.tolist(), "settings": asdict(ONE_START)},
-        "hand_mass": HAND_MASS,
-        "spacing": SPACING,
-        "view": {name: value for name, value in VIEW.items() if name != "GUI"},
-    }
+    mixed = {"targets": MIXED.tolist(), "settings": asdict(ONE_START)}
+    robot = {"joints": list(franka.JOINT_NAMES), "model": franka.FRANKA_MJCF}
+    further = robot | {"order": list(ORDER), "hand_mass": HAND_MASS, "mixed": mixed}
+    further |= {"reset_after": RESET_AFTER, "spacing": SPACING, "counted": list(EXPECTED_MODEL)}
+    return inputs(CASES | COPIES, VIEW, **further)

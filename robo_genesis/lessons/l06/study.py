@@ -13,7 +13,7 @@ from robo_genesis.lessons.l06.run import END_EFFECTOR, ask, reach, reset_some, s
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim.batch import set_link_mass
 from robo_genesis.sim.franka import JOINT_NAMES
-from robo_genesis.sim.joints import JointMap, resolve_joints
+from robo_genesis.sim.joints import resolve_joints
 
 MIXED = {f"row_{k}_m": "m" for k in spec.ENVS}
 """Position residuals of a question with one target beyond reach."""
@@ -29,15 +29,6 @@ def readings(rendered: bool) -> dict[str, Readings]:
         "mixed": Readings(MIXED),
         "hand_mass": Readings(MASSES),
     }
-
-
-def describe(page: Any, robot: Any) -> JointMap:
-    """Give a page the counts, links and joints of the robot, and return its joints."""
-    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
-    page.readings["model"] = dict(zip(spec.EXPECTED_MODEL, counted, strict=True))
-    page.links = [link.name for link in robot.links]
-    page.joints = resolve_joints(robot, JOINT_NAMES)
-    return page.joints
 
 
 def read_mixed(page: Any, robot: Any) -> None:

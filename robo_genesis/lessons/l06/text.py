@@ -1,7 +1,7 @@
 """Tables and sentences of L06's lecture and lab, each a function of the experiment."""
 
 from robo_genesis.core import tables
-from robo_genesis.core.text import bullets, listed
+from robo_genesis.core.text import bullets, decimal, listed
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study
 from robo_genesis.sim import mujoco_kinematics
@@ -10,9 +10,9 @@ SHOWN_TORQUES = (1, 3)
 """The joints with a torque in the table of variants: joint2 and joint4."""
 
 
-def mm(value: float | None, digits: int = 2) -> str:
-    """Return a length as millimetres; a dash where none was observed."""
-    return "–" if value is None else f"{1000 * value:.{digits}f}"
+def mm(value: float, digits: int = 2) -> str:
+    """Return a length in millimetres."""
+    return decimal(1000 * value, digits)
 
 
 def mixed_table(run: Experiment) -> str:
@@ -33,38 +33,36 @@ def mixed_table(run: Experiment) -> str:
 
 def row_table(run: Experiment) -> str:
     """Return residual and distances of each environment."""
-    rows = []
-    for name in spec.WORLDS:
-        m = run.metrics[name]
-        rows.append(
-            {
-                "run": spec.LABELS[name],
-                "residual of the last command [mm]": mm(m.residual, 3),
-                "first target after 1.8 s [mm]": mm(m.first_distance),
-                "last target at the end [mm]": mm(m.final_distance),
-                "motion after 1.8 s [mm]": mm(m.moved_later),
-            }
-        )
-    return tables.markdown(rows)
+    heads = {
+        "residual of the last command [mm]": 3,
+        "first target after 1.8 s [mm]": 2,
+        "last target at the end [mm]": 2,
+        "motion after 1.8 s [mm]": 2,
+    }
+    found = {spec.LABELS[name]: run.metrics[name] for name in spec.WORLDS}
+    rows = {
+        label: [1e3 * v for v in (m.residual, m.first_distance, m.final_distance, m.moved_later)]
+        for label, m in found.items()
+    }
+    return tables.numbers("run", heads, rows)
 
 
 def alone_table(run: Experiment) -> str:
     """Return the largest differences between each row and the same run alone."""
-    rows = []
+    heads = {
+        "joint position [µrad]": 2,
+        "joint velocity [µrad/s]": 1,
+        "control force [mN·m]": 2,
+        "entries that differ [%]": 0,
+    }
+    rows = {}
     for k in spec.ENVS:
-        row, alone = run.traces[f"env_{k}"], run.traces[f"alone_{k}"]
-        apart = study.largest_differences(row, alone)
-        differ, compared = study.entries_that_differ(row, alone)
-        rows.append(
-            {
-                "run": spec.LABELS[f"env_{k}"],
-                "joint position [µrad]": f"{1e6 * apart['q']:.2f}",
-                "joint velocity [µrad/s]": f"{1e6 * apart['qd']:.1f}",
-                "control force [mN·m]": f"{1e3 * apart['control_force']:.2f}",
-                "entries that differ [%]": f"{100 * differ / compared:.0f}",
-            }
-        )
-    return tables.markdown(rows)
+        pair = run.traces[f"env_{k}"], run.traces[f"alone_{k}"]
+        q, qd, force = study.largest_differences(*pair).values()
+        differ, compared = study.entries_that_differ(*pair)
+        cells = 1e6 * q, 1e6 * qd, 1e3 * force, 100 * differ / compared
+        rows[spec.LABELS[f"env_{k}"]] = cells
+    return tables.numbers("run", heads, rows)
 
 
 CLAIMED = {
@@ -101,20 +99,18 @@ def equal_table(run: Experiment) -> str:
 
 def variant_table(run: Experiment) -> str:
     """Return gains, mass, torques and distances of four robots with one target."""
-    rows = []
+    torques = [f"torque of joint{k + 1} (computed) [N·m]" for k in SHOWN_TORQUES]
+    heads = {"KP of joint2 [N·m/rad]": 0, "mass of the hand [kg]": 2}
+    heads |= dict.fromkeys(torques, 2) | {"target to hand [mm]": 2}
+    rows = {}
     for name, world in spec.VARIANTS.items():
         trace, m = run.traces[name], run.metrics[name]
         expected = mujoco_kinematics.gravity_effort(trace.q[-1].astype(float), world.load)
-        row = {
-            "row": spec.LABELS[name],
-            "KP of joint2 [N·m/rad]": f"{world.kp[1]:.0f}",
-            "mass of the hand [kg]": f"{run.readings['hand_mass'][name]:.2f}",
-        }
-        for k in SHOWN_TORQUES:
-            torques = f"{trace.control_force[-1, k]:.2f} ({expected[k]:.2f})".replace("-", "−")
-            row[f"torque of joint{k + 1} (computed) [N·m]"] = torques
-        rows.append(row | {"target to hand [mm]": mm(m.final_distance)})
-    return tables.markdown(rows)
+        pairs = [(trace.control_force[-1, k], expected[k]) for k in SHOWN_TORQUES]
+        both = [f"{decimal(found, 2)} ({decimal(right, 2)})" for found, right in pairs]
+        mass = run.readings["hand_mass"][name]
+        rows[spec.LABELS[name]] = (world.kp[1], mass, *both, 1e3 * m.final_distance)
+    return tables.numbers("row", heads, rows)
 
 
 def conclusions(run: Experiment) -> str:

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lessons.changed_runs import failed, with_reading, with_trace
 
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.lessons.l06 import plausibility, spec
@@ -12,36 +13,22 @@ from robo_genesis.lessons.l06.run import NotAccepted, commands
 from robo_genesis.sim.kinematics import IkAnswer
 
 
-def failed(run):
-    return {check.name for check in run.outcomes() if not check.passed}
-
-
-def changed(run, name, **arrays):
-    return replace(run, traces={**run.traces, name: replace(run.traces[name], **arrays)})
-
-
-def with_reading(run, group, name, value):
-    return replace(
-        run, readings={**run.readings, group: {**run.readings[group], name: value}}
-    )  # fmt: skip
-
-
 def shifted(run, name, array, by, samples=slice(None)):
     """Change one array of a run by a number, in all samples or in some."""
     values = np.array(getattr(run.traces[name], array))
     values[samples] += by
-    return changed(run, name, **{array: values})
+    return with_trace(run, name, **{array: values})
 
 
 def moved_hand(run, name, by, samples):
     places = np.array(run.traces[name].link_pos)
     places[samples, HAND, 0] += by
-    return changed(run, name, link_pos=places)
+    return with_trace(run, name, link_pos=places)
 
 
 CHANGES = {
     "mapping": lambda run: with_reading(run, "model", "dofs", 8),
-    "stamps": lambda run: changed(run, "env_3", t=run.traces["env_3"].t * 2),
+    "stamps": lambda run: with_trace(run, "env_3", t=run.traces["env_3"].t * 2),
     "acceptance_per_row": lambda run: with_reading(run, "mixed", "row_2_m", 1e-5),
     "arrived": lambda run: moved_hand(run, "alone_1", 0.05, slice(-1, None)),
     "row_equals_alone": lambda run: shifted(run, "alone_2", "qd", 1e-4, 40),
@@ -76,14 +63,14 @@ OTHERS = {
     "a load that another row carries": (
         "own_gains_and_mass", lambda run: replace(run, traces=swapped(run, "stiff", "loaded"))),
     "a plain row with a neighbour's gains": (
-        "own_gains_and_mass", lambda run: changed(run, "plain", q=run.traces["stiff"].q)),
+        "own_gains_and_mass", lambda run: with_trace(run, "plain", q=run.traces["stiff"].q)),
 }  # fmt: skip
 
 
 def still(run, name):
     places = np.array(run.traces[name].link_pos)
     places[spec.SWITCH :] = places[spec.SWITCH]
-    return changed(run, name, link_pos=places)
+    return with_trace(run, name, link_pos=places)
 
 
 def swapped(run, one, other):

@@ -13,7 +13,7 @@ from robo_genesis.lessons.l06 import LECTURE, checks, spec, study
 from robo_genesis.lessons.l06.run import NotAccepted, ask, reach
 from robo_genesis.sim.batch import Batch, set_link_mass
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joint_control import CaseError
+from robo_genesis.sim.joint_control import CaseError, describe
 from robo_genesis.sim.joints import resolve_joints
 
 pytestmark = pytest.mark.engine
@@ -46,7 +46,7 @@ def measured(real_engine, four):
     page = SimpleNamespace(traces={}, readings={}, links=[], joints=None)
     page.capture = lambda camera, name: None
     alone, single = build(real_engine.gs, 0)
-    study.describe(page, four.robot)
+    describe(page, four.robot)
     study.read_mixed(page, four.robot)
     study.record(page, four.scene, four.robot, None)
     study.record_alone(page, alone, single)
