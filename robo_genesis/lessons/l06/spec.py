@@ -55,10 +55,7 @@ ENVS = tuple(range(len(TARGETS)))
 """Numbers of the environments."""
 
 WORLDS = {
-    f"env_{k}": replace(
-        FIRST, positions=read_only([TARGETS[k], *([LATER[k]] if k in LATER else [])])
-    )
-    for k in ENVS
+    f"env_{k}": replace(FIRST, positions=read_only([TARGETS[k], *LATER.get(k, [])])) for k in ENVS
 }
 ALONE = {f"alone_{k}": WORLDS[f"env_{k}"] for k in ENVS}
 """The same worlds, each in a scene with one robot and without environments."""
