@@ -1,12 +1,15 @@
 """The throughput protocol, its model and its exercise on machines whose clock is known."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from robo_genesis.lessons.l06 import throughput
+from robo_genesis.lessons.l06 import mistakes, throughput, throughput_text
 from robo_genesis.lessons.l06.throughput import Protocol
 from robo_genesis.lessons.l06.throughput_exercises import Machine
 from robo_genesis.lessons.l06.throughput_exercises import throughput as exercise
+from robo_genesis.sim.throughput import Model
 
 SHORT = Protocol(sizes=(1, 4), warm_up=2, steps=5, repeats=3)
 
@@ -109,3 +112,46 @@ def test_a_wrong_measurement_fails(wrong):
     (check,) = exercise(lambda *arguments: written(*arguments, **wrong))
     assert not check.passed
     assert "expected" in check.detail or "raised" in check.detail
+
+
+@pytest.fixture
+def known():
+    """Times that follow the model up to 512 environments, and memory of 100 + B MiB."""
+    of = Model(0.0006, 16e-6)
+    found = {}
+    for size in throughput.DEEPER.sizes:
+        time = float(of.step_time(size)) * (2 if size == 1024 else 1)
+        found |= {f"build_{size}": 1.0, f"memory_{size}": 100.0 + size, f"step_{size}": time}
+        found |= {f"fastest_{size}": time / 1.1, f"slowest_{size}": 1.1 * time}
+    others = {"step_sphere_1": 0.0006, "step_sphere_256": 0.002348, "step_four_scenes": 0.016984}
+    return SimpleNamespace(readings={throughput.GROUP: found | others})
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("table", "| 4 | 1.0 | 0.664 | 0.604 to 0.73 | 6,020 | 15.1 | 104 |"),
+        ("conclusions", "1,620 steps per second with 1 and 30,100 with 1024"),
+        ("conclusions", "The most are 58,200, with 512."),
+        ("model_table", "| 256 | 4.7 | 4.7 | 1.00 | predicts |"),
+        ("model_table", "| 1024 | 34 | 17 | 2.00 | predicts |"),
+        ("model_sentence", "$a$ = 0.6 ms and $b$ = 16 µs"),
+        ("model_sentence", "$1/b$ = 62,500 steps per second, and $B = a/b$ = 37.5"),
+        ("content_table", "| 256 | 2.35 | 4.7 | 2 |"),
+        ("cache_sentence", "34 ms for a step of all. Four scenes of 256, stepped in turn, need 17"),
+        ("cache_sentence", "The first time is 2 times the second. Each environment takes 1 MiB"),
+    ],
+)
+def test_texts_give_the_known_values(known, text, says):
+    assert says in getattr(throughput_text, text)(known)
+
+
+@pytest.mark.parametrize(("line", "shown"), [("Compiling kernels", True), ("Building", False)])
+def test_the_clock_that_runs_while_building_is_recognised_by_the_log(line, shown):
+    lines = []
+
+    def build(size):
+        lines.append(("INFO", line))
+        return 2 * (Scene(Machine({}), size),)
+
+    assert mistakes.timed_with_building(build, lines, (1, 64), 2).shown == shown
