@@ -116,7 +116,7 @@ lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages 
 
 # NEW reaches the script as an environment variable.
 .PHONY: lesson
-lesson: $(ENVIRONMENT) ## add a lesson that is made from the template (NEW=l06)
+lesson: $(ENVIRONMENT) ## add a lesson that is made from the template (NEW=l07)
 	@"$(PY)" build_scripts/lesson.py
 
 # OLD and NEW reach the recipe through the environment, so a path may hold any character.

@@ -1,4 +1,4 @@
-"""Add a lesson that is made from the template: `make lesson NEW=l06`.
+"""Add a lesson that is made from the template: `make lesson NEW=l07`.
 
 Exit status: 0 added, 1 refused or failed, 130 interrupted. Unless it is 0, nothing is changed.
 """

@@ -73,7 +73,7 @@ def require_new(root: Path, lesson: str) -> None:
         LessonError: the message says what is valid.
     """
     if not NAME.fullmatch(lesson):
-        raise LessonError(f"NEW={lesson!r} is not valid: write `l` and two digits, as in NEW=l06.")
+        raise LessonError(f"NEW={lesson!r} is not valid: write `l` and two digits, as in NEW=l07.")
     used = [
         found.relative_to(root).as_posix()
         for parent in ("robo_genesis/lessons", "book/lessons", "tests/lessons")
