@@ -53,8 +53,8 @@ def model(run: Experiment) -> Figure:
     fine = np.geomspace(numbers[0], numbers[-1], 60)
     ax.plot(fine, 1000 * fitted(run).step_time(fine), label="model", **THEORY)
     dots = MEASURED | {"linestyle": "none", "markersize": 5}
-    ax.plot(numbers[known], step[known], label="measured, fitted", **dots)
-    ax.plot(numbers[~known], step[~known], label="measured, predicted", fillstyle="none", **dots)
+    ax.plot(numbers[known], step[known], label="fitted", **dots)
+    ax.plot(numbers[~known], step[~known], label="predicted", fillstyle="none", **dots)
     of_environments(ax, run)
     ax.set_yscale("log")
     ax.yaxis.set_major_formatter(ScalarFormatter())

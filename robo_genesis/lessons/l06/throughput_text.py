@@ -77,11 +77,11 @@ def model_table(run: Experiment) -> str:
         measured, expected = run.readings[GROUP][f"step_{size}"], float(model.step_time(size))
         rows.append(
             {
-                "environments": f"{size}",
+                "B": f"{size}",
                 "measured [ms]": ms(measured),
                 "model [ms]": ms(expected),
-                "measured / model": f"{measured / expected:.2f}",
-                "the model": "is fitted here" if size in FITTED else "predicts",
+                "ratio": f"{measured / expected:.2f}",
+                "for": "fit" if size in FITTED else "test",
             }
         )
     return tables.markdown(rows)
