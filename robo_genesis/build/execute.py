@@ -83,7 +83,7 @@ def execute_pages(
         own = Path(scratch)
         try:
             while waiting or running:
-                while waiting and may_start(waiting[0], running, jobs):
+                while waiting and len(running) < (1 if waiting[0].alone else jobs):
                     page = waiting.pop(0)
                     place, cells = places[page.docname], len(cell_sources(page))
                     log = (logs or own) / f"{place.parent.name}.log"
@@ -122,7 +122,9 @@ def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -
 
 
 def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> list[Page]:
-    """Return pages in the order in which they start; those that run alone come last.
+    """Return pages in the order in which they start.
+
+    Those that run alone come last, so no other page starts beside them.
 
     Args:
         pages: the pages to execute.
@@ -136,12 +138,6 @@ def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> l
         return page.alone, seconds, -len(cell_sources(page))
 
     return sorted(pages, key=sooner)
-
-
-def may_start(page: Page, running: Running, jobs: int) -> bool:
-    """Return whether a page may start beside those that run."""
-    alone = page.alone or any(worker.run.page.alone for worker in running.values())
-    return len(running) < (1 if alone else jobs)
 
 
 def _reused(

@@ -139,7 +139,7 @@ def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None
     alone = given.pop("alone", False)
     parts = [given.get(key) for key in ("lesson", "page")]
     words = all(isinstance(part, str) and part.isidentifier() for part in parts)
-    if not (words and isinstance(alone, bool)):
+    if not (words and isinstance(alone, bool)) or given.keys() - {"lesson", "page"}:
         raise PageError(
             f"{name}: front matter has `{PACKAGE}: {declared!r}`. "
             f"Valid is `{PACKAGE}: {{lesson: l04, page: lab}}`, both plain words. A page that no "

@@ -276,8 +276,8 @@ def page_fingerprint(
 ) -> str:
     """Return a digest of everything that decides the outputs of a page.
 
-    It covers the lock, all installed versions, the version of Python, the environment contract, the
-    syntax of the page's cells, of the modules that they import and of the modules of its lesson,
+    It covers the lock, all installed versions, the version of Python, the environment contract,
+    whether the page is executed alone, the syntax of the page's cells, of the modules that they import and of the modules of its lesson,
     and the data files of the package, except those of other lessons.
 
     Args:
@@ -305,6 +305,7 @@ def page_fingerprint(
             path.relative_to(root).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
             for path in _data_files(page.lesson, root)
         },
+        "alone": page.alone,
     }
     return _sha256(parts)[:20]
 

@@ -16,7 +16,7 @@ NAMED_BY_TEXT = "button.search-button-field, details.hide > summary"
 def make_accessible(page: BeautifulSoup) -> None:
     """Correct the attributes of a complete page, in place."""
     # The control around an icon has its name as text or label.
-    for icon in page.find_all(["i", "span"], class_=ICON):
+    for icon in [*page.find_all("i", class_=ICON), *page.find_all("span", class_="fa-solid")]:
         icon["aria-hidden"] = "true"
     # A fold of code shows an icon; its text is for screen readers and, as a title, for the mouse.
     for fold in page.select("details.hide.above-input > summary"):

@@ -106,11 +106,11 @@ def plain(value: Any) -> Any:
 
 
 def keep_templates(app: Sphinx) -> None:
-    """Compile the theme's templates once for all renders in the kept folder."""
+    """Keep the compiled templates of the theme beside the doctrees, for the next render there."""
     folder = Path(app.doctreedir).with_name("templates")
-    folder.mkdir(exist_ok=True)
-    templates = vars(app.builder)["templates"]
-    templates.environment.bytecode_cache = FileSystemBytecodeCache(str(folder))
+    if templates := getattr(app.builder, "templates", None):  # builders without pages have none
+        folder.mkdir(exist_ok=True)
+        templates.environment.bytecode_cache = FileSystemBytecodeCache(str(folder))
 
 
 def drop_static_files(app: Sphinx) -> None:

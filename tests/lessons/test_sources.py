@@ -1,6 +1,7 @@
 """Which changes of the package change the evidence keys and the fingerprints of which pages."""
 
 import shutil
+from dataclasses import replace
 
 import pytest
 from tiny_book import LAB_FRONT, cell, make_book, notebook
@@ -132,6 +133,16 @@ def test_a_changed_cell_counts_and_a_comment_does_not(root, page, code, counts):
     lab = notebook(cell(code), front=LAB_FRONT, title="Another title")
     (changed,) = find_pages(make_book(root, lab=lab))
     assert (page_fingerprint(changed, root, {}) != page_fingerprint(page, root, {})) == counts
+
+
+def test_a_page_that_begins_to_run_alone_is_executed_again(root, page):
+    assert page_fingerprint(replace(page, alone=True), root, {}) != page_fingerprint(page, root, {})
+
+
+def test_a_page_runs_alone_exactly_if_it_records_elapsed_times():
+    for page in (page for page in PAGES if page.lesson):
+        groups = LESSONS[page.lesson].pages[page.page].readings(True).values()
+        assert page.alone == any(group.kind == "performance" for group in groups), page.docname
 
 
 def keys(root, pages):

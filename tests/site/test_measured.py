@@ -4,9 +4,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.core import project
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.status import Status
+from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.measured import measured as insert
 from robo_genesis.site.evidence.measured import state_words, status_fold, visit_status
 
@@ -34,6 +36,24 @@ def test_an_unknown_metric_names_those_there_are(outputs, name):
 def test_a_page_without_bundle_is_refused(outputs):
     with pytest.raises(BundleRefused, match=r"manifest\.json is not in"):
         insert("l04/lecture", "G2.overshoot")
+
+
+@pytest.mark.parametrize("spoiled", [None, b"", b"no pickle"])
+def test_a_state_is_computed_once_for_a_kept_folder(tmp_path, monkeypatch, spoiled):
+    monkeypatch.setattr(measured, "built_pages", lambda: BuiltPages(states=tmp_path / "states"))
+    calls = []
+    first = measured.stored("../l04/lab", lambda: calls.append(1) or "verified")
+    (file,) = (path for path in tmp_path.rglob("*") if path.is_file())
+    assert file.parent == tmp_path / "states"
+    if spoiled is not None:
+        file.write_bytes(spoiled)
+    assert measured.stored("../l04/lab", lambda: calls.append(2) or "verified") == first
+    assert calls == ([1] if spoiled is None else [1, 2])
+
+
+def test_without_a_kept_folder_a_state_is_computed_each_time(monkeypatch):
+    monkeypatch.setattr(measured, "built_pages", BuiltPages)
+    assert [measured.stored("name", lambda k=k: k) for k in (1, 2)] == [1, 2]
 
 
 @pytest.mark.parametrize("state", ["stale", "refused", "failed", "inconclusive", "missing"])

@@ -16,7 +16,7 @@ OFFER = ".offline-offer"
 COMPRESSED = {".jpg", ".npz", ".png", ".webp", ".whl", ".woff2", ".zip"}
 """Suffixes of files that compression makes no smaller."""
 LEVEL = 3
-"""Of compression: level 6 takes 1.6 times as long, and makes the archive 2 % smaller."""
+"""The level of compression. Level 6 takes 1.6 times as long and makes the archive 2 % smaller."""
 DATE = (1980, 1, 1, 0, 0, 0)  # the earliest one: the same site makes the same archive
 
 

@@ -17,8 +17,6 @@ ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
 # A link of these kinds names a page for readers or crawlers; the browser does not load it.
 NOT_LOADED = {"canonical", "alternate", "author", "license", "next", "prev", "index", "search"}
 ELSEWHERE = re.compile(r"^(?:https?|wss?|ftp):|^//", re.IGNORECASE)
-OUTSIDE = re.compile(r"[a-z][a-z\d+.-]*:|//", re.IGNORECASE)
-"""How an address begins that has a scheme, or names a host."""
 CSS_ADDRESS = re.compile(r"""(?:(?:@import\s+)?url\(|@import)\s*["']?([^"')\s;]+)""", re.IGNORECASE)
 CSS_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 SCRIPT_ADDRESS = re.compile(r"""["'`]((?:https?:)?//[\w.-]+\.[a-z]{2,}[^"'`]*)""", re.IGNORECASE)
@@ -140,7 +138,7 @@ def check_links(site: Site) -> SiteCheck:
     """Every address inside the site leads to a file, and every fragment to an element."""
     found = [(path, url) for path, page in site.pages.items() for url, _ in page.addresses]
     found += site.style_addresses
-    inside = [(path, url) for path, url in found if not OUTSIDE.match(url)]
+    inside = [(path, url) for path, url in found if not urlsplit(url).scheme and url[:2] != "//"]
     problems = {
         f"{site.name(path)}: {url!r} {reason}"
         for path, url in dict.fromkeys(inside)

@@ -12,7 +12,7 @@ from robo_genesis.build.site.kept import copy_site, fit, keep, prepare, read_sta
 from robo_genesis.build.site.sphinx_process import SphinxProcess
 
 STATES = "states"
-"""The folder of the states of runs, which depend on nothing that does not empty the kept folder."""
+"""The folder of the states of runs. Every change on which they depend empties the kept folder."""
 BUILD_INFO = ".buildinfo"
 """A note of Sphinx for its next build, which depends on the checkout's path."""
 
@@ -30,8 +30,8 @@ def render(
         sphinx: the process that has loaded the book's configuration.
         staging: folder for the result; its older content is removed.
         built: the executed pages.
-        kept_folder: has the doctrees and pages of the last render and gets those of this one. None
-            renders from nothing.
+        kept_folder: has the doctrees, pages, states of runs and compiled templates of the last
+            render, and gets those of this one. None renders from nothing.
         meanwhile: called once, while Sphinx works. What it raises is raised here; the next render
             then starts from nothing.
 

@@ -139,7 +139,11 @@ def start(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
 
 
 def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
-    """Yield contacts that are not those of the body's shape before the last solver step."""
+    """Yield contacts that are not those of the body's shape before the last solver step.
+
+    A cube on an edge has up to three: one processor reports a third one in 1 of 401 samples of a
+    run in which another processor reports two.
+    """
     depths = depths_before_last_step(trace, case)
     first = 0 if case.settle else 1  # no step was taken before the first sample of the others
     expected = np.maximum(depths[:, 0], 0)
@@ -154,7 +158,8 @@ def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Breach
     fewest = np.where(tilted, np.minimum(surely, 2), surely)
     reach = np.where((depths > -DEPTH).any(axis=1), TWIST * case.size, DEPTH)
     perhaps = (depths > -reach[:, None]).sum(axis=1)
-    perhaps[perhaps == 2] += 1  # Genesis may also find a point between the two ends of an edge
+    on_one_edge = (perhaps == 2) & (depths[:, 1:2] > -DEPTH).any(axis=1)
+    perhaps += on_one_edge  # Genesis may report a further point there
     count = trace.contacts[:, 0]
     for k in np.flatnonzero((count < fewest) | (count > perhaps))[:1]:
         what = f"number of contacts at index {k}"

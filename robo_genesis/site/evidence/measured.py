@@ -18,6 +18,7 @@ import pickle
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import lru_cache
+from hashlib import sha256
 from html import escape
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -96,24 +97,30 @@ class Measured(SphinxRole):
         return [node], []
 
 
-def kept(name: str, find: Callable[[], T]) -> T:
-    """Return what a render before this one found, if its folder is kept, or find it now.
+def stored(name: str, compute: Callable[[], T]) -> T:
+    """Return the value that an earlier render stored, or compute and store it.
 
-    The build itself verifies all bundles each time.
+    Args:
+        name: of the value.
+        compute: its result can be pickled.
     """
     states = built_pages().states
     if states is None:
-        return find()
-    with suppress(OSError):
-        return cast(T, pickle.loads((states / name).read_bytes()))
-    found = find()
-    write_whole(states / name, pickle.dumps(found))
-    return found
+        return compute()
+    file = states / sha256(name.encode()).hexdigest()
+    with suppress(OSError, EOFError, pickle.UnpicklingError):
+        return cast(T, pickle.loads(file.read_bytes()))
+    value = compute()
+    write_whole(file, pickle.dumps(value))
+    return value
 
 
 @lru_cache(maxsize=64)
 def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> Run:
-    """Return a page's run of this build; it does not change while Sphinx runs."""
+    """Return a page's run of this build; it does not change while Sphinx runs.
+
+    A stored state is shown; the build verifies the bundle itself each time.
+    """
     folder = page_outputs(f"{lesson}/{page}") / BACKEND
     absent = f"No bundle was recorded for {lesson}/{page}."
 
@@ -121,7 +128,7 @@ def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> Run:
         status = bundle_status(folder, lesson, page, absent, book, once=True)
         return Run(f"{lesson}/{page}", folder, status)
 
-    return kept(f"{lesson}-{page}", run)
+    return stored(f"{lesson}/{page}", run)
 
 
 @lru_cache(maxsize=64)
@@ -137,7 +144,7 @@ def recorded_runs(book: Path, lesson: str) -> tuple[Run, ...]:
         return Run(name, folder / backend, status, recorded=True)
 
     backends = dict.fromkeys((REFERENCE, *recorded))
-    return kept(f"{lesson}-recorded", lambda: tuple(run(backend) for backend in backends))
+    return stored(f"{lesson}, recorded", lambda: tuple(run(backend) for backend in backends))
 
 
 def lesson_statuses(book: Path, lesson: str) -> list[Status]:

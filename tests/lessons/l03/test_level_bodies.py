@@ -5,8 +5,11 @@ import pytest
 
 from robo_genesis.lessons.l03 import spec
 from robo_genesis.sim import mujoco_contacts
-from robo_genesis.sim.contacts import TOP
-from robo_genesis.sim.plausibility.bodies import never_still, reported_contacts
+from robo_genesis.sim.plausibility.bodies import (
+    depths_before_last_step,
+    never_still,
+    reported_contacts,
+)
 from robo_genesis.sim.plausibility.continuation import NEXT, by_mujoco, cross, level, up_and_down
 
 AT_REST = mujoco_contacts.run_case(replace(spec.BASELINE, start=(0, 0, 0.765), duration=0.1))
@@ -75,16 +78,27 @@ def test_cross_products_are_those_of_numpy():
     ],
 )
 def test_a_tilted_cube_may_report_corners_just_above_the_surface(tilt, reported, codes):
-    case, states = spec.BASELINE, len(AT_REST.t)
-    depth, half = 1e-4, spec.BASELINE.size / 2
-    height = TOP - depth + half * (np.cos(tilt) + np.sin(tilt))
+    posed = lying([np.cos(tilt / 2), 0, np.sin(tilt / 2), 0], reported)
+    assert [breach.code for breach in reported_contacts(posed, spec.BASELINE)] == codes
+
+
+@pytest.mark.parametrize(("reported", "codes"), [(1, []), (2, []), (3, ["contact"])])
+def test_a_cube_on_one_corner_has_no_third_contact(reported, codes):
+    posed = lying([np.cos(0.15), 0.0025, np.sin(0.15), 0], reported)
+    assert [breach.code for breach in reported_contacts(posed, spec.BASELINE)] == codes
+
+
+def lying(quat, reported):
+    """Return states of a cube that is turned and has its lowest corner 0.1 mm deep."""
+    states, depth = len(AT_REST.t), 1e-4
     posed = replace(
         AT_REST,
-        link_pos=np.tile([0, 0, height], (states, 1, 1)),
-        link_quat=np.tile([np.cos(tilt / 2), 0, np.sin(tilt / 2), 0], (states, 1, 1)),
+        link_pos=np.zeros((states, 1, 3)),
+        link_quat=np.tile(quat / np.linalg.norm(quat), (states, 1, 1)),
         link_vel=np.zeros((states, 1, 3)),
         link_ang=np.zeros((states, 1, 3)),
         penetration=np.where(AT_REST.t[:, None] > 0, depth, 0),
         contacts=np.where(AT_REST.t[:, None] > 0, reported, 0),
     )
-    assert [breach.code for breach in reported_contacts(posed, case)] == codes
+    height = depths_before_last_step(posed, spec.BASELINE)[:, 0] - depth
+    return replace(posed, link_pos=posed.link_pos + [0, 0, 1] * height[:, None, None])
