@@ -277,8 +277,9 @@ def page_fingerprint(
     """Return a digest of everything that decides the outputs of a page.
 
     It covers the lock, all installed versions, the version of Python, the environment contract,
-    whether the page is executed alone, the syntax of the page's cells, of the modules that they import and of the modules of its lesson,
-    and the data files of the package, except those of other lessons.
+    whether the page is executed alone, the syntax of the page's cells, of the modules that they
+    import and of the modules of its lesson, and the data files of the package, except those of
+    other lessons.
 
     Args:
         page: an executed page.
