@@ -4,8 +4,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, stamps
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.lessons.common_checks import posture, stamps
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.metrics import HAND, measured_hand
@@ -15,7 +16,6 @@ from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_checks, mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose
 from robo_genesis.sim.camera_checks import Marker
-from robo_genesis.sim.end_state import posture
 from robo_genesis.sim.franka import JOINT_NAMES
 
 OF_CHAIN = slice(HAND - ARM, HAND + 1)
