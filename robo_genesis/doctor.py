@@ -122,7 +122,7 @@ def differences(here: Mapping[str, str], recorded: Mapping[str, str]) -> list[st
         lines.append("Another backend rounds differently. Orderings of runs should agree.")
     else:
         same = "engine is" if "backend" in here else "engine's version is"
-        lines.append(f"The {same} the same. Other differences usually change last digits only.")
+        lines.append(f"The {same} the same. Other differences usually change only the last digits.")
     return lines
 
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from robo_genesis.lessons.l05.exercises import TURNED
 from robo_genesis.sim import camera_geometry as cameras
 from robo_genesis.sim.camera_checks import Marker
 from robo_genesis.sim.camera_views import View
@@ -10,8 +9,16 @@ from robo_genesis.sim.camera_views import View
 PLANE, FAR = 1, 20.0
 """Number of the ground in the segmentation, and where the view ends [m]."""
 
-SIZE, FOV, TRANSFORM = (160, 120), 42.0, TURNED
-"""Columns and rows, vertical field of view [degree] and pose of the camera; it looks down."""
+SIZE, FOV = (160, 120), 42.0
+"""Columns and rows, and vertical field of view [degree] of the camera."""
+
+TRANSFORM = np.array([
+    [0.6, -0.48, 0.64, 1.1],
+    [0.8, 0.36, -0.48, -0.7],
+    [0.0, 0.8, 0.6, 0.9],
+    [0.0, 0.0, 0.0, 1.0],
+])  # fmt: skip
+"""Pose of the camera, which looks down, z backwards [m]."""
 
 K = cameras.intrinsics(FOV, SIZE)
 MARKER = Marker(3, (TRANSFORM @ (0.3, 0.2, -1.2, 1.0))[:3], 0.1)

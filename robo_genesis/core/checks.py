@@ -145,11 +145,6 @@ def sample_times(cases: Mapping[str, Any], traces: Mapping[str, TimeSeries]) -> 
         yield at_most(f"{name}.time_error_s", apart, TIME_TOLERANCE)
 
 
-def stamps(run: Any) -> Iterator[Finding]:
-    """Check the times of each run of an experiment; a named check."""
-    return sample_times(run.cases, run.traces)
-
-
 def factors(
     cases: Mapping[str, Any], allowed: Mapping[tuple[str, str], Collection[str]]
 ) -> Iterator[Finding]:

@@ -7,6 +7,7 @@ it.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import wraps
+from inspect import signature
 from typing import Any, ParamSpec
 
 import numpy as np
@@ -18,14 +19,19 @@ CLAIM = "The function does what its docstring says."
 Given = ParamSpec("Given")
 
 
-def tested(findings: Callable[Given, Iterable[Finding]]) -> Callable[Given, list[Check]]:
-    """Make a test of a function that yields findings about a student's function."""
+def as_test(findings: Callable[Given, Iterable[Finding]]) -> Callable[Given, list[Check]]:
+    """Make a test of a function that yields findings about a student's function.
+
+    The test raises TypeError if it is called with wrong arguments. Other exceptions are those of
+    the student's function and fail the check.
+    """
 
     @wraps(findings)
-    def test(*given: Given.args, **named: Given.kwargs) -> list[Check]:
+    def judge(*given: Given.args, **named: Given.kwargs) -> list[Check]:
+        signature(findings).bind(*given, **named)
         return outcome(findings.__name__, lambda _: findings(*given, **named))
 
-    return test
+    return judge
 
 
 def outcome(name: str, findings: Callable[[None], Iterable[Finding]]) -> list[Check]:
@@ -42,7 +48,7 @@ def outcome(name: str, findings: Callable[[None], Iterable[Finding]]) -> list[Ch
         return [Check(name, False, f"it raised {type(error).__name__}: {error}")]
 
 
-def alike(label: str, found: Any, expected: np.ndarray, tiny: float) -> Iterator[Finding]:
+def same_array(label: str, found: Any, expected: np.ndarray, tiny: float) -> Iterator[Finding]:
     """Require an array of the shape of the expected one, which differs from it by rounding.
 
     Args:

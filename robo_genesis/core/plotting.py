@@ -162,17 +162,18 @@ def both_ends(pictures: Mapping[str, np.ndarray]) -> Figure:
     return drawn
 
 
-def robot_ends(run: Any, parents: Sequence[int]) -> Figure:
-    """Show the camera frames of both ends of the baseline, without a camera its link origins.
+def robot_ends(frames: Mapping[str, np.ndarray], trace: Trace, parents: Sequence[int]) -> Figure:
+    """Show the camera frames of both ends of a run, or without frames its link origins.
 
     Args:
-        run: the experiment.
+        frames: as for `both_ends`; none without a camera.
+        trace: of the run.
         parents: as for `schematic`.
     """
-    if run.rendered:
-        return both_ends(run.frames)
+    if frames:
+        return both_ends(frames)
     drawn, ax = axes(5)
-    schematic(ax, run.traces["baseline"], parents)
+    schematic(ax, trace, parents)
     return drawn
 
 

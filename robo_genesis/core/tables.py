@@ -34,8 +34,8 @@ def _cell(value: Any) -> str:
     return str(value)
 
 
-def numbers(first: str, heads: Mapping[str, int], rows: Mapping[str, Iterable[Any]]) -> str:
-    """Return a table of numbers beside a column of words.
+def number_table(first: str, heads: Mapping[str, int], rows: Mapping[str, Iterable[Any]]) -> str:
+    """Return a table of numbers beside a column of words, which all differ.
 
     Args:
         first: the head of the words.

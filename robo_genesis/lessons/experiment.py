@@ -55,9 +55,14 @@ def inputs(
 def case_inputs(cases: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Return every field of every case, which are dataclasses, as JSON values."""
     return {
-        name: {field: np.asarray(value).tolist() for field, value in asdict(case).items()}
+        name: {field: json_value(value) for field, value in asdict(case).items()}
         for name, case in cases.items()
     }
+
+
+def json_value(value: Any) -> Any:
+    """Return an array or a number of NumPy as Python's lists and numbers, other values as given."""
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
 @dataclass(frozen=True, slots=True)

@@ -47,9 +47,12 @@ PLANE_FAR = 3.0
 """Depth up to which the bound of a plane holds [m]."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Marker:
-    """A sphere in view: number in the segmentation, centre (3,) and radius [m]."""
+    """A sphere in view: number in the segmentation, centre (3,) and radius [m].
+
+    Two markers are equal only if they are the same object, because a centre is an array.
+    """
 
     number: int
     centre: FloatArray

@@ -112,7 +112,10 @@ class Residuals:
 
 
 def residuals(apart: FloatArray) -> Residuals:
-    """Summarise signed distances (n,) [m]; without any, mean and largest are NaN."""
+    """Summarise signed distances (n,) [m]; without any, mean and largest are NaN.
+
+    One distance that is not finite makes both of them not finite, which no check accepts.
+    """
     if not apart.size:
         return Residuals(0, np.nan, np.nan)
     return Residuals(apart.size, float(apart.mean()), float(np.abs(apart).max()))

@@ -1,19 +1,12 @@
 """Evidence of the first and last state of a run: camera frames or a schematic of its links."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.checks import Finding, above, equal
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.camera import FrameError, require_frame
-
-
-def posture(run: Any) -> Iterator[Finding]:
-    """Check the evidence of both ends of the baseline; a named check of an experiment."""
-    ends = {name: run.frames[name] for name in ("initial", "final") if name in run.frames}
-    return findings(run.rendered, ends, run.traces["baseline"].link_pos)
 
 
 def findings(

@@ -6,10 +6,10 @@ import pytest
 from robo_genesis.core import exercises
 
 
-@exercises.tested
+@exercises.as_test
 def doubled(function, values):
     """Check `function(values)`."""
-    yield from exercises.alike("twice", function(values), 2 * values, 1e-9)
+    yield from exercises.same_array("twice", function(values), 2 * values, 1e-9)
 
 
 def test_a_right_function_passes_and_the_test_keeps_its_description():
@@ -28,7 +28,12 @@ def test_a_right_function_passes_and_the_test_keeps_its_description():
         (lambda values: 1 / "x", "it raised TypeError"),
     ],
 )
-def test_a_wrong_one_fails_and_is_told_what_was_found(function, says):
+def test_a_wrong_one_fails_and_its_check_says_what_was_found(function, says):
     (check,) = doubled(function, np.arange(3.0))
     assert not check.passed
     assert says in check.detail
+
+
+def test_wrong_arguments_of_the_test_itself_are_no_fault_of_the_student():
+    with pytest.raises(TypeError, match="missing a required argument: 'values'"):
+        doubled(lambda values: 2 * values)

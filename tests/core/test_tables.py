@@ -39,7 +39,7 @@ def test_check_table_shouts_a_failure():
 
 def test_numbers_have_the_digits_of_their_column_and_a_true_minus_sign():
     rows = {"a": (-1.25, 3), "b": (-0.001, "none")}
-    assert tables.numbers("run", {"x [m]": 1, "n": 0}, rows).splitlines()[2:] == [
+    assert tables.number_table("run", {"x [m]": 1, "n": 0}, rows).splitlines()[2:] == [
         "| a | −1.2 | 3 |",
         "| b | 0.0 | none |",
     ]

@@ -26,6 +26,11 @@ def test_checks_pass_for_a_view_in_closed_form():
     assert problems(findings) == []
 
 
+def test_markers_can_be_compared():
+    assert replace(MARKER) != MARKER
+    assert MARKER in {MARKER}
+
+
 def test_checks_of_pictures_say_skip_without_them():
     view = replace(closed_view(), rgb=None, depth=None, segmentation=None)
     for check in (camera_checks.projection, camera_checks.sphere_surface):

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from robo_genesis.core.checks import Finding, equal, within
-from robo_genesis.core.exercises import tested
+from robo_genesis.core.exercises import as_test
 from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim.joints import to_numpy
@@ -13,7 +13,7 @@ TINY = 1e-9
 """Largest difference that rounding explains in float64 [m]."""
 
 
-@tested
+@as_test
 def height_after(height: Callable[..., Any]) -> Iterator[Finding]:
     """Check `height(z0, g, h, n)`: the height [m] after n solver steps from rest."""
     case = spec.BASELINE
@@ -27,7 +27,7 @@ def height_after(height: Callable[..., Any]) -> Iterator[Finding]:
         yield within(f"{name}_m", float(height(z0, g, h, n)), expected, TINY)
 
 
-@tested
+@as_test
 def fall(run: Callable[..., Any], scene: Any, sphere: Any) -> Iterator[Finding]:
     """Check `run(scene, sphere, steps)`: the last height [m] after a reset, twice and shorter."""
     case = spec.BASELINE

@@ -51,7 +51,7 @@ def start_table(run: Experiment) -> str:
         for part, words in PARTS.items()
     }
     rows["together"] = [sum(of) for of in zip(*rows.values(), strict=True)]
-    return tables.numbers("part", {f"{start} start [s]": 2 for start in machine.STARTS}, rows)
+    return tables.number_table("part", {f"{start} start [s]": 2 for start in machine.STARTS}, rows)
 
 
 def start_sentence(run: Experiment) -> str:

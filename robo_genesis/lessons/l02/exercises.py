@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding, equal, within
-from robo_genesis.core.exercises import alike, tested
+from robo_genesis.core.exercises import as_test, same_array
 from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.scene import FRAME_SHAPE
 from robo_genesis.core.trace import BodyTrace
@@ -24,7 +24,7 @@ UNTIL_REST = 100
 """Outer steps after which a dropped box lies on the ground."""
 
 
-@tested
+@as_test
 def scene(make: Callable[..., Any], gs: Any, case: Drop) -> Iterator[Finding]:
     """Check `make(gs)`: a built scene with a ground, and the box of a case, which falls on it."""
     built, box = make(gs)
@@ -43,7 +43,7 @@ def scene(make: Callable[..., Any], gs: Any, case: Drop) -> Iterator[Finding]:
     yield within("height_at_rest_m", _height(box), case.size / 2, spec.RESTING)
 
 
-@tested
+@as_test
 def record(read: Callable[..., Any], built: Any, box: Any, trace: BodyTrace) -> Iterator[Finding]:
     """Check `read(scene, box, steps)`: heights [m] and speeds along z [m/s] of a run.
 
@@ -55,13 +55,13 @@ def record(read: Callable[..., Any], built: Any, box: Any, trace: BodyTrace) -> 
     """
     heights, speeds = read(built, box, trace.steps)
     expected = trace.link_pos[:, 0, 2], trace.link_vel[:, 0, 2]
-    yield from alike("heights_m", heights, expected[0], TINY)
-    yield from alike("speeds_m_s", speeds, expected[1], FAST)
+    yield from same_array("heights_m", heights, expected[0], TINY)
+    yield from same_array("speeds_m_s", speeds, expected[1], FAST)
     again, _speeds = read(built, box, trace.steps)
-    yield from alike("second_run.heights_m", again, expected[0], TINY)
+    yield from same_array("second_run.heights_m", again, expected[0], TINY)
 
 
-@tested
+@as_test
 def usable_frame(usable: Callable[..., Any]) -> Iterator[Finding]:
     """Check `usable(rgb)`: whether a frame has the course's shape and type and shows something."""
     background = np.empty(FRAME_SHAPE, np.uint8)
@@ -82,7 +82,7 @@ def usable_frame(usable: Callable[..., Any]) -> Iterator[Finding]:
         yield equal(name, bool(usable(rgb)), expected)
 
 
-@tested
+@as_test
 def stepped(fall: Callable[..., Any]) -> Iterator[Finding]:
     """Check `fall(g, h, n)`: distances by semi-implicit Euler, before and after each step."""
     for name, g, h, n in (
@@ -91,7 +91,7 @@ def stepped(fall: Callable[..., Any]) -> Iterator[Finding]:
         ("no_step", spec.BASELINE.gravity, 0.01, 0),
     ):
         expected = summed_drop(h, np.arange(n + 1), g)
-        yield from alike(f"{name}_m", fall(g, h, n), expected, 1e-9)
+        yield from same_array(f"{name}_m", fall(g, h, n), expected, 1e-9)
 
 
 def _height(body: Any) -> float:

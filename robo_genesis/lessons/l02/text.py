@@ -78,7 +78,7 @@ def falls_table(run: Experiment) -> str:
     }
     found, expected = run.readings[trials.FURTHER], trials.expected_falls()
     rows = {words[name]: (found[name], expected[name]) for name in trials.FALLS}
-    return tables.numbers("fall", {"measured [m]": 6, "stepped formula [m]": 6}, rows)
+    return tables.number_table("fall", {"measured [m]": 6, "stepped formula [m]": 6}, rows)
 
 
 def interpretation(found: DropMetrics, case: Drop) -> tuple[Block, ...]:

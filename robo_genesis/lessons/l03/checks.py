@@ -13,15 +13,14 @@ from robo_genesis.core.checks import (
     factors,
     masses,
     model_counts,
-    stamps,
     within,
 )
+from robo_genesis.lessons.common_checks import posture, stamps
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, spec
 from robo_genesis.lessons.l03.energy import kept_at_bounces
 from robo_genesis.lessons.l03.metrics import BounceMetrics, LandingMetrics, SlideMetrics
 from robo_genesis.sim.contacts import SETTINGS, TOP
-from robo_genesis.sim.end_state import posture
 
 
 def landings(run: Experiment) -> dict[str, LandingMetrics]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding, at_most, equal, within
-from robo_genesis.core.exercises import compared, tested
+from robo_genesis.core.exercises import as_test, compared
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03.energy import clearance
 from robo_genesis.lessons.l03.metrics import LandingMetrics, SlideMetrics
@@ -20,7 +20,7 @@ SUNK = 2e-3
 """How deep a cube at rest may be in the table [m]."""
 
 
-@tested
+@as_test
 def scene(make: Callable[..., Any], gs: Any, case: ContactCase) -> Iterator[Finding]:
     """Check `make(gs)`: a built scene, a fixed table and the cube of a case, which lands on it."""
     built, table, cube = make(gs)
@@ -47,7 +47,7 @@ def scene(make: Callable[..., Any], gs: Any, case: ContactCase) -> Iterator[Find
     yield within("height_of_the_resting_cube_m", resting, case.rest_height, SUNK)
 
 
-@tested
+@as_test
 def push(
     push_cube: Callable[..., Any], built: Any, cube: Any, case: ContactCase
 ) -> Iterator[Finding]:
@@ -87,7 +87,7 @@ class _CountingScene:
         return getattr(self.built, name)
 
 
-@tested
+@as_test
 def contact_reading(read: Callable[..., Any]) -> Iterator[Finding]:
     """Check `read(cube, table)`: number of contacts with the table alone, and the deepest [m]."""
     table, other = object(), object()
@@ -118,7 +118,7 @@ class _Touching:
         return {"penetration": torch.tensor([depth for of in found for depth in of])}
 
 
-@tested
+@as_test
 def landing(
     measure: Callable[..., Any],
     runs: Iterable[tuple[ContactTrace, ContactCase, LandingMetrics]],
@@ -134,7 +134,7 @@ def landing(
     yield from compared("jumps", names, jumps, (0.004, 0.003), TINY)
 
 
-@tested
+@as_test
 def stopping(
     measure: Callable[..., Any], runs: Iterable[tuple[ContactTrace, SlideMetrics]]
 ) -> Iterator[Finding]:

@@ -6,7 +6,9 @@ from itertools import product
 import numpy as np
 
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE, READ_BACK
-from robo_genesis.core.checks import Finding, at_most, below, equal, model_counts, sample_times
+from robo_genesis.core.checks import Finding, at_most, below, equal, model_counts
+from robo_genesis.lessons import common_checks
+from robo_genesis.lessons.common_checks import posture
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import (
@@ -14,7 +16,6 @@ from robo_genesis.lessons.l04.metrics import (
     SATURATION_THRESHOLD,
     SETTLING_BAND,
 )  # fmt: skip
-from robo_genesis.sim.end_state import posture
 from robo_genesis.sim.franka import JOINT_NAMES
 from robo_genesis.sim.joint_control import differences
 from robo_genesis.sim.joints import EFFORT_UNIT, POSITION_UNIT
@@ -60,7 +61,7 @@ def baseline_approaches(run: Experiment) -> Iterator[Finding]:
 
 
 def stamps(run: Experiment) -> Iterator[Finding]:
-    yield from sample_times(spec.CASES, run.traces)
+    yield from common_checks.stamps(run)
     for name, case in spec.CASES.items():
         other = int((run.traces[name].target != case.q_target).any(axis=1).sum())
         yield equal(f"{name}.steps_with_another_target", other, 0)

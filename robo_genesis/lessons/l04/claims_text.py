@@ -8,7 +8,8 @@ CLAIMS: dict[str, str] = {
     "target_limits": "Every start and target lies within the model's limits.",
     "baseline_approaches": "The baseline ends nearer to its target than it starts.",
     "stamps": (
-        "Each run has its configured steps, states at times k · dt from zero, and its own target."
+        "Each run has its configured steps and states at times k · dt from zero. Each of the four "
+        "cases commands its own target."
     ),
     "same_start": "The compared cases start in the same state, at rest.",
     "one_factor": "G1 and G2 differ in the stepped joint's KP alone, G2 and G3 in its KV alone.",

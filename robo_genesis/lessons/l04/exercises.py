@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding, at_most, equal
-from robo_genesis.core.exercises import alike, compared, tested
+from robo_genesis.core.exercises import as_test, compared, same_array
 from robo_genesis.core.mistakes import refused
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import StepMetrics
@@ -33,7 +33,7 @@ INVENTED = {
 RESPONSE = ("rise_time", "overshoot", "settling_time")
 
 
-@tested
+@as_test
 def resolver(resolve: Callable[..., Any], robot: Any, joints: JointMap) -> Iterator[Finding]:
     """Check `resolve(robot, names)`: local DOFs in the order of the names, odd joints refused."""
     names = list(joints.names)
@@ -79,7 +79,7 @@ class Counted:
         return getattr(self.robot, name)
 
 
-@tested
+@as_test
 def control_loop(
     record: Callable[..., Any], scene: Any, robot: Any, joints: JointMap, case: ControlCase,
     trace: Trace,
@@ -96,10 +96,10 @@ def control_loop(
     expected = trace.t, trace.q, trace.qd, trace.control_force
     yield equal("number_of_arrays", len(found), len(expected))
     for name, values, right in zip(("t", "q", "qd", "force"), found, expected, strict=True):
-        yield from alike(name, values, right, TINY)
+        yield from same_array(f"{name}_against_the_recorded_run", values, right, TINY)
 
 
-@tested
+@as_test
 def pd_law(
     law: Callable[..., Any], traces: Iterable[tuple[Trace, ControlCase]]
 ) -> Iterator[Finding]:
@@ -115,7 +115,7 @@ def pd_law(
     yield equal("demand_of_-1000_with_limit_87", float(law(-1.0, 0.0, 1e3, 0.0, 87.0)), -87.0)
 
 
-@tested
+@as_test
 def step_response(
     measure: Callable[..., Any], runs: Iterable[tuple[Trace, StepMetrics]]
 ) -> Iterator[Finding]:
@@ -136,7 +136,7 @@ def step_response(
     )
 
 
-@tested
+@as_test
 def stepped(model: Callable[..., Any]) -> Iterator[Finding]:
     """Check `model(inertia, kp, kv, d, limit, g, step, h, n)`: n + 1 positions [rad]."""
     for name, arguments in INVENTED.items():

@@ -35,7 +35,7 @@ GAINS_LABELS: Mapping[str, Mapping[str, Label]] = {
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured link origins."""
-    return plotting.robot_ends(run, LINK_PARENTS)
+    return plotting.robot_ends(run.frames, run.traces["baseline"], LINK_PARENTS)
 
 
 def assigned(run: Experiment) -> Figure:

@@ -4,20 +4,29 @@ CLAIMS: dict[str, str] = {
     "mapping": "The engine has the joints, limits and links that our forward kinematics uses.",
     "stamps": "Each run has its configured steps and states at times k · dt from zero.",
     "acceptance": (
-        "The commanded answer is within both tolerances, as reported and by forward kinematics."
+        "The residual of the commanded answer is within both tolerances, as the engine reports it "
+        "and by forward kinematics of the command."
     ),
-    "forward_kinematics": "In every state, our forward kinematics gives the engine's link poses.",
-    "second_engine": "MuJoCo agrees on the poses in every state, and on the Jacobian at the start.",
+    "forward_kinematics": (
+        "In every state of the three reaches, our forward kinematics gives the engine's link poses."
+    ),
+    "second_engine": (
+        "MuJoCo gives the same link poses in every state of the three reaches, and the same "
+        "Jacobian at the start."
+    ),
     "arrived": "Each run ends nearer to its target than it starts, and within 2 cm and 0.05 rad.",
     "sag_explains": (
-        "Gravity, KP and J explain the motion from command to end, but for the declared share."
+        "Gravity, KP and the Jacobian explain the motion from the command's pose to the last one, "
+        "but for the declared share."
     ),
     "repeatable": (
-        "Asked twice from the common start, the solver gives the same answer to the last bit."
+        "Asked twice from the common start, where no restart is needed, the solver gives the same "
+        "answer to the last bit."
     ),
     "unreachable_refused": "Beyond reach, the answer is finite, and refused for its residual.",
     "nearest_is_nearer": (
-        "Another posture is nearer than the engine's answer, if 0.5 m count as much as 1 rad."
+        "Another posture is nearer to the target beyond reach than the engine's answer, if 0.5 m "
+        "count as much as 1 rad."
     ),
     "camera_matrix": "The engine's camera matrix is that of the vertical field of view.",
     "projection": "The centroid of the marker is within 0.15 pixels of the silhouette's centre.",

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding, at_most, below, equal
-from robo_genesis.core.exercises import alike, tested
+from robo_genesis.core.exercises import as_test, same_array
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.metrics import measured_hand
@@ -45,7 +45,7 @@ CAMERAS = {
 """Camera matrix and pose of each invented camera."""
 
 
-@tested
+@as_test
 def forward(chain: Callable[..., Any], trace: Trace) -> Iterator[Finding]:
     """Check `chain(q, links)`: the pose of the last link, by the links of a chain.
 
@@ -74,7 +74,7 @@ def near(label: str, found: Any, expected: Pose, tiny: float) -> Iterator[Findin
         yield at_most(f"{label}.angle_rad", float(angle), tiny)
 
 
-@tested
+@as_test
 def step(damped: Callable[..., Any]) -> Iterator[Finding]:
     """Check `damped(J, error, damping)`: one step (n,) of damped least squares.
 
@@ -88,7 +88,7 @@ def step(damped: Callable[..., Any]) -> Iterator[Finding]:
         error = kinematics.pose_error(target, kinematics.hand_pose(q))
         for damping in (0.01, 0.3):
             label, right = f"{name}_{damping:g}", kinematics.damped_step(of, error, damping)
-            yield from alike(label, damped(of, error, damping), right, TINY)
+            yield from same_array(label, damped(of, error, damping), right, TINY)
     of, error = kinematics.jacobian(start)[:3], np.array([0.01, 0.0, -0.01])
     moved = start + np.asarray(damped(of, error, 0.01), dtype=float).reshape(ARM)
     left = kinematics.hand_pose(start).position + error - kinematics.hand_pose(moved).position
@@ -112,7 +112,7 @@ ANSWERS: dict[str, tuple[tuple[float, ...], tuple[float, ...], bool]] = {
 """Joint positions, residual, and whether they may be commanded with the tolerances of `IK`."""
 
 
-@tested
+@as_test
 def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
     """Check `accept(q, error, position_tolerance, rotation_tolerance)` with invented answers."""
     for name, (q, error, right) in ANSWERS.items():
@@ -121,7 +121,7 @@ def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
     yield equal("looser_tolerances", bool(accept(np.zeros(9), np.full(6, 0.1), 0.2, 0.2)), True)
 
 
-@tested
+@as_test
 def project(function: Callable[..., Any]) -> Iterator[Finding]:
     """Check `project(points, K, transform)`: pixel coordinates (n, 2) of points (n, 3).
 
@@ -132,10 +132,10 @@ def project(function: Callable[..., Any]) -> Iterator[Finding]:
         pose = cameras.other_axes(transform)
         points = seen @ pose[:3, :3].T + pose[:3, 3]
         expected = cameras.project(points, K, transform)
-        yield from alike(name, function(points, K, transform), expected, ROUNDED)
+        yield from same_array(name, function(points, K, transform), expected, ROUNDED)
 
 
-@tested
+@as_test
 def back_project(function: Callable[..., Any]) -> Iterator[Finding]:
     """Check `back_project(depth, K, transform)`: the point (H, W, 3) of each pixel's centre.
 
@@ -149,4 +149,4 @@ def back_project(function: Callable[..., Any]) -> Iterator[Finding]:
         for kind, depth in depths.items():
             expected = cameras.back_project(depth, *camera)
             found = function(depth.copy(), *camera)
-            yield from alike(f"{name}.{kind}", found, expected, ROUNDED)
+            yield from same_array(f"{name}.{kind}", found, expected, ROUNDED)

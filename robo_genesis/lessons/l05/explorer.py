@@ -56,8 +56,7 @@ def posture_maps(run: Experiment, which: str) -> list[dict[str, Any]]:
 
 def plane_map(name: str) -> dict[str, Any]:
     """Return run, caption, axes, rows and columns of a map of targets."""
-    caption, axes, upwards = PLACES[name]
-    columns = spec.GRID_X
+    (caption, axes, upwards), columns = PLACES[name], spec.GRID_X
     numbers = np.arange(1, len(columns) * len(upwards) + 1).reshape(-1, len(columns)).tolist()
     rows = [{"label": f"{v:g}", "cells": of} for v, of in zip(upwards, numbers, strict=True)]
     return {"run": name, "caption": caption, "axes": axes, "rows": rows[::-1], "columns": columns}
@@ -87,8 +86,7 @@ def picture(run: Experiment, name: str) -> dict[str, Any]:
         of `planes` [m], centre and radius of `spheres` [m], and `alt` and `caption`.
     """
     view, numbers = view_of(run, name), run.readings[SEGMENTS]
-    first = numbers["hand"] - run.links.index("hand")
-    links = {first + k: link for k, link in enumerate(run.links)}
+    links = dict(enumerate(run.links, int(numbers["hand"]) - run.links.index("hand")))
     return {
         "size": view.size,
         "K": view.intrinsics.tolist(),

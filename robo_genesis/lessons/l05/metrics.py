@@ -54,13 +54,15 @@ def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
     if (trace.target != trace.target[0]).any():
         raise ValueError("The command changes during the run. Measure a run with a constant one.")
     target, command = Pose(case.position, case.quat), hand_pose(trace.target[-1])
-    end, speed = measured_hand(trace, -1), float(np.abs(trace.qd[-1]).max())
-    start, _ = between(target, measured_hand(trace, 0))
-    parts = (*between(target, command), *between(command, end), *between(target, end))
-    return ReachMetrics(start, *parts, speed)  # in the order of its fields
+    end, found = measured_hand(trace, -1), {"final_speed": float(np.abs(trace.qd[-1]).max())}
+    found["start_distance"], _ = distance_and_angle(target, measured_hand(trace, 0))
+    pairs = {"command": (target, command), "tracking": (command, end), "final": (target, end)}
+    for name, pair in pairs.items():
+        found[f"{name}_distance"], found[f"{name}_angle"] = distance_and_angle(*pair)
+    return ReachMetrics(**found)
 
 
-def between(target: Pose, pose: Pose) -> tuple[float, float]:
+def distance_and_angle(target: Pose, pose: Pose) -> tuple[float, float]:
     """Return distance [m] and angle [rad] of a pose from another one."""
     apart, angle = distances(pose_error(target, pose))
     return float(apart), float(angle)

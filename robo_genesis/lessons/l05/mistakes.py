@@ -114,7 +114,6 @@ def stale_extrinsics(camera: Any, moved_to: Mapping[str, Any], point: FloatArray
     old = cameras.other_axes(np.linalg.inv(kept))
     apart = np.linalg.norm(cameras.project(point, K, old) - cameras.project(point, K, pose))
     now = "still that matrix" if (again == kept).all() else "the matrix of the new pose"
-    shown = bool(apart > 10)
     text = (
         f"With the matrix that was read before the move, the target is expected {apart:.0f} "
         "pixels from its place in the picture. Read again after the move, "
@@ -122,7 +121,7 @@ def stale_extrinsics(camera: Any, moved_to: Mapping[str, Any], point: FloatArray
         f"{np.abs(again - cameras.extrinsics(pose)).max():.1g} from the inverse of the pose in "
         "`camera.transform`."
     )
-    return Failure("stale_extrinsics", shown, text)
+    return Failure("stale_extrinsics", bool(apart > 10), text)
 
 
 def beyond_far(depth: FloatArray | None, camera: Any) -> Failure:

@@ -1,6 +1,6 @@
 """Reaches of L05: ask for joint positions, accept or refuse them, command them."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -74,7 +74,7 @@ class SolveCase:
     @property
     def start(self) -> ControlCase:
         """The settings from which the answers are assigned: those of the course, at its start."""
-        return course_case(franka.Q_START, self.steps)
+        return replace(course_case(franka.Q_START, self.steps), dt=self.dt)
 
 
 def tolerances(settings: IkSettings) -> tuple[float, float]:

@@ -54,9 +54,7 @@ def chosen(run: Experiment) -> dict[str, int]:
     """Return by criterion the number of the accepted answer, from 0, that it chooses."""
     found = many_answers(run)
     numbers = np.flatnonzero(found["accepted"]).tolist()
-    return {
-        name: best(numbers, key=found[key].__getitem__) for name, (key, best) in CRITERIA.items()
-    }
+    return {n: best(numbers, key=found[key].__getitem__) for n, (key, best) in CRITERIA.items()}
 
 
 def many_answers(run: Experiment) -> dict[str, FloatArray]:
@@ -104,7 +102,7 @@ def unreachable_table(run: Experiment) -> str:
     }
     heads = dict.fromkeys(("distance [m]", "angle [rad]", "weighted distance [m]"), 3)
     rows = {name: (*pair, study.weighted(*pair)) for name, pair in pairs.items()}
-    return tables.numbers("posture", heads, rows)
+    return tables.number_table("posture", heads, rows)
 
 
 def reach_table(run: Experiment) -> str:

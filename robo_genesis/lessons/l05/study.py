@@ -64,7 +64,7 @@ def sag(q: FloatArray, kp: FloatArray) -> FloatArray:
     return np.asarray(-kinematics.jacobian(q) @ angles)
 
 
-def sags(trace: Trace, kp: FloatArray) -> tuple[float, float, float]:
+def sag_lengths(trace: Trace, kp: FloatArray) -> tuple[float, float, float]:
     """Return the lengths of the measured motion from command to end and of the expected one [m].
 
     The third number is the length of their difference as a share of the expected one.

@@ -34,7 +34,7 @@ def error_table(run: Experiment) -> str:
         "target to measured hand": (m.final_distance, m.final_angle),
     }
     heads = {"distance [mm]": 3, "angle [mrad]": 3}
-    return tables.numbers("between", heads, {w: 1000 * np.array(of) for w, of in rows.items()})
+    return tables.number_table("between", heads, {w: 1000 * np.array(of) for w, of in rows.items()})
 
 
 def sag_table(run: Experiment) -> str:
@@ -47,10 +47,10 @@ def sag_table(run: Experiment) -> str:
     }
     rows = {}
     for name, case in spec.CASES.items():
-        found, expected, rest = study.sags(run.traces[name], case.kp)
+        found, expected, rest = study.sag_lengths(run.traces[name], case.kp)
         left = run.metrics[name].final_distance
         rows[spec.LABELS[name]] = 1000 * found, 1000 * expected, 100 * rest, 1000 * left
-    return tables.numbers("run", heads, rows)
+    return tables.number_table("run", heads, rows)
 
 
 def joint_table(run: Experiment) -> str:
@@ -70,7 +70,7 @@ def joint_table(run: Experiment) -> str:
         f"`{JOINT_NAMES[k]}`": (effort[k], kp[k], 1000 * angles[k], 1000 * ways[k]) for k in most
     }
     others = 1000 * (ways.sum() - ways[most].sum())
-    return tables.numbers("joint", heads, {**rows, "all others": ("", "", "", others)})
+    return tables.number_table("joint", heads, {**rows, "all others": ("", "", "", others)})
 
 
 def marker_table(run: Experiment) -> str:
@@ -81,7 +81,7 @@ def marker_table(run: Experiment) -> str:
     rows["centroid of its pixels"] = NO_PICTURE, NO_PICTURE
     if view.segmentation is not None:
         rows["centroid of its pixels"] = cameras.centroid(view.segmentation == sphere.number)
-    return tables.numbers("what", {"u [pixel]": 3, "v [pixel]": 3}, rows)
+    return tables.number_table("what", {"u [pixel]": 3, "v [pixel]": 3}, rows)
 
 
 def surfaces(run: Experiment) -> dict[str, cameras.Residuals]:
@@ -97,11 +97,8 @@ def surfaces(run: Experiment) -> dict[str, cameras.Residuals]:
 def depth_table(run: Experiment) -> str:
     """Return how far back-projected pixels are from the surfaces in closed form."""
     heads = {"pixels": 0, "mean [mm]": 3, "largest [mm]": 3}
-    rows = {
-        name: (found.count, 1000 * found.mean, 1000 * found.largest)
-        for name, found in surfaces(run).items()
-    }
-    return tables.numbers("surface", heads, rows or {NO_PICTURE: ("", "", "")})
+    rows = {n: (of.count, 1000 * of.mean, 1000 * of.largest) for n, of in surfaces(run).items()}
+    return tables.number_table("surface", heads, rows or {NO_PICTURE: ("", "", "")})
 
 
 def metric_table(run: Experiment) -> str:
@@ -111,7 +108,7 @@ def metric_table(run: Experiment) -> str:
         f"{label} [m{units[name]}]": [1000 * getattr(run.metrics[c], name) for c in spec.CASES]
         for name, label in labels.items()
     }
-    return tables.numbers("metric", {spec.LABELS[case]: 3 for case in spec.CASES}, rows)
+    return tables.number_table("metric", {spec.LABELS[case]: 3 for case in spec.CASES}, rows)
 
 
 def conclusions(run: Experiment) -> str:

@@ -5,16 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from robo_genesis.core.check_spec import MASS_SHARE
-from robo_genesis.core.checks import (
-    Finding,
-    above,
-    at_most,
-    below,
-    equal,
-    model_counts,
-    stamps,
-    within,
-)
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts, within
+from robo_genesis.lessons.common_checks import stamps
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study, throughput
 from robo_genesis.sim import arm_kinematics as kinematics

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding, equal
-from robo_genesis.core.exercises import tested
+from robo_genesis.core.exercises import as_test
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l06 import spec
 
@@ -25,7 +25,7 @@ ANSWERS: dict[str, tuple[float, tuple[float, ...], bool]] = {
 """One joint position of a row, its residual, and whether the row may be commanded."""
 
 
-@tested
+@as_test
 def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
     """Check `accept(q, error, position_tolerance, rotation_tolerance)` on rows (k, d) and (k, 6).
 
@@ -82,7 +82,7 @@ REFUSED: dict[str, tuple[tuple[int, ...], Sequence[int]]] = {
 """Shapes and environments that must raise a ValueError; the engine would send many of them."""
 
 
-@tested
+@as_test
 def subset(command: Callable[..., Any]) -> Iterator[Finding]:
     """Check `command(robot, dofs, q, envs)`: row k of `q` for environment `envs[k]`."""
     for name, (dofs, envs) in VALID.items():

@@ -44,7 +44,7 @@ def row_table(run: Experiment) -> str:
         label: [1e3 * v for v in (m.residual, m.first_distance, m.final_distance, m.moved_later)]
         for label, m in found.items()
     }
-    return tables.numbers("run", heads, rows)
+    return tables.number_table("run", heads, rows)
 
 
 def alone_table(run: Experiment) -> str:
@@ -62,7 +62,7 @@ def alone_table(run: Experiment) -> str:
         differ, compared = study.entries_that_differ(*pair)
         cells = 1e6 * q, 1e6 * qd, 1e3 * force, 100 * differ / compared
         rows[spec.LABELS[f"env_{k}"]] = cells
-    return tables.numbers("run", heads, rows)
+    return tables.number_table("run", heads, rows)
 
 
 CLAIMED = {
@@ -110,7 +110,7 @@ def variant_table(run: Experiment) -> str:
         both = [f"{decimal(found, 2)} ({decimal(right, 2)})" for found, right in pairs]
         mass = run.readings["hand_mass"][name]
         rows[spec.LABELS[name]] = (world.kp[1], mass, *both, 1e3 * m.final_distance)
-    return tables.numbers("row", heads, rows)
+    return tables.number_table("row", heads, rows)
 
 
 def conclusions(run: Experiment) -> str:

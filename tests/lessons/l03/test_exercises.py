@@ -221,7 +221,7 @@ def test_our_solution_passes(tested, name):
 
 
 @pytest.mark.parametrize(("name", "how"), [(n, how) for n, of in WRONG.items() for how in of])
-def test_a_wrong_solution_fails_and_is_told_what_was_found(tested, name, how):
+def test_a_wrong_solution_fails_and_its_check_says_what_was_found(tested, name, how):
     (check,) = tested(name, WRONG[name][how])
     assert not check.passed
     assert "expected" in check.detail or "raised" in check.detail

@@ -67,6 +67,17 @@ def test_each_check_of_the_page_has_such_a_change(reaches):
     assert {check.__name__ for check in reaches.page.checks} == CHANGES.keys()
 
 
+def test_a_count_that_was_not_recorded_fails(reaches):
+    assert failed(replace(reaches, readings=reaches.readings | {"ik_repeated": {}})) == {
+        "repeatable"
+    }
+
+
+def test_the_record_of_answers_has_the_dt_of_its_case():
+    case = replace(spec.UNREACHABLE, dt=0.5)
+    assert (case.start.dt, case.start.steps) == (0.5, 1)
+
+
 def test_a_link_out_of_place_is_refused(reaches):
     with pytest.raises(BundleRefused, match="link_pos"):
         plausibility.require_possible_runs(moved_hand(reaches, "unreachable", 1e-4))
@@ -87,7 +98,7 @@ def test_the_metrics_of_a_run_are_three_distances(reaches):
         assert m.final_distance <= m.command_distance + m.tracking_distance
         assert m.final_speed < 1e-3
     assert reaches.metrics["baseline"].tracking_distance == pytest.approx(
-        study.sags(reaches.traces["baseline"], spec.BASELINE.kp)[0]
+        study.sag_lengths(reaches.traces["baseline"], spec.BASELINE.kp)[0]
     )
     assert reaches.metrics["gravity_compensated"].final_distance < 5e-4
     trace = reaches.traces["baseline"]

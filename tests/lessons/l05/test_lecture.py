@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 from bundles import written
 from closed_views import PLANE, closed_view, looking
+from lessons.changed_runs import with_reading
 from lessons.lesson_bundles import in_archive, in_json, metric, refused
 
+from robo_genesis.core.checks import evaluate
 from robo_genesis.core.scene import CAMERA_RES, FRAME_SHAPE
 from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons import view_record
-from robo_genesis.lessons.l05 import LAB, plots, spec, text
+from robo_genesis.lessons.l05 import LAB, checks, plots, spec, text
+from robo_genesis.lessons.l05.claims_text import CLAIMS
 from robo_genesis.sim.camera_checks import Marker
 
 SPHERE = Marker(13, spec.TARGET, spec.MARKER_RADIUS)
@@ -44,6 +47,26 @@ def test_the_checks_hold_and_pictures_are_skipped_where_there_are_none(run):
     assert ("The pixels of the marker are" in shown[2]) == run.rendered
     assert len(plots.picture(run).axes[0].images) == run.rendered
     assert plots.posture(run).axes
+
+
+@pytest.mark.parametrize("run", [True], indirect=True)
+def test_the_ground_is_judged_in_each_view_of_the_page(run):
+    pose = looking((0.5, 0.3, 0.6), (0.4, 0.0, 0.0))
+    view = closed_view(SPHERE, spec.HAND_FOV, CAMERA_RES, pose)
+    frames = {**run.frames, **view_record.frames("hand", view)}
+    readings = {**run.readings, "view_hand": view_record.numbers(view)}
+    both = replace(run, readings=readings, frames=frames)
+    (ground,) = evaluate([checks.plane_surface], both, CLAIMS)
+    assert ground.passed
+    assert {label.split(".")[0] for label in ground.found} == {"world", "hand"}
+    for name in ("world", "hand"):  # a camera that is 1 cm too high
+        height = readings[f"view_{name}"]["transform_23"] + 0.01
+        raised = with_reading(both, f"view_{name}", "transform_23", height)
+        (ground,) = evaluate([checks.plane_surface], raised, CLAIMS)
+        assert f"{name}.largest_m is 0.01" in ground.detail
+    without = {key: of for key, of in readings.items() if key != "view_world"}
+    (ground,) = evaluate([checks.plane_surface], replace(both, readings=without), CLAIMS)
+    assert not ground.passed
 
 
 def test_tables_and_figures_give_the_numbers_of_the_runs(run):
