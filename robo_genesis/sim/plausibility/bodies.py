@@ -154,6 +154,7 @@ def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Breach
     fewest = np.where(tilted, np.minimum(surely, 2), surely)
     reach = np.where((depths > -DEPTH).any(axis=1), TWIST * case.size, DEPTH)
     perhaps = (depths > -reach[:, None]).sum(axis=1)
+    perhaps[perhaps == 2] += 1  # Genesis may also find a point between the two ends of an edge
     count = trace.contacts[:, 0]
     for k in np.flatnonzero((count < fewest) | (count > perhaps))[:1]:
         what = f"number of contacts at index {k}"

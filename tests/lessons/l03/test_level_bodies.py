@@ -69,6 +69,7 @@ def test_cross_products_are_those_of_numpy():
         (0.005, 2, []),
         (0.005, 4, []),  # Genesis turns the cube by up to 0.01 rad to find contacts
         (0.05, 2, []),
+        (0.05, 3, []),  # on an edge: its ends, and a point between them
         (0.05, 4, ["contact"]),
         (0.05, 1, ["contact"]),
     ],
