@@ -91,9 +91,10 @@ def model_sentence(run: Experiment) -> str:
     """Return both constants, and what follows from them."""
     model = fitted(run)
     return (
-        f"The fit gives $a$ = {ms(model.fixed)} ms and $b$ = {three(1e6 * model.each)} µs. With "
-        f"these constants the throughput stays below $1/b$ = {three(1 / model.each)} steps per "
-        f"second, and $B = a/b$ = {three(model.fixed / model.each)} environments make half of it."
+        f"The fit gives *a* = {ms(model.fixed)} ms and *b* = {three(1e6 * model.each)} µs. With "
+        f"these constants the throughput stays below 1/*b* = {three(1 / model.each)} steps per "
+        f"second, and *B* = *a*/*b* = {three(model.fixed / model.each)} environments make half "
+        "of it."
     )
 
 
