@@ -12,7 +12,7 @@ from robo_genesis.build.site.sphinx_process import RenderError, SphinxProcess
 from robo_genesis.lessons.book_pages import find_pages
 
 CLAIMS = "status: amdgpu-verified\nbadge: cpu-verified\n"
-LAB = "robo_genesis: {lesson: l04, page: lab, state: verified, status: verified}\n"
+LAB = "robo_genesis: {lesson: l04, page: lab}\n"
 BADGES = "\n```{lesson-status} l04\n```\n\n{lesson-state}`l04`\n"
 TEXT = f"""\
 ---
