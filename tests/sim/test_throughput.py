@@ -30,9 +30,10 @@ def test_scenes_are_timed_in_turn_after_their_warm_up():
 
 
 def test_memory_grows_by_what_is_kept():
+    throughput.used_memory()  # frees what earlier tests left
     before = throughput.used_memory()
-    kept = np.ones(40 * throughput.MIB // 8)
-    assert throughput.used_memory() - before == pytest.approx(40, abs=8)
+    kept = np.ones(400 * throughput.MIB // 8)
+    assert throughput.used_memory() - before == pytest.approx(400, rel=0.2)
     assert kept.all()
 
 
