@@ -42,9 +42,7 @@ ACCEPTED = {
         for lesson in ("l04", "l05")
         for how in ("× 1.02", "× 0.98", "zero")
     },
-    **{
-        ("l06", "internal_force", how): LOADED for how in ("× 1.02", "× 0.98", "zero", "sample")
-    },
+    **{("l06", "internal_force", how): LOADED for how in ("× 1.02", "× 0.98", "zero", "sample")},
     (
         "l05",
         "internal_force",
