@@ -130,7 +130,7 @@ def known():
     [
         ("table", "| 4 | 0.664 | 6,020 |"),
         ("details", "| 4 | 0.604 to 0.73 | 15.1 | 1.0 | 104 |"),
-        ("maximum", "58,200 steps per second, with 512 environments. With 1024 it is 30,100, 0.518 "),
+        ("maximum", "58,200 steps per second, with 512 environments. With 1024 it is 30,100,"),
         ("conclusions", "1,620 steps per second with 1 and 30,100 with 1024"),
         ("conclusions", "The most are 58,200, with 512."),
         ("model_table", "| 256 | 4.7 | 4.7 | 1.00 | test |"),
