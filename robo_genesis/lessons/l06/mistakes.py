@@ -68,7 +68,6 @@ def numbers_as_rows(
     """Ask for some environments, and take the row with the number of the first of them."""
     batch, first = begin(scene, robot, joints, worlds), envs[0]
     q = commands([worlds[k] for k in envs], ask(robot, joints, [worlds[k] for k in envs], 1, envs))
-    other = refused(lambda: q[envs[-1]])
     batch.command(q[[first]], [first])  # the mistake: row 0 is the answer for envs[0]
     batch.step(spec.SWITCH)
     trace = batch.trace(first)
@@ -76,7 +75,7 @@ def numbers_as_rows(
     text = (
         f"The hand of environment {first} ends {1000 * own:.1f} mm from its target and "
         f"{1000 * theirs:.1f} mm from the target of environment {envs[-1]}. The line for "
-        f"environment {envs[-1]}: {quoted(other)}"
+        f"environment {envs[-1]}: {quoted(refused(lambda: q[envs[-1]]))}"
     )
     return Failure("numbers_as_rows", bool(own > 0.05 and theirs < spec.REACHED[0]), text)
 

@@ -83,5 +83,7 @@ def judged(curves: Curves) -> Figure:
     figure = plotting.figure(3.2)
     ax = plotting.failure(figure.subplots(), curves, "", "mm")
     ax.axhline(1000 * spec.REACHED[0], **LINE)
-    ax.set(xlabel="time [s]", ylabel="hand to target [mm]", yscale="log")
+    ticks = 20, 50, 100, 200, 500
+    ax.set(yscale="log", yticks=ticks, yticklabels=ticks, ylabel="hand to target [mm]")
+    ax.minorticks_off()
     return figure

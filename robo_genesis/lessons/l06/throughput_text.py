@@ -35,7 +35,7 @@ def steps(run: Experiment) -> dict[int, float]:
 def table(run: Experiment) -> str:
     """Return time and throughput of each number of environments."""
     rows = {f"{size}": (ms(step), three(size / step)) for size, step in steps(run).items()}
-    heads = dict.fromkeys(("one step [ms]", "steps per second, all"), 0)
+    heads = {"one step [ms]": 0, "steps per second, all": 0}
     return tables.number_table("environments", heads, rows)
 
 
@@ -43,9 +43,8 @@ def details(run: Experiment) -> str:
     """Return what else was measured with each number of environments."""
     found, rows = run.readings[GROUP], {}
     for size, step in steps(run).items():
-        times = (ms(found[f"{name}_{size}"]) for name in ("fastest", "slowest"))
-        others = found[f"build_{size}"], found[f"memory_{size}"]
-        rows[f"{size}"] = " to ".join(times), three(DT / step), *others
+        of = [found[f"{name}_{size}"] for name in ("fastest", "slowest", "build", "memory")]
+        rows[f"{size}"] = f"{ms(of[0])} to {ms(of[1])}", three(DT / step), *of[2:]
     heads = ("fastest to slowest [ms]", "simulated s per s, each", "build [s]", "memory [MiB]")
     return tables.number_table("environments", dict(zip(heads, (0, 0, 1, 0), strict=True)), rows)
 

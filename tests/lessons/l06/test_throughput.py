@@ -125,23 +125,20 @@ def known():
     return SimpleNamespace(readings={throughput.GROUP: found | others})
 
 
-@pytest.mark.parametrize(
-    ("text", "says"),
-    [
-        ("table", "| 4 | 0.664 | 6,020 |"),
-        ("details", "| 4 | 0.604 to 0.73 | 15.1 | 1.0 | 104 |"),
-        ("maximum", "58,200 steps per second, with 512 environments. With 1024 it is 30,100,"),
-        ("conclusions", "1,620 steps per second with 1 and 30,100 with 1024"),
-        ("conclusions", "The most are 58,200, with 512."),
-        ("model_table", "| 256 | 4.7 | 4.7 | 1.00 | test |"),
-        ("model_table", "| 1024 | 34 | 17 | 2.00 | test |"),
-        ("model_sentence", "*a* = 0.6 ms and *b* = 16 µs"),
-        ("model_sentence", "1/*b* = 62,500 steps per second, and *B* = *a*/*b* = 37.5"),
-        ("content_table", "| 256 | 2.35 | 4.7 | 2 |"),
-        ("cache_sentence", "34 ms for a step of all. Four scenes of 256, stepped in turn, need 17"),
-        ("cache_sentence", "The first time is 2 times the second. Each environment takes 1 MiB"),
-    ],
-)
+@pytest.mark.parametrize(("text", "says"), [
+    ("table", "| 4 | 0.664 | 6,020 |"),
+    ("details", "| 4 | 0.604 to 0.73 | 15.1 | 1.0 | 104 |"),
+    ("maximum", "58,200 steps per second, with 512 environments. With 1024 it is 30,100,"),
+    ("conclusions", "1,620 steps per second with 1 and 30,100 with 1024"),
+    ("conclusions", "The most are 58,200, with 512."),
+    ("model_table", "| 256 | 4.7 | 4.7 | 1.00 | test |"),
+    ("model_table", "| 1024 | 34 | 17 | 2.00 | test |"),
+    ("model_sentence", "*a* = 0.6 ms and *b* = 16 µs"),
+    ("model_sentence", "1/*b* = 62,500 steps per second, and *B* = *a*/*b* = 37.5"),
+    ("content_table", "| 256 | 2.35 | 4.7 | 2 |"),
+    ("cache_sentence", "34 ms for a step of all. Four scenes of 256, stepped in turn, need 17"),
+    ("cache_sentence", "The first time is 2 times the second. Each environment takes 1 MiB"),
+])  # fmt: skip
 def test_texts_give_the_known_values(known, text, says):
     assert says in getattr(throughput_text, text)(known)
 
