@@ -96,7 +96,7 @@ def posture(run: Experiment) -> Iterator[Finding]:
 
 def equal_work(run: Experiment) -> Iterator[Finding]:
     for size, differ in run.readings[throughput.EQUAL].items():
-        yield equal(f"{size}_environments.that_differ_from_the_first", differ, 0)
+        yield equal(f"{size}_environments.that_missed_the_motion_or_differ", differ, 0)
 
 
 WITHOUT_CAMERA = (

@@ -28,8 +28,8 @@ CLAIMS: dict[str, str] = {
         "has its own mass, and each row holds its own gravity and load at rest."
     ),
     "equal_work": (
-        "All environments whose steps were timed end in the same state, to the last bit: each made "
-        "the whole motion. No time is judged."
+        "In each timed batch of robots, all arms end near the commanded angles, and all "
+        "environments in the same state to the last bit. No time is judged."
     ),
     "posture": "Two different camera frames, or a schematic whose links moved, show the end state.",
 }

@@ -68,7 +68,6 @@ def numbers_as_rows(
     """Ask for some environments, and take the row with the number of the first of them."""
     batch, first = begin(scene, robot, joints, worlds), envs[0]
     q = commands([worlds[k] for k in envs], ask(robot, joints, [worlds[k] for k in envs], 1, envs))
-    other = refused(lambda: q[envs[-1]])
     batch.command(q[[first]], [first])  # the mistake: row 0 is the answer for envs[0]
     batch.step(spec.SWITCH)
     trace = batch.trace(first)
@@ -76,7 +75,7 @@ def numbers_as_rows(
     text = (
         f"The hand of environment {first} ends {1000 * own:.1f} mm from its target and "
         f"{1000 * theirs:.1f} mm from the target of environment {envs[-1]}. The line for "
-        f"environment {envs[-1]}: {quoted(other)}"
+        f"environment {envs[-1]}: {quoted(refused(lambda: q[envs[-1]]))}"
     )
     return Failure("numbers_as_rows", bool(own > 0.05 and theirs < spec.REACHED[0]), text)
 
@@ -90,17 +89,17 @@ def mean_of_rows(
     answer, batch = ask(robot, joints, worlds), begin(scene, robot, joints, worlds)
     batch.command(np.hstack([answer.q[:, :ARM], batch.q_start[:, ARM:]]))
     batch.step(spec.SWITCH)
-    traces = [batch.trace(k) for k in range(len(worlds))]
-    apart = np.stack([distances(t, w.positions[0]) for t, w in zip(traces, worlds, strict=True)])
-    limit, mean, ends = spec.REACHED[0], apart.mean(axis=0), apart[:, -1]  # the mistake: a mean
+    far = [distances(batch.trace(k), world.positions[0]) for k, world in enumerate(worlds)]
+    apart, limit, t = 1000 * np.stack(far), 1000 * spec.REACHED[0], batch.trace(row).t
+    mean, ends, nearest = apart.mean(axis=0), apart[:, -1], apart[row].argmin()  # the mistake: mean
     text = (
-        f"The mean distance at the end is {1000 * mean[-1]:.1f} mm, below {1000 * limit:g} mm. "
-        f"The distances are {', '.join(f'{1000 * end:.1f}' for end in ends)} mm. "
-        f"Asked before the run, the rule for each row says: "
-        f"{quoted(refused(lambda: commands(worlds, answer)))}"
+        f"The mean distance at the end is {mean[-1]:.1f} mm, below {limit:g} mm. The distances are "
+        f"{', '.join(f'{end:.1f}' for end in ends)} mm. The hand of environment {row} is nearest "
+        f"after {t[nearest]:.2f} s, {apart[row, nearest]:.1f} mm away. Asked before the run, the "
+        f"rule for each row says: {quoted(refused(lambda: commands(worlds, answer)))}"
     )
-    curves = {"mean of all": (traces[0].t, mean), f"environment {row}": (traces[0].t, apart[row])}
-    return Failure("mean_of_rows", bool(mean[-1] < limit < ends[row]), text, curves)
+    curves = {"mean of all": (t, mean), f"environment {row}": (t, apart[row])}
+    return Failure("mean_of_rows", bool(mean[-1] < limit < ends[row]), text, curves, "mm")
 
 
 def timed_with_building(

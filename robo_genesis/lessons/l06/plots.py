@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
+from robo_genesis.core.mistakes import Curves
 from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
@@ -74,4 +75,15 @@ def alone(run: Experiment) -> Figure:
         ax.semilogy(row.t, np.maximum(apart, FLOOR), label=spec.LABELS[name], **style)
     ax.set(xlabel="time [s]", ylabel="largest difference [rad]")
     plotting.legend_above(ax, "A row and the same run alone")
+    return figure
+
+
+def judged(curves: Curves) -> Figure:
+    """Draw distances from a target [mm] and the limit for them, on a logarithmic scale."""
+    figure = plotting.figure(3.2)
+    ax = plotting.failure(figure.subplots(), curves, "", "mm")
+    ax.axhline(1000 * spec.REACHED[0], **LINE)
+    ticks = 20, 50, 100, 200, 500
+    ax.set(yscale="log", yticks=ticks, yticklabels=ticks, ylabel="hand to target [mm]")
+    ax.minorticks_off()
     return figure

@@ -27,23 +27,35 @@ def sizes(run: Experiment) -> list[int]:
     return [int(name[6:]) for name in run.readings[GROUP] if name.startswith("build_")]
 
 
+def steps(run: Experiment) -> dict[int, float]:
+    """Return the time of a step by the number of environments [s]."""
+    return {size: run.readings[GROUP][f"step_{size}"] for size in sizes(run)}
+
+
 def table(run: Experiment) -> str:
-    """Return time, throughput and memory of each number of environments."""
-    found, rows = run.readings[GROUP], []
-    for size in sizes(run):
-        step, fastest, slowest = (found[f"{n}_{size}"] for n in ("step", "fastest", "slowest"))
-        rows.append(
-            {
-                "environments": f"{size}",
-                "build [s]": f"{found[f'build_{size}']:.1f}",
-                "one step [ms]": ms(step),
-                "fastest to slowest [ms]": f"{ms(fastest)} to {ms(slowest)}",
-                "steps per second, all": three(size / step),
-                "simulated s per s, each": three(DT / step),
-                "memory [MiB]": f"{found[f'memory_{size}']:.0f}",
-            }
-        )
-    return tables.markdown(rows)
+    """Return time and throughput of each number of environments."""
+    rows = {f"{size}": (ms(step), three(size / step)) for size, step in steps(run).items()}
+    heads = {"one step [ms]": 0, "steps per second, all": 0}
+    return tables.number_table("environments", heads, rows)
+
+
+def details(run: Experiment) -> str:
+    """Return what else was measured with each number of environments."""
+    found, rows = run.readings[GROUP], {}
+    for size, step in steps(run).items():
+        of = [found[f"{name}_{size}"] for name in ("fastest", "slowest", "build", "memory")]
+        rows[f"{size}"] = f"{ms(of[0])} to {ms(of[1])}", three(DT / step), *of[2:]
+    heads = ("fastest to slowest [ms]", "simulated s per s, each", "build [s]", "memory [MiB]")
+    return tables.number_table("environments", dict(zip(heads, (0, 0, 1, 0), strict=True)), rows)
+
+
+def maximum(run: Experiment) -> str:
+    """Say which of the measured numbers of environments has the largest throughput."""
+    rate = {size: size / step for size, step in steps(run).items()}
+    best, last = max(rate, key=rate.__getitem__), max(rate)
+    text = f"The largest throughput is {three(rate[best])} steps per second, with {best}"
+    fall = f"With {last} it is {three(rate[last])}, {three(rate[last] / rate[best])} times as much."
+    return f"{text} environments. {fall if best < last else 'More were not measured.'}"
 
 
 def conclusions(run: Experiment) -> str:
@@ -67,24 +79,17 @@ def conclusions(run: Experiment) -> str:
 
 def fitted(run: Experiment) -> Model:
     """Return the model of the time of a step, fitted on the sizes of `FITTED`."""
-    return fit(FITTED, [run.readings[GROUP][f"step_{size}"] for size in FITTED])
+    return fit(FITTED, [steps(run)[size] for size in FITTED])
 
 
 def model_table(run: Experiment) -> str:
     """Return measured time and model of each number of environments."""
-    rows, model = [], fitted(run)
-    for size in sizes(run):
-        measured, expected = run.readings[GROUP][f"step_{size}"], float(model.step_time(size))
-        rows.append(
-            {
-                "B": f"{size}",
-                "measured [ms]": ms(measured),
-                "model [ms]": ms(expected),
-                "ratio": f"{measured / expected:.2f}",
-                "for": "fit" if size in FITTED else "test",
-            }
-        )
-    return tables.markdown(rows)
+    model, rows = fitted(run), {}
+    for size, step in steps(run).items():
+        expected, use = float(model.step_time(size)), "fit" if size in FITTED else "test"
+        rows[f"{size}"] = ms(step), ms(expected), step / expected, use
+    heads = {"measured [ms]": 0, "model [ms]": 0, "ratio": 2, "for": 0}
+    return tables.number_table("B", heads, rows)
 
 
 def model_sentence(run: Experiment) -> str:

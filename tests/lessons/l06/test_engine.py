@@ -106,16 +106,13 @@ def test_a_mass_is_that_of_one_environment_and_survives_a_reset(four):
     assert set_link_mass(four.robot, "hand", [0.73] * 4) == pytest.approx([0.73] * 4)
 
 
-@pytest.mark.parametrize(
-    ("mistake", "args", "shown", "says"),
-    [
-        (mistakes.one_value_each, ({1: 0.03, 3: 0.01}, {0: 0.03, 1: 0.01, 3: 0.02}), True, "20.0"),
-        (mistakes.one_value_each, ({1: 0.03}, {3: 0.02}), False, "30.0 mm in 1"),
-        (mistakes.numbers_as_rows, ([1, 3],), True, "`IndexError`"),
-        (mistakes.mean_of_rows, (2, (0.82, 0.06, 0.32)), True, "`NotAccepted`: Rows [2]"),
-        (mistakes.mean_of_rows, (2, spec.TARGETS[2]), False, "No exception"),
-    ],
-)
+@pytest.mark.parametrize(("mistake", "args", "shown", "says"), [
+    (mistakes.one_value_each, ({1: 0.03, 3: 0.01}, {0: 0.03, 1: 0.01, 3: 0.02}), True, "20.0"),
+    (mistakes.one_value_each, ({1: 0.03}, {3: 0.02}), False, "30.0 mm in 1"),
+    (mistakes.numbers_as_rows, ([1, 3],), True, "`IndexError`"),
+    (mistakes.mean_of_rows, (2, (0.82, 0.06, 0.32)), True, "`NotAccepted`: Rows [2]"),
+    (mistakes.mean_of_rows, (2, spec.TARGETS[2]), False, "No exception"),
+])  # fmt: skip
 def test_a_symptom_is_found_where_it_appears(four, mistake, args, shown, says):
     found = mistake(four.scene, four.robot, four.joints, WORLDS, *args)
     assert found.shown == shown
