@@ -105,7 +105,8 @@ def test_a_right_measurement_passes():
     "wrong",
     [
         {"middle": np.mean}, {"middle": max}, {"before": False}, {"after": False},
-        {"share": False}, {"warm": False}, {"middle": lambda times: None},
+        {"share": False}, {"warm": False}, {"middle": lambda times: None}, {"middle": min},
+        {"middle": lambda times: times[-1]},
     ],
 )  # fmt: skip
 def test_a_wrong_measurement_fails(wrong):
@@ -132,6 +133,7 @@ def known():
     [
         ("table", "| 4 | 1.0 | 0.664 | 0.604 to 0.73 | 6,020 | 15.1 | 104 |"),
         ("conclusions", "1,620 steps per second with 1 and 30,100 with 1024"),
+        ("conclusions", "1024 environments takes 55.1 times as long as a step with 1."),
         ("conclusions", "The most are 58,200, with 512."),
         ("model_table", "| 256 | 4.7 | 4.7 | 1.00 | test |"),
         ("model_table", "| 1024 | 34 | 17 | 2.00 | test |"),
