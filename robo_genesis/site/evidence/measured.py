@@ -78,12 +78,13 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
         known = ", ".join(f"{g}.{m}" for g, items in records.items() for m in items)
         raise LookupError(f"{lesson_page} has no metric {name!r}. Known: {known}.")
     record = records[group][metric]
-    if unit and (record.value is None or SCALED.get(record.unit) != unit):
-        raise LookupError(f"{lesson_page} has {name} in {record.unit}, without a value in {unit}.")
-    if unit:
-        text = f"{1000 * record.value:.3g} {unit}"
-        return text, f"{origin}, from {', '.join(record.source)}"
-    text = str(record.value) if group == "model" else format_value(record.value, record.unit)
+    value, given = record.value, record.unit
+    if not unit:
+        text = str(value) if group == "model" else format_value(value, given)
+    elif value is None or SCALED.get(given) != unit:
+        raise LookupError(f"{lesson_page} has {name} in {given}, without a value in {unit}.")
+    else:
+        text = f"{1000 * value:.3g} {unit}"
     return text, f"{origin}, from {', '.join(record.source)}"
 
 
