@@ -28,6 +28,9 @@ LINE: dict[str, Any] = {"color": PARTS["line"].light, "linewidth": 0.9, "zorder"
 
 BAND = PARTS["band"].light
 
+LABELS_APART = 0.09
+"""Smallest distance of the labels beside the ends of lines, as a share of the axes' height."""
+
 
 def figure(height: float) -> Figure:
     """Return an empty figure of the course's width; `height` [inch]."""
@@ -241,3 +244,23 @@ def legend_above(ax: Axes, title: str) -> None:
     ax.set_title(title, loc="left", pad=8 + 15.5 * rows)
     ax.legend(loc="lower left", bbox_to_anchor=(-0.02, 0.99), borderaxespad=0, labelspacing=0.2,
               columnspacing=1.2, ncols=2)  # fmt: skip
+
+
+def label_ends(ax: Axes, title: str) -> None:
+    """Write the label of each line beside its last point, in its colour; labels keep a distance.
+
+    Call it when all lines are drawn: it fixes the vertical range.
+    """
+    ax.set_title(title, loc="left")
+    ax.set_ylim(ax.get_ylim())
+    lines = [line for line in ax.get_lines() if not str(line.get_label()).startswith("_")]
+    places = ax.transData + ax.transAxes.inverted()
+    ends = [places.transform(line.get_xydata()[-1])[1] for line in lines]  # type: ignore[index]
+    order = np.argsort(ends, kind="stable")
+    apart = np.arange(len(lines)) * LABELS_APART
+    heights = np.maximum.accumulate(np.array(ends)[order] - apart) + apart
+    heights += np.mean(ends) - np.mean(heights)
+    heights += np.clip(0.0, 0.04 - heights[0], 0.96 - heights[-1])
+    for k, height in zip(order, heights, strict=True):
+        ax.annotate(str(lines[k].get_label()), (1.01, height), xycoords="axes fraction",
+                    va="center", color=lines[k].get_color(), annotation_clip=False)  # fmt: skip

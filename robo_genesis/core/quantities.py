@@ -7,6 +7,9 @@ DIGITS = {
 }  # fmt: skip
 """Digits after the point by unit, in texts for readers."""
 
+SCALED = {"m": "mm", "s": "ms", "rad": "mrad", "m/s": "mm/s", "rad/s": "mrad/s", "J": "mJ"}
+"""The thousandth of a unit, in which small values are easier to read."""
+
 
 def format_value(value: float | None, unit: str) -> str:
     """Return a metric as text for readers: `0.0447 rad`, `19 samples`, `not observed`."""

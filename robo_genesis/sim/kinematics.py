@@ -30,6 +30,11 @@ class IkSettings:
     damping: float = 0.01
     largest_step: float = 0.5
 
+    @property
+    def tolerances(self) -> tuple[float, float]:
+        """Return the largest accepted residuals of position [m] and rotation [rad]."""
+        return self.position_tolerance, self.rotation_tolerance
+
 
 @dataclass(frozen=True, slots=True)
 class IkAnswer:

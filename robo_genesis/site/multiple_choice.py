@@ -20,6 +20,7 @@ stale. A list below the question gives the cause for each answer; it may be left
     ```
 
 The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent.
+`:unit: mm` asks for a length in millimetres, and other units for their thousandths.
 A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 """
 
@@ -30,13 +31,13 @@ from types import MappingProxyType
 from typing import Any
 
 from docutils import nodes
-from docutils.parsers.rst.directives import percentage
+from docutils.parsers.rst.directives import percentage, unchanged
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.core.comparison import Comparison, compare_values, comparison_sentence
-from robo_genesis.core.quantities import format_value
+from robo_genesis.core.quantities import SCALED, format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons.registry import find_lesson
 from robo_genesis.site.case_labels import label
@@ -47,8 +48,6 @@ LOWER = {"lower": "less", "equal": "the same (to {})", "higher": "more"}
 """The options by order; `{}` is the smallest difference that counts."""
 CLOSE = "about the same (less than {} apart)"
 UNDECIDED = "these two runs cannot show it"
-SCALED = {"m": "mm", "s": "ms", "rad": "mrad", "m/s": "mm/s", "rad/s": "mrad/s", "J": "mJ"}
-"""The thousandth of a unit, in which small values are easier to read."""
 UNKNOWN = "unknown"
 """The key of the option that no order was observed."""
 JUDGED = ("right", "low", "high")
@@ -130,7 +129,7 @@ class Number(Question):
     """Ask for the value of one metric."""
 
     required_arguments = 2
-    option_spec = {"tolerance": percentage}  # noqa: RUF012 - as docutils declares it
+    option_spec = {"tolerance": percentage, "unit": unchanged}  # noqa: RUF012 - as docutils does
 
     def ask(self) -> tuple[str, choice]:
         """See `Question.ask`."""
@@ -138,11 +137,12 @@ class Number(Question):
         text, causes = split_causes(self.content, [*JUDGED, WRONG])
         if "tolerance" not in self.options:
             raise LookupError("the option tolerance is missing. Give percents: `:tolerance: 20`.")
-        return text, number(**asked_number(page, name, self.options["tolerance"], causes))
+        percent, unit = self.options["tolerance"], self.options.get("unit", "")
+        return text, number(**asked_number(page, name, percent, causes, unit))
 
 
 def asked_number(
-    lesson_page: str, name: str, percent: int, causes: Mapping[str, str]
+    lesson_page: str, name: str, percent: int, causes: Mapping[str, str], unit: str = ""
 ) -> dict[str, Any]:
     """Return the attributes of a question for a number.
 
@@ -151,12 +151,13 @@ def asked_number(
         name: `case.metric`.
         percent: the tolerance relative to the value.
         causes: texts by `JUDGED` or a factor, any of them.
+        unit: of the answer, if it is the thousandth of the metric's.
 
     Raises:
         LookupError: there is no such metric, or it has no value.
         BundleRefused: the bundle cannot be read.
     """
-    text, origin = measured(lesson_page, name)
+    text, origin = measured(lesson_page, f"{name} {unit}".strip())
     case, _, metric = name.partition(".")
     record = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)[case][metric]
     if record.value is None:
@@ -164,9 +165,10 @@ def asked_number(
     verdicts = {"right": "Yes.", "low": "Too low.", "high": "Too high."}
     verdicts |= {key: "No." for key in causes if key not in JUDGED}
     feedback = [(key, f"{said} {causes.get(key, '')}".strip()) for key, said in verdicts.items()]
+    value = 1000 * record.value if unit else record.value
     return {
-        "value": record.value, "tolerance": abs(record.value) * percent / 100,
-        "unit": "" if record.unit == "1" else record.unit, "feedback": feedback,
+        "value": value, "tolerance": abs(value) * percent / 100,
+        "unit": unit or record.unit.replace("1", ""), "feedback": feedback,
         "answer": f"{text}; answers within {percent} % count as right.", "origin": origin,
     }  # fmt: skip
 
@@ -200,7 +202,7 @@ def measured_sentence(names: tuple[str, str], found: Comparison) -> str:
     texts = [format_value(value, unit) for value in values]
     if unit == "m" and all(0 < abs(value) < 0.1 for value in values):
         texts = [f"{1000 * value:.3g} mm" for value in values]
-    pairs = ", ".join(f"{name} {text}" for name, text in zip(names, texts, strict=True))
+    pairs = ", ".join(f"{text} for {name}" for name, text in zip(names, texts, strict=True))
     sentence = f"{found.label[0].upper()}{found.label[1:]}: {pairs}."
     if found.order == "equal" and found.margin and found.first != found.second:
         sentence += f" A difference below {small(found.margin, unit)} does not count."

@@ -79,3 +79,18 @@ def test_the_style_starts_no_shell_outside_a_notebook():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_labels_are_beside_the_ends_of_lines_in_their_order_and_apart():
+    ax = plotting.axes(3)[1]
+    for name, end in {"b": 2.0, "a": 1.99, "top": 900.0, "c": 2.01}.items():
+        ax.semilogy([0, 1], [50, end], label=name)
+    ax.axvline(0.5)
+    plotting.label_ends(ax, "title")
+    found = sorted((text.xy[1], text.get_text()) for text in ax.texts)
+    assert [name for _, name in found] == ["a", "b", "c", "top"]
+    heights = np.array([height for height, _ in found])
+    assert (np.diff(heights) >= plotting.LABELS_APART - 1e-9).all()
+    assert 0 < heights[0] < heights[-1] < 1
+    colours = {text.get_text(): text.get_color() for text in ax.texts}
+    assert colours == {line.get_label(): line.get_color() for line in ax.get_lines()[:4]}

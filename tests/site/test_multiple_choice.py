@@ -58,7 +58,7 @@ def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
     assert abs(first - second) > l04.RESOLUTION["rad"]
     order, unit, sentence, origin = measured_order("l04/lab", "overshoot", ["G1", "G2"])
     assert order == ("higher" if second > first else "lower")
-    assert f"G1 {first:.4f} rad, G2 {second:.4f} rad" in sentence
+    assert f"{first:.4f} rad for G1, {second:.4f} rad for G2" in sentence
     assert origin.startswith("Measured by l04/lab on cpu")
     assert unit == "rad"
     turned, *_ = measured_order("l04/lab", "overshoot", ["G2", "G1"])
@@ -75,10 +75,10 @@ def test_an_unknown_metric_or_case_names_those_there_are(outputs, metric, case):
 @pytest.mark.parametrize(
     ("unit", "values", "margin", "said"),
     [
-        ("m", (0.01316, 0.00781), 0.0, "Depth: A 13.2 mm, B 7.81 mm."),
-        ("m", (0.2011, 0.1971), 0.0, "Depth: A 0.2011 m, B 0.1971 m."),
+        ("m", (0.01316, 0.00781), 0.0, "Depth: 13.2 mm for A, 7.81 mm for B."),
+        ("m", (0.2011, 0.1971), 0.0, "Depth: 0.2011 m for A, 0.1971 m for B."),
         ("s", (0.14, 0.15), 0.015,
-         "Depth: A 0.14 s, B 0.15 s. A difference below 15 ms does not count."),
+         "Depth: 0.14 s for A, 0.15 s for B. A difference below 15 ms does not count."),
         ("s", (0.14, None), 0.0, "The depth was observed for A alone"),
     ],
 )  # fmt: skip
@@ -158,6 +158,12 @@ def test_the_right_number_is_the_bundle_s(outputs, experiment):
     assert found["answer"].startswith(f"{value:.4f} rad; answers within 20 %")
     with pytest.raises(LookupError, match=r"Known: .*G2\.overshoot"):
         asked_number("l04/lab", "G2.overshot", 20, {})
+    small = asked_number("l04/lab", "G2.overshoot", 20, {}, "mrad")
+    assert small["value"] == pytest.approx(1000 * value)
+    assert small["tolerance"] == pytest.approx(200 * value)
+    assert (small["unit"], small["answer"][:9]) == ("mrad", f"{1000 * value:.3g} mrad")
+    with pytest.raises(LookupError, match="without a value in mm"):
+        asked_number("l04/lab", "G2.overshoot", 20, {}, "mm")
 
 
 FEEDBACK = [("right", "Yes."), ("low", "Too low. It saturates."), ("high", "Too high.")]

@@ -4,10 +4,10 @@ CLAIMS: dict[str, str] = {
     "mapping": "The engine has the expected links, joints and DOFs.",
     "stamps": "Each run has its configured steps and states at times k · dt from zero.",
     "acceptance_per_row": (
-        "Each commanded row is within both tolerances by forward kinematics. Of the question with "
-        "one target beyond reach, this row alone is beyond its tolerance."
+        "By forward kinematics, each command of the runs with metrics is within both tolerances "
+        "and 5 µm and 5 µrad of rounding. The rule refuses the target beyond reach, and no other."
     ),
-    "arrived": "Each hand ends nearer to its target than it starts, and within 2 cm and 0.05 rad.",
+    "arrived": "Each hand gets within 2 cm of its first and last target, and ends within 0.05 rad.",
     "row_equals_alone": (
         "Each row of the batch and the same run alone have the same command to the last bit, and "
         "positions, velocities and control forces within the declared bounds."
@@ -25,7 +25,7 @@ CLAIMS: dict[str, str] = {
     ),
     "own_gains_and_mass": (
         "The row without changes equals its run beside equal neighbours to the last bit. Each hand "
-        "has its own mass, and each row holds its own gravity and load at rest."
+        "has its own mass. At rest each torque is that of own gravity and load, and of its own KP."
     ),
     "equal_work": (
         "In each timed batch of robots, all arms end near the commanded angles, and all "

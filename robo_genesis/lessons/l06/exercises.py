@@ -1,6 +1,7 @@
 """Checks of the functions on rows that a student writes in L06's lab; see `core/exercises.py`."""
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -8,21 +9,21 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding, equal
 from robo_genesis.core.exercises import as_test
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l06 import spec
 
-ANSWERS: dict[str, tuple[float, tuple[float, ...], bool]] = {
-    "exact": (0.1, (0.0,) * 6, True),
-    "at_both_limits": (0.1, (5e-4, 0, 0, 0, 0, 5e-3), True),
-    "too_far": (0.1, (6e-4, 0, 0, 0, 0, 0), False),
-    "too_far_along_the_diagonal": (0.1, (4e-4, 4e-4, 0, 0, 0, 0), False),
-    "beyond_reach": (0.1, (0, 0, -2.0, 0, 0, 0), False),
-    "turned_too_far": (0.1, (0, 0, 0, 0, -6e-3, 0), False),
-    "not_a_number": (np.nan, (0.0,) * 6, False),
-    "residual_not_a_number": (0.1, (np.nan, 0, 0, 0, 0, 0), False),
-    "small": (0.1, (1e-6,) * 6, True),
+ANSWERS: dict[str, tuple[tuple[int, float], tuple[float, ...], bool]] = {
+    "exact": ((8, 0.1), (0.0,) * 6, True),
+    "at_both_limits": ((8, 0.1), (5e-4, 0, 0, 0, 0, 5e-3), True),
+    "too_far": ((8, 0.1), (6e-4, 0, 0, 0, 0, 0), False),
+    "too_far_along_the_diagonal": ((8, 0.1), (4e-4, 4e-4, 0, 0, 0, 0), False),
+    "beyond_reach": ((8, 0.1), (0, 0, -2.0, 0, 0, 0), False),
+    "turned_too_far": ((8, 0.1), (0, 0, 0, 0, -6e-3, 0), False),
+    "first_joint_not_a_number": ((0, np.nan), (0.0,) * 6, False),
+    "last_joint_infinite": ((8, -np.inf), (0.0,) * 6, False),
+    "residual_not_a_number": ((8, 0.1), (np.nan, 0, 0, 0, 0, 0), False),
+    "small": ((8, 0.1), (1e-6,) * 6, True),
 }
-"""One joint position of a row, its residual, and whether the row may be commanded."""
+"""One joint of a row and its position, the row's residual, and whether it may be commanded."""
 
 
 @as_test
@@ -31,12 +32,12 @@ def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
 
     It returns one truth value for each row, (k,).
     """
-    tolerances = spec.IK.position_tolerance, spec.IK.rotation_tolerance
     names = list(ANSWERS)
     for label, rows in (("all", names), ("backwards", names[::-1]), ("one", names[2:3])):
-        q = np.array([[0.1] * 8 + [ANSWERS[name][0]] for name in rows])
+        changed = [ANSWERS[name][0] for name in rows]
+        q = np.array([np.where(np.arange(9) == joint, value, 0.1) for joint, value in changed])
         error = np.array([ANSWERS[name][1] for name in rows], dtype=float)
-        found = np.asarray(accept(q, error, *tolerances))
+        found = np.asarray(accept(q, error, *spec.IK.tolerances))
         yield equal(f"{label}.shape", list(found.shape), [len(rows)])
         if found.shape == (len(rows),):
             for name, value in zip(rows, found, strict=True):
@@ -71,15 +72,19 @@ VALID: dict[str, tuple[Sequence[int], Sequence[int]]] = {
 }
 """DOFs and environments of commands that must be sent."""
 
-REFUSED: dict[str, tuple[tuple[int, ...], Sequence[int]]] = {
-    "one_row_for_two": ((1, 3), [1, 3]),
-    "no_rows_for_two": ((3,), [1, 3]),
-    "rows_of_all_for_two": ((4, 3), [1, 3]),
-    "two_rows_for_one": ((2, 3), [1]),
-    "named_twice": ((2, 3), [1, 1]),
-    "does_not_exist": ((2, 3), [1, 4]),
+REFUSED: dict[str, tuple[int, tuple[int, ...], Sequence[int]]] = {
+    "one_row_for_two": (3, (1, 3), [1, 3]),
+    "no_rows_for_two": (3, (3,), [1, 3]),
+    "one_number_for_each": (2, (2,), [1, 3]),
+    "one_column": (3, (2, 1), [1, 3]),
+    "rows_of_all_for_two": (3, (4, 3), [1, 3]),
+    "two_rows_for_one": (3, (2, 3), [1]),
+    "named_twice": (3, (2, 3), [1, 1]),
+    "does_not_exist": (3, (2, 3), [1, 4]),
+    "negative": (3, (2, 3), [-1, 1]),
 }
-"""Shapes and environments that must raise a ValueError; the engine would send many of them."""
+"""Numbers of DOFs, shapes and environments that must raise a ValueError; the engine would send many
+of these commands."""
 
 
 @as_test
@@ -91,9 +96,9 @@ def subset(command: Callable[..., Any]) -> Iterator[Finding]:
         expected[np.ix_(envs, dofs)] = q
         command(robot, dofs, q, np.array(envs))
         yield equal(f"{name}.wrong_entries", int((robot.target != expected).sum()), 0)
-    for name, (shape, envs) in REFUSED.items():
+    for name, (count, shape, envs) in REFUSED.items():
         robot = Robot()
-        raised = refused(command, robot, np.ones(shape), envs)
+        raised = refused(partial(command, robot, list(range(count)), np.ones(shape), envs))
         yield equal(f"{name}.raises_value_error", raised, True)
         yield equal(f"{name}.commands_sent", robot.calls, 0)
     robot = Robot()
@@ -101,10 +106,10 @@ def subset(command: Callable[..., Any]) -> Iterator[Finding]:
     yield equal("no_environments.commands_sent", robot.calls, 0)
 
 
-def refused(command: Callable[..., Any], robot: Robot, q: FloatArray, envs: Sequence[int]) -> bool:
+def refused(call: Callable[[], Any]) -> bool:
     """Return whether a command raises a ValueError."""
     try:
-        command(robot, [0, 1, 2], q, envs)
+        call()
     except (ValueError, IndexError) as error:
         return isinstance(error, ValueError)
     return False

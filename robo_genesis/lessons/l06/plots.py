@@ -47,7 +47,7 @@ def distances(run: Experiment, names: Iterable[str], title: str) -> tuple[Figure
         apart = to_target(run, name, run.cases[name])
         ax.semilogy(run.traces[name].t, apart, label=spec.LABELS[name], **style)
     ax.set(xlabel="time [s]", ylabel="hand to target [mm]")
-    plotting.legend_above(ax, title)
+    plotting.label_ends(ax, title)
     return figure, ax
 
 
@@ -74,7 +74,7 @@ def alone(run: Experiment) -> Figure:
         style = look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
         ax.semilogy(row.t, np.maximum(apart, FLOOR), label=spec.LABELS[name], **style)
     ax.set(xlabel="time [s]", ylabel="largest difference [rad]")
-    plotting.legend_above(ax, "A row and the same run alone")
+    plotting.label_ends(ax, "A row and the same run alone")
     return figure
 
 

@@ -86,8 +86,7 @@ def commands(worlds: Sequence[World], answer: IkAnswer) -> FloatArray:
         NotAccepted: an answer is not finite, or a residual is beyond its tolerance; the message
             names the rows.
     """
-    settings = worlds[0].settings
-    limits = settings.position_tolerance, settings.rotation_tolerance
+    limits = worlds[0].settings.tolerances
     refused = np.flatnonzero(~accepted(answer.q, answer.error, *limits))
     if refused.size:
         raise NotAccepted(

@@ -99,7 +99,7 @@ LABELS = {name: name.replace("env_", "environment ") for name in WORLDS} | {
     "stiff": "KP doubled",
     "loaded": "1 kg in the hand",
     "stiff_loaded": "KP doubled, 1 kg",
-} | {name: name.replace("alone_", "run alone, ") for name in ALONE}  # fmt: skip
+} | {name: f"environment {name[-1]} alone" for name in ALONE}  # fmt: skip
 """Words of a reader for runs."""
 
 SPACING = 1.0
@@ -142,7 +142,8 @@ SAME_RUN = {"q": 5e-6, "qd": 5e-5, "control_force": 2e-2}
 m/s, N·m or N]. Both are computed in float32."""
 
 HELD = 0.05
-"""Largest difference of a torque at rest from gravity and load by MuJoCo [N·m]."""
+"""Largest difference of a torque at rest from gravity and load by MuJoCo, and from KP times the
+distance of the joint from its command [N·m]."""
 
 
 def parameters() -> dict[str, Any]:

@@ -27,16 +27,20 @@ def readings(rendered: bool) -> dict[str, Readings]:
     return {
         "model": counts(spec.EXPECTED_MODEL),
         "mixed": Readings(MIXED),
+        "mixed_accepted": counts(spec.WORLDS),
         "hand_mass": Readings(MASSES),
     }
 
 
 def read_mixed(page: Any, robot: Any) -> None:
-    """Give a page the residuals of a question in which one target is beyond reach."""
+    """Give a page residuals and verdicts of a question in which one target is beyond reach."""
     world = replace(spec.FIRST, settings=spec.ONE_START)
     worlds = [replace(world, positions=target[None]) for target in spec.MIXED]
-    apart, _ = kinematics.distances(ask(robot, page.joints, worlds).error)
+    answer = ask(robot, page.joints, worlds)
+    apart, _ = kinematics.distances(answer.error)
+    verdicts = kinematics.accepted(answer.q, answer.error, *spec.ONE_START.tolerances)
     page.readings["mixed"] = dict(zip(MIXED, map(float, apart), strict=True))
+    page.readings["mixed_accepted"] = dict(zip(spec.WORLDS, map(int, verdicts), strict=True))
 
 
 def record(page: Any, scene: Any, robot: Any, camera: Any) -> None:

@@ -17,16 +17,15 @@ def mm(value: float, digits: int = 2) -> str:
 
 def mixed_table(run: Experiment) -> str:
     """Return residual and verdict of each row of the question with a target beyond reach."""
-    limit = spec.IK.position_tolerance
-    residuals = list(run.readings["mixed"].values())
+    found = run.readings["mixed"].values(), run.readings["mixed_accepted"].values()
     rows = [
         {
             "row": f"{k}",
             "target [m]": ", ".join(f"{value:g}" for value in spec.MIXED[k]).replace("-", "−"),
-            "residual [mm]": mm(residual, 3),
-            "the row is": "accepted" if residual <= limit else "**refused**",
+            "position residual [mm]": mm(residual, 3),
+            "the row is": "accepted" if accepted else "**refused**",
         }
-        for k, residual in enumerate(residuals)
+        for k, (residual, accepted) in enumerate(zip(*found, strict=True))
     ]
     return tables.markdown(rows)
 
@@ -66,10 +65,10 @@ def alone_table(run: Experiment) -> str:
 
 
 CLAIMED = {
-    "permuted": "the rows in the order {order}",
-    "beside": "rows {kept}, while rows {reset} are reset and commanded after {after} s",
-    "again": "rows {reset} from their reset on, against their first start",
-    "plain": "the plain row beside other gains and loads, against environment 0",
+    "permuted": "the worlds in the order {order}",
+    "beside": "environments {kept}, while {reset} are reset and commanded after {after} s",
+    "again": "environments {reset} from their reset on, against their first start",
+    "plain": "the plain robot beside other gains and loads, against environment 0",
 }
 
 
@@ -110,13 +109,13 @@ def variant_table(run: Experiment) -> str:
         both = [f"{decimal(found, 2)} ({decimal(right, 2)})" for found, right in pairs]
         mass = run.readings["hand_mass"][name]
         rows[spec.LABELS[name]] = (world.kp[1], mass, *both, 1e3 * m.final_distance)
-    return tables.number_table("row", heads, rows)
+    return tables.number_table("robot", heads, rows)
 
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the lab's runs."""
-    m, limit = run.metrics, spec.IK.position_tolerance
-    accepted = [f"{k}" for k, r in enumerate(run.readings["mixed"].values()) if r <= limit]
+    m = run.metrics
+    accepted = [name[-1] for name, is_ in run.readings["mixed_accepted"].items() if is_]
     moved = {k: m[f"env_{k}"].moved_later for k in spec.ENVS}
     apart = max(
         study.largest_differences(run.traces[f"env_{k}"], run.traces[f"alone_{k}"])["q"]
@@ -130,8 +129,7 @@ def conclusions(run: Experiment) -> str:
         f"Joint positions of a row and of the same run alone differ by up to {1e6 * apart:.2f} "
         "µrad (or µm of a finger).",
         *(
-            f"{spec.LABELS[name].capitalize()}: the hand stops {mm(m[name].final_distance)} mm "
-            "from its target."
+            f"{spec.LABELS[name]}: the hand stops {mm(m[name].final_distance)} mm from its target."
             for name in spec.VARIANTS
         ),
     ]

@@ -42,6 +42,7 @@ TRIALS: dict[str, tuple[tuple[int, int, int], dict[int, float]]] = {
     "one_repeat": ((6, 5, 1), {0: 8.0}),
     "one_disturbed_repeat": ((2, 10, 5), {25: 3.0}),
     "no_warm_up": ((0, 4, 3), {}),
+    "fast_first_and_slow_last_repeat": ((2, 2, 5), {2: STEP / 9, 3: STEP / 9, 11: 3.0}),
 }
 """Warm-up, steps and repeats of a call of the student's function, and its machine's slow steps."""
 

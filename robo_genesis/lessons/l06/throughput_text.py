@@ -64,8 +64,10 @@ def conclusions(run: Experiment) -> str:
     rate = {size: size / found[f"step_{size}"] for size in sizes(run)}
     few, *_, many = rate
     best = max(rate, key=rate.__getitem__)
+    longer = three(found[f"step_{many}"] / found[f"step_{few}"])
     spread = max(found[f"slowest_{size}"] / found[f"fastest_{size}"] for size in rate)
     lines = [
+        f"A step with {many} environments takes {longer} times as long as a step with {few}.",
         f"All environments together make {three(rate[few])} steps per second with {few} and "
         f"{three(rate[many])} with {many} environments. The most are {three(rate[best])}, with "
         f"{best}.",

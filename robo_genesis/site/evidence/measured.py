@@ -5,6 +5,7 @@ Roles and a directive, as pages write them:
 | in a page | shows |
 |---|---|
 | {measured}`l04/lab G2.overshoot` | a metric, written with its unit |
+| {measured}`l06/lab plain.final_distance mm` | the same in the thousandth of its unit |
 | {measured}`l04/lab engine` | the engine version that the page ran on |
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
@@ -30,7 +31,7 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 from robo_genesis.build.built_pages import built_pages, page_outputs
 from robo_genesis.core import project
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.quantities import format_value
+from robo_genesis.core.quantities import SCALED, format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.status import (
     RECORDED_PAGE,
@@ -56,10 +57,12 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
 
     Args:
         lesson_page: `l04/lab`.
-        name: `group.metric` of its metrics.json, or `engine`.
+        name: `group.metric` of its metrics.json, or `engine`. After a space it may have the
+            thousandth of the metric's unit; then the value has three digits.
 
     Raises:
-        LookupError: there is no such metric; the message lists the known ones.
+        LookupError: there is no such metric, and the message lists the known ones; or it has no
+            value in this unit.
         BundleRefused: the bundle cannot be read.
     """
     folder = page_outputs(lesson_page) / BACKEND
@@ -68,13 +71,20 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     origin += f"run {predicate.run_id[:8]}, {predicate.started[:10]}"
     if name == "engine":
         return predicate.engine.version, origin
+    name, _, unit = name.partition(" ")
     group, _, metric = name.partition(".")
     records = bundle.read_metrics(folder)
     if metric not in records.get(group, {}):
         known = ", ".join(f"{g}.{m}" for g, items in records.items() for m in items)
         raise LookupError(f"{lesson_page} has no metric {name!r}. Known: {known}.")
     record = records[group][metric]
-    text = str(record.value) if group == "model" else format_value(record.value, record.unit)
+    value, given = record.value, record.unit
+    if not unit:
+        text = str(value) if group == "model" else format_value(value, given)
+    elif value is None or SCALED.get(given) != unit:
+        raise LookupError(f"{lesson_page} has {name} in {given}, without a value in {unit}.")
+    else:
+        text = f"{1000 * value:.3g} {unit}"
     return text, f"{origin}, from {', '.join(record.source)}"
 
 

@@ -70,6 +70,7 @@ def worlds(joints) -> Experiment:
         readings={
             "model": spec.EXPECTED_MODEL,
             "mixed": dict(zip(study.MIXED, residuals, strict=True)),
+            "mixed_accepted": {f"env_{k}": int(r < 1) for k, r in enumerate(residuals)},
             "hand_mass": masses,
         },
         frames={},

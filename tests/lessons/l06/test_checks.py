@@ -29,7 +29,7 @@ def moved_hand(run, name, by, samples):
 CHANGES = {
     "mapping": lambda run: with_reading(run, "model", "dofs", 8),
     "stamps": lambda run: with_trace(run, "env_3", t=run.traces["env_3"].t * 2),
-    "acceptance_per_row": lambda run: with_reading(run, "mixed", "row_2_m", 1e-5),
+    "acceptance_per_row": lambda run: with_reading(run, "mixed_accepted", "env_2", 1),
     "arrived": lambda run: moved_hand(run, "alone_1", 0.05, slice(-1, None)),
     "row_equals_alone": lambda run: shifted(run, "alone_2", "qd", 1e-4, 40),
     "permuted_rows": lambda run: shifted(run, "permuted_3", "q", 1e-6, 7),
@@ -62,6 +62,10 @@ OTHERS = {
         "untouched_keep_their_state", lambda run: still(run, "env_1")),
     "a load that another row carries": (
         "own_gains_and_mass", lambda run: replace(run, traces=swapped(run, "stiff", "loaded"))),
+    "a stiff row that kept its gains": (
+        "own_gains_and_mass", lambda run: with_trace(run, "stiff", q=run.traces["plain"].q)),
+    "an answer that was commanded beyond its tolerance": (
+        "acceptance_per_row", lambda run: shifted(run, "loaded", "target", 1e-2)),
     "a plain row with a neighbour's gains": (
         "own_gains_and_mass", lambda run: with_trace(run, "plain", q=run.traces["stiff"].q)),
 }  # fmt: skip

@@ -1,5 +1,7 @@
 """The tests of the student's functions: right solutions pass, and typical wrong ones fail."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -28,13 +30,13 @@ def q_not_looked_at(q, error, most, angle):
     return (apart <= most) & (turned <= angle)
 
 
-def checked(robot, dofs, q, envs):
-    envs = list(envs)
-    if sorted(set(envs)) != sorted(envs) or not set(envs) <= set(range(robot.scene.n_envs)):
+def checked(robot, dofs, q, envs, known=range(4), axes=2, twice=False):
+    """Check what the task asks for; other values of the last arguments forget something."""
+    if not {*envs} <= {*known} or (len({*envs}) < len(envs) and not twice):
         raise ValueError(envs)
-    if np.shape(q) != (len(envs), len(dofs)):
+    if np.shape(q)[:axes] != (len(envs), len(dofs))[:axes]:
         raise ValueError(np.shape(q))
-    if envs:
+    if len(envs):
         robot.control_dofs_position(q, dofs, envs_idx=envs)
 
 
@@ -47,13 +49,6 @@ def rows_of_the_batch(robot, dofs, q, envs):
     checked(robot, dofs, np.asarray(q)[list(envs)], envs)
 
 
-def without_numbers(robot, dofs, q, envs):
-    if np.shape(q) != (len(envs), len(dofs)):
-        raise ValueError(np.shape(q))
-    if len(envs):
-        robot.control_dofs_position(q, dofs, envs_idx=envs)
-
-
 RIGHT = {"acceptance": {"ours": of.accepted}, "subset": {"ours": checked}}
 WRONG = {
     "acceptance": {
@@ -64,13 +59,18 @@ WRONG = {
         "q not looked at": q_not_looked_at,
         "one norm of six": lambda q, e, most, angle: np.linalg.norm(e, axis=1) <= most,
         "typed tolerances": lambda q, e, most, angle: of.accepted(q, e, 5e-4, 5e-3),
+        "last joint alone": lambda q, e, *most: of.accepted(q[:, 8:], e, *most),
+        "infinite": lambda q, e, *most: of.accepted(np.nan_to_num(q, nan=np.nan), e, *most),
         "not written": lambda q, e, most, angle: None,
     },
     "subset": {
         "engine alone": lambda robot, dofs, q, envs: robot.control_dofs_position(q, dofs, envs),
         "sorted": sorted_rows,
         "row by the number of the environment": rows_of_the_batch,
-        "numbers not looked at": without_numbers,
+        "numbers too high": partial(checked, known=range(9)),
+        "negative numbers": partial(checked, known=range(-9, 4)),
+        "named twice": partial(checked, twice=True),
+        "columns not looked at": partial(checked, axes=1),
         "to all": lambda robot, dofs, q, envs: robot.control_dofs_position(q, dofs),
         "nothing": lambda robot, dofs, q, envs: None,
     },
