@@ -62,10 +62,10 @@ ALONE = {f"alone_{k}": WORLDS[f"env_{k}"] for k in ENVS}
 
 SHORT = replace(FIRST, steps=SWITCH)
 VARIANTS = {
-    "plain": SHORT,
-    "stiff": replace(SHORT, kp=2 * franka.KP_BASELINE),
-    "loaded": replace(SHORT, load=1.0),
-    "stiff_loaded": replace(SHORT, kp=2 * franka.KP_BASELINE, load=1.0),
+    "plain_robot": SHORT,
+    "stiff_robot": replace(SHORT, kp=2 * franka.KP_BASELINE),
+    "loaded_robot": replace(SHORT, load=1.0),
+    "stiff_loaded_robot": replace(SHORT, kp=2 * franka.KP_BASELINE, load=1.0),
 }
 """One target, and four robots that differ in their gains or in the mass of the hand."""
 
@@ -95,10 +95,10 @@ CASE_MARKS = {
 """The mark of each case in the palette."""
 
 LABELS = {name: name.replace("env_", "environment ") for name in WORLDS} | {
-    "plain": "plain",
-    "stiff": "KP doubled",
-    "loaded": "1 kg in the hand",
-    "stiff_loaded": "KP doubled, 1 kg",
+    "plain_robot": "plain robot",
+    "stiff_robot": "KP doubled",
+    "loaded_robot": "1 kg in the hand",
+    "stiff_loaded_robot": "KP doubled, 1 kg",
 } | {name: f"environment {name[-1]} alone" for name in ALONE}  # fmt: skip
 """Words of a reader for runs."""
 
@@ -116,9 +116,9 @@ VIEW = CAMERA | {"pos": (3.1, -1.7, 1.7), "lookat": (0.7, 0.45, 0.3), "fov": 32}
 of environment 0, which pictures show at a corner of the group."""
 
 RELATIONS = (
-    (("plain", "stiff"), "final_distance", "lower", 1e-3),
-    (("plain", "loaded"), "final_distance", "higher", 5e-4),
-    (("plain", "stiff_loaded"), "final_distance", "lower", 1e-3),
+    (("plain_robot", "stiff_robot"), "final_distance", "lower", 1e-3),
+    (("plain_robot", "loaded_robot"), "final_distance", "higher", 5e-4),
+    (("plain_robot", "stiff_loaded_robot"), "final_distance", "lower", 1e-3),
 )
 """Written down before the runs: how the second case of a pair compares with the first [m]."""
 

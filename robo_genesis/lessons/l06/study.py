@@ -101,4 +101,4 @@ def pairs() -> Mapping[str, Sequence[tuple[str, str]]]:
     """Return by claim the pairs of runs that must be equal to the last bit."""
     copies = {"permuted": spec.PERMUTED, "beside": spec.BESIDE, "again": spec.AGAIN}
     found = {claim: [(n, f"env_{n[-1]}") for n in names] for claim, names in copies.items()}
-    return found | {"plain": [("plain", "env_0")]}
+    return found | {"plain": [("plain_robot", "env_0")]}

@@ -57,8 +57,8 @@ def worlds(joints) -> Experiment:
     runs |= {
         f"alone_{k}": replace(runs[f"env_{k}"], q=runs[f"env_{k}"].q + ROUNDING) for k in spec.ENVS
     }
-    runs |= {name: run_of(w) for name, w in spec.VARIANTS.items() if name != "plain"}
-    runs["plain"] = shortened(runs["env_0"], spec.SWITCH)
+    runs |= {name: run_of(w) for name, w in spec.VARIANTS.items() if name != "plain_robot"}
+    runs["plain_robot"] = shortened(runs["env_0"], spec.SWITCH)
     for name, world in spec.COPIES.items():
         runs[name] = shortened(runs[f"env_{name[-1]}"], world.steps)
     masses = {name: spec.HAND_MASS + world.load for name, world in spec.VARIANTS.items()}

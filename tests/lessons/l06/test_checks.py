@@ -12,6 +12,8 @@ from robo_genesis.lessons.l06.metrics import HAND, world_metrics
 from robo_genesis.lessons.l06.run import NotAccepted, commands
 from robo_genesis.sim.kinematics import IkAnswer
 
+PLAIN, STIFF, LOADED, _ = spec.VARIANTS
+
 
 def shifted(run, name, array, by, samples=slice(None)):
     """Change one array of a run by a number, in all samples or in some."""
@@ -35,7 +37,7 @@ CHANGES = {
     "permuted_rows": lambda run: shifted(run, "permuted_3", "q", 1e-6, 7),
     "untouched_keep_their_state": lambda run: moved_hand(run, "env_0", 2e-5, slice(300, None)),
     "partial_reset": lambda run: shifted(run, "again_1", "q", 1e-6, 3),
-    "own_gains_and_mass": lambda run: with_reading(run, "hand_mass", "loaded", spec.HAND_MASS),
+    "own_gains_and_mass": lambda run: with_reading(run, "hand_mass", LOADED, spec.HAND_MASS),
 }
 
 
@@ -61,13 +63,13 @@ OTHERS = {
     "an environment that did not get its second command": (
         "untouched_keep_their_state", lambda run: still(run, "env_1")),
     "a load that another row carries": (
-        "own_gains_and_mass", lambda run: replace(run, traces=swapped(run, "stiff", "loaded"))),
+        "own_gains_and_mass", lambda run: replace(run, traces=swapped(run, STIFF, LOADED))),
     "a stiff row that kept its gains": (
-        "own_gains_and_mass", lambda run: with_trace(run, "stiff", q=run.traces["plain"].q)),
+        "own_gains_and_mass", lambda run: with_trace(run, STIFF, q=run.traces[PLAIN].q)),
     "an answer that was commanded beyond its tolerance": (
-        "acceptance_per_row", lambda run: shifted(run, "loaded", "target", 1e-2)),
+        "acceptance_per_row", lambda run: shifted(run, LOADED, "target", 1e-2)),
     "a plain row with a neighbour's gains": (
-        "own_gains_and_mass", lambda run: with_trace(run, "plain", q=run.traces["stiff"].q)),
+        "own_gains_and_mass", lambda run: with_trace(run, PLAIN, q=run.traces[STIFF].q)),
 }  # fmt: skip
 
 
@@ -103,7 +105,7 @@ def test_a_row_that_is_not_accepted_is_not_commanded():
 
 
 def test_a_run_with_the_gains_of_another_world_is_refused(worlds):
-    run = replace(worlds, traces=swapped(worlds, "stiff", "plain"))
+    run = replace(worlds, traces=swapped(worlds, STIFF, PLAIN))
     with pytest.raises(BundleRefused, match="control_force"):
         plausibility.require_possible_runs(run)
 
@@ -111,8 +113,7 @@ def test_a_run_with_the_gains_of_another_world_is_refused(worlds):
 def test_the_metrics_tell_when_a_hand_moved(worlds):
     m = worlds.metrics
     assert m["env_0"].moved_later < 1e-5 < 0.1 < m["env_1"].moved_later
-    assert m["plain"].moved_later is None
-    assert m["plain"].final_distance == m["plain"].first_distance
+    assert (m[PLAIN].moved_later, m[PLAIN].final_distance) == (None, m[PLAIN].first_distance)
     assert m["env_3"].first_distance < 0.02 > m["env_3"].final_distance
     empty = {"link_pos": np.zeros((361, 3, 3)), "link_quat": np.zeros((361, 3, 4))}
     few = replace(worlds.traces["env_0"], **empty)

@@ -35,7 +35,7 @@ def test_tables_give_the_numbers_of_the_runs(run):
     assert "| 0.24 |" in text.alone_table(run)  # the rounding that the fixture adds
     zeros = [line.endswith("| 0 |") for line in text.equal_table(run).splitlines()[2:]]
     assert zeros == [True] * len(study.pairs())
-    assert f"{1000 * m['loaded'].final_distance:.2f} |" in text.variant_table(run)
+    assert f"{1000 * m['loaded_robot'].final_distance:.2f} |" in text.variant_table(run)
 
 
 def test_the_conclusions_follow_the_runs(run):
@@ -66,7 +66,7 @@ SPOILED = {
     "a hand that was moved": ("link_pos", in_archive(
         "beside_0", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01))),
     "a force of another gain": ("control_force", in_archive(
-        "stiff", lambda arrays: arrays["control_force_Nm_or_N"].__imul__(0.5))),
+        "stiff_robot", lambda arrays: arrays["control_force_Nm_or_N"].__imul__(0.5))),
     "a residual that was written": ("checks", metric("mixed", "row_0_m", 1.0)),
 }  # fmt: skip
 
