@@ -129,7 +129,7 @@ def conclusions(run: Experiment) -> str:
         f"Joint positions of a row and of the same run alone differ by up to {1e6 * apart:.2f} "
         "µrad (or µm of a finger).",
         *(
-            f"{spec.LABELS[name]}: the hand stops {mm(m[name].final_distance)} mm from its target."
+            f"The hand stops {mm(m[name].final_distance)} mm from its target ({spec.LABELS[name]})."
             for name in spec.VARIANTS
         ),
     ]
