@@ -80,10 +80,10 @@ def alone(run: Experiment) -> Figure:
 
 def judged(curves: Curves) -> Figure:
     """Draw distances from a target [mm] and the limit for them, on a logarithmic scale."""
-    figure = plotting.figure(3.2)
+    figure, limit = plotting.figure(3.2), 1000 * spec.REACHED[0]
     ax = plotting.failure(figure.subplots(), curves, "", "mm")
-    ax.axhline(1000 * spec.REACHED[0], **LINE)
-    ticks = 20, 50, 100, 200, 500
-    ax.set(yscale="log", yticks=ticks, yticklabels=ticks, ylabel="hand to target [mm]")
+    ax.axhline(limit, **LINE | {"linewidth": 2, "zorder": 1.6})
+    ax.set(yscale="log", ylabel="hand to target [mm]")
+    ax.set_yticks([limit, 50, 100, 200, 500], [f"limit {limit:g}", "50", "100", "200", "500"])
     ax.minorticks_off()
     return figure
