@@ -43,6 +43,7 @@ ACCEPTED = {
         for how in ("× 1.02", "× 0.98", "zero")
     },
     **{("l06", "internal_force", how): LOADED for how in ("× 1.02", "× 0.98", "zero", "sample")},
+    ("l06", "qd", "sample"): LOADED,
     (
         "l05",
         "internal_force",
