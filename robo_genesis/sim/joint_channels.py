@@ -37,7 +37,7 @@ def levels(traces: Mapping[str, Trace], joints: JointMap, joint: str, band: floa
     unit, effort = joints.position_units[k], joints.effort_units[k]
     values = {case: targets(trace, k) for case, trace in traces.items()}
     limit = {case: float(trace.effort_limit[k]) for case, trace in traces.items()}
-    texts = {case: one_by_one(found, unit, "\n") for case, found in values.items()}
+    texts = {case: one_by_one(found, unit, ",\n") for case, found in values.items()}
     limits = {case: (-value, value) for case, value in limit.items()}
     limit_texts = {case: f"±{with_unit(value, effort, 0)}" for case, value in limit.items()}
     legend = "Short dashes, at the edges of the control force: its limits."
@@ -62,6 +62,6 @@ def targets(trace: Trace, entry: int) -> tuple[float, ...]:
     return tuple(float(command[k]) for k in begins)
 
 
-def one_by_one(values: Sequence[float], unit: str, between: str = " ") -> str:
-    """Return values as text: `0.5 rad`, or `0.5 rad, then 0.7 rad` with a space or a new line."""
-    return f",{between}then ".join(with_unit(value, unit) for value in values)
+def one_by_one(values: Sequence[float], unit: str, between: str = ", then ") -> str:
+    """Return values in their order as text: `0.5 rad`, or `0.5 rad, then 0.7 rad`."""
+    return between.join(with_unit(value, unit) for value in values)

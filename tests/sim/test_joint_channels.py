@@ -53,7 +53,7 @@ def test_a_target_that_changes_is_shown_one_after_the_other(traces, joints):
     run = {"G2": replace(trace, target=command)}
     target, _ = levels(run, joints, STEPPED_JOINT, SETTLING_BAND)
     assert target.values["G2"] == (-1.75, -1.5)
-    assert target.texts["G2"] == "−1.7500 rad,\nthen −1.5000 rad"
+    assert target.texts["G2"] == "−1.7500 rad,\n−1.5000 rad"
     assert motion(run["G2"], joints, STEPPED_JOINT).endswith(
         "target −1.7500 rad, then −1.5000 rad."
     )
