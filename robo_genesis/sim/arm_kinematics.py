@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim.franka import LINK_PARENTS
 
 HALF = np.sqrt(0.5)
 
@@ -31,6 +33,9 @@ about its own z axis. The hand is fixed to the last of them.
 
 ARM = len(CHAIN) - 1
 """Number of joints of the arm."""
+
+HAND = LINK_PARENTS[-1]
+"""Index of the hand among the links of the arrays: the parent of both fingers."""
 
 
 class Pose(NamedTuple):
@@ -147,6 +152,18 @@ def pose_error(target: Pose, pose: Pose) -> FloatArray:
 def distances(error: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the lengths (…) [m] and (…) [rad] of both parts of pose errors (…, 6)."""
     return np.linalg.norm(error[..., :3], axis=-1), np.linalg.norm(error[..., 3:], axis=-1)
+
+
+def measured_hand(trace: Trace, state: int) -> Pose:
+    """Return the pose of the hand in a state of a run, as the engine reported it."""
+    quat = trace.link_quat[state, HAND].astype(np.float64)
+    return Pose(trace.link_pos[state, HAND].astype(np.float64), quat / np.linalg.norm(quat))
+
+
+def distance_and_angle(target: Pose, pose: Pose) -> tuple[float, float]:
+    """Return distance [m] and angle [rad] of a pose from another one."""
+    apart, angle = distances(pose_error(target, pose))
+    return float(apart), float(angle)
 
 
 def accepted(

@@ -1,7 +1,7 @@
 """Position control of a robot's joints: reset, command a target, step, record."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -52,15 +52,40 @@ def course_case(q_target: FloatArray, steps: int) -> ControlCase:
     return ControlCase(franka.Q_START, q_target, *gains, steps)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Controlled:
+    """A robot under position control. A lesson's case adds what it commands.
+
+    The arrays have one entry for each joint, by default the course's: `q_start` [rad or m], `kp`
+    [N·m/rad or N/m], `kv` [N·m·s/rad or N·s/m], `effort_limit` [N·m or N].
+    """
+
+    steps: int
+    q_start: FloatArray = field(default_factory=lambda: franka.Q_START)
+    kp: FloatArray = field(default_factory=lambda: franka.KP_BASELINE)
+    kv: FloatArray = field(default_factory=lambda: franka.KV_BASELINE)
+    effort_limit: FloatArray = field(default_factory=lambda: franka.EFFORT_LIMIT)
+    dt: float = DT
+    substeps: int = SUBSTEPS
+    seed: int = SEED
+
+    def commanding(self, q_target: FloatArray) -> ControlCase:
+        """Return the control case that commands joint positions (d,) or (n, d) [rad or m]."""
+        return ControlCase(
+            self.q_start, q_target, self.kp, self.kv, self.effort_limit,
+            self.steps, self.dt, self.substeps, self.seed,
+        )  # fmt: skip
+
+
 def differences(one: ControlCase, other: ControlCase, joints: JointMap) -> list[str]:
     """Name every field, and joint within it, in which two cases differ: `["kp[joint4]"]`."""
     found = []
-    for field in fields(ControlCase):
-        a, b = getattr(one, field.name), getattr(other, field.name)
+    for one_field in fields(ControlCase):
+        a, b = getattr(one, one_field.name), getattr(other, one_field.name)
         if np.ndim(a) == 0:
-            found += [field.name] if a != b else []
+            found += [one_field.name] if a != b else []
         else:
-            found += [f"{field.name}[{joints.names[k]}]" for k in np.flatnonzero(a != b)]
+            found += [f"{one_field.name}[{joints.names[k]}]" for k in np.flatnonzero(a != b)]
     return found
 
 

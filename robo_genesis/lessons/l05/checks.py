@@ -9,12 +9,10 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.common_checks import posture, stamps
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.lessons.l05.metrics import HAND, measured_hand
-from robo_genesis.lessons.l05.run import tolerances
 from robo_genesis.lessons.view_record import SEGMENTS, view_of
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_checks, mujoco_kinematics
-from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose
+from robo_genesis.sim.arm_kinematics import ARM, CHAIN, HAND, Pose, measured_hand
 from robo_genesis.sim.camera_checks import Marker
 from robo_genesis.sim.franka import JOINT_NAMES
 
@@ -33,7 +31,7 @@ def mapping(run: Experiment) -> Iterator[Finding]:
 
 
 def acceptance(run: Experiment) -> Iterator[Finding]:
-    found, limits = run.readings[study.GROUP], tolerances(spec.IK)
+    found, limits = run.readings[study.GROUP], spec.IK.tolerances
     yield at_most("residual_m", found["residual_m"], limits[0])
     yield at_most("residual_rad", found["residual_rad"], limits[1])
     for name in ("baseline", "kp_doubled"):

@@ -9,11 +9,9 @@ from robo_genesis.core.checks import Finding, at_most, below, equal
 from robo_genesis.core.exercises import as_test, same_array
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
-from robo_genesis.lessons.l05.metrics import measured_hand
-from robo_genesis.lessons.l05.run import tolerances
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_geometry as cameras
-from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose
+from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose, measured_hand
 
 CLOSE = 5e-6
 """Largest difference to a pose of the engine, which computes in float32 [m or rad]."""
@@ -116,7 +114,7 @@ ANSWERS: dict[str, tuple[tuple[float, ...], tuple[float, ...], bool]] = {
 def acceptance(accept: Callable[..., Any]) -> Iterator[Finding]:
     """Check `accept(q, error, position_tolerance, rotation_tolerance)` with invented answers."""
     for name, (q, error, right) in ANSWERS.items():
-        found = accept(np.array(q), np.array(error, dtype=float), *tolerances(spec.IK))
+        found = accept(np.array(q), np.array(error, dtype=float), *spec.IK.tolerances)
         yield equal(name, bool(found), right)
     yield equal("looser_tolerances", bool(accept(np.zeros(9), np.full(6, 0.1), 0.2, 0.2)), True)
 

@@ -11,11 +11,8 @@ import numpy as np
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05.run import ReachCase
-from robo_genesis.sim.arm_kinematics import Pose, distances, hand_pose, pose_error
+from robo_genesis.sim.arm_kinematics import HAND, Pose, distance_and_angle, hand_pose, measured_hand
 from robo_genesis.sim.franka import LINK_PARENTS
-
-HAND = LINK_PARENTS[-1]
-"""Index of the hand among the links of the arrays: the parent of both fingers."""
 
 MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
 
@@ -32,12 +29,6 @@ class ReachMetrics(CaseMetrics):
     final_distance: float = metric("m", "end to target", *MEASURED)
     final_angle: float = metric("rad", "end to target, angle", *MEASURED)
     final_speed: float = metric("rad/s", "speed of the fastest joint at the end", "qd_rad_s_or_m_s")
-
-
-def measured_hand(trace: Trace, state: int) -> Pose:
-    """Return the pose of the hand in a state of a run, as the engine reported it."""
-    quat = trace.link_quat[state, HAND].astype(np.float64)
-    return Pose(trace.link_pos[state, HAND].astype(np.float64), quat / np.linalg.norm(quat))
 
 
 def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
@@ -60,9 +51,3 @@ def reach_metrics(trace: Trace, case: ReachCase) -> ReachMetrics:
     for name, pair in pairs.items():
         found[f"{name}_distance"], found[f"{name}_angle"] = distance_and_angle(*pair)
     return ReachMetrics(**found)
-
-
-def distance_and_angle(target: Pose, pose: Pose) -> tuple[float, float]:
-    """Return distance [m] and angle [rad] of a pose from another one."""
-    apart, angle = distances(pose_error(target, pose))
-    return float(apart), float(angle)

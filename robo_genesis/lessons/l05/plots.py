@@ -9,11 +9,10 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
-from robo_genesis.lessons.l05.metrics import HAND
 from robo_genesis.lessons.l05.solutions_text import CRITERIA, chosen
 from robo_genesis.lessons.view_record import view_of
 from robo_genesis.sim import camera_geometry as cameras
-from robo_genesis.sim.arm_kinematics import ARM
+from robo_genesis.sim.arm_kinematics import ARM, HAND
 from robo_genesis.sim.franka import LINK_PARENTS
 
 AROUND = 45

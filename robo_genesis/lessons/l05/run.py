@@ -1,15 +1,21 @@
 """Reaches of L05: ask for joint positions, accept or refuse them, command them."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim import franka, mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, accepted, distances
-from robo_genesis.sim.joint_control import ControlCase, assign_postures, course_case, run_case
+from robo_genesis.sim.joint_control import (
+    ControlCase,
+    Controlled,
+    assign_postures,
+    course_case,
+    run_case,
+)
 from robo_genesis.sim.joints import JointMap
 from robo_genesis.sim.kinematics import IkAnswer, IkSettings, solve_ik
 
@@ -23,34 +29,17 @@ class NotAccepted(ValueError):  # noqa: N818 - read aloud: not accepted
 
 
 @dataclass(frozen=True, slots=True)
-class ReachCase:
-    """A target of the hand, the start, and the controller that brings the arm there.
+class ReachCase(Controlled):
+    """A target of the hand, and the controlled arm that is to reach it.
 
-    `position` (3,) [m] and `quat` (4,) are in the world; the other arrays have one entry for each
-    joint, by default the course's: `q_start` [rad or m], `kp` [N·m/rad or N/m], `kv` [N·m·s/rad or
-    N·s/m], `effort_limit` [N·m or N]. With `compensated`, each arm joint's command is gravity / KP
-    beyond the answer.
+    `position` (3,) [m] and `quat` (4,) are in the world. With `compensated`, each arm joint's
+    command is gravity / KP beyond the answer.
     """
 
     position: FloatArray
     quat: FloatArray
     settings: IkSettings
-    steps: int
-    q_start: FloatArray = field(default_factory=lambda: franka.Q_START)
-    kp: FloatArray = field(default_factory=lambda: franka.KP_BASELINE)
-    kv: FloatArray = field(default_factory=lambda: franka.KV_BASELINE)
-    effort_limit: FloatArray = field(default_factory=lambda: franka.EFFORT_LIMIT)
     compensated: bool = False
-    dt: float = DT
-    substeps: int = SUBSTEPS
-    seed: int = SEED
-
-    def commanding(self, q_target: FloatArray) -> ControlCase:
-        """Return the control case that commands joint positions (d,) [rad or m]."""
-        return ControlCase(
-            self.q_start, q_target, self.kp, self.kv, self.effort_limit,
-            self.steps, self.dt, self.substeps, self.seed,
-        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,11 +66,6 @@ class SolveCase:
         return replace(course_case(franka.Q_START, self.steps), dt=self.dt)
 
 
-def tolerances(settings: IkSettings) -> tuple[float, float]:
-    """Return the largest accepted residuals of position [m] and rotation [rad]."""
-    return settings.position_tolerance, settings.rotation_tolerance
-
-
 def ask(robot: Any, joints: JointMap, case: ReachCase) -> IkAnswer:
     """Return the engine's answer for the target of a case; the fingers stay at its start."""
     pose = case.position, case.quat
@@ -95,7 +79,7 @@ def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:
         NotAccepted: the answer is not finite, or a residual is beyond its tolerance; the message
             gives both residuals and both tolerances.
     """
-    limits = tolerances(case.settings)
+    limits = case.settings.tolerances
     if not accepted(answer.q, answer.error, *limits):
         apart, angle = distances(answer.error)
         raise NotAccepted(

@@ -9,12 +9,11 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment, Readings, counts
 from robo_genesis.lessons.l05 import spec
-from robo_genesis.lessons.l05.metrics import measured_hand
-from robo_genesis.lessons.l05.run import END_EFFECTOR, SolveCase, ask, tolerances
+from robo_genesis.lessons.l05.run import END_EFFECTOR, SolveCase, ask
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import kinematics as engine
 from robo_genesis.sim import mujoco_kinematics
-from robo_genesis.sim.arm_kinematics import ARM, Pose
+from robo_genesis.sim.arm_kinematics import ARM, Pose, measured_hand
 from robo_genesis.sim.joint_control import reset
 from robo_genesis.sim.joints import JointMap, to_numpy
 
@@ -89,7 +88,7 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
     error = kinematics.pose_error(Pose(case.positions, case.quat), poses)
     q = trace.q[1:].astype(np.float64)
     apart, angle = kinematics.distances(error)
-    accepted = kinematics.accepted(q, error, *tolerances(case.settings))
+    accepted = kinematics.accepted(q, error, *case.settings.tolerances)
     found = {"position": apart, "rotation": angle, "accepted": accepted}
     return found | qualities(q[:, :ARM], trace.q[0, :ARM])
 

@@ -10,7 +10,6 @@ from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
 from robo_genesis.lessons.l05.metrics import ReachMetrics
-from robo_genesis.lessons.l05.run import tolerances
 from robo_genesis.lessons.view_record import SEGMENTS, view_of
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_geometry as cameras
@@ -116,7 +115,7 @@ def conclusions(run: Experiment) -> str:
     m, ik = run.metrics, run.readings[study.GROUP]
     base = m["baseline"]
     residuals = ik["residual_m"], ik["residual_rad"]
-    accepted = all(np.less_equal(residuals, tolerances(spec.IK)))
+    accepted = all(np.less_equal(residuals, spec.IK.tolerances))
     lines = [
         f"The answer of the solver is {'accepted' if accepted else 'refused'}: its residual is "
         f"{1000 * residuals[0]:.3f} mm and {1000 * residuals[1]:.4f} mrad.",

@@ -8,11 +8,8 @@ from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06.run import World
-from robo_genesis.sim.arm_kinematics import Pose, distances, hand_pose, pose_error
+from robo_genesis.sim.arm_kinematics import HAND, Pose, distance_and_angle, hand_pose, measured_hand
 from robo_genesis.sim.franka import LINK_PARENTS
-
-HAND = LINK_PARENTS[-1]
-"""Index of the hand among the links of the arrays: the parent of both fingers."""
 
 MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
 
@@ -38,12 +35,6 @@ class WorldMetrics(CaseMetrics):
     )
 
 
-def measured_hand(trace: Trace, state: int) -> Pose:
-    """Return the pose of the hand in a state of a run, as the engine reported it."""
-    quat = trace.link_quat[state, HAND].astype(np.float64)
-    return Pose(trace.link_pos[state, HAND].astype(np.float64), quat / np.linalg.norm(quat))
-
-
 def world_metrics(trace: Trace, world: World) -> WorldMetrics:
     """Measure the run of one environment.
 
@@ -56,24 +47,18 @@ def world_metrics(trace: Trace, world: World) -> WorldMetrics:
             f"{len(LINK_PARENTS)} of the robot and {world.switch} steps or more."
         )
     first, last = (Pose(world.positions[k], world.quat) for k in (0, -1))
-    command, angle = apart(last, hand_pose(trace.target[-1]))
-    final, final_angle = apart(last, measured_hand(trace, -1))
+    command, angle = distance_and_angle(last, hand_pose(trace.target[-1]))
+    final, final_angle = distance_and_angle(last, measured_hand(trace, -1))
     later = trace.link_pos[world.switch :, HAND].astype(np.float64)
     return WorldMetrics(
-        start_distance=apart(first, measured_hand(trace, 0))[0],
+        start_distance=distance_and_angle(first, measured_hand(trace, 0))[0],
         residual=command,
         residual_angle=angle,
-        first_distance=apart(first, measured_hand(trace, world.switch))[0],
+        first_distance=distance_and_angle(first, measured_hand(trace, world.switch))[0],
         final_distance=final,
         final_angle=final_angle,
         moved_later=farthest(later) if len(later) > 1 else None,
     )
-
-
-def apart(target: Pose, pose: Pose) -> tuple[float, float]:
-    """Return distance [m] and angle [rad] between two poses."""
-    distance, angle = distances(pose_error(target, pose))
-    return float(distance), float(angle)
 
 
 def farthest(positions: FloatArray) -> float:

@@ -12,8 +12,8 @@ from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import spec
-from robo_genesis.lessons.l06.metrics import HAND
 from robo_genesis.lessons.l06.run import World
+from robo_genesis.sim.arm_kinematics import HAND
 from robo_genesis.sim.franka import LINK_PARENTS
 
 FLOOR = 1e-9

@@ -1,17 +1,17 @@
 """Runs of L06: ask, accept and command all environments of a scene, or some of them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim import franka
 from robo_genesis.sim.arm_kinematics import ARM, accepted
 from robo_genesis.sim.batch import Batch
-from robo_genesis.sim.joint_control import ControlCase
+from robo_genesis.sim.joint_control import Controlled
 from robo_genesis.sim.joints import JointMap
 from robo_genesis.sim.kinematics import IkAnswer, IkSettings, solve_ik
 
@@ -25,35 +25,18 @@ class NotAccepted(ValueError):  # noqa: N818 - read aloud: not accepted
 
 
 @dataclass(frozen=True, slots=True)
-class World:
-    """One environment: the targets of its hand in their order, its start, controller and load.
+class World(Controlled):
+    """One environment: the targets of its hand in their order, its controlled arm, and its load.
 
-    `positions` (p, 3) [m] and `quat` (4,) are in the world; the other arrays have one entry for
-    each joint, by default the course's: `q_start` [rad or m], `kp` [N·m/rad or N/m], `kv`
-    [N·m·s/rad or N·s/m], `effort_limit` [N·m or N]. A second target is commanded after `switch` of
-    the `steps`. `load` is added to the mass of the hand [kg].
+    `positions` (p, 3) [m] and `quat` (4,) are in the world. A second target is commanded after
+    `switch` of the `steps`. `load` is added to the mass of the hand [kg].
     """
 
     positions: FloatArray
     quat: FloatArray
     settings: IkSettings
-    steps: int
     switch: int
-    q_start: FloatArray = field(default_factory=lambda: franka.Q_START)
-    kp: FloatArray = field(default_factory=lambda: franka.KP_BASELINE)
-    kv: FloatArray = field(default_factory=lambda: franka.KV_BASELINE)
-    effort_limit: FloatArray = field(default_factory=lambda: franka.EFFORT_LIMIT)
     load: float = 0.0
-    dt: float = DT
-    substeps: int = SUBSTEPS
-    seed: int = SEED
-
-    def commanding(self, q_target: FloatArray) -> ControlCase:
-        """Return the control case that commands joint positions (d,) or (n, d) [rad or m]."""
-        return ControlCase(
-            self.q_start, q_target, self.kp, self.kv, self.effort_limit,
-            self.steps, self.dt, self.substeps, self.seed,
-        )  # fmt: skip
 
 
 def ask(

@@ -50,7 +50,7 @@ BEYOND_REACH = read_only((2.0, 0.0, 2.0))
 MIXED = read_only([TARGETS[0], TARGETS[1], BEYOND_REACH, TARGETS[3]])
 """Targets of which one is refused [m]."""
 
-FIRST = World(TARGETS[:1], DOWN, IK, STEPS, SWITCH)
+FIRST = World(TARGETS[:1], DOWN, IK, SWITCH, steps=STEPS)
 ENVS = tuple(range(len(TARGETS)))
 """Numbers of the environments."""
 
@@ -112,7 +112,7 @@ MARKER_RADIUS = 0.03
 """Radius of the spheres that mark targets in the replay [m]."""
 
 VIEW = CAMERA | {"pos": (3.1, -1.7, 1.7), "lookat": (0.7, 0.45, 0.3), "fov": 32}
-"""The lesson's camera: all environments, apart from each other. The engine places it in the world
+"""The lesson's camera: all environments, side by side. The engine places it in the world
 of environment 0, which pictures show at a corner of the group."""
 
 RELATIONS = (

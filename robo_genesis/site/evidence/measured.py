@@ -61,8 +61,8 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
             thousandth of the metric's unit; then the value has three digits.
 
     Raises:
-        LookupError: there is no such metric, and the message lists the known ones; or it has no
-            value in this unit.
+        LookupError: the page has no metric of this name, and the message lists its metrics; or the
+            metric has no value in this unit.
         BundleRefused: the bundle cannot be read.
     """
     folder = page_outputs(lesson_page) / BACKEND

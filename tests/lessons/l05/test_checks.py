@@ -9,9 +9,10 @@ from lessons.changed_runs import failed, with_reading, with_trace
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import plausibility, spec, study
-from robo_genesis.lessons.l05.metrics import HAND, reach_metrics
+from robo_genesis.lessons.l05.metrics import reach_metrics
 from robo_genesis.lessons.l05.run import NotAccepted, control_case
 from robo_genesis.sim import arm_kinematics as kinematics
+from robo_genesis.sim.arm_kinematics import HAND
 from robo_genesis.sim.kinematics import IkAnswer
 
 

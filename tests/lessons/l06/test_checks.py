@@ -8,8 +8,9 @@ from lessons.changed_runs import failed, with_reading, with_trace
 
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.lessons.l06 import plausibility, spec
-from robo_genesis.lessons.l06.metrics import HAND, world_metrics
+from robo_genesis.lessons.l06.metrics import world_metrics
 from robo_genesis.lessons.l06.run import NotAccepted, commands
+from robo_genesis.sim.arm_kinematics import HAND
 from robo_genesis.sim.kinematics import IkAnswer
 
 PLAIN, STIFF, LOADED, _ = spec.VARIANTS
