@@ -168,7 +168,7 @@ def asked_number(
     value = 1000 * record.value if unit else record.value
     return {
         "value": value, "tolerance": abs(value) * percent / 100,
-        "unit": unit or record.unit.replace("1", ""), "feedback": feedback,
+        "unit": unit or ("" if record.unit == "1" else record.unit), "feedback": feedback,
         "answer": f"{text}; answers within {percent} % count as right.", "origin": origin,
     }  # fmt: skip
 

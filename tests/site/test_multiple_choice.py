@@ -162,7 +162,7 @@ def test_the_right_number_is_the_bundle_s(outputs, experiment):
     assert small["value"] == pytest.approx(1000 * value)
     assert small["tolerance"] == pytest.approx(200 * value)
     assert (small["unit"], small["answer"][:9]) == ("mrad", f"{1000 * value:.3g} mrad")
-    with pytest.raises(LookupError, match="without a value in mm"):
+    with pytest.raises(LookupError, match=r"cannot be shown in 'mm'\. Valid is mrad"):
         asked_number("l04/lab", "G2.overshoot", 20, {}, "mm")
 
 

@@ -5,7 +5,7 @@ Roles and a directive, as pages write them:
 | in a page | shows |
 |---|---|
 | {measured}`l04/lab G2.overshoot` | a metric, written with its unit |
-| {measured}`l06/lab plain.final_distance mm` | the same in the thousandth of its unit |
+| {measured}`l04/lab G2.overshoot mrad` | the same in the thousandth of its unit |
 | {measured}`l04/lab engine` | the engine version that the page ran on |
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
@@ -82,7 +82,10 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     if not unit:
         text = str(value) if group == "model" else format_value(value, given)
     elif value is None or SCALED.get(given) != unit:
-        raise LookupError(f"{lesson_page} has {name} in {given}, without a value in {unit}.")
+        raise LookupError(
+            f"{lesson_page} has {name} = {value} in {given}, which cannot be shown in {unit!r}. "
+            f"Valid is {SCALED.get(given, 'no other unit')}, for a value that was measured."
+        )
     else:
         text = f"{1000 * value:.3g} {unit}"
     return text, f"{origin}, from {', '.join(record.source)}"
