@@ -158,7 +158,7 @@ class LessonPage:
             glue(f"evidence_{failure.name}", Markdown(failure.evidence), display=False)
             if failure.curves:
                 figure = plotting.figure(2.9)
-                ax = plotting.failure(figure.subplots(), failure.curves, "", failure.unit)
+                ax = plotting.failure(figure.subplots(), failure.curves, failure.quantity)
                 ax.set_xlabel(failure.axis)
                 glue(f"curves_{failure.name}", figure, display=False)
 

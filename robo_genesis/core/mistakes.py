@@ -15,15 +15,15 @@ class Failure:
     """The result of one deliberate mistake.
 
     `shown` is whether its symptom appeared; `evidence` describes the measurement in either case;
-    `curves` by label are two arrays (n,), along `axis` and up, in `unit`: by default time [s] and
-    position [m].
+    `curves` by label are two arrays (n,); `axis` and `quantity` name what is drawn to the right and
+    what is drawn upwards, with their units.
     """
 
     name: str
     shown: bool
     evidence: str
     curves: Curves = field(default_factory=dict)
-    unit: str = "m"
+    quantity: str = "position [m]"
     axis: str = "time [s]"
 
     @property

@@ -136,11 +136,11 @@ def first_channel(ax: Axes, runs: Runs, marks: Mapping[str, str]) -> Axes:
     return channel(ax, runs.t, first, runs.subject, marks, runs.levels_of(first))
 
 
-def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], title: str, unit: str) -> Axes:
-    """Draw the positions of a failure over time: one curve or two, the mistake first."""
+def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], quantity: str) -> Axes:
+    """Draw a quantity, named with its unit, of a failure: one curve or two, the mistake first."""
     for number, (label, (t, q)) in enumerate(curves.items()):
         ax.plot(t, q, label=label, **look(("other", "baseline")[number]))
-    return finish(ax, title, f"position [{unit}]", "best")
+    return finish(ax, "", quantity, "best")
 
 
 def frames(axes: Sequence[Axes], pictures: Mapping[str, np.ndarray]) -> Sequence[Axes]:

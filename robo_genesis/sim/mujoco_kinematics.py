@@ -80,12 +80,11 @@ def gravity_effort(q: FloatArray, load: float = 0.0) -> FloatArray:
 
     model, data, q_at, dof_at = bare_robot()
     data.qpos[q_at], data.qvel[:] = q, 0.0
-    hand, own = model.body("hand").id, model.body("hand").mass[0]
-    model.body_mass[hand] = own + load
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     mujoco.mj_comVel(model, data)
-    effort = np.zeros(model.nv)
+    effort, rows = np.zeros(model.nv), np.zeros((3, model.nv))
     mujoco.mj_rne(model, data, 0, effort)
-    model.body_mass[hand] = own
+    mujoco.mj_jacBodyCom(model, data, rows, None, model.body("hand").id)
+    effort -= load * model.opt.gravity @ rows
     return np.asarray(effort[dof_at])

@@ -50,11 +50,11 @@ T = np.arange(3) * 0.01
 
 def test_a_failure_draws_each_of_its_curves(ax):
     given = {"wrong": (T, T + 1), "right": (T, T + 2)}
-    assert plotting.failure(ax, given, "", "m") is ax
+    assert plotting.failure(ax, given, "distance [mm]") is ax
     assert legend(ax) == list(curves(ax)) == list(given)
     for label, points in curves(ax).items():
         assert np.array_equal(points, np.column_stack(given[label]))
-    assert ax.get_ylabel() == "position [m]"
+    assert ax.get_ylabel() == "distance [mm]"
 
 
 def test_equal_arrays_and_no_others_give_the_same_bytes(monkeypatch):
@@ -62,7 +62,7 @@ def test_equal_arrays_and_no_others_give_the_same_bytes(monkeypatch):
 
     def draw(position):
         figure, stream = Figure(), io.BytesIO()
-        plotting.failure(figure.subplots(), {"wrong": (T, position)}, "", "m")
+        plotting.failure(figure.subplots(), {"wrong": (T, position)}, "position [m]")
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
         return stream.getvalue()
 

@@ -79,7 +79,7 @@ def single_sample_stop(trace: ContactTrace, case: ContactCase) -> Failure:
             f"cube moves at up to {later:.2f} m/s. By the rule with a hold it stops {when}."
         ),
         curves={"speed along x": (trace.t, speed)},
-        unit="m/s",
+        quantity="velocity [m/s]",
     )
 
 

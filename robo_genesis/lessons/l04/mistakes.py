@@ -59,7 +59,7 @@ def wrong_index(scene: Any, robot: Any, joints: JointMap, case: ControlCase, joi
             f"{joint}, meant": (t, q[:, k]),
             f"{joints.names[other]}, moved most": (t, q[:, other]),
         },
-        unit=joints.position_units[k],
+        quantity=f"position [{joints.position_units[k]}]",
     )
 
 
@@ -92,7 +92,7 @@ def past_a_limit(
             f"The course's validation before a run: {quoted(refusal)}"
         ),
         curves={"commanded past its limit": (np.arange(len(q)) * case.dt, q)},
-        unit=joints.position_units[k],
+        quantity=f"position [{joints.position_units[k]}]",
     )
 
 
@@ -181,7 +181,7 @@ def assigned_each_step(
             f"{format_value(needed, unit)}; `get_dofs_velocity` reads {format_value(read, unit)}."
         ),
         curves={"assigned before each step": (np.arange(len(q)) * case.dt, q)},
-        unit=joints.position_units[k],
+        quantity=f"position [{joints.position_units[k]}]",
     )
 
 
@@ -208,7 +208,7 @@ def stale_target(
             f"first command to stay, it moved {in_unit(kept, joints, k)} in as many steps."
         ),
         curves={"position restored, no command": (t, stale), "complete reset": (t, fresh)},
-        unit=joints.position_units[k],
+        quantity=f"position [{joints.position_units[k]}]",
     )
 
 
@@ -238,7 +238,7 @@ def gains_without_reset(
             "no reset": (np.arange(len(q)) * second.dt, q),
             "after a reset": (fair.t, fair.q[:, k]),
         },
-        unit=joints.position_units[k],
+        quantity=f"position [{joints.position_units[k]}]",
     )
 
 

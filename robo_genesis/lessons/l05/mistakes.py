@@ -66,7 +66,8 @@ def unaccepted_answer(scene: Any, robot: Any, joints: JointMap, case: ReachCase)
         f"{1000 * behind:.1f} mrad of its command. The hand starts {apart[0]:.2f} m from its "
         f"target and ends {apart[-1]:.2f} m from it."
     )
-    return Failure("unaccepted_answer", shown, text, {"hand to target": (trace.t, apart)})
+    curves = {"hand to target": (trace.t, apart)}
+    return Failure("unaccepted_answer", shown, text, curves, "distance [m]")
 
 
 def degrees(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Failure:
