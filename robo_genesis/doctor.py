@@ -3,8 +3,10 @@
     python -m robo_genesis.doctor                a table for the terminal
     python -m robo_genesis.doctor --json         the same facts for a bug report
     python -m robo_genesis.doctor --like BUNDLE  and what differs from the machine of a recorded run
+    python -m robo_genesis.doctor --like BUNDLE --report FILE    no steps: FILE has an older report
 
-A bundle is a folder, or an archive as the ledger of the site offers it.
+A bundle is a folder, or an archive as the ledger of the site offers it. A report is a file that
+`--json` wrote, on this machine or another.
 Exit status: 0 all steps pass, 1 one is broken, 2 the command was not understood.
 """
 
@@ -20,6 +22,7 @@ import textwrap
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from pathlib import Path
 
 from robo_genesis.core import project
 from robo_genesis.core.project import OUTPUTS_DIR
@@ -27,7 +30,7 @@ from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.sim.diagnosis import STEPS, Bench, Finding, examine, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
-REPORT_FORMAT = 2
+REPORT_FORMAT = 3
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 
 
@@ -59,6 +62,7 @@ def report(findings: Sequence[Finding], bench: Bench) -> str:
         "ok": all(f.state == "ok" for f in findings),
         "broken": next((f.step for f in findings if f.state == "broken"), None),
         "steps": [asdict(f) for f in findings],
+        "machine": machine(bench),
         "versions": {"python": platform.python_version()}
         | {name: project.installed_version(name) for name in PACKAGES},
         "platform": {
@@ -110,6 +114,24 @@ def recorded_machine(bundle: str) -> dict[str, str]:
     }
 
 
+def reported_machine(file: str) -> dict[str, str]:
+    """Return the same facts from a report.
+
+    Raises:
+        ValueError: the file cannot be read, or is no report of this format.
+    """
+    try:
+        report = json.loads(Path(file).read_text("utf8"))
+        if report["format"] != REPORT_FORMAT:
+            raise ValueError(f"its format is {report['format']!r}, expected {REPORT_FORMAT}.")
+        return {str(name): str(value) for name, value in report["machine"].items()}
+    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+        raise ValueError(
+            f"{file!r} is no report of the doctor: {type(error).__name__}: {error} Write one with "
+            "python -m robo_genesis.doctor --json > report.json"
+        ) from error
+
+
 def differences(here: Mapping[str, str], recorded: Mapping[str, str]) -> list[str]:
     """Return a line for each fact: equal, or both values."""
     lines = [f"{'':10} {'recorded':30} here"]
@@ -135,13 +157,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--json", action="store_true", help="a report for a bug, on stdout")
     parser.add_argument("--like", metavar="BUNDLE", help="compare with the machine of this run")
+    parser.add_argument("--report", metavar="FILE", help="compare this report, run no step")
     options = parser.parse_args(arguments)
     if options.json and options.like:
-        parser.error("--json and --like do not go together: compare in one call, report in another")
+        parser.error(
+            "--json and --like do not go together. Write the report to a file, and compare it with "
+            "--like BUNDLE --report FILE"
+        )
+    if options.report and not options.like:
+        parser.error("--report needs --like BUNDLE, the run to compare with")
     try:
         recorded = recorded_machine(options.like) if options.like else {}
-    except (BundleRefused, zipfile.BadZipFile) as error:
+        reported = reported_machine(options.report) if options.report else {}
+    except (BundleRefused, zipfile.BadZipFile, ValueError) as error:
         parser.error(printable(str(error)))
+    if options.report:
+        print(*map(printable, differences(reported, recorded)), sep="\n")
+        return 0
     print(f"{len(STEPS)} steps; the first start of the engine takes minutes", file=sys.stderr)
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
         # Without it, the outputs would go to the working directory.

@@ -177,9 +177,9 @@ def test_the_report_has_stable_fields_and_versions(steps_run, capsys, monkeypatc
     monkeypatch.setattr(project, "installed_version", lambda package: "0.0.1")
     main(["--json"])
     found = json.loads(capsys.readouterr().out)
-    fields = "format ok broken steps versions platform environment warnings"
+    fields = "format ok broken steps machine versions platform environment warnings"
     assert list(found) == fields.split()
-    assert found["format"] == doctor.REPORT_FORMAT == 2
+    assert found["format"] == doctor.REPORT_FORMAT == 3
     assert found["versions"]["genesis-world"] == "0.0.1"
     assert set(found["platform"]) == {"system", "release", "machine", "cpus"}
 
@@ -234,7 +234,9 @@ def test_the_table_is_aligned_and_fits_80_columns():
     assert lines[-1] == "DOCTOR: step 2, longer_name, is broken; fix it and run this again"
 
 
-def test_two_machines_are_compared_field_by_field(steps_run, capsys, monkeypatch, pristine):
+def test_two_machines_are_compared_field_by_field(
+    steps_run, capsys, monkeypatch, pristine, tmp_path
+):
     monkeypatch.setattr(project, "require_pinned_engine", fail)  # the engine does not start
     recorded = doctor.recorded_machine(str(pristine))
     assert list(recorded) == [
@@ -251,6 +253,13 @@ def test_two_machines_are_compared_field_by_field(steps_run, capsys, monkeypatch
     rows = {line.split()[0]: line for line in lines[1 : 1 + len(recorded)]}
     assert list(rows) == list(recorded)
     assert rows["backend"].endswith("unknown: the engine did not start")
+
+    assert main(["--json"]) == 1
+    saved, ran = tmp_path / "report.json", [*steps_run]
+    saved.write_text(capsys.readouterr().out, "utf8")
+    assert main(["--like", str(pristine), "--report", str(saved)]) == 0
+    assert capsys.readouterr().out.splitlines() == lines
+    assert steps_run == ran  # a saved report needs no step
 
 
 @pytest.mark.parametrize(
@@ -276,11 +285,19 @@ def test_the_advice_is_about_the_difference_that_matters_most(here, advice):
     [
         (["--like", "nowhere"], "'nowhere' is neither a folder nor a zip archive"),
         (["--json", "--like", "nowhere"], "--json and --like do not go together"),
+        (["--report", "absent.json"], "--report needs --like BUNDLE"),
+        (["--like", "BUNDLE", "--report", "absent.json"], "'absent.json' is no report"),
+        (["--like", "BUNDLE", "--report", "old.json"], "its format is 2, expected 3"),
+        (["--like", "BUNDLE", "--report", "list.json"], "'list.json' is no report"),
     ],
 )
 def test_a_comparison_with_nothing_is_refused_before_the_first_step(
-    steps_run, capsys, arguments, words
+    steps_run, capsys, monkeypatch, tmp_path, pristine, arguments, words
 ):
+    monkeypatch.chdir(tmp_path)
+    Path("old.json").write_text('{"format": 2}')
+    Path("list.json").write_text("[]")
+    arguments = [str(pristine) if word == "BUNDLE" else word for word in arguments]
     with pytest.raises(SystemExit) as ended:
         main(arguments)
     assert ended.value.code == 2

@@ -6,7 +6,7 @@ import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from importlib.metadata import PackageNotFoundError, distributions, version
+from importlib.metadata import PackageNotFoundError, distributions, requires, version
 from pathlib import Path
 
 from packaging.requirements import Requirement
@@ -72,11 +72,16 @@ class ProjectError(Exception):
     """A command cannot do its work; the message is the whole report and says what to do."""
 
 
+def in_checkout() -> bool:
+    """Whether this package lies in a checkout; an installed wheel has no pyproject.toml."""
+    return (ROOT / "pyproject.toml").is_file()
+
+
 def engine_pin(root: Path = ROOT) -> str:
-    """Return the engine version that pyproject.toml pins.
+    """Return the engine version that pyproject.toml pins, or the metadata of an installed wheel.
 
     Args:
-        root: the checkout.
+        root: the checkout, or the folder of the installed package.
 
     Returns:
         The version X of the dependency `genesis-world==X`.
@@ -86,7 +91,15 @@ def engine_pin(root: Path = ROOT) -> str:
             exact version.
     """
     try:
-        requirements = _requirements((root / "pyproject.toml").read_text("utf8"))
+        if root == ROOT and not in_checkout():
+            requirements = [Requirement(line) for line in requires(COURSE) or ()]
+        else:
+            requirements = _requirements((root / "pyproject.toml").read_text("utf8"))
+    except PackageNotFoundError as error:
+        raise ProjectError(
+            f"{ROOT} has neither a pyproject.toml nor an installed {COURSE}. Install the course's "
+            "wheel with pip, or use a checkout."
+        ) from error
     except (KeyError, ValueError) as error:  # InvalidRequirement is a ValueError
         raise ProjectError(
             f"{root / 'pyproject.toml'} cannot be read: {error}\n"
@@ -152,9 +165,12 @@ def require_pinned_engine(root: Path = ROOT) -> str:
     """
     pin, installed = engine_pin(root), installed_version(ENGINE)
     if installed != pin:
+        found = f"Installed is {ENGINE} {installed or '(none)'}, "
+        if not in_checkout():
+            raise ProjectError(f"{found}the course needs {pin}. Run pip install {ENGINE}=={pin}.")
         raise ProjectError(
-            f"Installed is {ENGINE} {installed or '(none)'}, pinned in pyproject.toml is {pin}. "
-            "Install the lock (pip install -r requirements.lock), or change pin and lock together."
+            f"{found}pinned in pyproject.toml is {pin}. Install the lock (pip install -r "
+            "requirements.lock), or change pin and lock together."
         )
     return pin
 

@@ -79,8 +79,9 @@ def libraries(bench: Bench) -> str:
 def backend(bench: Bench) -> str:
     """The environment variables are valid, and the engine starts on the requested backend."""
     bench.contract = session.read_contract(bench.environ)
-    for name, value in project.engine_cache_environment().items():
-        os.environ.setdefault(name, value)  # reuse the kernels that `make book` compiled
+    if project.in_checkout():
+        for name, value in project.engine_cache_environment().items():
+            os.environ.setdefault(name, value)  # reuse the kernels that `make book` compiled
     bench.engine = session.start(bench.contract)
     found = bench.engine.backend
     return f"asked for {found.requested}, found {found.actual} ({found.device_name})"

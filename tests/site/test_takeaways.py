@@ -1,5 +1,9 @@
 import csv
 import io
+import json
+import os
+import subprocess
+import sys
 import zipfile
 from contextlib import nullcontext
 from email import message_from_bytes
@@ -17,6 +21,16 @@ from robo_genesis.site.takeaways.repository import codespace, require_address
 from robo_genesis.site.takeaways.wheel import build_wheel, built_wheel
 
 LINKS = ["link0", "link4", "hand"]
+UP_TO_THE_ENGINE = """
+from robo_genesis import doctor
+from robo_genesis.sim import session
+
+def start(contract):
+    raise OSError("the engine would start now")
+
+session.start = start
+doctor.main(["--json"])
+"""
 
 
 @pytest.fixture
@@ -68,6 +82,21 @@ def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
         if path.is_file() and path.suffix not in (".pyc", ".tmpl")
     }
     assert {name for name in names if not name.startswith("robo_genesis-")} == files
+
+
+def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path):
+    """The metadata of the wheel has the pin; an unpacked wheel is what pip installs."""
+    home, installed = tmp_path / "home", tmp_path / "installed"
+    home.mkdir()
+    with zipfile.ZipFile(build_wheel(tmp_path)) as wheel:
+        wheel.extractall(installed)
+    given = os.environ | {"PYTHONPATH": str(installed)}
+    command = [sys.executable, "-c", UP_TO_THE_ENGINE]
+    done = subprocess.run(command, cwd=home, env=given, capture_output=True, text=True, check=False)
+    version, libraries, backend = json.loads(done.stdout)["steps"][:3]
+    assert f"genesis-world {project.engine_pin()}, as pinned" in version["found"]
+    assert libraries["state"] == "ok"
+    assert "the engine would start now" in backend["found"]
 
 
 def test_the_wheel_names_the_repository_that_is_configured(tmp_path):
