@@ -1,8 +1,5 @@
-# `make` lists the targets. Overrides: RENDER=0|1 (default 1), RELEASE=0|1 (default 0), JOBS=n,
-# PORT=8000, EXECUTE=0|1 (live), BUNDLE=path (verify), GENESIS=version (repin), SITE_URL=address,
-# SOLUTIONS=0|1 (default 1) and EXECUTED=folder (book), PAGE=page and TO=folder (execute), LESSON=name, BACKEND=name and TO=folder (evidence), LESSON=name (evidence-rocm),
-# OLD=path, NEW=path and REPORT=folder (compare), FIRST=folder and SECOND=folder (agree), NEW=name (lesson), ROWS=names and RUNS=n (bench),
-# PYTHON=path (an existing environment, for example one with ROCm's Torch, instead of .venv).
+# `make` lists the targets. Variables: see CONTRIBUTING.md, "Settings of a build", and the lines of the
+# targets.
 
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
@@ -71,7 +68,7 @@ evidence: $(ENVIRONMENT) ## record all labs here, or one (BACKEND=amdgpu|cuda|cp
 # The container has the packages; the host needs Python alone. LESSON reaches the script as an
 # environment variable.
 .PHONY: evidence-rocm
-evidence-rocm: ## record a lab in a container with ROCm, on an AMD GPU (LESSON=l04; docker or podman)
+evidence-rocm: ## record all labs, or one, in a container with ROCm (LESSON=l04; docker or podman)
 	@"$(BASE_PYTHON)" build_scripts/evidence_rocm.py
 
 .PHONY: verify
@@ -98,7 +95,8 @@ test-all: $(ENVIRONMENT) ## run the slow tests too: empty environments, a change
 # codespell looks up what its expression finds: here the entries of our list, phrases included. It
 # leaves out names of files and attributes, "there is no", "is no longer" and "stand still".
 WORDS = (?<![./-])(?<!here )(?:$$(sed 's/->.*//; s/^[a-z]/\\b[&\U&]/' .words.txt | sort -r | paste -sd '|'))\b(?! longer| more| still|[.]\w)
-PROSE := robo_genesis build_scripts README.md CONTRIBUTING.md CHANGELOG.md book/_decisions
+# codespell reads a hidden folder only if the names that it gets are inside.
+PROSE := book robo_genesis build_scripts *.md LICENSE pyproject.toml .ci/* .github/* .rocm/*
 
 .PHONY: lint
 lint: $(ENVIRONMENT) ## ruff, mypy, import contracts, codespell, sizes of pages and the schemas of .github

@@ -2,10 +2,9 @@
 
 Environment: RENDER=0|1 (default 1: the labs' camera is used), JOBS (pages at once; default one
 for each core), RELEASE=0|1 (1: this script runs again in a fresh checkout of HEAD, and all required
-evidence must be current),
-SITE_URL (the address of the published site), SOLUTIONS=0|1 (default 1; 0: the site has no solutions
-and answers) and EXECUTED (a folder with all pages as
-`make execute` exports them: then none is executed here).
+evidence must be `verified`), SITE_URL (the address of the published site), SOLUTIONS=0|1 (default
+1; 0: the site has no solutions and answers) and EXECUTED (a folder with all pages as `make execute`
+exports them: then none is executed here).
 Backend is always the CPU; `make evidence` records accelerators.
 If nothing changed since the last build, it says so and ends, unless RELEASE=1.
 Exit status: 0 published, 1 failed, 130 interrupted; unless it is 0, the old site is unchanged.

@@ -1,6 +1,7 @@
-"""Record a lab's evidence in a container with ROCm: `make evidence-rocm LESSON=l04`.
+"""Record labs in a container with ROCm: `make evidence-rocm`.
 
-Environment: LESSON (which lab), and the switches of engine and drivers, which are passed on.
+Environment: LESSON (one lab; unset, all labs without an accepted bundle), and the switches of
+engine and drivers, which are passed to the container.
 It builds the image of `.rocm/Dockerfile` and runs `make evidence BACKEND=amdgpu` in it, on this
 checkout.
 Exit status: 0 recorded, 1 nothing was started, otherwise that of the command that failed.

@@ -118,7 +118,7 @@ def reported_machine(file: str) -> dict[str, str]:
     """Return the same facts from a report.
 
     Raises:
-        ValueError: the file cannot be read, or is no report of this format.
+        ValueError: the file cannot be read, or is not a report of this format.
     """
     try:
         report = json.loads(Path(file).read_text("utf8"))
@@ -127,8 +127,8 @@ def reported_machine(file: str) -> dict[str, str]:
         return {str(name): str(value) for name, value in report["machine"].items()}
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
         raise ValueError(
-            f"{file!r} is no report of the doctor: {type(error).__name__}: {error} Write one with "
-            "python -m robo_genesis.doctor --json > report.json"
+            f"{file!r} is not a report of the doctor: {type(error).__name__}: {error} Write one "
+            "with python -m robo_genesis.doctor --json > report.json"
         ) from error
 
 

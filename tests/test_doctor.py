@@ -286,9 +286,9 @@ def test_the_advice_is_about_the_difference_that_matters_most(here, advice):
         (["--like", "nowhere"], "'nowhere' is neither a folder nor a zip archive"),
         (["--json", "--like", "nowhere"], "--json and --like do not go together"),
         (["--report", "absent.json"], "--report needs --like BUNDLE"),
-        (["--like", "BUNDLE", "--report", "absent.json"], "'absent.json' is no report"),
+        (["--like", "BUNDLE", "--report", "absent.json"], "'absent.json' is not a report"),
         (["--like", "BUNDLE", "--report", "old.json"], "its format is 2, expected 3"),
-        (["--like", "BUNDLE", "--report", "list.json"], "'list.json' is no report"),
+        (["--like", "BUNDLE", "--report", "list.json"], "'list.json' is not a report"),
     ],
 )
 def test_a_comparison_with_nothing_is_refused_before_the_first_step(

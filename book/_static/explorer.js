@@ -150,8 +150,8 @@ document.addEventListener("DOMContentLoaded", () => {
       return [data.start - room, highest + room];
     }
 
-    /* Draws a quantity of the run over that of the last one, whose label stands where the two
-       differ most. `offset` is the number of the first sample. */
+    /* Draws a quantity of the run over that of the last one, whose label is where the two differ
+       most. `offset` is the number of the first sample. */
     function drawRun(curve, of, offset, plot) {
       const svg = svgs[curve];
       const own = data.points[shown].case;

@@ -1,4 +1,4 @@
-"""`make evidence-rocm`: record a lab in a container with AMD's ROCm and Torch.
+"""`make evidence-rocm`: record labs in a container with AMD's ROCm and Torch.
 
 This module imports the standard library alone: the host needs Python, but no package of the course.
 """

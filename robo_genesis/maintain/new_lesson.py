@@ -1,6 +1,6 @@
 """Add a lesson: files made from the template, and its lines in `_toc.yml` and `course_map.yml`.
 
-The files below `template/` hold `$lesson` and `$LESSON` in the place of the name, `l05` and `L05`.
+The files below `template/` hold `$lesson` and `$LESSON` in the place of the name, `l07` and `L07`.
 """
 
 import re

@@ -154,10 +154,10 @@ def distances(error: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.linalg.norm(error[..., :3], axis=-1), np.linalg.norm(error[..., 3:], axis=-1)
 
 
-def measured_hand(trace: Trace, state: int) -> Pose:
-    """Return the pose of the hand in a state of a run, as the engine reported it."""
-    quat = trace.link_quat[state, HAND].astype(np.float64)
-    return Pose(trace.link_pos[state, HAND].astype(np.float64), quat / np.linalg.norm(quat))
+def measured_hand(trace: Trace, state: int | slice) -> Pose:
+    """Return the pose of the hand in one state of a run or several, as the engine reported it."""
+    at, quat = (of[state, HAND].astype(np.float64) for of in (trace.link_pos, trace.link_quat))
+    return Pose(at, quat / np.linalg.norm(quat, axis=-1, keepdims=True))
 
 
 def distance_and_angle(target: Pose, pose: Pose) -> tuple[float, float]:

@@ -73,10 +73,11 @@ class View:
 def look(camera: Any, render: bool = True) -> View:
     """Return what a camera sees in the present state, and its pose at this moment.
 
-    A camera on a link must be moved there first, with `move_to_attach`. Depth is rendered without
-    colours: with them, the engine takes it from one sample of a multisampled picture, which is not
-    at the centre of the pixel. Rendering is forced, because the engine otherwise draws nothing new
-    before the next step, not even after a position was assigned.
+    A forced picture moves a camera on a link to the link. Without pictures, move it there first,
+    with `move_to_attach`. Depth is rendered without colours: with them, the engine takes it from
+    one sample of a multisampled picture, which is not at the centre of the pixel. Rendering is
+    forced, because the engine otherwise draws nothing new before the next step, not even after a
+    position was assigned.
 
     Args:
         camera: of a built scene.
@@ -112,8 +113,7 @@ def read_intrinsics(camera: Any) -> FloatArray:
 def read_transform(camera: Any) -> FloatArray:
     """Return the pose (4, 4) of a camera in the world, with z backwards [m].
 
-    It is computed at each call; older versions of Genesis keep the first value of
-    `camera.extrinsics`.
+    It is computed at each call; Genesis 1.3 keeps the first value of `camera.extrinsics`.
     """
     return to_numpy(camera.transform).astype(np.float64)
 

@@ -27,12 +27,17 @@ from typing import Any
 
 from docutils import nodes
 from jinja2 import FileSystemBytecodeCache
+from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
+from sphinx.util.nodes import clean_astext
 
 from robo_genesis.build.site.kept import UNFIT
 from robo_genesis.build.up_to_date import history
 from robo_genesis.site.glossary import glossary_terms
+
+HEADS = (nodes.caption, nodes.title, nodes.literal_block)
+"""What a numbered figure, table or code block has for children."""
 
 OWN = {"og:description", "source_map", "wordcount"}
 """Metadata of a page that no other page shows."""
@@ -42,6 +47,46 @@ SHOWN = (
     "domaindata", "robo_genesis_items",
 )  # fmt: skip
 """Attributes of the environment that pages show of one another, beside metadata and terms."""
+
+
+def outline(env: BuildEnvironment, node: nodes.Element) -> list[nodes.Element]:
+    """Return what numbers the figures below a node, in their order: a small part of a doctree.
+
+    Sphinx numbers the figures of all pages in each build, and would load all doctrees for it.
+    Sections, contents, and what a domain numbers are kept.
+    """
+    domains = env.domains.values()
+    found: list[nodes.Element] = []
+    for child in node.children:
+        if not isinstance(child, nodes.Element):
+            continue
+        inside = outline(env, child)
+        is_numbered = any(domain.get_enumerable_node_type(child) for domain in domains)
+        if is_numbered or isinstance(child, nodes.section | addnodes.toctree):
+            heads = (part for part in child.children if isinstance(part, HEADS))
+            kept = type(child)("", **child.attributes)
+            kept.extend([*(type(part)("", clean_astext(part)) for part in heads), *inside])
+            found.append(kept)
+        else:
+            found += inside
+    return found
+
+
+def keep_outline(app: Sphinx, doctree: nodes.document) -> None:
+    """Keep the outline of a page that was read."""
+    outlines(app.env)[app.env.docname] = nodes.container("", *outline(app.env, doctree))
+
+
+def outlines(env: BuildEnvironment) -> dict[str, nodes.Element]:
+    """Return the outlines of the pages by name."""
+    found: dict[str, nodes.Element] = vars(env).setdefault("robo_genesis_outlines", {})
+    return found
+
+
+def number_by_outlines(app: Sphinx, env: BuildEnvironment) -> list[str]:
+    """Give Sphinx outlines in place of doctrees until `outdated_pages` is called."""
+    vars(env)["get_doctree"] = outlines(env).__getitem__
+    return []
 
 
 def including_pages(
@@ -69,6 +114,7 @@ def note_reading(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
 
 def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
     """Return the pages that must be written again, beside those that were read again."""
+    vars(env).pop("get_doctree", None)
     commit, status = history(Path(env.srcdir))
     entries = set((status or "").split("\0"))
     shown = hashlib.sha256(repr((commit, sorted(_shown(env)))).encode()).hexdigest()
@@ -159,6 +205,8 @@ def setup(app: Sphinx) -> None:
     app.connect("env-get-outdated", including_pages)
     app.connect("env-before-read-docs", note_reading)
     app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected
+    app.connect("doctree-read", keep_outline, priority=900)
+    app.connect("env-get-updated", number_by_outlines, priority=0)
     app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)
     app.connect("write-started", leave_out_parents)

@@ -124,7 +124,7 @@ def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_pat
     with pytest.raises(DirectiveError) as caught:
         replay_block(Panel(tmp_path / "book"), KEY, dropped)
     assert "l99 wrote no shape of its box" in caught.value.msg
-    assert "visual_shape.read_shape(box)) after the box is built" in caught.value.msg
+    assert "page.write_shape(l99.read_shape(entity)) after scene.build()" in caught.value.msg
 
 
 @pytest.fixture(scope="module")

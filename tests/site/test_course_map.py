@@ -1,5 +1,7 @@
 """The course map is one file: published lessons become cards with minutes, planned ones a list."""
 
+import re
+
 import pytest
 import yaml
 from built_site import LESSON_PAGES, parsed
@@ -8,7 +10,7 @@ from tiny_book import make_book
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.site.render import render
 from robo_genesis.build.site.sphinx_process import SphinxProcess
-from robo_genesis.core.project import BOOK
+from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.site.course_map import FILE, CourseMapError, Lesson, read_map
 
@@ -40,6 +42,35 @@ def test_the_course_s_map_names_the_lessons_that_are_published():
     published = {lesson.id: lesson.page for lesson in read_map(BOOK) if lesson.page}
     lectures = {name.upper(): LESSON_PAGES[name, "lecture"] for name in LESSONS}
     assert published == lectures
+
+
+@pytest.mark.parametrize(
+    ("document", "form"),
+    [
+        ("README.md", "- **{id}:** {title}\n"),
+        ("book/running-a-lab.md", "`{id} <{folder}/lab>`"),
+        ("book/troubleshooting.md", "`{id}, "),
+        ("book/{page}.md", "\n# {id}: {heading}\n"),
+    ],
+)
+def test_a_published_lesson_is_in_each_list_that_is_kept_by_hand(document, form):
+    """A lecture may have the first sentence of its title as heading."""
+    missing = []
+    for lesson in read_map(BOOK):
+        if lesson.page:
+            text = (ROOT / document.format(page=lesson.page)).read_text()
+            words = {"id": lesson.id, "title": lesson.title, "folder": lesson.id.lower()}
+            titles = {lesson.title, re.split(r"(?<=[?.]) ", lesson.title)[0]}
+            if not any(form.format(heading=title, **words) in text for title in titles):
+                missing.append(lesson.id)
+    assert missing == []
+
+
+def test_the_list_of_decision_records_has_each_of_them():
+    folder = BOOK / "_decisions"
+    titles = {p.name: p.read_text().splitlines()[0] for p in sorted(folder.glob("0*.md"))}
+    rows = re.findall(r"\[(\d+)\]\((.+?)\) \| (.+?) \|", (folder / "README.md").read_text())
+    assert {name: f"# {number}: {title}" for number, name, title in rows} == titles
 
 
 def test_a_map_is_read_in_its_order(tmp_path):

@@ -73,7 +73,8 @@ def test_the_install_line_is_enough_to_run_each_student_s_notebook(site, home):
     where = "import robo_genesis; print(robo_genesis.__file__)"
     assert run(f"{folder}/bin/python -c '{where}'", home, environment).startswith(str(home))
     with stages.build_lock(project.CACHE):
-        assert "DOCTOR: all" in run(f"{folder}/bin/python -m robo_genesis.doctor", home, environment)
+        doctor = run(f"{folder}/bin/python -m robo_genesis.doctor", home, environment)
+    assert "DOCTOR: all" in doctor
     for lesson, (*_, start) in lines.items():
         write_solutions(home / start.split()[-1], lesson)
         execute = start.replace("jupyter lab", f"jupyter execute --output={lesson}-done.ipynb")

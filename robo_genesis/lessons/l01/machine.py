@@ -4,9 +4,6 @@ Each function starts a process of its own, because an engine starts once in a pr
 """
 
 import json
-import os
-import subprocess
-import sys
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,6 +11,7 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.lessons.experiment import Readings, counts
+from robo_genesis.lessons.fresh_process import run_python
 from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim import diagnosis
 
@@ -55,13 +53,6 @@ mark()
 print(json.dumps([b - a for a, b in zip(marks, marks[1:])]))
 """
 
-TIMEOUT = 600
-"""Seconds until a process counts as hanging."""
-
-
-class StartError(RuntimeError):
-    """A process did not print what it measures; the message has its last lines."""
-
 
 def readings() -> dict[str, Readings]:
     """Return the groups of values that the lecture reads."""
@@ -99,23 +90,3 @@ def measure_starts() -> dict[str, float]:
             times = json.loads(run_python(["-c", SCRIPT], kernels).splitlines()[-1])
             found |= {f"{start}_{part}": t for part, t in zip(PARTS, times, strict=True)}
     return found
-
-
-def run_python(arguments: list[str], changed: Mapping[str, str]) -> str:
-    """Return what Python prints with these arguments, whatever its exit status.
-
-    Args:
-        arguments: of the interpreter.
-        changed: environment variables beside those of this process.
-
-    Raises:
-        StartError: it printed nothing.
-    """
-    done = subprocess.run(
-        [sys.executable, *arguments], env=os.environ | changed, capture_output=True, text=True,
-        timeout=TIMEOUT, check=False,
-    )  # fmt: skip
-    if not done.stdout.strip():
-        last = "\n".join(done.stderr.splitlines()[-10:])
-        raise StartError(f"The process printed nothing. It ended with:\n{last}")
-    return done.stdout

@@ -18,7 +18,7 @@ class FallMetrics(CaseMetrics):
     formula_error: float = metric(
         "m", "largest distance from the computed height", "link_pos_m", "t_s"
     )
-    school_gap: float = metric("m", "lower than by g t² / 2", "link_pos_m", "t_s")
+    school_gap: float = metric("m", "additional fall beyond g t² / 2", "link_pos_m", "t_s")
 
 
 def fall_metrics(trace: BodyTrace, case: Drop) -> FallMetrics:

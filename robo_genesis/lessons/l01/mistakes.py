@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.mistakes import Failure
+from robo_genesis.lessons.fresh_process import run_python
 from robo_genesis.lessons.l01 import machine
 
 
@@ -42,7 +43,7 @@ def absent_backend() -> Failure:
     call = 'import genesis as gs\ntry:\n    gs.init(backend=gs.metal, logging_level="error")\n'
     call += 'except Exception as error:\n    print(type(error).__name__, error, sep=": ")\n'
     call += "else:\n    print(gs.backend.name)"
-    line = machine.run_python(["-c", call], {}).strip().splitlines()[-1]
+    line = run_python(["-c", call], {}).strip().splitlines()[-1]
     return Failure(
         "absent_backend",
         shown="Exception" in line or "Error" in line,

@@ -60,8 +60,8 @@ def start_sentence(run: Experiment) -> str:
     first, second = (sum(found[f"{s}_{part}"] for part in PARTS) for s in machine.STARTS)
     if second < first:
         return (
-            f"The second start took {second:.1f} s, {first / second:.1f} times less than the first "
-            f"with {first:.1f} s."
+            f"The first start took {first:.1f} s and the second {second:.1f} s: the first took "
+            f"{first / second:.1f} times as long."
         )
     return (
         f"In this run the second start took {second:.1f} s and the first {first:.1f} s, so the "
@@ -83,7 +83,7 @@ def conclusion(run: Experiment) -> str:
         f"The largest difference from the computed height over all states is "
         f"{1e6 * found.formula_error:.2g} µm. "
         + (
-            "That is the rounding of float32 numbers: the engine steps as its rule says."
+            "That is the rounding of float32 numbers: the engine follows the stepping rule."
             if agrees
             else "That is more than rounding explains. Check version, gravity and step."
         )

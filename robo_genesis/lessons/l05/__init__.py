@@ -17,6 +17,7 @@ from robo_genesis.lessons.l05 import (
     exercises,
     mistakes,
     plausibility,
+    restarts,
     solutions_text,
     spec,
     study,
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "DT", "FRANKA_MJCF", "JOINT_NAMES", "SUBSTEPS", "ask", "describe", "exercises", "kinematics",
-    "look", "mistakes", "plots", "reach", "read_shape", "reset", "resolve_joints",
+    "look", "mistakes", "plots", "reach", "read_shape", "reset", "resolve_joints", "restarts",
     "segment_number", "solutions_text", "solve_all", "spec", "study", "text", "view_record",
 ]  # fmt: skip
 
@@ -77,6 +78,7 @@ ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS
 SOLUTIONS = replace(
     MOTION,
     runs={**MOTION.runs, **ANSWERS},
+    readings=lambda rendered: MODEL | study.READINGS | restarts.READINGS,
     checks=(*checks.WITHOUT_CAMERA, *checks.SOLUTIONS),
     parameters=lambda: spec.parameters() | {"questions": case_inputs(spec.QUESTIONS)},
 )

@@ -8,7 +8,7 @@ from robo_genesis.core.checks import Finding, above, at_most, below, equal, mode
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.common_checks import posture, stamps
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import spec, study
+from robo_genesis.lessons.l05 import restarts, spec, study
 from robo_genesis.lessons.view_record import SEGMENTS, view_of
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_checks, mujoco_kinematics
@@ -88,6 +88,11 @@ def repeatable(run: Experiment) -> Iterator[Finding]:
     yield equal("entries_that_differ_between_runs", int((first != second).sum()), 0)
 
 
+def restarts_repeat(run: Experiment) -> Iterator[Finding]:
+    for name in restarts.COMPARED[:2]:
+        yield equal(name, run.readings[restarts.GROUP][name], 0)
+
+
 def unreachable_refused(run: Experiment) -> Iterator[Finding]:
     found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
     yield equal("not_finite", int((~np.isfinite(run.traces["unreachable"].q[1:])).sum()), 0)
@@ -140,5 +145,5 @@ WITHOUT_CAMERA = (
 VIEW = (camera_matrix, projection, sphere_surface, plane_surface)
 CHECKS = (*WITHOUT_CAMERA, posture, *VIEW)
 CAMERAS = (*VIEW, mounted_camera)
-SOLUTIONS = (unreachable_refused, nearest_is_nearer)
+SOLUTIONS = (restarts_repeat, unreachable_refused, nearest_is_nearer)
 """Checks of the page about many solutions."""

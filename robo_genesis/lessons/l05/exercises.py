@@ -11,6 +11,7 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import camera_geometry as cameras
+from robo_genesis.sim import mujoco_kinematics
 from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose, measured_hand
 
 CLOSE = 5e-6
@@ -49,12 +50,14 @@ def forward(chain: Callable[..., Any], trace: Trace) -> Iterator[Finding]:
 
     `q` (7,) are the joint positions; `links` are names, positions and orientations as in `CHAIN`.
     The function returns a position (3,) [m] and a quaternion (4,) of either sign. It is compared
-    with the engine in recorded postures, and with two parts of the chain.
+    with the engine in recorded postures, with MuJoCo in another one, and with parts of the chain.
     """
     for state in (0, trace.steps // 8, trace.steps):
         q = trace.q[state, :ARM].astype(float)
         yield from near(f"state_{state}", chain(q, CHAIN), measured_hand(trace, state), CLOSE)
     q = np.array([0.3, -0.4, 0.5, -1.6, 0.7, 1.1, -0.2])
+    position, quat = mujoco_kinematics.link_poses(np.array([[*q, 0.0, 0.0]]), ["hand"])
+    yield from near("mujoco", chain(q, CHAIN), Pose(position[0, 0], quat[0, 0]), CLOSE)
     poses = kinematics.link_poses(q)
     for count in (1, 4):
         expected = Pose(poses.position[count - 1], poses.quat[count - 1])

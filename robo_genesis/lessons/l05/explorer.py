@@ -24,7 +24,8 @@ PLACES = {
 PICTURES = {
     spec.VIEWED: {
         "alt": "Camera frame of the robot at its start. An orange ball is below its hand.",
-        "caption": "Depth and point are those of the recorded arrays, in the pixel's centre.",
+        "caption": "Each pixel with a surface gives a 3D point. Depth and point belong to the "
+        "pixel's centre.",
     },
     "cut": {
         "alt": "Camera frame of the robot. The floor exists only in a band. The hand and the wrist "
@@ -71,7 +72,8 @@ def solution_map(run: Experiment) -> dict[str, Any]:
     ]
     return {
         "run": "many_starts",
-        "caption": "Answers for one target. Rows: their curve, and on it joint1 from low to high.",
+        "caption": "One target has many answers. Each row belongs to one curve; joint1 grows from "
+        "left to right.",
         "axes": ("curve", "place"),
         "rows": rows,
         "columns": range(1, COLUMNS + 1),

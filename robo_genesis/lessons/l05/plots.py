@@ -12,7 +12,7 @@ from robo_genesis.lessons.l05.checks import marker
 from robo_genesis.lessons.l05.solutions_text import CRITERIA, chosen
 from robo_genesis.lessons.view_record import view_of
 from robo_genesis.sim import camera_geometry as cameras
-from robo_genesis.sim.arm_kinematics import ARM, HAND
+from robo_genesis.sim.arm_kinematics import ARM, HAND, link_poses
 from robo_genesis.sim.franka import LINK_PARENTS
 
 AROUND = 45
@@ -60,6 +60,20 @@ def picture(run: Experiment) -> Figure:
     ax.set(xlabel="u [pixel]", ylabel="v [pixel]")
     ax.grid(visible=False)
     plotting.legend_above(ax, "The marker in the picture")
+    return figure
+
+
+def beyond_reach(run: Experiment) -> Figure:
+    """Draw the links from the side in two postures for the target beyond reach."""
+    figure, ax = plotting.axes(4.4)
+    for label, mark, at in (
+        ("engine's answer", "first", run.traces["unreachable"].link_pos[1, : HAND + 1]),
+        ("nearest that we found", "second", link_poses(study.nearest()[0]).position),
+    ):
+        ax.plot(at[:, 0], at[:, 2], "o-", label=label, color=plotting.look(mark)["color"])
+    ax.plot(*spec.BEYOND_REACH[::2], "+", label="target", color=plotting.TARGET["color"])
+    ax.set(xlabel="x [m]", ylabel="z [m]", aspect="equal")
+    plotting.legend_above(ax, "Two postures for a target beyond reach")
     return figure
 
 

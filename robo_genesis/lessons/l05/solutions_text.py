@@ -44,9 +44,8 @@ def records(run: Experiment, name: str) -> list[dict[str, str]]:
             "joint1 [rad]": decimal(q[k, 0], 3),
             "nearest to a limit": JOINT_NAMES[nearest[k]],
         }
-        for label, (key, factor, digits) in MEASURES.items():
-            row[label] = f"{round(max(factor * found[key][k], 0), 6):.{digits}g}"
-        rows.append(row)
+        shown = {label: (max(by * found[key][k], 0), n) for label, (key, by, n) in MEASURES.items()}
+        rows.append(row | {label: f"{round(x, 6):.{n}g}" for label, (x, n) in shown.items()})
     return rows
 
 
@@ -65,9 +64,8 @@ def many_answers(run: Experiment) -> dict[str, FloatArray]:
 def count_table(run: Experiment) -> str:
     """Return how many answers are distinct for several thresholds."""
     q = run.traces["many_starts"].q[1:, : kinematics.ARM][many_answers(run)["accepted"]]
-    return tables.markdown(
-        [{"threshold [rad]": t, "distinct answers": study.clusters(q, t)} for t in THRESHOLDS]
-    )
+    rows = [{"threshold [rad]": t, "distinct answers": study.clusters(q, t)} for t in THRESHOLDS]
+    return tables.markdown(rows)
 
 
 def family_table(run: Experiment) -> str:
@@ -88,9 +86,8 @@ def span(values: FloatArray, digits: int) -> str:
 def choice_table(run: Experiment) -> str:
     """Return the answers that the criteria choose."""
     rows, shown = records(run, "many_starts"), ("answer", "joint1 [rad]", *[*MEASURES][:3])
-    return tables.markdown(
-        [{"criterion": n} | {key: rows[k][key] for key in shown} for n, k in chosen(run).items()]
-    )
+    found = chosen(run).items()
+    return tables.markdown([{"criterion": n} | {s: rows[k][s] for s in shown} for n, k in found])
 
 
 def unreachable_table(run: Experiment) -> str:
@@ -111,14 +108,8 @@ def reach_table(run: Experiment) -> str:
     for name in spec.PLANES:
         found = study.answers(run.traces[name], spec.QUESTIONS[name])
         yes = found["accepted"].astype(bool)
-        rows.append(
-            {
-                "plane": name,
-                "targets": len(yes),
-                "accepted": int(yes.sum()),
-                "manipulability": span(found["manipulability"][yes], 3),
-                "distance from limits [rad]": span(found["margin"][yes], 3),
-                "distance left where refused [mm]": span(1000 * found["position"][~yes], 1),
-            }
-        )
+        row = {"plane": name, "targets": len(yes), "accepted": int(yes.sum())}
+        row |= {head: span(found[MEASURES[head][0]][yes], 3) for head in [*MEASURES][:2]}
+        left = span(1000 * found["position"][~yes], 1)
+        rows.append(row | {"distance left where refused [mm]": left})
     return tables.markdown(rows)

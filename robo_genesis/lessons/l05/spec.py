@@ -118,6 +118,9 @@ RANDOM_STARTS = np.hstack([
 ])  # fmt: skip
 """Starts (100, 9) of the solver, uniform within the limits [rad or m]."""
 
+RESTARTED = replace(BASELINE, q_start=RANDOM_STARTS[0])
+"""The lesson's target from a start from which the solver finds no answer without random starts."""
+
 MANY_STARTS = SolveCase(np.tile(TARGET, (RESTARTS, 1)), DOWN, RANDOM_STARTS, ONE_START)
 
 UNREACHABLE = SolveCase(BEYOND_REACH[None], DOWN, franka.Q_START[None], IK)
@@ -141,7 +144,7 @@ SAME_POSE = (5e-6, 5e-6)
 """Largest difference of a link's pose between two computations, one of them in float32 [m, rad]."""
 
 SAG_SHARE = 0.02
-"""Share of the final error that gravity, KP and the Jacobian may leave unexplained."""
+"""Share of the displacement that gravity, KP and the Jacobian may leave unexplained."""
 
 ANGLE_WEIGHT = 0.5
 """Metres that count as much as one radian, where the nearest pose is sought."""

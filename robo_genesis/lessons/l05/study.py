@@ -40,11 +40,8 @@ def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
     q = to_numpy(robot.get_dofs_position(joints.dofs_idx_local.tolist())).astype(np.float64)
     rows = engine.jacobian(robot, joints, END_EFFECTOR)
     differences = np.abs(rows - mujoco_kinematics.jacobian(q, END_EFFECTOR))
-    page.readings[GROUP] = {
-        "residual_m": float(apart),
-        "residual_rad": float(angle),
-        "jacobian_difference": float(differences.max()),
-    }
+    values = map(float, (apart, angle, differences.max()))
+    page.readings[GROUP] = dict(zip(READINGS[GROUP].units, values, strict=True))
     differ = (first.q != second.q).sum() + (first.error != second.error).sum()
     page.readings[REPEAT_GROUP] = {"entries_that_differ": int(differ)}
 
@@ -83,9 +80,8 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
         `margin` of the joint that is nearest to a limit [rad], and `from_start`, the largest angle
         between answer and start of the run [rad].
     """
-    hand = [measured_hand(trace, k) for k in range(1, case.steps + 1)]
-    poses = Pose(np.stack([h.position for h in hand]), np.stack([h.quat for h in hand]))
-    error = kinematics.pose_error(Pose(case.positions, case.quat), poses)
+    measured = measured_hand(trace, slice(1, None))
+    error = kinematics.pose_error(Pose(case.positions, case.quat), measured)
     q = trace.q[1:].astype(np.float64)
     apart, angle = kinematics.distances(error)
     accepted = kinematics.accepted(q, error, *case.settings.tolerances)

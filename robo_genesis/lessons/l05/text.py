@@ -22,6 +22,9 @@ NO_PICTURE = "SKIP: no camera"
 SHOWN = 3
 """Joints with a row of their own in the table of gravity."""
 
+AT_LIMIT = 0.99
+"""Share of the force limit from which a sample is counted as at the limit."""
+
 
 def error_table(run: Experiment) -> str:
     """Return four distances and angles of the baseline, each between two named poses."""
@@ -37,18 +40,24 @@ def error_table(run: Experiment) -> str:
 
 
 def sag_table(run: Experiment) -> str:
-    """Return the measured way from command to end beside the one that gravity explains."""
+    """Return the measured way from command to end beside the one that gravity explains.
+
+    The last column counts samples: those at which a joint of the arm is at its force limit.
+    """
     heads = {
         "command to hand, measured [mm]": 2,
         "by gravity, KP and J [mm]": 2,
         "unexplained [%]": 1,
         "target to hand [mm]": 2,
+        "samples at a force limit": 0,
     }
     rows = {}
     for name, case in spec.CASES.items():
-        found, expected, rest = study.sag_lengths(run.traces[name], case.kp)
-        left = run.metrics[name].final_distance
-        rows[spec.LABELS[name]] = 1000 * found, 1000 * expected, 100 * rest, 1000 * left
+        trace, left = run.traces[name], run.metrics[name].final_distance
+        found, expected, rest = study.sag_lengths(trace, case.kp)
+        at_limit = np.abs(trace.control_force) >= AT_LIMIT * trace.effort_limit
+        samples = at_limit[:, : kinematics.ARM].any(axis=1).sum()
+        rows[spec.LABELS[name]] = 1000 * found, 1000 * expected, 100 * rest, 1000 * left, samples
     return tables.number_table("run", heads, rows)
 
 
@@ -62,13 +71,11 @@ def joint_table(run: Experiment) -> str:
     }
     q, kp = run.traces["baseline"].target[-1].astype(float), spec.BASELINE.kp[: kinematics.ARM]
     effort = mujoco_kinematics.gravity_effort(q)[: kinematics.ARM]
-    angles = -effort / kp
+    angles = -1000 * effort / kp
     ways = kinematics.jacobian(q)[2] * angles
     most = sorted(np.abs(ways).argsort()[-SHOWN:])
-    rows = {
-        f"`{JOINT_NAMES[k]}`": (effort[k], kp[k], 1000 * angles[k], 1000 * ways[k]) for k in most
-    }
-    others = 1000 * (ways.sum() - ways[most].sum())
+    rows = {f"`{JOINT_NAMES[k]}`": (effort[k], kp[k], angles[k], ways[k]) for k in most}
+    others = ways.sum() - ways[most].sum()
     return tables.number_table("joint", heads, {**rows, "all others": ("", "", "", others)})
 
 
@@ -77,9 +84,9 @@ def marker_table(run: Experiment) -> str:
     view, sphere = view_of(run, spec.VIEWED), marker(run)
     words = ("projection of its centre", "centre of its silhouette")
     rows: dict[str, Any] = dict(zip(words, computed(view, sphere), strict=True))
-    rows["centroid of its pixels"] = NO_PICTURE, NO_PICTURE
-    if view.segmentation is not None:
-        rows["centroid of its pixels"] = cameras.centroid(view.segmentation == sphere.number)
+    seen = view.segmentation
+    at = (NO_PICTURE,) * 2 if seen is None else cameras.centroid(seen == sphere.number)
+    rows["centroid of its pixels"] = at
     return tables.number_table("what", {"u [pixel]": 3, "v [pixel]": 3}, rows)
 
 
@@ -123,12 +130,10 @@ def conclusions(run: Experiment) -> str:
         f"{1000 * base.final_distance:.2f} mm. The arm stopped {1000 * base.tracking_distance:.2f} "
         "mm from the pose of its command.",
     ]
-    for name in tuple(spec.CASES)[1:]:
-        left = m[name].final_distance
-        verb = "less" if left < base.final_distance else "not less"
-        lines.append(
-            f"With {spec.LABELS[name]}, {1000 * left:.2f} mm are left, {verb} than in the baseline."
-        )
+    lines += [
+        f"With {spec.LABELS[name]}, {1000 * m[name].final_distance:.2f} mm are left."
+        for name in tuple(spec.CASES)[1:]
+    ]
     lines += [
         f"The pixels of the {name} are {1000 * found.largest:.3f} mm or less from its surface."
         for name, found in surfaces(run).items()

@@ -7,7 +7,7 @@ CLAIMS: dict[str, str] = {
         "By forward kinematics, each command of the runs with metrics is within both tolerances "
         "and 5 µm and 5 µrad of rounding. The rule refuses the target beyond reach, and no other."
     ),
-    "arrived": "Each hand gets within 2 cm of its first and last target, and ends within 0.05 rad.",
+    "arrived": "Each hand is within 2 cm of its first and last target, and ends within 0.05 rad.",
     "row_equals_alone": (
         "Each row of the batch and the same run alone have the same command to the last bit, and "
         "positions, velocities and control forces within the declared bounds."
@@ -25,7 +25,8 @@ CLAIMS: dict[str, str] = {
     ),
     "own_gains_and_mass": (
         "The row without changes equals its run beside equal neighbours to the last bit. Each hand "
-        "has its own mass. At rest each torque is that of own gravity and load, and of its own KP."
+        "has its own mass. At rest each torque equals the gravity torque of the arm with its load, "
+        "and KP times the position error, within 0.05 N·m."
     ),
     "equal_work": (
         "In each timed batch of robots, all arms end near the commanded angles, and all "

@@ -99,7 +99,9 @@ def mean_of_rows(
         f"rule for each row says: {quoted(refused(lambda: commands(worlds, answer)))}"
     )
     curves = {"mean of all": (t, mean), f"environment {row}": (t, apart[row])}
-    return Failure("mean_of_rows", bool(mean[-1] < limit < ends[row]), text, curves, "distance [mm]")
+    return Failure(
+        "mean_of_rows", bool(mean[-1] < limit < ends[row]), text, curves, "distance [mm]"
+    )
 
 
 def timed_with_building(

@@ -81,9 +81,9 @@ def alone(run: Experiment) -> Figure:
 def judged(curves: Curves) -> Figure:
     """Draw distances from a target [mm] and the limit for them, on a logarithmic scale."""
     figure, limit = plotting.figure(3.2), 1000 * spec.REACHED[0]
-    ax = plotting.failure(figure.subplots(), curves, "", "mm")
+    ax = plotting.failure(figure.subplots(), curves, "hand to target [mm]")
     ax.axhline(limit, **LINE | {"linewidth": 2, "zorder": 1.6})
-    ax.set(yscale="log", ylabel="hand to target [mm]")
+    ax.set_yscale("log")
     ax.set_yticks([limit, 50, 100, 200, 500], [f"limit {limit:g}", "50", "100", "200", "500"])
     ax.minorticks_off()
     return figure

@@ -122,10 +122,11 @@ def conclusions(run: Experiment) -> str:
         for k in spec.ENVS
     )
     named, others = ([moved[k] for k in spec.ENVS if (k in spec.LATER) == is_] for is_ in (1, 0))
+    still = max(others)
     lines = [
-        f"Of the question with one target beyond reach, rows {listed(accepted)} are accepted.",
+        f"One of the four targets is beyond reach. Rows {listed(accepted)} are accepted.",
         f"After the second command, the named environments moved by {mm(min(named))} mm or more, "
-        f"the others by {mm(max(others))} mm or less.",
+        + (f"the others by {1e6 * still:.2g} µm or less." if still else "the others did not move."),
         f"Joint positions of a row and of the same run alone differ by up to {1e6 * apart:.2f} "
         "µrad (or µm of a finger).",
         *(

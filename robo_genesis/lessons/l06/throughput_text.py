@@ -69,8 +69,8 @@ def conclusions(run: Experiment) -> str:
     lines = [
         f"A step with {many} environments takes {longer} times as long as a step with {few}.",
         f"All environments together make {three(rate[few])} steps per second with {few} and "
-        f"{three(rate[many])} with {many} environments. The most are {three(rate[best])}, with "
-        f"{best}.",
+        f"{three(rate[many])} with {many} environments. The largest throughput is "
+        f"{three(rate[best])}, with {best} environments.",
         f"In one second of the machine, an environment advances by {three(DT * rate[few] / few)} s "
         f"with {few}, and by {three(DT * rate[many] / many)} s with {many} environments.",
         f"The slowest repeat took up to {three(spread)} times as long as the fastest of the same "

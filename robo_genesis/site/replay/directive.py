@@ -159,9 +159,8 @@ def shape_file(lesson: str, thing: str) -> Path:
     shape = page_outputs(f"{lesson}/{SHAPE_PAGE}") / visual_shape.FILE
     if not shape.is_file():
         raise ValueError(
-            f"{lesson} wrote no shape of its {thing}. A cell of its {SHAPE_PAGE} must "
-            f"call visual_shape.write_shape(contract.outputs / {lesson!r} / {SHAPE_PAGE!r}, "
-            f"visual_shape.read_shape({thing})) after the {thing} is built."
+            f"{lesson} wrote no shape of its {thing}. A cell of its {SHAPE_PAGE} must call "
+            f"page.write_shape({lesson}.read_shape(entity)) after scene.build()."
         )
     return shape
 

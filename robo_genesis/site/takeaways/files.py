@@ -14,6 +14,7 @@ import numpy as np
 from nbformat import NotebookNode
 
 from robo_genesis.core import project
+from robo_genesis.core.files import derived
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Variable
@@ -36,6 +37,9 @@ NOT_SHOWN = "*(your run measures it)*"
 
 CHECKOUT = "robo-genesis"
 """Replaces the folder that the site was built in."""
+
+TABLE_CODE = ("site/takeaways/files.py", "evidence/trace_files.py", "core/trace.py")
+"""The modules that decide the table of a run's arrays, below the package."""
 
 AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z")}
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
@@ -154,10 +158,16 @@ def without_places(text: str, root: Path = project.ROOT) -> str:
 def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
     """Copy each case's archive, and write it as a table; yield (case, CSV, npz)."""
     described = bundle.read_arrays(run)
+    code = (Path(project.ROOT, "robo_genesis", place).read_bytes() for place in TABLE_CODE)
+    decide = [(run / "arrays.json").read_bytes(), *code]
     for case, arrays in described.cases.items():
         archive, table = folder / f"{case}.npz", folder / f"{case}.csv"
         shutil.copy(run / arrays.file, archive)
-        table.write_text(csv_text(read_any_trace(run, described, case), described, case), "utf8")
+
+        def make(case: str = case) -> bytes:
+            return csv_text(read_any_trace(run, described, case), described, case).encode()
+
+        table.write_bytes(derived("table", [case.encode(), archive.read_bytes(), *decide], make))
         yield case, table, archive
 
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pickle
 import re
 from pathlib import Path
 from types import SimpleNamespace
@@ -27,6 +28,7 @@ TEXT += "\nState: {lesson-state}`l04`.\n"
 FIGURE = "\n```{figure} a.svg\n%s\nA drawing\n```\n"
 CITING = "# Citing\n\nSee {numref}`drawn` and {eq}`force`.\n"
 DRAWN = "# Drawn\n" + FIGURE % ":name: drawn" + "\n$$\nF = k x\n$$ (force)\n"
+TABLE = "```{list-table} Rows\n:name: rows\n* - one\n  - two\n```\n"
 DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>'
 SOME = State("a", {"one": "1", "two": "2"})
 
@@ -110,6 +112,27 @@ def test_each_edit_publishes_the_same_bytes_as_a_render_from_nothing(tmp_path):
         "0 added, 1 changed",
         "8 added, 0 changed",
     ]
+
+
+def test_figures_tables_and_code_are_numbered_across_pages_wherever_they_are(tmp_path):
+    captioned = (
+        FIGURE % ":name: drawn-%d"
+        + "\n```{code-block} python\n:caption: Code\n:name: code-%d\npass\n```\n"
+    )
+    pages = {
+        "first": "# First\n" + captioned % (1, 1) + "\n## Below\n\n```{figure} a.svg\n```\n",
+        "second": "# Second\n\n````{note}\n" + captioned % (2, 2) + "````\n\n" + TABLE,
+    }
+    (make_book(tmp_path, **pages) / "a.svg").write_text(DRAWING)
+    publish(tmp_path, BuiltPages())
+    with open(tmp_path / "kept" / kept.DOCTREES / "environment.pickle", "rb") as stream:
+        numbers = pickle.load(stream).toc_fignumbers
+    assert numbers["first"] == {"figure": {"drawn-1": (1,)}, "code-block": {"code-1": (1,)}}
+    assert numbers["second"] == {
+        "figure": {"drawn-2": (2,)},
+        "code-block": {"code-2": (2,)},
+        "table": {"rows": (1,)},
+    }
 
 
 def test_a_page_does_not_depend_on_pictures_that_reading_another_page_writes_again(tmp_path):

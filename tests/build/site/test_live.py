@@ -13,6 +13,8 @@ from pathlib import Path
 
 import psutil
 import pytest
+import tiny_book
+from checkout import copy_checkout
 from tiny_book import cell, fails, make_book, notebook, start
 
 from robo_genesis.build.page_folder import write_page
@@ -23,14 +25,22 @@ from robo_genesis.core.project import STORE
 from robo_genesis.lessons.book_pages import find_pages
 
 TEXT = "# Text\n\nFirst words.\n"
+SYNTAX_ERROR = "def f(:"
+MODULES = "../robo_genesis"
+PRINTS = "from robo_genesis.core.printed import WORDS\nprint(WORDS)"
 
 
 class Running:
-    """A running `make live` on a folder's book."""
+    """A running `make live` on a folder's book; without EXECUTE=1, its executed page was run."""
 
-    def __init__(self, folder: Path):
-        self.book, self.folder = make_book(folder, text=TEXT, other="# Other\n"), folder
-        self.process = start("live.py", folder, PORT="0")
+    def __init__(self, folder: Path, code: str = "1", **settings: str):
+        (folder / "book" / "lesson").mkdir(parents=True)
+        pages = {"text": TEXT, "other": "# Other\n", "lesson/lecture": TEXT}
+        self.book, self.folder = make_book(folder, **pages, page=notebook(cell(code))), folder
+        if "EXECUTE" not in settings:
+            place = places(find_pages(self.book), folder / "cache" / STORE)["page"]
+            run_of(folder / "other", place, code)
+        self.process = start("live.py", folder, PORT="0", **settings)
         os.set_blocking(self.process.stdout.fileno(), False)
         self.said = ""
         self.wait(lambda: "Ctrl-C ends it." in self.output())
@@ -52,16 +62,32 @@ class Running:
         with urllib.request.urlopen(self.address + page) as answer:
             return answer.read().decode()
 
-    def article(self) -> str:
-        return self.shown().partition("<article")[2]
+    def article(self, page: str = "text.html") -> str:
+        return self.shown(page).partition("<article")[2]
+
+    def end(self) -> None:
+        self.process.kill()
+        self.process.communicate()
 
 
 @pytest.fixture(scope="module")
 def live(tmp_path_factory):
     running = Running(tmp_path_factory.mktemp("live"))
     yield running
-    running.process.kill()
-    running.process.communicate()
+    running.end()
+
+
+@pytest.fixture(scope="module")
+def executing(tmp_path_factory):
+    """With EXECUTE=1, from a copy of the course, whose modules a test may change."""
+    course = copy_checkout(tmp_path_factory.mktemp("course"))
+    (course / "robo_genesis/core/printed.py").write_text("WORDS = 'printed words'\n")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tiny_book, "ROOT", course)
+        patch.chdir(course)  # first in the path of `python -m`
+        running = Running(course / "tiny", PRINTS, EXECUTE="1")
+    yield running
+    running.end()
 
 
 def test_a_changed_page_is_shown_and_nothing_is_published(live):
@@ -101,6 +127,47 @@ def test_a_bad_edit_is_reported_and_the_last_good_state_stays(live, file, conten
     write_whole(path, good.encode())
     live.wait(lambda: live.output()[begin:].count("Shown: ") > 1)
     assert live.article() == before
+
+
+@pytest.mark.parametrize(
+    ("where", "file", "content", "said"),
+    [
+        ("live", "book/page.md", notebook(cell(SYNTAX_ERROR)), "EXECUTE=1 runs it"),
+        ("executing", "book/page.md", notebook(cell(SYNTAX_ERROR)), "line 10: def f(:\n"),
+        ("executing", f"{MODULES}/core/printed.py", SYNTAX_ERROR, "(printed.py, line 1)"),
+        ("executing", f"{MODULES}/build/site/live_sphinx.py", SYNTAX_ERROR, "Sphinx stopped"),
+    ],
+    ids=["cell", "executed cell", "module of a page", "module of the site"],
+)
+def test_after_a_syntax_error_the_last_outputs_are_shown(request, where, file, content, said):
+    live = request.getfixturevalue(where)
+    path, before, begin = live.folder / file, live.article("page.html"), len(live.output())
+    good, last = path.read_text(), "Shown: " if "Sphinx" not in said else "keeps the last good"
+    assert ("printed words" in before) == (where == "executing")
+    write_whole(path, content.encode())
+    live.wait(lambda: last in live.output()[begin:].partition(said)[2])
+    shown, begin = live.article("page.html"), len(live.said)
+    assert (shown != before) == (path.suffix == ".md")
+    assert ("printed words" in shown) == (where == "executing")
+    write_whole(path, good.encode())
+    live.wait(lambda: "Shown: " in live.output()[begin:])
+    assert live.article("page.html") == before
+
+
+def test_a_renamed_lesson_is_shown_again_when_the_contents_name_it(live):
+    contents, before = live.book / "_toc.yml", live.article("lesson/lecture.html")
+    good = contents.read_text()
+    for old, new in (("lesson", "renamed"), ("renamed", "lesson")):
+        begin = len(live.output())
+        (live.book / old).rename(live.book / new)
+        live.wait(lambda begin=begin: "keeps the last good state" in live.output()[begin:])
+        assert f"_toc.yml names '{old}/lecture', but there is no " in live.said[begin:]
+        assert live.article(f"{old}/lecture.html") == before
+        write_whole(contents, good.replace("lesson/", f"{new}/").encode())
+        live.wait(lambda begin=begin: "Shown: " in live.output()[begin:])
+        assert live.article(f"{new}/lecture.html") == before
+        with pytest.raises(urllib.error.HTTPError, match="404"):
+            live.shown(f"{old}/lecture.html")
 
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
@@ -150,6 +217,7 @@ def test_sphinx_is_started_again_after_it_was_killed_and_its_log_is_named(live):
 def run_of(folder: Path, place: Path, code: str) -> None:
     """Store a run of the page `page` with other code."""
     [page] = find_pages(make_book(folder, page=notebook(cell(code))))
+    page.notebook.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
     run = {"run_id": "0" * 32, "command": None, "seconds": 1.0, "cell_seconds": [1.0]}
     write_page(place, page, page.notebook, folder, **run)
 

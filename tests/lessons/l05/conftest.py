@@ -7,7 +7,7 @@ import pytest
 from robot_runs import driven
 
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05 import SOLUTIONS, spec
+from robo_genesis.lessons.l05 import SOLUTIONS, restarts, spec
 from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import mujoco_kinematics
@@ -52,6 +52,7 @@ def reaches(joints) -> Experiment:
         links=LINKS,
         readings={
             "model": spec.EXPECTED_MODEL, "ik": solver, "ik_repeated": {"entries_that_differ": 0},
+            "ik_restarts": dict.fromkeys(restarts.COMPARED, 0),
         },
         frames={},
         rendered=False,

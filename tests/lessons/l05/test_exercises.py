@@ -86,6 +86,7 @@ WRONG = {
         "degrees": lambda q, n: forward(q, n, angle=np.pi / 180),
         "the hand turns": lambda q, n: forward(q, n, fixed_last=False),
         "joint before offset": turned_before_offset,
+        "the fifth joint left out": lambda q, n: forward(q * (np.arange(7) != 4), n),
         "xyzw": xyzw,
         "always the whole chain": lambda q, n: forward(q, of.CHAIN),
         "nothing returned": lambda q, n: None,

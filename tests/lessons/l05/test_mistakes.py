@@ -1,11 +1,13 @@
 """Each failure shows its symptom on the real engine, and not where nothing is wrong."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from robo_genesis.lessons.l05 import mistakes, spec
+from robo_genesis.sim.camera_geometry import extrinsics, intrinsics
 
 CASE = spec.BASELINE
 BEYOND = replace(CASE, position=spec.BEYOND_REACH)
@@ -33,6 +35,28 @@ def test_a_symptom_is_found_where_it_appears(lab, mistake, args, shown, says):
     assert says in found.evidence
 
 
-def test_without_a_camera_the_wall_is_not_judged():
-    found = mistakes.beyond_far(None, None)
-    assert (found.shown, found.evidence) == (True, "SKIP: this run has no camera.")
+POINT = np.array([0.3, 0.0, 0.0])
+
+
+def camera(*res):
+    """Return what stands for a camera that looks down, at first from the height of 1 m."""
+    pose = np.eye(4) + np.outer([0, 0, 1, 0], [0, 0, 0, 1])
+    fixed = {"intrinsics": intrinsics(42.0, res), "extrinsics": extrinsics(pose)}
+    made = SimpleNamespace(res=res, far=20.0, transform=pose, **fixed)
+    made.set_pose = lambda height: pose.put(11, height)
+    return made
+
+
+@pytest.mark.parametrize(
+    ("mistake", "args", "shown"),
+    [
+        (mistakes.rows_first, (camera(640, 480), camera(480, 640), POINT), True),
+        (mistakes.rows_first, (camera(640, 480), camera(640, 480), POINT), False),
+        (mistakes.stale_extrinsics, (camera(640, 480), {"height": 3.0}, POINT), True),
+        (mistakes.stale_extrinsics, (camera(640, 480), {"height": 1.0}, POINT), False),
+        (mistakes.beyond_far, (np.full((480, 640), 19.9999), camera(640, 480)), False),
+        (mistakes.beyond_far, (None, None), True),
+    ],
+)
+def test_a_mistake_of_a_camera_is_found_where_it_was_made(mistake, args, shown):
+    assert mistake(*args).shown == shown

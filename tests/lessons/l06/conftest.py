@@ -8,16 +8,13 @@ from robot_runs import driven
 
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons.l05.spec import ARM_LIMITS
 from robo_genesis.lessons.l06 import LECTURE, checks, spec, study
 from robo_genesis.lessons.l06.run import World
 from robo_genesis.sim import arm_kinematics as kinematics
 from robo_genesis.sim import mujoco_kinematics
 
 LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
-LIMITS = (
-    np.array([-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973]),
-    np.array([2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973]),
-)
 ROUNDING = np.float32(1.2e-7)
 
 
@@ -25,7 +22,7 @@ def command(world: World, number: int) -> np.ndarray:
     """Return joint positions (9,) for a target as a solver like the engine's answers."""
     target = kinematics.Pose(world.positions[number], world.quat)
     start = world.q_start[:7]
-    q = kinematics.solve(target, start, *LIMITS, iterations=50, damping=0.01)
+    q = kinematics.solve(target, start, *ARM_LIMITS, iterations=50, damping=0.01)
     return np.float32([*q, *world.q_start[7:]]).astype(float)
 
 

@@ -10,6 +10,7 @@ CONFIGURED = {
     "mean residual of a question [mm]": 0.1,
     "difference of a row in a question [µrad]": 0.3,
     "distance of neighbouring float32 numbers between 2 and 4, by hand": 0.24,
+    "the same between 16 and 32 [1e-6], by hand": 1.9,
     "fixed part of a step, by hand [ms]": 0.6,
     "lever of a load, by hand [m]": 0.42,
     "torque of a load, by hand [N·m]": 4.1,

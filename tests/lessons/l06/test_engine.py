@@ -1,55 +1,58 @@
 """Worlds in the real engine: rows, subsets, refusals."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from robo_genesis.core.scene import DT, SUBSTEPS
-from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import LECTURE, checks, mistakes, spec, study
 from robo_genesis.lessons.l06.run import NotAccepted, ask, reach
-from robo_genesis.sim.batch import Batch, set_link_mass
+from robo_genesis.sim.arm_kinematics import ARM
+from robo_genesis.sim.batch import Batch, run_batch, set_link_mass
 from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.joint_control import CaseError, describe
-from robo_genesis.sim.joints import resolve_joints
+from robo_genesis.sim.joints import resolve_joints, to_numpy
 
 pytestmark = pytest.mark.engine
 
 WORLDS = list(spec.WORLDS.values())
 
 
-def build(gs, size):
-    """The scene of the lecture."""
+def build(gs, size, own=True):
+    """Scene, robot and joints of the lecture, on request without gains for each environment."""
     scene = gs.Scene(
         sim_options=gs.options.SimOptions(dt=DT, substeps=SUBSTEPS),
-        rigid_options=gs.options.RigidOptions(batch_dofs_info=True, batch_links_info=True),
+        rigid_options=gs.options.RigidOptions(batch_dofs_info=own, batch_links_info=True),
         show_viewer=False,
     )
     scene.add_entity(gs.morphs.Plane())
     robot = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
     scene.build(n_envs=size)
-    return scene, robot
-
-
-@pytest.fixture(scope="module")
-def four(real_engine):
-    scene, robot = build(real_engine.gs, len(WORLDS))
     return SimpleNamespace(scene=scene, robot=robot, joints=resolve_joints(robot, JOINT_NAMES))
 
 
 @pytest.fixture(scope="module")
-def measured(real_engine, four):
+def four(real_engine):
+    return build(real_engine.gs, len(WORLDS))
+
+
+@pytest.fixture(scope="module")
+def single(real_engine):
+    return build(real_engine.gs, 0)
+
+
+@pytest.fixture(scope="module")
+def measured(four, single):
     """The runs and readings of the lecture, without a camera."""
     page = SimpleNamespace(traces={}, readings={}, links=[], joints=None)
     page.capture = lambda camera, name: None
-    alone, single = build(real_engine.gs, 0)
     describe(page, four.robot)
     study.read_mixed(page, four.robot)
     study.record(page, four.scene, four.robot, None)
-    study.record_alone(page, alone, single)
+    study.record_alone(page, single.scene, single.robot)
     study.record_copies(page, four.scene, four.robot)
     study.record_variants(page, four.scene, four.robot)
     declared = replace(LECTURE, checks=checks.WITHOUT_CAMERA)
@@ -63,10 +66,8 @@ def test_runs_without_a_camera_pass_their_checks_and_are_possible(measured):
 
 
 def test_a_second_run_is_equal_to_the_last_bit_and_inherits_no_load(four, measured):
-    again = reach(four.scene, four.robot, four.joints, WORLDS)
-    for name, trace in zip(spec.WORLDS, again, strict=True):
-        first = measured.traces[name]
-        assert all((getattr(trace, f.name) == getattr(first, f.name)).all() for f in fields(Trace))
+    again = zip(spec.WORLDS, reach(**vars(four), worlds=WORLDS), strict=True)
+    assert {study.entries_that_differ(run, measured.traces[name])[0] for name, run in again} == {0}
 
 
 def test_answers_of_some_environments_are_those_of_all(four):
@@ -79,22 +80,18 @@ def test_answers_of_some_environments_are_those_of_all(four):
 def test_a_refused_row_stops_the_command_of_all(four):
     worlds = [*WORLDS[:3], replace(WORLDS[3], positions=spec.BEYOND_REACH[None])]
     with pytest.raises(NotAccepted, match=r"Rows \[3\] are refused"):
-        reach(four.scene, four.robot, four.joints, worlds)
+        reach(**vars(four), worlds=worlds)
 
 
-@pytest.mark.parametrize(
-    ("rows", "envs", "message"),
-    [
-        (1, [1, 3], r"shape \(1, 9\), expected one row"),
-        (4, [1, 3], r"shape \(4, 9\), expected one row"),
-        (2, [1, 1], r"Environments \[1, 1\]"),
-        (1, [4], r"Environments \[4\]"),
-        (0, [], r"Environments \[\]"),
-    ],
-)
+@pytest.mark.parametrize(("rows", "envs", "message"), [
+    (1, [1, 3], r"shape \(1, 9\), expected one row"),
+    (4, [1, 3], r"shape \(4, 9\), expected one row"),
+    (2, [1, 1], r"Environments \[1, 1\]"), (1, [4], r"Environments \[4\]"),
+    (0, [], r"Environments \[\]"),
+])  # fmt: skip
 def test_a_command_that_would_broadcast_is_refused(four, rows, envs, message):
     cases = [world.commanding(world.q_start) for world in WORLDS]
-    batch = Batch(four.scene, four.robot, four.joints, cases)
+    batch = Batch(**vars(four), cases=cases)
     with pytest.raises(CaseError, match=message):
         batch.command(np.tile(spec.FIRST.q_start, (rows, 1)), envs)
 
@@ -106,6 +103,31 @@ def test_a_mass_is_that_of_one_environment_and_survives_a_reset(four):
     assert set_link_mass(four.robot, "hand", [0.73] * 4) == pytest.approx([0.73] * 4)
 
 
+@pytest.mark.parametrize(("size", "same"), [(1, "alone"), (2, "env"), (64, "env")])
+def test_batches_have_equal_bits_and_one_environment_those_alone(real_engine, measured, size, same):
+    worlds = [WORLDS[k % len(WORLDS)] for k in range(size)]
+    runs = reach(**vars(build(real_engine.gs, size)), worlds=worlds)
+    pairs = [(run, measured.traces[f"{same}_{k % len(WORLDS)}"]) for k, run in enumerate(runs)]
+    assert {study.entries_that_differ(*pair)[0] for pair in pairs} == {0}
+
+
+def test_random_runs_agree_with_those_alone_within_the_declared_bounds(real_engine, single):
+    q = np.tile(spec.FIRST.q_start, (2, 16, 1))
+    q[..., :ARM] += np.random.default_rng(0).uniform(-0.6, 0.6, (2, 16, ARM))
+    cases = {f"{k}": replace(spec.SHORT, q_start=q[0, k]).commanding(q[1, k]) for k in range(16)}
+    rows = run_batch(**vars(build(real_engine.gs, len(cases))), cases=cases)
+    for name, case in cases.items():
+        (alone,) = run_batch(**vars(single), cases={name: case}).values()
+        apart = study.largest_differences(rows[name], alone)
+        assert all(apart[array] <= most for array, most in spec.SAME_RUN.items()), apart
+
+
+def test_without_its_option_a_scene_has_one_set_of_gains_whatever_environment_is_named(real_engine):
+    robot = build(real_engine.gs, 2, own=False).robot
+    robot.set_dofs_kp(kp := 2 * spec.FIRST.kp, range(len(kp)), envs_idx=[1])
+    assert to_numpy(robot.get_dofs_kp()) == pytest.approx(kp)
+
+
 @pytest.mark.parametrize(("mistake", "args", "shown", "says"), [
     (mistakes.one_value_each, ({1: 0.03, 3: 0.01}, {0: 0.03, 1: 0.01, 3: 0.02}), True, "20.0"),
     (mistakes.one_value_each, ({1: 0.03}, {3: 0.02}), False, "30.0 mm in 1"),
@@ -114,6 +136,6 @@ def test_a_mass_is_that_of_one_environment_and_survives_a_reset(four):
     (mistakes.mean_of_rows, (2, spec.TARGETS[2]), False, "No exception"),
 ])  # fmt: skip
 def test_a_symptom_is_found_where_it_appears(four, mistake, args, shown, says):
-    found = mistake(four.scene, four.robot, four.joints, WORLDS, *args)
+    found = mistake(*vars(four).values(), WORLDS, *args)
     assert found.shown == shown
     assert says in found.evidence

@@ -99,14 +99,11 @@ def test_a_right_measurement_passes():
     assert check.passed, check.detail
 
 
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"middle": np.mean}, {"middle": max}, {"before": False}, {"after": False},
-        {"share": False}, {"warm": False}, {"middle": lambda times: None}, {"middle": min},
-        {"middle": lambda times: times[-1]},
-    ],
-)  # fmt: skip
+@pytest.mark.parametrize("wrong", [
+    {"middle": np.mean}, {"middle": max}, {"before": False}, {"after": False}, {"share": False},
+    {"warm": False}, {"middle": lambda times: None}, {"middle": min},
+    {"middle": lambda times: times[-1]},
+])  # fmt: skip
 def test_a_wrong_measurement_fails(wrong):
     (check,) = exercise(lambda *arguments: written(*arguments, **wrong))
     assert not check.passed
@@ -135,7 +132,7 @@ def known():
     ("details", "| 4 | 0.604 to 0.73 | 15.1 | 1.0 | 104 |"),
     ("maximum", "58,200 steps per second, with 512 environments. With 1024 it is 30,100,"),
     ("conclusions", "1,620 steps per second with 1 and 30,100 with 1024"),
-    ("conclusions", "The most are 58,200, with 512."),
+    ("conclusions", "The largest throughput is 58,200, with 512 environments."),
     ("model_table", "| 256 | 4.7 | 4.7 | 1.00 | test |"),
     ("model_table", "| 1024 | 34 | 17 | 2.00 | test |"),
     ("model_sentence", "*a* = 0.6 ms and *b* = 16 µs"),
