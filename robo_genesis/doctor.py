@@ -23,6 +23,7 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.project import OUTPUTS_DIR
@@ -43,6 +44,11 @@ def table(findings: Sequence[Finding]) -> str:
         found = textwrap.fill(f.found, WIDTH, initial_indent=head, subsequent_indent=" " * indent)
         lines.append(found or head.rstrip())
     return "\n".join([*lines, "", verdict(findings)])
+
+
+def printed(report: Mapping[str, Any]) -> str:
+    """Return the table of a report that was read from JSON."""
+    return table([Finding(**step) for step in report["steps"]])
 
 
 def verdict(findings: Sequence[Finding]) -> str:

@@ -181,6 +181,8 @@ def test_the_report_has_stable_fields_and_versions(steps_run, capsys, monkeypatc
     assert list(found) == fields.split()
     assert found["format"] == doctor.REPORT_FORMAT == 3
     assert found["versions"]["genesis-world"] == "0.0.1"
+    main([])
+    assert capsys.readouterr().out.rstrip("\n") == doctor.printed(found)
     assert set(found["platform"]) == {"system", "release", "machine", "cpus"}
 
 

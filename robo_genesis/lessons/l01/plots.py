@@ -23,3 +23,8 @@ def height(run: Experiment) -> Figure:
     ax.set_title("Height of the sphere's centre", loc="left")
     ax.legend(loc="center left")
     return figure
+
+
+def ends(run: Experiment) -> Figure:
+    """Show the camera frames of both ends, without a camera the heights."""
+    return plotting.both_ends(run.frames) if run.rendered else height(run)
