@@ -25,7 +25,7 @@ from robo_genesis.core.files import NEXT, OLD, replaced, settle
 from robo_genesis.core.project import ROOT
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.lessons.book_pages import Page
-from robo_genesis.lessons.sources import page_fingerprint
+from robo_genesis.lessons.sources import Tree, page_fingerprint
 
 Verify = Callable[[Path, str], Any]
 """Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused."""
@@ -49,9 +49,9 @@ def places(
         root: the checkout.
         environment: variables, by default those of this process.
     """
-    store = store.absolute()
+    store, tree = store.absolute(), Tree(root)
     return {
-        page.docname: store / _folder(page) / page_fingerprint(page, root, environment)
+        page.docname: store / _folder(page) / page_fingerprint(page, root, environment, tree)
         for page in pages
     }
 

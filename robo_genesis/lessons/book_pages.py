@@ -115,7 +115,13 @@ def _notebook(name: str, path: Path) -> NotebookNode | None:
             f"{name}: the page cannot be read: {error}\nCorrect {path}. Front matter and the "
             "options of cells (`:name: value`) are YAML."
         ) from error
-    return notebook if is_myst_markdown_notebook(text) else None
+    return notebook if _is_notebook(text) else None
+
+
+@lru_cache(maxsize=128)
+def _is_notebook(text: str) -> bool:
+    """Return whether the text of a page has code cells."""
+    return bool(is_myst_markdown_notebook(text))
 
 
 @lru_cache(maxsize=64)

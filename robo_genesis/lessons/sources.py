@@ -13,7 +13,7 @@ import os
 import platform
 import tokenize
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
+from functools import cache, cached_property, lru_cache, partial
 from importlib.util import resolve_name
 from itertools import accumulate
 from pathlib import Path
@@ -190,10 +190,40 @@ def imports_of(cells: Sequence[str]) -> list[str]:
     return found.decode().split()
 
 
+class Tree:
+    """The files of the package below a folder, each looked for and read once, for several pages."""
+
+    def __init__(self, root: Path = ROOT) -> None:
+        self.root = root
+        self.module: Callable[[str], Path | None] = cache(partial(_module_file, root))
+        self.text: Callable[[Path], str] = cache(partial(Path.read_text, encoding="utf8"))
+
+    @cached_property
+    def data(self) -> dict[Path, str]:
+        """The digest of each data file."""
+        files = (self.root / PACKAGE).rglob("*")
+        return {
+            path: hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in files
+            if path.suffix in DATA_SUFFIXES
+        }
+
+    def data_for(self, lesson: str | None) -> dict[str, str]:
+        """Return the digests of the data files by name, except those of other lessons."""
+        lessons = self.root / PACKAGE / "lessons"
+        others = {init.parent for init in lessons.glob("*/__init__.py")} - {lessons / f"{lesson}"}
+        return {
+            path.relative_to(self.root).as_posix(): digest
+            for path, digest in self.data.items()
+            if others.isdisjoint(path.parents)
+        }
+
+
 def import_closure(
     names: Iterable[str],
     root: Path = ROOT,
     enter: Callable[[str, Path], bool] = lambda name, path: True,
+    tree: Tree | None = None,
 ) -> dict[str, Path]:
     """Return the package's modules behind some dotted names, directly or through others.
 
@@ -201,22 +231,24 @@ def import_closure(
         names: of modules or of something in them; others are ignored.
         root: the folder that holds the package.
         enter: whether a module belongs to the result; what only others import does not.
+        tree: the files below `root`, if they were read before.
 
     Returns:
         Module name to file, packages by their `__init__.py`.
     """
+    tree = tree or Tree(root)
     found: dict[str, Path] = {}
     waiting = list(names)
     seen: set[str] = set()
     while waiting:
         for name in accumulate(waiting.pop().split("."), "{}.{}".format):
-            path = None if name in seen else _module_file(root, name)
+            path = None if name in seen else tree.module(name)
             seen.add(name)
             if path is None or not enter(name, path):
                 continue
             found[name] = path
             package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-            waiting += imported_names(path.read_text("utf8"), package)
+            waiting += imported_names(tree.text(path), package)
     return found
 
 
@@ -272,7 +304,10 @@ def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) ->
 
 
 def page_fingerprint(
-    page: "Page", root: Path = ROOT, environment: Mapping[str, str] | None = None
+    page: "Page",
+    root: Path = ROOT,
+    environment: Mapping[str, str] | None = None,
+    tree: Tree | None = None,
 ) -> str:
     """Return a digest of everything that decides the outputs of a page.
 
@@ -285,6 +320,7 @@ def page_fingerprint(
         page: an executed page.
         root: the checkout.
         environment: variables, by default those of this process.
+        tree: the files below `root`, if they were read before.
 
     Returns:
         20 hex digits.
@@ -292,20 +328,17 @@ def page_fingerprint(
     # Imported here, because MyST-NB and Jupyter take longer to load than a whole verification.
     from robo_genesis.lessons.book_pages import cell_sources
 
-    cells = cell_sources(page)
+    tree, cells = tree or Tree(root), cell_sources(page)
     own = _lesson_modules(page.lesson, root) if page.lesson else []
-    modules = import_closure([*imports_of(cells), *own], root)
+    modules = import_closure([*imports_of(cells), *own], root, tree=tree)
     parts = {
         "lock": lock_digest(root),
         "installed": _installed(),
         "python": platform.python_version(),
         "environment": environment_contract(environment),
         "cells": cell_digests(cells),
-        "modules": {name: syntax_digest(path.read_text("utf8")) for name, path in modules.items()},
-        "data": {
-            path.relative_to(root).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-            for path in _data_files(page.lesson, root)
-        },
+        "modules": {name: syntax_digest(tree.text(path)) for name, path in modules.items()},
+        "data": tree.data_for(page.lesson),
         "alone": page.alone,
     }
     return _sha256(parts)[:20]
@@ -322,12 +355,3 @@ def _installed() -> list[str]:
         derived("packages", [], lambda: json.dumps(installed_packages()).encode())
     )
     return names
-
-
-def _data_files(lesson: str | None, root: Path) -> Iterator[Path]:
-    """Yield the data files of the package, except those of other lessons."""
-    lessons = root / PACKAGE / "lessons"
-    others = {path.parent for path in lessons.glob("*/__init__.py") if path.parent.name != lesson}
-    for path in (root / PACKAGE).rglob("*"):
-        if path.suffix in DATA_SUFFIXES and others.isdisjoint(path.parents):
-            yield path

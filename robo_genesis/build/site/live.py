@@ -4,6 +4,7 @@ A process with Sphinx loaded renders each changed page; see `live_sphinx`. The b
 state without warnings and errors, and reloads when there is a new one; see `live_server`.
 """
 
+import filecmp
 import json
 import os
 import shutil
@@ -231,12 +232,7 @@ class Live:
             (self.site / name).unlink()
         for name in new:
             source, to = html / name, self.site / name
-            stat = source.stat()
-            is_same = name in old and (to.stat().st_mtime_ns, to.stat().st_size) == (
-                stat.st_mtime_ns,
-                stat.st_size,
-            )
-            if not is_same:
+            if name not in old or not filecmp.cmp(source, to):
                 to.parent.mkdir(parents=True, exist_ok=True)
                 beside = to.with_name(f".{to.name}.next")
                 shutil.copy2(source, beside)
