@@ -181,20 +181,25 @@ def reset_batch(
     return batch
 
 
-def set_link_mass(robot: Any, link: str, masses: FloatArray) -> FloatArray:
-    """Give a link another mass in each environment, and return the masses that read back (B,) [kg].
+def set_link_mass(
+    robot: Any, link: str, masses: FloatArray, envs: Sequence[int]
+) -> FloatArray:  # fmt: skip
+    """Give a link another mass in some environments, and return all masses that read back (B,) [kg].
 
-    Centre of mass and inertia of the link remain. A reset of the scene keeps the masses.
+    Centre of mass and inertia of the link remain. A reset of the scene keeps the masses. A newer
+    engine computes what follows from a mass again when it is written, also when the mass is the
+    same: forces may then differ in the last bit. So name no environment that keeps its mass.
 
     Args:
         robot: of a scene with `batch_links_info`, without which there is one mass for all.
         link: its name.
-        masses: (B,) [kg].
+        masses: (k,) [kg], one for each environment of `envs`.
+        envs: k environments.
     """
     at = [robot.get_link(link).idx_local]
     # Newer versions of the engine have other names.
     new = hasattr(robot, "set_links_mass")
     write = robot.set_links_mass if new else robot.set_links_inertial_mass
     read = robot.get_links_mass if new else robot.get_links_inertial_mass
-    write(np.array(masses, dtype=np.float32)[:, None], at)
+    write(np.array(masses, dtype=np.float32)[:, None], at, list(envs))
     return np.asarray(to_numpy(read(at))[:, 0])

@@ -72,10 +72,11 @@ def record_variants(page: Any, scene: Any, robot: Any) -> None:
     """Record four robots with one target, own gains and own loads; take the loads off again."""
     worlds = list(spec.VARIANTS.values())
     loads = np.array([world.load for world in worlds])
-    masses = set_link_mass(robot, END_EFFECTOR, spec.HAND_MASS + loads)
+    (loaded,) = loads.nonzero()
+    masses = set_link_mass(robot, END_EFFECTOR, spec.HAND_MASS + loads[loaded], loaded)
     page.readings["hand_mass"] = dict(zip(MASSES, map(float, masses), strict=True))
     page.traces |= dict(zip(spec.VARIANTS, reach(scene, robot, page.joints, worlds), strict=True))
-    set_link_mass(robot, END_EFFECTOR, spec.HAND_MASS + 0 * loads)
+    set_link_mass(robot, END_EFFECTOR, np.full(len(loaded), spec.HAND_MASS), loaded)
 
 
 def entries_that_differ(one: Trace, other: Trace) -> tuple[int, int]:
