@@ -184,7 +184,7 @@ def reset_batch(
 def set_link_mass(
     robot: Any, link: str, masses: FloatArray, envs: Sequence[int]
 ) -> FloatArray:  # fmt: skip
-    """Give a link another mass in some environments, and return all masses that read back (B,) [kg].
+    """Give a link another mass in some environments; return all masses as read back (B,) [kg].
 
     Centre of mass and inertia of the link remain. A reset of the scene keeps the masses. A newer
     engine computes what follows from a mass again when it is written, also when the mass is the

@@ -65,9 +65,10 @@ def test_runs_without_a_camera_pass_their_checks_and_are_possible(measured):
     LECTURE.validate(measured)
 
 
-def test_a_second_run_is_equal_to_the_last_bit_and_inherits_no_load(four, measured):
-    again = zip(spec.WORLDS, reach(**vars(four), worlds=WORLDS), strict=True)
-    assert {study.entries_that_differ(run, measured.traces[name])[0] for name, run in again} == {0}
+def test_a_second_run_agrees_with_the_first_and_inherits_no_load(four, measured):
+    for name, run in zip(spec.WORLDS, reach(**vars(four), worlds=WORLDS), strict=True):
+        apart = study.largest_differences(run, measured.traces[name])
+        assert all(apart[array] <= most for array, most in spec.SAME_RUN.items()), apart
 
 
 def test_answers_of_some_environments_are_those_of_all(four):
@@ -97,9 +98,9 @@ def test_a_command_that_would_broadcast_is_refused(four, rows, envs, message):
 
 
 def test_a_mass_is_that_of_one_environment_and_survives_a_reset(four):
-    found = set_link_mass(four.robot, "hand", [1.0], [1])
+    set_link_mass(four.robot, "hand", [1.0], [1])
     four.scene.reset()
-    assert found == pytest.approx([0.73, 1.0, 0.73, 0.73])
+    assert set_link_mass(four.robot, "hand", [0.73], [2]) == pytest.approx([0.73, 1, 0.73, 0.73])
     assert set_link_mass(four.robot, "hand", [0.73], [1]) == pytest.approx([0.73] * 4)
 
 
@@ -137,5 +138,4 @@ def test_without_its_option_a_scene_has_one_set_of_gains_whatever_environment_is
 ])  # fmt: skip
 def test_a_symptom_is_found_where_it_appears(four, mistake, args, shown, says):
     found = mistake(*vars(four).values(), WORLDS, *args)
-    assert found.shown == shown
-    assert says in found.evidence
+    assert (found.shown, says in found.evidence) == (shown, True), found.evidence
