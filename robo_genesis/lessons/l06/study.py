@@ -71,9 +71,9 @@ def record_copies(page: Any, scene: Any, robot: Any) -> None:
 def record_variants(page: Any, scene: Any, robot: Any) -> None:
     """Record four robots with one target, own gains and own loads; take the loads off again."""
     worlds = list(spec.VARIANTS.values())
-    loads = np.array([world.load for world in worlds])
-    (loaded,) = loads.nonzero()
-    masses = set_link_mass(robot, END_EFFECTOR, spec.HAND_MASS + loads[loaded], loaded)
+    loaded = [row for row, world in enumerate(worlds) if world.load]
+    heavy = np.array([spec.HAND_MASS + worlds[row].load for row in loaded])
+    masses = set_link_mass(robot, END_EFFECTOR, heavy, loaded)
     page.readings["hand_mass"] = dict(zip(MASSES, map(float, masses), strict=True))
     page.traces |= dict(zip(spec.VARIANTS, reach(scene, robot, page.joints, worlds), strict=True))
     set_link_mass(robot, END_EFFECTOR, np.full(len(loaded), spec.HAND_MASS), loaded)
