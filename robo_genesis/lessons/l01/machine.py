@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
+from robo_genesis.core.fresh_process import last_value, run_python
 from robo_genesis.lessons.experiment import Readings, counts
-from robo_genesis.lessons.fresh_process import run_python
 from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim import diagnosis
 
@@ -69,7 +69,8 @@ def examine(changed: Mapping[str, str] | None = None) -> dict[str, Any]:
     Raises:
         StartError: it printed no report.
     """
-    return json.loads(run_python(["-m", "robo_genesis.doctor", "--json"], changed or {}))
+    command = ["-m", "robo_genesis.doctor", "--json"]
+    return json.loads(run_python(command, changed or {}, statuses=(0, 1)))
 
 
 def passed(report: Mapping[str, Any]) -> dict[str, int]:
@@ -87,6 +88,6 @@ def measure_starts() -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder:
         kernels = project.engine_cache_environment(cache=Path(folder))
         for start in STARTS:
-            times = json.loads(run_python(["-c", SCRIPT], kernels).splitlines()[-1])
+            times = last_value(run_python(["-c", SCRIPT], kernels))
             found |= {f"{start}_{part}": t for part, t in zip(PARTS, times, strict=True)}
     return found

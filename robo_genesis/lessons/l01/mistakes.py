@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from robo_genesis.core.fresh_process import run_python
 from robo_genesis.core.mistakes import Failure
-from robo_genesis.lessons.fresh_process import run_python
 from robo_genesis.lessons.l01 import machine
 
 

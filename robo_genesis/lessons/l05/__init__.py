@@ -114,8 +114,7 @@ LESSON = Lesson(
         until=0.6,
         view=View(
             thing="robot",
-            alt="The robot in 3D, in the posture of the sample that is shown. The sphere is at the "
-            "target of the hand.",
+            alt="The robot in the posture of the sample; a sphere marks the target of the hand.",
             credit=CREDIT,
         ),
         alt="Position of joint4 over time in three runs, and its command.",

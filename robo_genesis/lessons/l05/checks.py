@@ -91,6 +91,7 @@ def repeatable(run: Experiment) -> Iterator[Finding]:
 def restarts_repeat(run: Experiment) -> Iterator[Finding]:
     for name in restarts.COMPARED[:2]:
         yield equal(name, run.readings[restarts.GROUP][name], 0)
+    yield equal("accepted_without_restarts", bool(study.many_answers(run)["accepted"][0]), False)
 
 
 def unreachable_refused(run: Experiment) -> Iterator[Finding]:

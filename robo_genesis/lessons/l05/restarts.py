@@ -4,8 +4,8 @@ import json
 import os
 from typing import Any
 
+from robo_genesis.core.fresh_process import last_value, run_python
 from robo_genesis.lessons.experiment import counts
-from robo_genesis.lessons.fresh_process import run_python
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.run import ask
 from robo_genesis.sim import diagnosis, session
@@ -34,7 +34,7 @@ def print_answers() -> None:
 def read(page: Any) -> None:
     """Give a page the counts, from two new processes that print their answers."""
     call = ["-c", f"from {__name__} import print_answers; print_answers()"]
-    first, other = (json.loads(run_python(call, {}).splitlines()[-1]) for _ in range(2))
+    first, other = (last_value(run_python(call, {})) for _ in range(2))
     pairs = (first, other), (first[:2], first[2:]), (first[:1], first[1:2])
     counted = [sum(a != b for a, b in zip(*pair, strict=True)) for pair in pairs]
     page.readings[GROUP] = dict(zip(COMPARED, counted, strict=True))

@@ -51,19 +51,14 @@ def records(run: Experiment, name: str) -> list[dict[str, str]]:
 
 def chosen(run: Experiment) -> dict[str, int]:
     """Return by criterion the number of the accepted answer, from 0, that it chooses."""
-    found = many_answers(run)
+    found = study.many_answers(run)
     numbers = np.flatnonzero(found["accepted"]).tolist()
     return {n: best(numbers, key=found[key].__getitem__) for n, (key, best) in CRITERIA.items()}
 
 
-def many_answers(run: Experiment) -> dict[str, FloatArray]:
-    """Return what is known of the answers from many starts."""
-    return study.answers(run.traces["many_starts"], spec.MANY_STARTS)
-
-
 def count_table(run: Experiment) -> str:
     """Return how many answers are distinct for several thresholds."""
-    q = run.traces["many_starts"].q[1:, : kinematics.ARM][many_answers(run)["accepted"]]
+    q = run.traces["many_starts"].q[1:, : kinematics.ARM][study.many_answers(run)["accepted"]]
     rows = [{"threshold [rad]": t, "distinct answers": study.clusters(q, t)} for t in THRESHOLDS]
     return tables.markdown(rows)
 

@@ -89,6 +89,11 @@ def answers(trace: Trace, case: SolveCase) -> dict[str, FloatArray]:
     return found | qualities(q[:, :ARM], trace.q[0, :ARM])
 
 
+def many_answers(run: Experiment) -> dict[str, FloatArray]:
+    """Return what is known of the answers from many starts."""
+    return answers(run.traces["many_starts"], spec.MANY_STARTS)
+
+
 def qualities(q: FloatArray, start: FloatArray) -> dict[str, FloatArray]:
     """Return what can decide between postures (m, 7), given the start (7,) of a run [rad].
 

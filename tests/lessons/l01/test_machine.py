@@ -2,9 +2,6 @@
 
 import json
 
-import pytest
-
-from robo_genesis.lessons.fresh_process import StartError, run_python
 from robo_genesis.lessons.l01 import machine, mistakes
 
 
@@ -30,11 +27,6 @@ def test_a_failure_is_shown_only_by_the_step_that_it_should_break():
     assert found.evidence == "The doctor stops at step 2, `libraries`: about libraries"
     assert not mistakes.broken_step("no_egl", report("version"), "libraries").shown
     assert not mistakes.broken_step("no_egl", report(), "libraries").shown
-
-
-def test_a_process_without_output_is_an_error_with_its_last_lines():
-    with pytest.raises(StartError, match="NameError: name 'nothing' is not defined"):
-        run_python(["-c", "nothing"], {})
 
 
 def test_both_starts_share_one_folder_of_kernels(monkeypatch):

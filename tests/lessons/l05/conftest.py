@@ -46,6 +46,7 @@ def reaches(joints) -> Experiment:
     apart, angle = kinematics.distances(found.error)
     solver = {"residual_m": float(apart), "residual_rad": float(angle), "jacobian_difference": 0.0}
     runs["unreachable"] = assigned(spec.UNREACHABLE, refused)
+    runs["many_starts"] = assigned(spec.MANY_STARTS, np.repeat(refused, spec.RESTARTS, axis=0))
     return Experiment(
         page=replace(SOLUTIONS, runs={name: SOLUTIONS.runs[name] for name in runs}),
         traces=runs,

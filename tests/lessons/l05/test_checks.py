@@ -29,12 +29,12 @@ def lower_gain(run: Experiment) -> Experiment:
     return with_trace(run, "baseline", q=of.q, link_pos=of.link_pos, link_quat=of.link_quat)
 
 
-def with_answer(run, position, quat):
-    """Let the engine's answer for the target beyond reach put the hand into a pose."""
-    trace = run.traces["unreachable"]
+def with_answer(run, position, quat, name="unreachable"):
+    """Let the engine's answers of a run put the hand into a pose."""
+    trace = run.traces[name]
     places, turns = np.array(trace.link_pos), np.array(trace.link_quat)
     places[1:, HAND], turns[1:, HAND] = position, quat
-    return with_trace(run, "unreachable", link_pos=places, link_quat=turns)
+    return with_trace(run, name, link_pos=places, link_quat=turns)
 
 
 CHANGES = {
@@ -67,8 +67,12 @@ def test_each_check_of_the_page_has_such_a_change(reaches):
 
 
 def test_a_count_that_was_not_recorded_fails(reaches):
-    without = replace(reaches, readings=reaches.readings | {"ik_repeated": {}})
-    assert failed(without) == {"repeatable"}
+    readings = reaches.readings | {"ik_repeated": {}}
+    assert failed(replace(reaches, readings=readings)) == {"repeatable"}
+
+
+def test_a_question_that_needs_no_restart_is_refused(reaches):
+    assert "restarts_repeat" in failed(with_answer(reaches, spec.TARGET, spec.DOWN, "many_starts"))
 
 
 def test_answers_of_two_processes_are_compared_in_pairs(monkeypatch):
@@ -99,8 +103,7 @@ def test_an_answer_that_is_not_accepted_is_not_commanded():
 
 
 def test_the_metrics_of_a_run_are_three_distances(reaches):
-    for name in spec.CASES:
-        m = reaches.metrics[name]
+    for m in reaches.metrics.values():
         assert m.final_distance <= m.command_distance + m.tracking_distance
         assert m.final_speed < 1e-3
     assert reaches.metrics["baseline"].tracking_distance == pytest.approx(
@@ -122,10 +125,8 @@ def test_twice_the_gain_halves_the_sag():
 
 def test_a_self_motion_keeps_the_hand_in_place_and_groups_solutions(reaches):
     target = kinematics.Pose(spec.TARGET, spec.DOWN)
-    q = reaches.traces["baseline"].target[0, :7]
-    curve = study.self_motion(q, target)
-    error = kinematics.pose_error(target, kinematics.hand_pose(curve))
-    assert np.abs(error).max() < 1e-3
+    curve = study.self_motion(reaches.traces["baseline"].target[0, :7], target)
+    assert np.abs(kinematics.pose_error(target, kinematics.hand_pose(curve))).max() < 1e-3
     assert np.linalg.norm(np.diff(curve, axis=0), axis=1).max() < 0.1
     assert np.ptp(curve, axis=0).max() > 0.5
     ((of_curve, inside),) = study.families(curve[::5], target)
