@@ -189,9 +189,8 @@ def solution_families(run: Experiment) -> list[tuple[FloatArray, list[int]]]:
 
     With it are the numbers of its answers, from 0, in the order of joint 1.
     """
-    trace, case = run.traces["many_starts"], spec.MANY_STARTS
-    numbers = np.flatnonzero(answers(trace, case)["accepted"])
-    q = trace.q[1 + numbers, :ARM].astype(float)
+    numbers = np.flatnonzero(many_answers(run)["accepted"])
+    q = run.traces["many_starts"].q[1 + numbers, :ARM].astype(float)
     found = families(q, Pose(spec.TARGET, spec.DOWN))
     return [
         (curve, [int(numbers[k]) for k in sorted(inside, key=lambda k: float(q[k, 0]))])

@@ -25,12 +25,12 @@ def test_the_map_of_solutions_has_the_accepted_answers_along_their_curves(solved
     q = solved.traces["many_starts"].q
     for row in found["rows"]:
         assert (np.diff(q[row["cells"], 0]) >= 0).all()
-    accepted = solutions_text.many_answers(solved)["accepted"]
+    accepted = study.many_answers(solved)["accepted"]
     assert sum(len(row["cells"]) for row in found["rows"]) == accepted.sum() > 20
 
 
 def test_each_criterion_chooses_the_best_accepted_answer(solved):
-    found, chosen = solutions_text.many_answers(solved), solutions_text.chosen(solved)
+    found, chosen = study.many_answers(solved), solutions_text.chosen(solved)
     assert len(set(chosen.values())) > 1
     for name, (key, best) in solutions_text.CRITERIA.items():
         assert found[key][chosen[name]] == best(found[key][found["accepted"]])
