@@ -49,11 +49,6 @@ def table(findings: Sequence[Finding]) -> str:
     return "\n".join(map(printable, text.split("\n")))
 
 
-def printed(report: Mapping[str, Any]) -> str:
-    """Return the table of a report that was read from JSON."""
-    return table(steps_of(report))
-
-
 def steps_of(report: Mapping[str, Any]) -> list[Finding]:
     """Return the findings of a report that was read from JSON."""
     return [

@@ -182,7 +182,7 @@ def test_the_report_has_stable_fields_and_versions(steps_run, capsys, monkeypatc
     assert found["format"] == doctor.REPORT_FORMAT == 3
     assert found["versions"]["genesis-world"] == "0.0.1"
     main([])
-    assert capsys.readouterr().out.rstrip("\n") == doctor.printed(found)
+    assert capsys.readouterr().out.rstrip("\n") == table(doctor.steps_of(found))
     assert set(found["platform"]) == {"system", "release", "machine", "cpus"}
 
 
