@@ -19,7 +19,8 @@ stale. A list below the question gives the cause for each answer; it may be left
     - x57.3: That is in degrees.
     ```
 
-The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent.
+The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent;
+it may be below one.
 `:unit: mm` asks for a length in millimetres, and other units for their thousandths.
 A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 """
