@@ -3,7 +3,8 @@
     python -m robo_genesis.doctor                a table for the terminal
     python -m robo_genesis.doctor --json         the same facts for a bug report
     python -m robo_genesis.doctor --like BUNDLE  and what differs from the machine of a recorded run
-    python -m robo_genesis.doctor --like BUNDLE --report FILE    no steps: FILE has an older report
+    python -m robo_genesis.doctor --report FILE  the table of a saved report, without any step
+    python -m robo_genesis.doctor --report FILE --like BUNDLE    and what differs from its machine
 
 A bundle is a folder, or an archive as the ledger of the site offers it. A report is a file that
 `--json` wrote, on this machine or another.
@@ -27,11 +28,12 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.project import OUTPUTS_DIR
-from robo_genesis.core.refusals import BundleRefused, printable
+from robo_genesis.core.refusals import BundleRefused, printable, shown
 from robo_genesis.sim.diagnosis import STEPS, Bench, Finding, examine, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
 REPORT_FORMAT = 3
+MAKE_REPORT = "python -m robo_genesis.doctor --json > report.json"
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 
 
@@ -43,12 +45,16 @@ def table(findings: Sequence[Finding]) -> str:
         head = f"{number:2}  {f.step:{indent - 15}}  {f.state:7}  "
         found = textwrap.fill(f.found, WIDTH, initial_indent=head, subsequent_indent=" " * indent)
         lines.append(found or head.rstrip())
-    return "\n".join([*lines, "", verdict(findings)])
+    text = "\n".join([*lines, "", verdict(findings)])
+    return "\n".join(map(printable, text.split("\n")))
 
 
-def printed(report: Mapping[str, Any]) -> str:
-    """Return the table of a report that was read from JSON."""
-    return table([Finding(**step) for step in report["steps"]])
+def steps_of(report: Mapping[str, Any]) -> list[Finding]:
+    """Return the findings of a report that was read from JSON."""
+    return [
+        Finding(str(step["step"]), str(step["state"]), str(step["found"]))
+        for step in report["steps"]
+    ]
 
 
 def verdict(findings: Sequence[Finding]) -> str:
@@ -95,7 +101,7 @@ def machine(bench: Bench) -> dict[str, str]:
     if bench.engine:
         found = bench.engine.backend
         facts |= {"backend": found.actual, "device": found.device_name}
-    return {name: value or "not installed" for name, value in facts.items()}
+    return {name: "not installed" if value is None else value for name, value in facts.items()}
 
 
 def recorded_machine(bundle: str) -> dict[str, str]:
@@ -120,30 +126,49 @@ def recorded_machine(bundle: str) -> dict[str, str]:
     }
 
 
-def reported_machine(file: str) -> dict[str, str]:
-    """Return the same facts from a report.
+def read_report(file: str) -> dict[str, Any]:
+    """Return a saved report.
 
     Raises:
-        ValueError: the file cannot be read, or is not a report of this format.
+        ValueError: the file is not a report of this format.
     """
     try:
         report = json.loads(Path(file).read_text("utf8"))
         if report["format"] != REPORT_FORMAT:
-            raise ValueError(f"its format is {report['format']!r}, expected {REPORT_FORMAT}.")
-        return {str(name): str(value) for name, value in report["machine"].items()}
+            problem = (
+                f"has the format {shown(report['format'])}; this version reads format "
+                f"{REPORT_FORMAT}"
+            )
+        elif not steps_of(report):
+            problem = "has no steps; a report has at least one"
+        elif "engine" not in (facts := report["machine"]) or {*map(type, facts.values())} != {str}:
+            problem = f"has the machine {shown(facts)}; a report has texts with at least an engine"
+        else:
+            return report
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
-        raise ValueError(
-            f"{file!r} is not a report of the doctor: {type(error).__name__}: {error} Write one "
-            "with python -m robo_genesis.doctor --json > report.json"
-        ) from error
+        problem = (
+            f"cannot be read as a report: {type(error).__name__}: {error}; a report is a file that "
+            "--json wrote"
+        )
+    raise ValueError(f"{file!r} {problem}; make a new one with {MAKE_REPORT}")
 
 
-def differences(here: Mapping[str, str], recorded: Mapping[str, str]) -> list[str]:
-    """Return a line for each fact: equal, or both values."""
-    lines = [f"{'':10} {'recorded':30} here"]
+def differences(
+    here: Mapping[str, str], recorded: Mapping[str, str], head: str = "this machine"
+) -> list[str]:
+    """Return a line for each fact: equal, or both values, in columns of equal width.
+
+    Args:
+        here: the facts of this machine, or of a saved report.
+        recorded: the facts of the machine that recorded a bundle.
+        head: the head of the column of `here`.
+    """
+    rows = [("", "recorded", head)]
     for name, value in recorded.items():
         found = here.get(name, "unknown: the engine did not start")
-        lines.append(f"{name:10} {value:30} {'equal' if found == value else found}")
+        rows.append((name, printable(value), "equal" if found == value else printable(found)))
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = [f"{name:{widths[0]}}  {value:{widths[1]}}  {found}" for name, value, found in rows]
     if here.get("engine") != recorded["engine"]:
         lines.append("Install the engine's version of the site: another one gives other numbers.")
     elif here.get("backend", recorded["backend"]) != recorded["backend"]:
@@ -163,31 +188,32 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--json", action="store_true", help="a report for a bug, on stdout")
     parser.add_argument("--like", metavar="BUNDLE", help="compare with the machine of this run")
-    parser.add_argument("--report", metavar="FILE", help="compare this report, run no step")
+    parser.add_argument("--report", metavar="FILE", help="show this report, run no step")
     options = parser.parse_args(arguments)
-    if options.json and options.like:
-        parser.error(
-            "--json and --like do not go together. Write the report to a file, and compare it with "
-            "--like BUNDLE --report FILE"
-        )
-    if options.report and not options.like:
-        parser.error("--report needs --like BUNDLE, the run to compare with")
+    for name in ("like", "report"):
+        if options.json and getattr(options, name) is not None:
+            parser.error(
+                f"--json and --{name} cannot be combined. Make the report with {MAKE_REPORT}, and "
+                "compare it with --report report.json --like BUNDLE"
+            )
     try:
-        recorded = recorded_machine(options.like) if options.like else {}
-        reported = reported_machine(options.report) if options.report else {}
+        recorded = None if options.like is None else recorded_machine(options.like)
+        saved = None if options.report is None else read_report(options.report)
     except (BundleRefused, zipfile.BadZipFile, ValueError) as error:
         parser.error(printable(str(error)))
-    if options.report:
-        print(*map(printable, differences(reported, recorded)), sep="\n")
-        return 0
-    print(f"{len(STEPS)} steps; the first start of the engine takes minutes", file=sys.stderr)
-    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
-        # Without it, the outputs would go to the working directory.
-        bench = Bench({OUTPUTS_DIR: folder} | os.environ)
-        findings = examine(bench)
-    print(report(findings, bench) if options.json else table(findings))
-    if recorded:
-        print("", *map(printable, differences(machine(bench), recorded)), sep="\n")
+    if saved is not None:
+        findings, facts, head = steps_of(saved), saved["machine"], "report"
+        print(table(findings))
+    else:
+        print(f"{len(STEPS)} steps; the first start of the engine takes minutes", file=sys.stderr)
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+            # Without it, the outputs would go to the working directory.
+            bench = Bench({OUTPUTS_DIR: folder} | os.environ)
+            findings = [*examine(bench)]
+        facts, head = machine(bench), "this machine"
+        print(report(findings, bench) if options.json else table(findings))
+    if recorded is not None:
+        print("", *differences(facts, recorded, head), sep="\n")
     return 0 if all(f.state == "ok" for f in findings) else 1
 
 

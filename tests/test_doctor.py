@@ -182,7 +182,7 @@ def test_the_report_has_stable_fields_and_versions(steps_run, capsys, monkeypatc
     assert found["format"] == doctor.REPORT_FORMAT == 3
     assert found["versions"]["genesis-world"] == "0.0.1"
     main([])
-    assert capsys.readouterr().out.rstrip("\n") == doctor.printed(found)
+    assert capsys.readouterr().out.rstrip("\n") == table(doctor.steps_of(found))
     assert set(found["platform"]) == {"system", "release", "machine", "cpus"}
 
 
@@ -234,6 +234,7 @@ def test_the_table_is_aligned_and_fits_80_columns():
     texts = [line for line in lines if "word" in line or "Choose" in line]
     assert all(line[25] == " " != line[26] for line in texts)
     assert lines[-1] == "DOCTOR: step 2, longer_name, is broken; fix it and run this again"
+    assert "a b\\x1b[2J" in table([Finding("a", "ok", "a\nb\x1b[2J")])
 
 
 def test_two_machines_are_compared_field_by_field(
@@ -251,17 +252,31 @@ def test_two_machines_are_compared_field_by_field(
         "device",
     ]
     assert main(["--like", str(pristine)]) == 1
-    lines = capsys.readouterr().out.split("DOCTOR: ")[1].splitlines()[2:]
-    rows = {line.split()[0]: line for line in lines[1 : 1 + len(recorded)]}
+    live = capsys.readouterr().out
+    head, *lines = live.split("DOCTOR: ")[1].splitlines()[2:]
+    assert head.endswith("  this machine")
+    rows = {line.split()[0]: line for line in lines[: len(recorded)]}
     assert list(rows) == list(recorded)
     assert rows["backend"].endswith("unknown: the engine did not start")
 
     assert main(["--json"]) == 1
     saved, ran = tmp_path / "report.json", [*steps_run]
     saved.write_text(capsys.readouterr().out, "utf8")
-    assert main(["--like", str(pristine), "--report", str(saved)]) == 0
-    assert capsys.readouterr().out.splitlines() == lines
+    assert main(["--report", str(saved)]) == 1
+    assert live.startswith(capsys.readouterr().out)
+    assert main(["--like", str(pristine), "--report", str(saved)]) == 1
+    other, *same = capsys.readouterr().out.split("DOCTOR: ")[1].splitlines()[2:]
+    assert other == head.replace("this machine", "report")
+    assert same == lines
     assert steps_run == ran  # a saved report needs no step
+
+
+def test_long_values_and_control_characters_keep_the_columns():
+    recorded = {"engine": "1", "system": "Linux" * 20, "device": "a\x1b[2J"}
+    lines = doctor.differences({"engine": "2" * 50, "system": "b\nc", "device": "d"}, recorded)
+    starts = [lines[0].index("this machine"), lines[1].index("2"), lines[2].index("b\\nc")]
+    assert starts == [lines[3].rindex("d")] * 3
+    assert "\x1b" not in lines[3]
 
 
 @pytest.mark.parametrize(
@@ -286,22 +301,41 @@ def test_the_advice_is_about_the_difference_that_matters_most(here, advice):
     ("arguments", "words"),
     [
         (["--like", "nowhere"], "'nowhere' is neither a folder nor a zip archive"),
-        (["--json", "--like", "nowhere"], "--json and --like do not go together"),
-        (["--report", "absent.json"], "--report needs --like BUNDLE"),
-        (["--like", "BUNDLE", "--report", "absent.json"], "'absent.json' is not a report"),
-        (["--like", "BUNDLE", "--report", "old.json"], "its format is 2, expected 3"),
-        (["--like", "BUNDLE", "--report", "list.json"], "'list.json' is not a report"),
+        (["--like", ""], "manifest.json"),
+        (["--json", "--like", ""], "--json and --like cannot be combined. Make the report with"),
+        (["--json", "--report", ""], "--json and --report cannot be combined. Make the report"),
+        (["--report", "absent.json"], "'absent.json' cannot be read as a report: FileNotFound"),
+        (["--report", ""], "'' cannot be read as a report: IsADirectoryError"),
+        (["--like", "BUNDLE", "--report", "text.json"], "'text.json' cannot be read as a report"),
+        (["--report", "list.json"], "'list.json' cannot be read as a report"),
+        (["--report", "old.json"], "'old.json' has the format 2; this version reads format 3; "),
+        (["--report", "stepless.json"], "'stepless.json' has no steps"),
+        (["--report", "nameless.json"], "cannot be read as a report: KeyError: 'step'"),
+        (["--report", "machineless.json"], "has the machine {}; a report has texts"),
+        (["--report", "numbers.json"], "has the machine {'engine': 1}; a report has texts"),
     ],
 )
-def test_a_comparison_with_nothing_is_refused_before_the_first_step(
+def test_what_cannot_be_shown_or_compared_is_refused_before_the_first_step(
     steps_run, capsys, monkeypatch, tmp_path, pristine, arguments, words
 ):
     monkeypatch.chdir(tmp_path)
-    Path("old.json").write_text('{"format": 2}')
-    Path("list.json").write_text("[]")
+    step = {"step": "version", "state": "ok", "found": ""}
+    sound = {"format": 3, "steps": [step], "machine": {"engine": "1"}}
+    Path("text.json").write_text("no JSON")
+    for name, content in {
+        "list": [],
+        "old": sound | {"format": 2},
+        "stepless": sound | {"steps": []},
+        "nameless": sound | {"steps": [{}]},
+        "machineless": sound | {"machine": {}},
+        "numbers": sound | {"machine": {"engine": 1}},
+    }.items():
+        Path(f"{name}.json").write_text(json.dumps(content))
     arguments = [str(pristine) if word == "BUNDLE" else word for word in arguments]
     with pytest.raises(SystemExit) as ended:
         main(arguments)
     assert ended.value.code == 2
-    assert words in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert words in error
+    assert arguments[0] != "--report" or f"make a new one with {doctor.MAKE_REPORT}" in error
     assert steps_run == []

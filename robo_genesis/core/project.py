@@ -87,14 +87,19 @@ def engine_pin(root: Path = ROOT) -> str:
         The version X of the dependency `genesis-world==X`.
 
     Raises:
-        ProjectError: pyproject.toml cannot be read, the dependency is missing, or it is not one
-            exact version.
+        ProjectError: the dependencies cannot be read, the engine is missing, or its version is
+            not exact.
     """
+    file, fix = str(root / "pyproject.toml"), "Fix the line in project.dependencies"
+    from_metadata = root == ROOT and not in_checkout()
+    if from_metadata:
+        file = f"The metadata of the installed package {COURSE}"
+        fix = "Install the course's wheel again with pip"
     try:
-        if root == ROOT and not in_checkout():
+        if from_metadata:
             requirements = [Requirement(line) for line in requires(COURSE) or ()]
         else:
-            requirements = _requirements((root / "pyproject.toml").read_text("utf8"))
+            requirements = _requirements(Path(file).read_text("utf8"))
     except PackageNotFoundError as error:
         raise ProjectError(
             f"{ROOT} has neither a pyproject.toml nor an installed {COURSE}. Install the course's "
@@ -102,15 +107,14 @@ def engine_pin(root: Path = ROOT) -> str:
         ) from error
     except (KeyError, ValueError) as error:  # InvalidRequirement is a ValueError
         raise ProjectError(
-            f"{root / 'pyproject.toml'} cannot be read: {error}\n"
-            'Valid lines of project.dependencies are like "numpy>=2.0". Fix the invalid line.'
+            f'{file} cannot be read: {error}\nValid dependencies are like "numpy>=2.0". {fix}.'
         ) from error
     found = [line for line in requirements if line.name == ENGINE]
     pins = [spec for line in found for spec in line.specifier]
     if len(pins) != 1 or pins[0].operator != "==" or pins[0].version.endswith("*"):
         raise ProjectError(
-            f"pyproject.toml declares {', '.join(map(str, found)) or 'no engine'}. Write exactly "
-            f'one line "{ENGINE}==X" in project.dependencies.'
+            f"{file} declares {', '.join(map(str, found)) or 'no engine'}. Valid is exactly one "
+            f'dependency "{ENGINE}==X". {fix}.'
         )
     return pins[0].version
 

@@ -19,7 +19,8 @@ stale. A list below the question gives the cause for each answer; it may be left
     - x57.3: That is in degrees.
     ```
 
-The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent.
+The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent;
+it may be below one.
 `:unit: mm` asks for a length in millimetres, and other units for their thousandths.
 A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 """
@@ -31,7 +32,7 @@ from types import MappingProxyType
 from typing import Any
 
 from docutils import nodes
-from docutils.parsers.rst.directives import percentage, unchanged
+from docutils.parsers.rst.directives import unchanged
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -125,11 +126,22 @@ class Choice(Question):
         return text, choice(options=shown, answer=answer, origin=origin)
 
 
+def percents(text: str) -> float:
+    """Return the tolerance of a number in percent.
+
+    Raises:
+        ValueError: it is not a number between 0 and 100.
+    """
+    if not 0 < (value := float(text)) < 100:
+        raise ValueError(f"{text!r} is not a tolerance. Give percents above 0 and below 100.")
+    return value
+
+
 class Number(Question):
     """Ask for the value of one metric."""
 
     required_arguments = 2
-    option_spec = {"tolerance": percentage, "unit": unchanged}  # noqa: RUF012 - as docutils does
+    option_spec = {"tolerance": percents, "unit": unchanged}  # noqa: RUF012 - as docutils does
 
     def ask(self) -> tuple[str, choice]:
         """See `Question.ask`."""
@@ -142,7 +154,7 @@ class Number(Question):
 
 
 def asked_number(
-    lesson_page: str, name: str, percent: int, causes: Mapping[str, str], unit: str = ""
+    lesson_page: str, name: str, percent: float, causes: Mapping[str, str], unit: str = ""
 ) -> dict[str, Any]:
     """Return the attributes of a question for a number.
 
@@ -169,7 +181,7 @@ def asked_number(
     return {
         "value": value, "tolerance": abs(value) * percent / 100,
         "unit": unit or ("" if record.unit == "1" else record.unit), "feedback": feedback,
-        "answer": f"{text}; answers within {percent} % count as right.", "origin": origin,
+        "answer": f"{text}; answers within {percent:g} % count as right.", "origin": origin,
     }  # fmt: skip
 
 

@@ -42,6 +42,27 @@ def test_a_pyproject_without_dependencies_is_refused(tmp_path, text):
         project.engine_pin(tmp_path)
 
 
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        (["genesis-world=1.3"], "cannot be read: "),
+        (["genesis-world>=1.3"], "declares genesis-world>=1.3. Valid is exactly one dependency"),
+        (None, "declares no engine. Valid is exactly one dependency"),
+    ],
+)
+def test_without_a_checkout_a_wrong_pin_is_that_of_the_installed_package(monkeypatch, lines, words):
+    monkeypatch.setattr(project, "in_checkout", lambda: False)
+    monkeypatch.setattr(project, "requires", lambda package: ["genesis-world==9.8.7"])
+    assert project.engine_pin() == "9.8.7"
+    monkeypatch.setattr(project, "requires", lambda package: lines)
+    with pytest.raises(project.ProjectError) as caught:
+        project.engine_pin()
+    message = str(caught.value)
+    assert message.startswith(f"The metadata of the installed package robo-genesis {words}")
+    assert message.endswith("Install the course's wheel again with pip.")
+    assert "pyproject" not in message
+
+
 def test_what_pip_leaves_in_a_checkout_is_no_installed_package(tmp_path, monkeypatch):
     before = project.installed_packages()
     left = tmp_path / "robo_genesis.egg-info"

@@ -120,6 +120,13 @@ def test_a_cause_without_a_valid_key_is_refused_with_the_valid_ones(line):
         split_causes(["When?", *line.splitlines()], KEYS)
 
 
+def test_a_tolerance_is_a_share_in_percent():
+    assert [multiple_choice.percents(text) for text in ("20", "0.5")] == [20, 0.5]
+    for text in ("0", "-1", "100", "nan", "much"):
+        with pytest.raises(ValueError, match=text):
+            multiple_choice.percents(text)
+
+
 def written(node):
     page = SimpleNamespace(body=[])
     multiple_choice.visit_question(page, node)

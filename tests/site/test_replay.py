@@ -253,12 +253,12 @@ def test_one_click_plays_in_the_place_of_the_picture(browser, address):
     page.close()
 
 
+@pytest.mark.parametrize("lecture", [LECTURE, "lessons/l01-ready/lecture"])
 @pytest.mark.parametrize("size", [(1280, 900), (390, 844)])
-def test_play_is_on_the_first_screen(browser, address, size):
-    page = open_lecture(
-        browser, address, viewport=dict(zip(("width", "height"), size, strict=True))
-    )
-    play = page.locator(f"{REPLAY} .play").bounding_box()
+def test_play_is_on_the_first_screen(browser, address, lecture, size):
+    page = browser.new_page(viewport=dict(zip(("width", "height"), size, strict=True)))
+    page.goto(f"{address}/{lecture}.html")
+    play = page.locator(".replay .play").first.bounding_box()
     assert play["y"] + play["height"] < size[1]
     page.close()
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import BodyTrace
+from robo_genesis.lessons.l01.spec import ASKED_STEPS
 from robo_genesis.sim.falls import continuous_gap, fallen, formula_error
 from robo_genesis.sim.rigid_bodies import Drop
 
@@ -14,6 +15,7 @@ class FallMetrics(CaseMetrics):
 
     duration: float = metric("s", "duration", "t_s")
     final_height: float = metric("m", "height at the end", "link_pos_m")
+    asked_height: float = metric("m", f"height after {ASKED_STEPS} outer steps", "link_pos_m")
     drop: float = metric("m", "distance fallen", "link_pos_m")
     formula_error: float = metric(
         "m", "largest distance from the computed height", "link_pos_m", "t_s"
@@ -26,6 +28,7 @@ def fall_metrics(trace: BodyTrace, case: Drop) -> FallMetrics:
     return FallMetrics(
         duration=float(trace.t[-1]),
         final_height=float(trace.link_pos[-1, 0, 2]),
+        asked_height=float(trace.link_pos[ASKED_STEPS, 0, 2]),
         drop=float(fallen(trace)[-1]),
         formula_error=formula_error(trace, case),
         school_gap=continuous_gap(trace, case),

@@ -19,6 +19,9 @@ BASELINE = Drop(size=2 * RADIUS, density=500.0, height=0.5, steps=20)
 
 CASES = {"baseline": BASELINE}
 
+ASKED_STEPS = 15
+"""Outer steps after which the lab asks for the height."""
+
 LINK = "sphere_baselink"
 """The engine's name of the sphere's only link."""
 

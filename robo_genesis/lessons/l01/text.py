@@ -1,5 +1,7 @@
 """Tables and sentences of L01, each a function of the experiment."""
 
+import textwrap
+
 from robo_genesis.core import tables
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l01 import machine, spec
@@ -19,6 +21,9 @@ RULES_OUT = {
 }
 """What each step of the doctor rules out."""
 
+COLUMNS = 42
+"""Longest line of printed text that a phone shows without scrolling [characters]."""
+
 PARTS = {
     "import": "import of the package",
     "init": "`gs.init`",
@@ -29,18 +34,22 @@ PARTS = {
 
 
 def doctor_table(run: Experiment) -> str:
-    """Return one row for each step of the doctor: its result, and what it rules out."""
+    """Return one row for each step of the doctor: its result, and what a pass rules out."""
     found = run.readings[machine.DOCTOR]
     rows = [
         {
-            "step": str(number),
-            "name": f"`{step}`",
-            "result": "passes" if found[step] else "is broken",
-            "rules out": RULES_OUT[step],
+            "step": f"{number} `{step}` {'passes' if found[step] else 'does not pass'}",
+            "what passing rules out": RULES_OUT[step],
         }
         for number, step in enumerate(machine.STEPS, start=1)
     ]
     return tables.markdown(rows)
+
+
+def doctor_lines(steps: list[dict[str, str]]) -> str:
+    """Return the steps of a report of the doctor, in lines of at most `COLUMNS` characters."""
+    lines = [f"{n:2}  {s['step']}: {s['state']}; {s['found']}" for n, s in enumerate(steps, 1)]
+    return "\n".join(textwrap.fill(line, COLUMNS, subsequent_indent="    ") for line in lines)
 
 
 def start_table(run: Experiment) -> str:

@@ -29,6 +29,7 @@ READINGS = {
 def test_a_stepped_fall_has_no_error_and_a_continuous_one_is_behind():
     found = fall_metrics(make_drop(CASE), CASE)
     assert found.final_height == pytest.approx(0.298895, abs=1e-6)
+    assert found.asked_height == pytest.approx(0.5 - 9.81 * CASE.h**2 * 30 * 31 / 2, abs=1e-6)
     assert found.formula_error < spec.FORMULA_TOLERANCE
     assert found.school_gap == pytest.approx(9.81 * CASE.h * 0.2 / 2, abs=1e-6)
     t = np.arange(CASE.steps + 1) * CASE.dt

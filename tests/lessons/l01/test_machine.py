@@ -2,7 +2,7 @@
 
 import json
 
-from robo_genesis.lessons.l01 import machine, mistakes
+from robo_genesis.lessons.l01 import machine, mistakes, text
 
 
 def report(broken=None):
@@ -19,6 +19,12 @@ def test_steps_that_did_not_run_have_not_passed():
     assert machine.passed(report()) == dict.fromkeys(machine.STEPS, 1)
     found = machine.passed(report("build"))
     assert [name for name, count in found.items() if not count] == list(machine.STEPS[4:])
+
+
+def test_the_doctor_s_lines_fit_a_phone():
+    step = {"step": "model_file", "state": "ok", "found": "xml/franka_emika_panda/panda.xml " * 9}
+    lines = text.doctor_lines([step]).splitlines()
+    assert lines == [" 1  model_file: ok;", *["    xml/franka_emika_panda/panda.xml"] * 9]
 
 
 def test_a_failure_is_shown_only_by_the_step_that_it_should_break():
