@@ -90,12 +90,10 @@ def entries_that_differ(one: Trace, other: Trace) -> tuple[int, int]:
     return differ, compared
 
 
-def largest_differences(one: Trace, other: Trace) -> dict[str, float]:
+def largest_differences(one: Trace, other: Trace, joints: slice = slice(None)) -> dict[str, float]:
     """Return the largest difference of each array of `spec.SAME_RUN` in two runs."""
-    return {
-        name: float(np.abs(getattr(one, name).astype(float) - getattr(other, name)).max())
-        for name in spec.SAME_RUN
-    }
+    apart = {n: getattr(one, n).astype(float) - getattr(other, n) for n in spec.SAME_RUN}
+    return {name: float(np.abs(of[:, joints]).max()) for name, of in apart.items()}
 
 
 def pairs() -> Mapping[str, Sequence[tuple[str, str]]]:

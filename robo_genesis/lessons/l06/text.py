@@ -1,10 +1,13 @@
 """Tables and sentences of L06's lecture and lab, each a function of the experiment."""
 
+import numpy as np
+
 from robo_genesis.core import tables
 from robo_genesis.core.text import bullets, decimal, listed
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study
 from robo_genesis.sim import mujoco_kinematics
+from robo_genesis.sim.arm_kinematics import ARM
 
 SHOWN_TORQUES = (1, 3)
 """The joints with a torque in the table of variants: joint2 and joint4."""
@@ -47,20 +50,28 @@ def row_table(run: Experiment) -> str:
 
 
 def alone_table(run: Experiment) -> str:
-    """Return the largest differences between each row and the same run alone."""
+    """Return the largest differences of arm joints between each row and the same run alone.
+
+    The last line has those of the fingers in all rows, in µm, µm/s and mN.
+    """
     heads = {
         "joint position [µrad]": 2,
         "joint velocity [µrad/s]": 1,
         "control force [mN·m]": 2,
         "entries that differ [%]": 0,
     }
-    rows = {}
+    factors = np.array([1e6, 1e6, 1e3])
+    rows, of_fingers = {}, []
     for k in spec.ENVS:
         pair = run.traces[f"env_{k}"], run.traces[f"alone_{k}"]
-        q, qd, force = study.largest_differences(*pair).values()
+        arm, fingers = (
+            factors * [*study.largest_differences(*pair, joints).values()]
+            for joints in (slice(ARM), slice(ARM, None))
+        )
         differ, compared = study.entries_that_differ(*pair)
-        cells = 1e6 * q, 1e6 * qd, 1e3 * force, 100 * differ / compared
-        rows[spec.LABELS[f"env_{k}"]] = cells
+        rows[spec.LABELS[f"env_{k}"]] = (*arm, 100 * differ / compared)
+        of_fingers.append(fingers)
+    rows["fingers of all four [µm, µm/s, mN]"] = (*np.max(of_fingers, axis=0), "")
     return tables.number_table("run", heads, rows)
 
 
@@ -118,7 +129,7 @@ def conclusions(run: Experiment) -> str:
     accepted = [name[-1] for name, is_ in run.readings["mixed_accepted"].items() if is_]
     moved = {k: m[f"env_{k}"].moved_later for k in spec.ENVS}
     apart = max(
-        study.largest_differences(run.traces[f"env_{k}"], run.traces[f"alone_{k}"])["q"]
+        study.largest_differences(run.traces[f"env_{k}"], run.traces[f"alone_{k}"], slice(ARM))["q"]
         for k in spec.ENVS
     )
     named, others = ([moved[k] for k in spec.ENVS if (k in spec.LATER) == is_] for is_ in (1, 0))
@@ -127,8 +138,8 @@ def conclusions(run: Experiment) -> str:
         f"One of the four targets is beyond reach. Rows {listed(accepted)} are accepted.",
         f"After the second command, the named environments moved by {mm(min(named))} mm or more, "
         + (f"the others by {1e6 * still:.2g} µm or less." if still else "the others did not move."),
-        f"Joint positions of a row and of the same run alone differ by up to {1e6 * apart:.2f} "
-        "µrad (or µm of a finger).",
+        "Positions of arm joints in a row and in the same run alone differ by up to "
+        f"{1e6 * apart:.2f} µrad.",
         *(
             f"The hand stops {mm(m[name].final_distance)} mm from its target ({spec.LABELS[name]})."
             for name in spec.VARIANTS

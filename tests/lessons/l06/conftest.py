@@ -8,11 +8,11 @@ from robot_runs import driven
 
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05.spec import ARM_LIMITS
 from robo_genesis.lessons.l06 import LECTURE, checks, spec, study
 from robo_genesis.lessons.l06.run import World
 from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim import mujoco_kinematics
+from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.mujoco_kinematics import bare_robot, gravity_effort
 
 LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
 ROUNDING = np.float32(1.2e-7)
@@ -21,8 +21,9 @@ ROUNDING = np.float32(1.2e-7)
 def command(world: World, number: int) -> np.ndarray:
     """Return joint positions (9,) for a target as a solver like the engine's answers."""
     target = kinematics.Pose(world.positions[number], world.quat)
-    start = world.q_start[:7]
-    q = kinematics.solve(target, start, *ARM_LIMITS, iterations=50, damping=0.01)
+    joint = bare_robot()[0].joint
+    limits = np.transpose([joint(name).range for name in JOINT_NAMES[:7]])
+    q = kinematics.solve(target, world.q_start[:7], *limits, iterations=50, damping=0.01)
     return np.float32([*q, *world.q_start[7:]]).astype(float)
 
 
@@ -34,8 +35,7 @@ def run_of(world: World) -> Trace:
     def weight(q):
         if not world.load:
             return np.zeros(len(q))
-        of = mujoco_kinematics.gravity_effort
-        return of(q, world.load) - of(q)
+        return gravity_effort(q, world.load) - gravity_effort(q)
 
     return driven(world.commanding(targets), LINKS, weight)
 
