@@ -69,11 +69,12 @@ def beyond_reach(run: Experiment) -> Figure:
     for label, mark, at in (
         ("engine's answer", "first", run.traces["unreachable"].link_pos[1, : HAND + 1]),
         ("nearest that we found", "second", link_poses(study.nearest()[0]).position),
+        ("target", "target", spec.BEYOND_REACH[None]),
     ):
-        ax.plot(at[:, 0], at[:, 2], "o-", label=label, color=plotting.look(mark)["color"])
-    ax.plot(*spec.BEYOND_REACH[::2], "+", label="target", color=plotting.TARGET["color"])
-    ax.set(xlabel="x [m]", ylabel="z [m]", aspect="equal")
-    plotting.legend_above(ax, "Two postures for a target beyond reach")
+        ax.plot(at[:, 0], at[:, 2], "o-", color=(colour := plotting.look(mark)["color"]))
+        ax.annotate(f"   {label}", max(at[:, ::2].tolist()), color=colour, va="center")
+    ax.set(xlabel="x [m]", ylabel="z [m]", aspect="equal", xlim=(-0.15, 2.5))
+    ax.set_title("Two postures for a target beyond reach", loc="left")
     return figure
 
 
