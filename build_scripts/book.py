@@ -29,7 +29,7 @@ from robo_genesis.core.project import BOOK, PUBLISHED, RENDER, ROOT, SOLUTIONS
 
 
 def main() -> int:
-    """Run the build and return its exit status."""
+    """Run the build and return its exit status, or end the process with it."""
     arguments = parser(__doc__)
     arguments.add_argument(
         "--to",
@@ -63,7 +63,10 @@ def main() -> int:
 
         settings = {"jobs": int(jobs) if jobs else None, "release": release, "executed": executed}
         build = Build(**vars(args), **settings, sphinx=sphinx)
-        return run(lambda: run_build(build), "published")
+        status = run(lambda: run_build(build), "published")
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)  # freeing all modules and pages takes more than a tenth of a second
 
 
 if __name__ == "__main__":

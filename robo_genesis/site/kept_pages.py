@@ -53,7 +53,7 @@ def outline(env: BuildEnvironment, node: nodes.Element) -> list[nodes.Element]:
     """Return what numbers the figures below a node, in their order: a small part of a doctree.
 
     Sphinx numbers the figures of all pages in each build, and would load all doctrees for it.
-    Sections, contents, and what a domain numbers are kept.
+    Sections, contents, and what a domain numbers are kept. What has no id gets no number.
     """
     domains = env.domains.values()
     found: list[nodes.Element] = []
@@ -62,7 +62,7 @@ def outline(env: BuildEnvironment, node: nodes.Element) -> list[nodes.Element]:
             continue
         inside = outline(env, child)
         is_numbered = any(domain.get_enumerable_node_type(child) for domain in domains)
-        if is_numbered or isinstance(child, nodes.section | addnodes.toctree):
+        if (is_numbered and child["ids"]) or isinstance(child, nodes.section | addnodes.toctree):
             heads = (part for part in child.children if isinstance(part, HEADS))
             kept = type(child)("", **child.attributes)
             kept.extend([*(type(part)("", clean_astext(part)) for part in heads), *inside])
@@ -205,7 +205,7 @@ def setup(app: Sphinx) -> None:
     app.connect("env-get-outdated", including_pages)
     app.connect("env-before-read-docs", note_reading)
     app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected
-    app.connect("doctree-read", keep_outline, priority=900)
+    app.connect("doctree-read", keep_outline, priority=950)  # after the others, which may add ids
     app.connect("env-get-updated", number_by_outlines, priority=0)
     app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
     app.connect("write-started", drop_downloads)

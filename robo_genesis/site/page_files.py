@@ -10,9 +10,9 @@ REPLAYS, TAKEAWAYS = "replay", "takeaways"
 
 
 def folders(app: Sphinx) -> tuple[Path, Path]:
-    """Return where the files of replays and takeaways are before the site is complete."""
+    """Return where the files of replays and takeaways are."""
     html = Path(app.outdir)
-    return html / REPLAYS, html.parent / TAKEAWAYS
+    return html / REPLAYS, html / TAKEAWAYS
 
 
 def note_files(env: BuildEnvironment, *files: Path) -> None:

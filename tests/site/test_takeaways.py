@@ -14,8 +14,10 @@ import numpy as np
 import pytest
 from sphinx.errors import ConfigError
 
-from robo_genesis.core import project
+from robo_genesis.core import project, quantities, trace
+from robo_genesis.evidence import bundle, fields, npz_archive, trace_files
 from robo_genesis.evidence.trace_files import write_traces
+from robo_genesis.site.takeaways import files
 from robo_genesis.site.takeaways.files import csv_text, package_facts, run_commands, without_places
 from robo_genesis.site.takeaways.repository import codespace, require_address
 from robo_genesis.site.takeaways.wheel import build_wheel, built_wheel
@@ -63,6 +65,21 @@ def test_every_column_names_a_unit_and_nothing_is_made_up_before_the_first_step(
     empty = {name.split()[0] for name, value in table[0].items() if value == ""}
     assert empty == {"target", "internal_force"}
     assert [name for name, value in table[1].items() if value == ""] == []
+
+
+def test_a_kept_table_is_of_one_state_of_all_code_that_shapes_it(
+    tmp_path, monkeypatch, traces, joints
+):
+    run, own, keys = tmp_path / "run", tmp_path / "own", []
+    for folder in (run, own):
+        folder.mkdir()
+    described = write_traces(run, {"G2": traces["G2"]}, joints, LINKS)
+    (run / "arrays.json").write_text(described.model_dump_json(by_alias=True))
+    monkeypatch.setattr(files, "derived", lambda kind, inputs, make: keys.append(inputs) or make())
+    ((_, table, _),) = files._arrays(run, own)
+    assert next(csv.reader(table.open()))[0] == "t [s]"
+    for module in (files, trace_files, fields, bundle, npz_archive, trace, quantities):
+        assert Path(module.__file__).read_bytes() in keys[0], module.__name__
 
 
 def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):

@@ -4,7 +4,6 @@ A process with Sphinx loaded renders each changed page; see `live_sphinx`. The b
 state without warnings and errors, and reloads when there is a new one; see `live_server`.
 """
 
-import filecmp
 import json
 import os
 import shutil
@@ -232,7 +231,8 @@ class Live:
             (self.site / name).unlink()
         for name in new:
             source, to = html / name, self.site / name
-            if name not in old or not filecmp.cmp(source, to):
+            # Two edits may give the same size and, where file times are coarse, the same time.
+            if name not in old or source.read_bytes() != to.read_bytes():
                 to.parent.mkdir(parents=True, exist_ok=True)
                 beside = to.with_name(f".{to.name}.next")
                 shutil.copy2(source, beside)

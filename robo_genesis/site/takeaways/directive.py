@@ -1,11 +1,9 @@
 """Files to download from a lab, and the commands that run it: ```` ```{takeaways} l04/lab ````.
 
 ```` ```{run-commands} ```` shows the commands for any lab, `{run-commands} install` the first two.
-The files are written while the page is read, so that the page can show their sizes. They are copied
-into the site when it is complete.
+The files are written into the site while the page is read, so that the page can show their sizes.
 """
 
-import shutil
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
@@ -38,7 +36,7 @@ class TakeawaysBox(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """Return the box and the list; a page without a run of its own is an error."""
-        name, files = self.arguments[0], staging(self.env.app)
+        name, files = self.arguments[0], Path(self.env.app.outdir) / TAKEAWAYS
         page, run = self.page(name), page_outputs(name) / BACKEND
         self.env.note_dependency(self.env.doc2path(page.docname, base=False))
         try:
@@ -129,7 +127,7 @@ def link(base: str, files: Path, file: Path, text: str = "") -> list[nodes.Node]
 
     Args:
         base: address of the files on the site, relative to the page.
-        files: the folder that holds the files now.
+        files: the folder of these files in the site.
         file: one of them.
         text: of the link, by default the file's name.
     """
@@ -151,19 +149,6 @@ def bullets(*items: Iterable[str | list[nodes.Node]]) -> nodes.Node:
     return found
 
 
-def staging(app: Sphinx) -> Path:
-    """Return the folder that holds the files until the site is complete."""
-    return Path(app.outdir).parent / TAKEAWAYS
-
-
-def copy_files(app: Sphinx, exception: Exception | None) -> None:
-    """Copy the files into the site, in the place of those of an earlier build."""
-    if exception is None and app.builder.format == "html":
-        shutil.rmtree(Path(app.outdir) / TAKEAWAYS, ignore_errors=True)
-        if staging(app).is_dir():
-            shutil.copytree(staging(app), Path(app.outdir) / TAKEAWAYS)
-
-
 def setup(app: Sphinx) -> None:
     """Register the directive and the copying of its files."""
     app.add_config_value("torch_index", "", "env", str)
@@ -171,4 +156,3 @@ def setup(app: Sphinx) -> None:
     app.connect("config-inited", require_address)
     app.add_directive("takeaways", TakeawaysBox)
     app.add_directive("run-commands", RunCommands)
-    app.connect("build-finished", copy_files)

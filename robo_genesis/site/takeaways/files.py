@@ -20,6 +20,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Variable
 from robo_genesis.evidence.trace_files import fields_of, read_any_trace
 from robo_genesis.lessons.book_pages import Page
+from robo_genesis.lessons.sources import import_closure
 from robo_genesis.site.takeaways.notebooks import (
     Course,
     Origin,
@@ -37,9 +38,6 @@ NOT_SHOWN = "*(your run measures it)*"
 
 CHECKOUT = "robo-genesis"
 """Replaces the folder that the site was built in."""
-
-TABLE_CODE = ("site/takeaways/files.py", "evidence/trace_files.py", "core/trace.py")
-"""The modules that decide the table of a run's arrays, below the package."""
 
 AXES = {"axis": ("x", "y", "z"), "wxyz": ("w", "x", "y", "z")}
 AT_REST = {"qd": "start_qd", "control_force": "start_control_force"}
@@ -158,7 +156,7 @@ def without_places(text: str, root: Path = project.ROOT) -> str:
 def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
     """Copy each case's archive, and write it as a table; yield (case, CSV, npz)."""
     described = bundle.read_arrays(run)
-    code = (Path(project.ROOT, "robo_genesis", place).read_bytes() for place in TABLE_CODE)
+    code = (path.read_bytes() for path in import_closure([__name__]).values())
     decide = [(run / "arrays.json").read_bytes(), *code]
     for case, arrays in described.cases.items():
         archive, table = folder / f"{case}.npz", folder / f"{case}.csv"

@@ -6,10 +6,14 @@ import pickle
 import re
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import nbformat
 import pytest
 import yaml
+from docutils import nodes
+from docutils.utils import new_document
+from sphinx.events import EventManager
 from tiny_book import cell, make_book, notebook
 
 from robo_genesis.build.built_pages import BuiltPages
@@ -19,7 +23,7 @@ from robo_genesis.build.site.kept import State
 from robo_genesis.build.site.render import render
 from robo_genesis.build.site.sphinx_process import RenderError, SphinxProcess
 from robo_genesis.lessons.book_pages import find_pages
-from robo_genesis.site.kept_pages import forget_own_pictures
+from robo_genesis.site.kept_pages import forget_own_pictures, outlines, setup
 
 GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
 LAW = "# Law\n\n(spring)=\n## The spring\n\nA gain of two, and a rareword.\n\n{ref}`text <there>`\n"
@@ -30,6 +34,7 @@ CITING = "# Citing\n\nSee {numref}`drawn` and {eq}`force`.\n"
 DRAWN = "# Drawn\n" + FIGURE % ":name: drawn" + "\n$$\nF = k x\n$$ (force)\n"
 TABLE = "```{list-table} Rows\n:name: rows\n* - one\n  - two\n```\n"
 DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>'
+STD = SimpleNamespace(get_enumerable_node_type=lambda node: isinstance(node, nodes.figure))
 SOME = State("a", {"one": "1", "two": "2"})
 
 
@@ -133,6 +138,24 @@ def test_figures_tables_and_code_are_numbered_across_pages_wherever_they_are(tmp
         "code-block": {"code-2": (2,)},
         "table": {"rows": (1,)},
     }
+
+
+def test_an_outline_has_the_ids_that_later_handlers_add_and_nothing_else_without_ids(tmp_path):
+    def name_first(app: Any, doctree: nodes.document) -> None:
+        doctree[0]["ids"].append("added")
+
+    env = SimpleNamespace(docname="text", dependencies={"text": set()}, domains={"std": STD})
+    app = SimpleNamespace(pdb=False, env=env, outdir=str(tmp_path), srcdir=str(tmp_path))
+    events = EventManager(app)
+    app.connect = lambda event, does, priority=500: events.connect(event, does, priority)
+    app.setup_extension = lambda name: None
+    setup(app)
+    events.connect("doctree-read", name_first, priority=900)
+    page = new_document("text")
+    page += [nodes.figure("", nodes.caption("", text)) for text in "AB"]
+    events.emit("doctree-read", page)
+    assert outlines(env)["text"].astext() == "A"
+    assert outlines(env)["text"][0]["ids"] == ["added"]
 
 
 def test_a_page_does_not_depend_on_pictures_that_reading_another_page_writes_again(tmp_path):

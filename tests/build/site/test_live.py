@@ -290,3 +290,14 @@ def test_shown_files_are_replaced_whole(tmp_path):
         live.show()
         assert old.read() == "a longer old one"
     assert [(path.name, path.read_text()) for path in live.site.iterdir()] == [("a.html", "new")]
+
+
+def test_a_second_edit_of_the_same_size_and_time_is_shown(tmp_path):
+    live = Live(make_book(tmp_path), tmp_path)
+    new = live.work / "_build/html/a.html"
+    new.parent.mkdir(parents=True)
+    for text in ("one", "two", "six"):
+        new.write_text(text)
+        os.utime(new, (0, 0))
+        live.show()
+        assert (live.site / "a.html").read_text() == text
