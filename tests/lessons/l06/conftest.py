@@ -8,7 +8,6 @@ from robot_runs import driven
 
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.l05.spec import ARM_LIMITS
 from robo_genesis.lessons.l06 import LECTURE, checks, spec, study
 from robo_genesis.lessons.l06.run import World
 from robo_genesis.sim import arm_kinematics as kinematics
@@ -16,6 +15,7 @@ from robo_genesis.sim import mujoco_kinematics
 
 LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
 ROUNDING = np.float32(1.2e-7)
+ARM_LIMITS = mujoco_kinematics.bare_robot()[0].jnt_range[: kinematics.ARM].T
 
 
 def command(world: World, number: int) -> np.ndarray:
