@@ -13,7 +13,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.run import World
-from robo_genesis.sim.arm_kinematics import HAND
+from robo_genesis.sim.arm_kinematics import ARM, HAND
 from robo_genesis.sim.franka import LINK_PARENTS
 
 FLOOR = 1e-9
@@ -65,12 +65,12 @@ def variants(run: Experiment) -> Figure:
 
 
 def alone(run: Experiment) -> Figure:
-    """Draw the largest difference of a joint position between each row and its run alone."""
+    """Draw the largest difference of a position of the arm between each row and its run alone."""
     figure = plotting.figure(3.4)
     ax = figure.subplots()
     for k, name in enumerate(spec.WORLDS):
         row, other = run.traces[name], run.traces[f"alone_{k}"]
-        apart = np.abs(row.q.astype(float) - other.q).max(axis=1)
+        apart = np.abs(row.q.astype(float) - other.q)[:, :ARM].max(axis=1)
         style = look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
         ax.semilogy(row.t, np.maximum(apart, FLOOR), label=spec.LABELS[name], **style)
     ax.set(xlabel="time [s]", ylabel="largest difference [rad]")

@@ -90,10 +90,22 @@ def entries_that_differ(one: Trace, other: Trace) -> tuple[int, int]:
     return differ, compared
 
 
-def largest_differences(one: Trace, other: Trace) -> dict[str, float]:
-    """Return the largest difference of each array of `spec.SAME_RUN` in two runs."""
+def largest_differences(one: Trace, other: Trace, joints: slice = slice(None)) -> dict[str, float]:
+    """Return the largest difference of each array of `spec.SAME_RUN` in two runs.
+
+    Args:
+        one: a run.
+        other: a run of the same steps.
+        joints: of the nine joints, those that are compared.
+
+    Returns:
+        By array, the difference: of joints of the arm in rad, rad/s and N·m, of fingers in m, m/s
+        and N.
+    """
     return {
-        name: float(np.abs(getattr(one, name).astype(float) - getattr(other, name)).max())
+        name: float(
+            np.abs((getattr(one, name).astype(float) - getattr(other, name))[:, joints]).max()
+        )
         for name in spec.SAME_RUN
     }
 
