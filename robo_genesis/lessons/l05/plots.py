@@ -66,14 +66,17 @@ def picture(run: Experiment) -> Figure:
 def beyond_reach(run: Experiment) -> Figure:
     """Draw the links from the side in two postures for the target beyond reach."""
     figure, ax = plotting.axes(4.4)
-    for label, mark, at in (
-        ("engine's answer", "first", run.traces["unreachable"].link_pos[1, : HAND + 1]),
-        ("nearest that we found", "second", link_poses(study.nearest()[0]).position),
-        ("target", "target", spec.BEYOND_REACH[None]),
+    engine, nearest = run.traces["unreachable"].link_pos[1], link_poses(study.nearest()[0]).position
+    for label, mark, style, at, offset, side in (
+        ("engine's answer", "first", "o-", engine[: HAND + 1], (0, 20), "center"),
+        ("nearest that we found", "second", "o-", nearest, (10, -4), "left"),
+        ("target", "target", "+", spec.BEYOND_REACH[None], (-10, -4), "right"),
     ):
-        ax.plot(at[:, 0], at[:, 2], "o-", color=(colour := plotting.look(mark)["color"]))
-        ax.annotate(f"   {label}", max(at[:, ::2].tolist()), color=colour, va="center")
-    ax.set(xlabel="x [m]", ylabel="z [m]", aspect="equal", xlim=(-0.15, 2.5))
+        ink = {"color": plotting.look(mark)["color"]}
+        x, z = at[:, 0], at[:, 2]
+        ax.plot(x, z, style, **ink)
+        ax.annotate(label, (x[-1], z[-1]), offset, textcoords="offset points", ha=side, **ink)
+    ax.set(xlabel="x [m]", ylabel="z [m]", aspect="equal")
     ax.set_title("Two postures for a target beyond reach", loc="left")
     return figure
 

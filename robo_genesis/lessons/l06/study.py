@@ -91,9 +91,23 @@ def entries_that_differ(one: Trace, other: Trace) -> tuple[int, int]:
 
 
 def largest_differences(one: Trace, other: Trace, joints: slice = slice(None)) -> dict[str, float]:
-    """Return the largest difference of each array of `spec.SAME_RUN` in two runs."""
-    apart = {n: getattr(one, n).astype(float) - getattr(other, n) for n in spec.SAME_RUN}
-    return {name: float(np.abs(of[:, joints]).max()) for name, of in apart.items()}
+    """Return the largest difference of each array of `spec.SAME_RUN` in two runs.
+
+    Args:
+        one: a run.
+        other: a run of the same steps.
+        joints: of the nine joints, those that are compared.
+
+    Returns:
+        By array, the difference: of joints of the arm in rad, rad/s and N·m, of fingers in m, m/s
+        and N.
+    """
+    return {
+        name: float(
+            np.abs((getattr(one, name).astype(float) - getattr(other, name))[:, joints]).max()
+        )
+        for name in spec.SAME_RUN
+    }
 
 
 def pairs() -> Mapping[str, Sequence[tuple[str, str]]]:

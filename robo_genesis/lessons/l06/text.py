@@ -1,9 +1,13 @@
 """Tables and sentences of L06's lecture and lab, each a function of the experiment."""
 
+from typing import Any
+
 import numpy as np
 
 from robo_genesis.core import tables
+from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, decimal, listed
+from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study
 from robo_genesis.sim import mujoco_kinematics
@@ -50,28 +54,29 @@ def row_table(run: Experiment) -> str:
 
 
 def alone_table(run: Experiment) -> str:
-    """Return the largest differences of arm joints between each row and the same run alone.
+    """Return the largest differences between each row and the same run alone.
 
-    The last line has those of the fingers in all rows, in µm, µm/s and mN.
+    A line of an environment is about the joints of the arm; the last line is about all fingers.
     """
     heads = {
-        "joint position [µrad]": 2,
-        "joint velocity [µrad/s]": 1,
+        "position [µrad]": 2,
+        "velocity [µrad/s]": 1,
         "control force [mN·m]": 2,
         "entries that differ [%]": 0,
     }
-    factors = np.array([1e6, 1e6, 1e3])
-    rows, of_fingers = {}, []
-    for k in spec.ENVS:
-        pair = run.traces[f"env_{k}"], run.traces[f"alone_{k}"]
-        arm, fingers = (
-            factors * [*study.largest_differences(*pair, joints).values()]
-            for joints in (slice(ARM), slice(ARM, None))
-        )
+    pairs = {f"env_{k}": (run.traces[f"env_{k}"], run.traces[f"alone_{k}"]) for k in spec.ENVS}
+
+    def largest(pair: tuple[Trace, Trace], joints: slice) -> FloatArray:
+        found = study.largest_differences(*pair, joints).values()
+        return np.array([1e6, 1e6, 1e3]) * list(found)
+
+    rows: dict[str, list[Any]] = {}
+    for name, pair in pairs.items():
         differ, compared = study.entries_that_differ(*pair)
-        rows[spec.LABELS[f"env_{k}"]] = (*arm, 100 * differ / compared)
-        of_fingers.append(fingers)
-    rows["fingers of all four [µm, µm/s, mN]"] = (*np.max(of_fingers, axis=0), "")
+        rows[spec.LABELS[name]] = [*largest(pair, slice(ARM)), 100 * differ / compared]
+    fingers = np.max([largest(pair, slice(ARM, None)) for pair in pairs.values()], axis=0)
+    units = zip(fingers, ("µm", "µm/s", "mN"), strict=True)
+    rows["fingers of all four"] = [*(f"{decimal(value, 2)} {unit}" for value, unit in units), ""]
     return tables.number_table("run", heads, rows)
 
 

@@ -111,7 +111,7 @@ def content_table(run: Experiment) -> str:
     for size in (1, 256):
         sphere, robot = (run.readings[GROUP][f"step_{of}{size}"] for of in ("sphere_", ""))
         times = {"sphere [ms]": ms(sphere), "robot [ms]": ms(robot)}
-        rows.append({"environments": f"{size}"} | times | {"robot / sphere": three(robot / sphere)})
+        rows.append({"environments": f"{size}"} | times | {"ratio": three(robot / sphere)})
     return tables.markdown(rows)
 
 
