@@ -16,7 +16,6 @@ from robo_genesis.sim.mujoco_kinematics import bare_robot, gravity_effort
 
 LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
 ROUNDING = np.float32(1.2e-7)
-ARM_LIMITS = mujoco_kinematics.bare_robot()[0].jnt_range[: kinematics.ARM].T
 
 
 def command(world: World, number: int) -> np.ndarray:
