@@ -31,9 +31,9 @@ from robo_genesis.build.page_store import (
 )
 from robo_genesis.build.release import missing_for_release
 from robo_genesis.build.site.address import site_address, site_root
-from robo_genesis.build.site.archive import pack
 from robo_genesis.build.site.checks import Site, run_checks
-from robo_genesis.build.site.publish import publish
+from robo_genesis.build.site.draft import Draft
+from robo_genesis.build.site.publish import add_bundles, publish
 from robo_genesis.build.site.render import render
 from robo_genesis.build.site.sphinx_process import LOG, SphinxProcess
 from robo_genesis.build.site.sums import write_sums
@@ -113,26 +113,29 @@ def run_build(build: Build) -> list[str]:
         results = _execute(build, pages, into, progress)
         manifests: dict[str, Any] = {}
 
-        def accept() -> None:  # beside Sphinx, whose pages are published only after it
+        def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
+            draft.prepare()  # first: Sphinx has not begun to write
             manifests.update(_accepted(build, verify, results, progress))
+            add_bundles(draft, results)
 
         progress("render", "all pages")
         kept = None if from_nothing else build.cache / project.KEPT
-        html = render(sphinx, staging, BuiltPages.of(results), kept, meanwhile=accept)
+        draft = render(sphinx, staging, BuiltPages.of(results), kept, meanwhile=accept)
         with ThreadPoolExecutor(1) as beside:  # compression runs beside Python
-            packing = beside.submit(pack, html)
-            site = Site(html, site_root())
+            packing = beside.submit(draft.pack)
+            site = Site(draft.html, site_root())
             progress("pack", packing.result().name)
-        progress("sums", write_sums(html).name)  # last of the site's files; the checks look for it
+        sums = write_sums(draft.html, draft.digests)  # last of the site's files, before the checks
+        progress("sums", sums.name)
         checked = _check(site, progress)
         forget(build.cache / project.STORE, results)
         summary = partial(_summary, engine, results, manifests, checked)
 
         def finish(published: Path) -> None:
             now = up_to_date.inputs_digest(build.root, build.book)
-            up_to_date.record(published, inputs, now, summary(executed=0))
+            up_to_date.record(published, inputs, now, summary(executed=0), draft.digests)
 
-        html = publish(target, html, results, finish)  # last: after it, nothing may fail
+        html = publish(target, draft.folder, finish)  # last: after it, nothing may fail
         progress("publish", str(html))
         ran = sum(result.status == "executed" for result in results)
         return [f"Site: {html / 'index.html'}", *summary(executed=ran)]

@@ -9,8 +9,6 @@ from bs4 import BeautifulSoup, Tag
 
 ICON = re.compile("^fa-")
 """How the classes of an icon's element begin."""
-NAMED_BY_TEXT = "button.search-button-field, details.hide > summary"
-"""The button of the search field, and the folds around code and outputs."""
 
 
 def make_accessible(page: BeautifulSoup) -> None:
@@ -18,23 +16,27 @@ def make_accessible(page: BeautifulSoup) -> None:
     # The control around an icon has its name as text or label.
     for icon in [*page.find_all("i", class_=ICON), *page.find_all("span", class_="fa-solid")]:
         icon["aria-hidden"] = "true"
-    # A fold of code shows an icon; its text is for screen readers and, as a title, for the mouse.
-    for fold in page.select("details.hide.above-input > summary"):
-        fold["title"] = "Show or hide source"
-    # HTML allows no paragraph in a summary. A style sheet has other rules for spans there.
-    for text in page.select("summary > p"):
-        text.name = "b"
-    # The link beside a heading or caption is for the mouse: it repeats the contents list.
-    for anchor in page.select("a.headerlink"):
-        anchor["tabindex"] = "-1"
-    # A label would replace the visible text, by which speech input finds a control.
-    for element in page.select(NAMED_BY_TEXT):
-        del element["aria-label"]
-    # A fold of the course menu shows only an arrow; the name of its page comes before it.
-    for summary in page.select("nav.bd-docs-nav details > summary"):
-        link = summary.parent.find_previous_sibling("a") if summary.parent else None
-        if isinstance(link, Tag):
+    for summary in page.find_all("summary"):
+        fold = summary.find_parent("details")
+        kinds = fold.get_attribute_list("class") if fold else []
+        # A label would replace the visible text, by which speech input finds a control.
+        if "hide" in kinds:
+            del summary["aria-label"]
+        # A fold of code shows an icon; its text is for screen readers and, as a title, the mouse.
+        if "above-input" in kinds:
+            summary["title"] = "Show or hide source"
+        # HTML allows no paragraph in a summary. A style sheet has other rules for spans there.
+        for text in summary.find_all("p", recursive=False):
+            text.name = "b"
+        # A fold of the course menu shows only an arrow; the name of its page comes before it.
+        link = fold.find_previous_sibling("a") if fold else None
+        if isinstance(link, Tag) and summary.find_parent("nav", class_="bd-docs-nav"):
             summary["aria-label"] = f"Pages below {link.get_text(' ', strip=True)}"
+    for button in page.find_all("button", class_="search-button-field"):
+        del button["aria-label"]  # it shows its name
+    # The link beside a heading or caption is for the mouse: it repeats the contents list.
+    for anchor in page.find_all("a", class_="headerlink"):
+        anchor["tabindex"] = "-1"
     # The course's name and the search are outside the menu, so the whole sidebar is a landmark.
-    for sidebar in page.select("#pst-primary-sidebar"):
+    for sidebar in page.find_all(id="pst-primary-sidebar"):
         sidebar["role"], sidebar["aria-label"] = "complementary", "Course"

@@ -21,7 +21,7 @@ Files that pages leave beside the HTML are removed with the last page that left 
 import hashlib
 import os
 import shutil
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from pathlib import Path
 from typing import Any
 
@@ -108,12 +108,13 @@ def forget_own_pictures(app: Sphinx, doctree: nodes.document) -> None:
 
 
 def note_reading(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
-    """Note whether any page is read in this build."""
-    vars(app.builder)["robo_genesis_reads"] = bool(names)
+    """Note which pages are read in this build."""
+    vars(app.builder)["robo_genesis_reads"] = list(names)
 
 
 def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
     """Return the pages that must be written again, beside those that were read again."""
+    vars(app.builder)["robo_genesis_home"] = True
     vars(env).pop("get_doctree", None)
     commit, status = history(Path(env.srcdir))
     entries = set((status or "").split("\0"))
@@ -125,8 +126,11 @@ def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
     changed = tuple(before[1] ^ entries)
     names = {name: str(env.doc2path(name, base=False)) for name in env.found_docs}
     edited = [name for name, file in names.items() if any(e.endswith(file) for e in changed)]
-    if not edited and not vars(app.builder)["robo_genesis_reads"]:
-        return [env.config.root_doc]  # without any page, Sphinx would write no style sheet
+    reads: Sequence[str] = vars(app.builder)["robo_genesis_reads"]
+    home = env.config.root_doc
+    if not edited and not reads:
+        return [home]  # without any page, Sphinx would write no style sheet
+    vars(app.builder)["robo_genesis_home"] = home in (*edited, *reads)
     return edited
 
 
@@ -174,9 +178,19 @@ def drop_downloads(app: Sphinx, builder: Any) -> None:
 
 
 def leave_out_parents(app: Sphinx, builder: Any) -> None:
-    """Keep Sphinx from writing the parents of a changed page; see `outdated_pages`."""
+    """Keep Sphinx from writing parents of a changed page and the home page.
+
+    It would write the home page in each build; see `outdated_pages`.
+    """
     vars(builder)["robo_genesis_parents"] = builder.env.files_to_rebuild
     builder.env.files_to_rebuild = {}
+
+    def prepare(names: set[str]) -> None:
+        if not vars(builder)["robo_genesis_home"]:
+            names.discard(builder.config.root_doc)
+        type(builder).prepare_writing(builder, names)
+
+    builder.prepare_writing = prepare
 
 
 def finish(app: Sphinx, error: Exception | None) -> None:

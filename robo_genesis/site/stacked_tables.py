@@ -19,15 +19,22 @@ ROLES = {"thead": "rowgroup", "tbody": "rowgroup", "tr": "row", "th": "columnhea
 
 def stack_tables(page: BeautifulSoup) -> None:
     """Mark the wide tables of an article in place, and give each cell the head of its column."""
-    for table in page.select("article table:has(thead)"):
-        heads = [head.get_text(" ", strip=True) for head in table.select("thead th")]
-        rows = [row.find_all(["td", "th"]) for row in table.select("tbody tr")]
+    for table in page.find_all("table"):
+        if table.thead is None or not table.find_parent("article"):
+            continue
+        columns = table.thead.find_all("th")
+        heads = [head.get_text(" ", strip=True) for head in columns]
+        lines = table.tbody.find_all("tr") if table.tbody else []
+        rows = [line.find_all(["td", "th"]) for line in lines]
         even = all(len(row) == len(heads) for row in rows)
         if table.find_parent(class_="scroll-box") or not even or not 0 < len(rows) <= MOST_ROWS:
             continue
-        whole = table.select_one("thead .case-mark") is not None
-        columns = zip(table.select("thead th"), *rows, strict=True)
-        if sum(max(narrowest(cell, whole) for cell in column) for column in columns) <= PHONE:
+        whole = table.thead.find(class_="case-mark") is not None
+        widths = (
+            max(narrowest(cell, whole) for cell in column)
+            for column in zip(columns, *rows, strict=True)
+        )
+        if sum(widths) <= PHONE:
             continue
         table["class"] = [*table.get_attribute_list("class", []), "stacks"]
         table["role"] = "table"
@@ -46,6 +53,6 @@ def narrowest(cell: Tag, whole: bool) -> float:
         whole: no cell of its table breaks, as where the columns are cases.
     """
     text = cell.get_text(" ", strip=True)
-    code = [part.get_text() for part in cell.select("code")]
+    code = [part.get_text() for part in cell.find_all("code")]
     parts = [text] if whole else [*text.split(), *code]
     return PADDING + LETTER * max(map(len, parts), default=0)

@@ -29,7 +29,8 @@ def test_a_row_shows_rounded_times_and_the_slowest_cell(tmp_path):
         write_page(place, found, ran, tmp_path, cell_seconds=SECONDS[found.docname], **run)
         results.append(PageResult(found, "reused", 0.0, "0" * 32, folder=place))
     built = BuiltPages.of(results)
-    html = render(SphinxProcess(book, tmp_path / "render.log"), tmp_path / "staging", built)
+    sphinx = SphinxProcess(book, tmp_path / "render.log")
+    html = render(sphinx, tmp_path / "staging", built).html
     table = parsed(html, "times").select_one("tbody")
     assert [[c.get_text(strip=True) for c in row.select("td")] for row in table.select("tr")] == [
         ["Page", "3", "15.6", "2", "12.3"],

@@ -18,7 +18,6 @@ from built_site import executed_pages, parsed
 from PIL import Image
 from spoilers import TORCH, edit, measured_elsewhere, own_run_id, part, predicate, seal
 
-from robo_genesis.build.site.archive import pack
 from robo_genesis.build.site.checks import check_site
 from robo_genesis.build.site.render import render
 from robo_genesis.build.site.sphinx_process import SphinxProcess
@@ -99,9 +98,10 @@ def html(site, tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SITE_URL", ADDRESS.rstrip("/"))
         patch.setenv("SOLUTIONS", "0")
-        html = render(SphinxProcess(book, folder / "render.log"), folder / "staging", built)
-    pack(html)
-    return html
+        sphinx = SphinxProcess(book, folder / "render.log")
+        draft = render(sphinx, folder / "staging", built)
+    draft.pack()
+    return draft.html
 
 
 def test_a_render_leaves_no_process(html):

@@ -139,7 +139,8 @@ def html(tmp_path_factory):
     pages |= {f"lessons/l06-six/{name}": f"Six\n\n{WORDS}" for name in ("lab", "deeper", "more")}
     book = make_book(folder, **{name: f"# {text}\n\nText.\n" for name, text in pages.items()})
     write(book, MAP)
-    return render(SphinxProcess(book, folder / "render.log"), folder / "staging", BuiltPages())
+    sphinx = SphinxProcess(book, folder / "render.log")
+    return render(sphinx, folder / "staging", BuiltPages()).html
 
 
 def test_a_published_lesson_is_a_card_with_outcomes_prerequisites_and_minutes(html):

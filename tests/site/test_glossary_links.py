@@ -51,7 +51,8 @@ def html(tmp_path_factory):
     folder = tmp_path_factory.mktemp("terms")
     book = make_book(folder, glossary=GLOSSARY, page=PAGE)
     (book / glossary.FORMS).write_text(FORMS)
-    return render(SphinxProcess(book, folder / "render.log"), folder / "staging", BuiltPages())
+    sphinx = SphinxProcess(book, folder / "render.log")
+    return render(sphinx, folder / "staging", BuiltPages()).html
 
 
 def links(html, name):

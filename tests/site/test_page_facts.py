@@ -102,7 +102,8 @@ def test_an_unknown_history_has_its_reason(checkout, tmp_path):
 def test_a_page_has_all_three_and_the_home_page_no_time(tmp_path):
     text = "# Page\n\n- no paragraph\n\nA joint's *step* & more. " + "word " * 100
     book = make_book(tmp_path, page=text)
-    html = render(SphinxProcess(book, tmp_path / "render.log"), tmp_path / "staging", BuiltPages())
+    sphinx = SphinxProcess(book, tmp_path / "render.log")
+    html = render(sphinx, tmp_path / "staging", BuiltPages()).html
     page, home = parsed(html, "page"), parsed(html, "index")
     assert "About 1 min to read." in page.select_one("h1 + p.page-facts").get_text()
     assert not home.select(".page-facts")

@@ -99,9 +99,8 @@ def html(tmp_path_factory):
     pages = find_pages(book)
     results = execute_pages(pages, places(pages, folder / "store"))
     assert [result.status for result in results] == ["executed"] * 2
-    return render(
-        SphinxProcess(book, folder / "render.log"), folder / "staging", BuiltPages.of(results)
-    )
+    sphinx = SphinxProcess(book, folder / "render.log")
+    return render(sphinx, folder / "staging", BuiltPages.of(results)).html
 
 
 def lines_and_rows(html, name):

@@ -24,7 +24,6 @@ SERVICES = re.compile(
     r"unpkg\.com|jsdelivr\.net|cdnjs\.|googleapis\.com|gstatic\.com|polyfill\.io|mybinder\.org",
     re.IGNORECASE,
 )
-IMAGES = "img, svg.drawing"
 FILE_NAME = re.compile(r"^\S*\.(?:png|jpe?g|svg|webp|gif)$|^[0-9a-f]{16,}$", re.IGNORECASE)
 LEFTOVERS = re.compile(r"\{[a-z][a-z:_-]*\}(?=`|\()|\\[\[\(]|\$\$|\[\[[^\]]*\]\]|<Figure size ")
 
@@ -110,7 +109,7 @@ def page_facts(page: scripts.Page) -> PageFacts:
         addresses=[(url, _is_loaded(tag)) for tag in tags for url in _addresses(tag)],
         styles=[url for text in style for url in _in_style(text)],
         inline_addresses=[url for tag in inline for url in SCRIPT_ADDRESS.findall(tag.get_text())],
-        images=len(page.parsed.select(IMAGES)),
+        images=len(_images(page.parsed)),
         alt_problems=list(_alt_problems(page.parsed)),
         scripts=len(page.parsed.find_all("script")),
         script_problems=sorted(set(scripts.page_problems(page))),
@@ -202,8 +201,13 @@ def _lines(site: Site, found: Mapping[Path, Sequence[str]]) -> tuple[str, ...]:
     return tuple(f"{site.name(path)}: {line}" for path in found for line in found[path])
 
 
+def _images(page: BeautifulSoup) -> list[Tag]:
+    """Return a page's images and drawings."""
+    return [*page.find_all("img"), *page.find_all("svg", class_="drawing")]
+
+
 def _alt_problems(page: BeautifulSoup) -> Iterator[str]:
-    for image in page.select(IMAGES):
+    for image in _images(page):
         names = ("alt", "src") if image.name == "img" else ("aria-label", "data-file")
         text, source = (str(image.get(name) or "").strip() for name in names)
         if not text or FILE_NAME.match(text) or text == PurePosixPath(urlsplit(source).path).stem:
@@ -211,9 +215,10 @@ def _alt_problems(page: BeautifulSoup) -> Iterator[str]:
 
 
 def _leftovers(page: BeautifulSoup) -> Iterator[str]:
-    for tag in page.select(".system-message, .problematic"):
+    for tag in page.find_all(class_=["system-message", "problematic"]):
         yield repr(tag.get_text(" ", strip=True)[:80])
-    for text in (page.select_one("article") or page).find_all(string=LEFTOVERS):
+    article = page.find("article")
+    for text in (article if isinstance(article, Tag) else page).find_all(string=LEFTOVERS):
         if not text.find_parent(["pre", "code", "script", "style"]):
             yield repr(text.strip()[:80])
 

@@ -7,7 +7,7 @@ next build empties: a warning is given only when a page is read.
 
 import json
 import shutil
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from hashlib import sha256
@@ -110,9 +110,3 @@ def keep(folder: Path, before: State, after: State) -> None:
     if before == after and before.others is not None and fit(folder):
         state = {"others": after.others, "pages": after.pages}
         (folder / STATE).write_text(json.dumps(state, indent=1) + "\n", "utf8")
-
-
-def copy_site(html: Path, to: Path, left_out: Collection[str]) -> Path:
-    """Copy a site without some names; the copy shares no file with the kept one."""
-    shutil.copytree(html, to, ignore=shutil.ignore_patterns(*left_out))
-    return to

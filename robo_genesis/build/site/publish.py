@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robo_genesis.core.files import replaced
+from robo_genesis.build.site.draft import Draft
+from robo_genesis.core.files import replaced, write_or_link
 from robo_genesis.core.project import PUBLISHED
 
 if TYPE_CHECKING:  # commands that need only names load no Jupyter
@@ -15,19 +16,36 @@ PAGES = "pages"
 """The folder beside `evidence` with the bundles of other pages than labs."""
 
 
-def publish(
-    book: Path,
-    html: Path,
-    results: Iterable["PageResult"],
-    finish: Callable[[Path], None] = lambda folder: None,
-) -> Path:
+def add_bundles(draft: Draft, results: Iterable["PageResult"]) -> None:
+    """Copy the bundles of executed pages into a draft.
+
+    Args:
+        draft: bundles of pages named `lab` become `evidence/<lesson>/<backend>` in its folder,
+            others `pages/<lesson>/<page>/<backend>`.
+        results: the executed pages.
+
+    Raises:
+        OSError: a bundle cannot be read.
+    """
+
+    def copy(source: str, to: str) -> None:
+        old = draft.published / Path(to).relative_to(draft.folder)
+        write_or_link(Path(to), Path(source).read_bytes(), old)
+
+    for result in results:
+        if result.bundle is not None:
+            lesson, page = str(result.page.lesson), str(result.page.page)
+            own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
+            place = draft.folder.joinpath(*own, result.bundle.name)
+            shutil.copytree(result.bundle, place, copy_function=copy)
+
+
+def publish(book: Path, folder: Path, finish: Callable[[Path], None] = lambda folder: None) -> Path:
     """Replace the published site and its pages' bundles by new ones.
 
     Args:
         book: the folder that holds `_build`.
-        html: the rendered and checked site; it is moved away.
-        results: the executed pages; bundles of pages named `lab` become
-            `evidence/<lesson>/<backend>`, others `pages/<lesson>/<page>/<backend>`.
+        folder: the site, rendered and checked, and the bundles; it is moved away.
         finish: called with the complete folder before it is put in place.
 
     Returns:
@@ -37,12 +55,6 @@ def publish(
         OSError: nothing is changed.
     """
     with replaced(book / PUBLISHED) as following:
-        following.mkdir()
-        shutil.move(html, following / "html")
-        for result in results:
-            if result.bundle is not None:
-                lesson, page = str(result.page.lesson), str(result.page.page)
-                own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
-                shutil.copytree(result.bundle, following.joinpath(*own, result.bundle.name))
+        shutil.move(folder, following)
         finish(following)
     return book / PUBLISHED / "html"

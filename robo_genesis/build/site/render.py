@@ -8,13 +8,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.site.kept import copy_site, fit, keep, prepare, read_state
-from robo_genesis.build.site.sphinx_process import SphinxProcess
+from robo_genesis.build.site.draft import Draft
+from robo_genesis.build.site.kept import fit, keep, prepare, read_state
+from robo_genesis.build.site.sphinx_process import PAGES, SphinxProcess
+from robo_genesis.core.project import PUBLISHED
 
 STATES = "states"
 """The folder of the states of runs. Every change on which they depend empties the kept folder."""
-BUILD_INFO = ".buildinfo"
-"""A note of Sphinx for its next build, which depends on the checkout's path."""
 
 
 def render(
@@ -22,8 +22,8 @@ def render(
     staging: Path,
     built: BuiltPages,
     kept_folder: Path | None = None,
-    meanwhile: Callable[[], None] = lambda: None,
-) -> Path:
+    meanwhile: Callable[[Draft], None] = lambda draft: None,
+) -> Draft:
     """Render every page of a book.
 
     Args:
@@ -36,18 +36,20 @@ def render(
             then starts from nothing.
 
     Returns:
-        The folder with the site's HTML.
+        The site, complete but for archive and sums.
 
     Raises:
         RenderError: Sphinx failed or gave a warning.
     """
     shutil.rmtree(staging, ignore_errors=True)
     staging.mkdir(parents=True)
+    rendered = (kept_folder or staging) / PAGES
+    draft = Draft(rendered, staging / "site", sphinx.book / PUBLISHED)
     if kept_folder is None:
-        rendered = sphinx.render(staging, built, meanwhile)
+        sphinx.render(staging, built, lambda: meanwhile(draft))
     else:
-        rendered = _render_changes(sphinx, kept_folder, built, meanwhile)
-    return copy_site(rendered, staging / "html", (BUILD_INFO,))
+        _render_changes(sphinx, kept_folder, built, lambda: meanwhile(draft))
+    return draft.complete()
 
 
 def _render_changes(
@@ -55,13 +57,12 @@ def _render_changes(
     folder: Path,
     built: BuiltPages,
     meanwhile: Callable[[], None] = lambda: None,
-) -> Path:
-    """Render what changed since the last render in a folder; return the folder of the pages."""
+) -> None:
+    """Render what changed since the last render in a folder."""
     before = read_state(sphinx.book, built)
     was_kept = prepare(folder, before)
-    rendered = sphinx.render(folder, built.keeping(folder / STATES), meanwhile)
+    sphinx.render(folder, built.keeping(folder / STATES), meanwhile)
     if was_kept and not fit(folder):  # the state is gone, so this one starts from nothing
         with SphinxProcess(sphinx.book, sphinx.log) as another:
             return _render_changes(another, folder, built)
     keep(folder, before, read_state(sphinx.book, built))
-    return rendered

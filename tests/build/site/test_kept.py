@@ -19,6 +19,7 @@ from tiny_book import cell, make_book, notebook
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.page_folder import NOTEBOOK, RECORD
 from robo_genesis.build.site import kept
+from robo_genesis.build.site.draft import Draft
 from robo_genesis.build.site.kept import State
 from robo_genesis.build.site.render import render
 from robo_genesis.build.site.sphinx_process import RenderError, SphinxProcess
@@ -41,9 +42,8 @@ SOME = State("a", {"one": "1", "two": "2"})
 def publish(folder: Path, built: BuiltPages, keep: bool = True) -> dict[str, bytes]:
     """Render a book and return its files."""
     kept_folder = folder / "kept" if keep else None
-    html = render(
-        SphinxProcess(folder / "book", folder / "log"), folder / "staging", built, kept_folder
-    )
+    sphinx = SphinxProcess(folder / "book", folder / "log")
+    html = render(sphinx, folder / "staging", built, kept_folder).html
     return {p.relative_to(html).as_posix(): p.read_bytes() for p in html.rglob("*") if p.is_file()}
 
 
@@ -119,6 +119,22 @@ def test_each_edit_publishes_the_same_bytes_as_a_render_from_nothing(tmp_path):
     ]
 
 
+def test_the_home_page_is_written_again_only_if_it_shows_a_change(tmp_path):
+    book = make_book(tmp_path, text="# Text\n\nWords.\n")
+    home = tmp_path / "kept/_build/html/index.html"
+    publish(tmp_path, BuiltPages())
+    for page, change, is_written in (
+        ("text.md", "\nMore words.\n", False),
+        ("index.md", "\nMore words.\n", True),
+        ("text.md", "\n## A heading\n", True),
+    ):
+        (book / page).write_text((book / page).read_text() + change)
+        before = home.stat().st_mtime_ns
+        found = publish(tmp_path, BuiltPages())
+        assert (home.stat().st_mtime_ns != before) == is_written
+        assert found == publish(tmp_path, BuiltPages(), keep=False)
+
+
 def test_figures_tables_and_code_are_numbered_across_pages_wherever_they_are(tmp_path):
     captioned = (
         FIGURE % ":name: drawn-%d"
@@ -182,7 +198,7 @@ def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
 
 
 def test_a_refusal_beside_sphinx_ends_it_and_a_render_without_changes_is_complete(tmp_path):
-    def refuse() -> None:
+    def refuse(draft: Draft) -> None:
         raise ValueError("refused")
 
     sphinx = SphinxProcess(make_book(tmp_path, text="# Text\n"), tmp_path / "log")

@@ -29,8 +29,8 @@ See {{eq}}`law` and $x^2$ for the overshoot.
 
 
 def build(folder: Path, built: BuiltPages | None = None) -> Path:
-    built = built or BuiltPages()
-    return render(SphinxProcess(folder / "book", folder / "render.log"), folder / "staging", built)
+    sphinx = SphinxProcess(folder / "book", folder / "render.log")
+    return render(sphinx, folder / "staging", built or BuiltPages()).html
 
 
 @pytest.fixture(scope="module")
