@@ -29,7 +29,7 @@ from typing import Any
 from robo_genesis.core import project
 from robo_genesis.core.project import OUTPUTS_DIR
 from robo_genesis.core.refusals import BundleRefused, printable, shown
-from robo_genesis.sim.diagnosis import STEPS, Bench, Finding, examine, shareable
+from robo_genesis.sim.diagnosis import STATES, STEPS, Bench, Finding, examine, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
 REPORT_FORMAT = 3
@@ -58,11 +58,13 @@ def steps_of(report: Mapping[str, Any]) -> list[Finding]:
 
 
 def verdict(findings: Sequence[Finding]) -> str:
-    """Return the last line: all steps pass, or which one is broken."""
+    """Return the last line: how many steps pass, or which one is broken."""
     broken = [f"{number}, {f.step}" for number, f in enumerate(findings, 1) if f.state == "broken"]
-    if not broken:
-        return f"DOCTOR: all {len(findings)} steps pass"
-    return f"DOCTOR: step {broken[0]}, is broken; fix it and run this again"
+    if broken:
+        return f"DOCTOR: step {broken[0]}, is broken; fix it and run this again"
+    passed = sum(f.state == "ok" for f in findings)
+    how_many = "all" if passed == len(findings) else f"{passed} of"
+    return f"DOCTOR: {how_many} {len(findings)} steps pass"
 
 
 def report(findings: Sequence[Finding], bench: Bench) -> str:
@@ -139,13 +141,15 @@ def read_report(file: str) -> dict[str, Any]:
                 f"has the format {shown(report['format'])}; this version reads format "
                 f"{REPORT_FORMAT}"
             )
-        elif not steps_of(report):
+        elif not (states := {f.state for f in steps_of(report)}):
             problem = "has no steps; a report has at least one"
+        elif not states <= {*STATES}:
+            problem = f"has the states {shown(sorted(states))}; valid are {', '.join(STATES)}"
         elif "engine" not in (facts := report["machine"]) or {*map(type, facts.values())} != {str}:
             problem = f"has the machine {shown(facts)}; a report has texts with at least an engine"
         else:
             return report
-    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
         problem = (
             f"cannot be read as a report: {type(error).__name__}: {error}; a report is a file that "
             "--json wrote"

@@ -297,6 +297,11 @@ def test_the_advice_is_about_the_difference_that_matters_most(here, advice):
     ]
 
 
+def test_a_report_of_steps_that_did_not_run_does_not_say_that_all_pass():
+    findings = [doctor.Finding("version", "ok", ""), doctor.Finding("build", "not run", "")]
+    assert doctor.verdict(findings) == "DOCTOR: 1 of 2 steps pass"
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -310,6 +315,8 @@ def test_the_advice_is_about_the_difference_that_matters_most(here, advice):
         (["--report", "list.json"], "'list.json' cannot be read as a report"),
         (["--report", "old.json"], "'old.json' has the format 2; this version reads format 3; "),
         (["--report", "stepless.json"], "'stepless.json' has no steps"),
+        (["--report", "odd.json"], "has the states ['odd']; valid are ok, broken, not run; make"),
+        (["--report", "deep.json"], "'deep.json' cannot be read as a report: RecursionError"),
         (["--report", "nameless.json"], "cannot be read as a report: KeyError: 'step'"),
         (["--report", "machineless.json"], "has the machine {}; a report has texts"),
         (["--report", "numbers.json"], "has the machine {'engine': 1}; a report has texts"),
@@ -322,10 +329,12 @@ def test_what_cannot_be_shown_or_compared_is_refused_before_the_first_step(
     step = {"step": "version", "state": "ok", "found": ""}
     sound = {"format": 3, "steps": [step], "machine": {"engine": "1"}}
     Path("text.json").write_text("no JSON")
+    Path("deep.json").write_text("[" * 10**5)
     for name, content in {
         "list": [],
         "old": sound | {"format": 2},
         "stepless": sound | {"steps": []},
+        "odd": sound | {"steps": [step | {"state": "odd"}]},
         "nameless": sound | {"steps": [{}]},
         "machineless": sound | {"machine": {}},
         "numbers": sound | {"machine": {"engine": 1}},

@@ -33,6 +33,7 @@ from robo_genesis.build.release import missing_for_release
 from robo_genesis.build.site.address import site_address, site_root
 from robo_genesis.build.site.checks import Site, run_checks
 from robo_genesis.build.site.draft import Draft
+from robo_genesis.build.site.kept import discard
 from robo_genesis.build.site.publish import add_bundles, publish
 from robo_genesis.build.site.render import render
 from robo_genesis.build.site.sphinx_process import LOG, SphinxProcess
@@ -114,7 +115,7 @@ def run_build(build: Build) -> list[str]:
         manifests: dict[str, Any] = {}
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
-            draft.prepare()  # first: Sphinx has not begun to write
+            draft.prepare()  # first: most files are still those of the last render
             manifests.update(_accepted(build, verify, results, progress))
             add_bundles(draft, results)
 
@@ -127,7 +128,12 @@ def run_build(build: Build) -> list[str]:
             progress("pack", packing.result().name)
         sums = write_sums(draft.html, draft.digests)  # last of the site's files, before the checks
         progress("sums", sums.name)
-        checked = _check(site, progress)
+        try:
+            checked = _check(site, progress)
+        except BuildError:
+            if kept:  # what is wrong may be a file that the kept folder has lost
+                discard(kept)
+            raise
         forget(build.cache / project.STORE, results)
         summary = partial(_summary, engine, results, manifests, checked)
 

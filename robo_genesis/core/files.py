@@ -56,24 +56,6 @@ def write_whole(path: Path, content: bytes) -> None:
         partial.unlink(missing_ok=True)
 
 
-def write_or_link(path: Path, content: bytes, old: Path) -> None:
-    """Write a file, or make it a hard link if an older file has the same content.
-
-    A link needs no space of its own. The file must not be written in place afterwards.
-
-    Args:
-        path: replaced if it exists.
-        content: of the file.
-        old: may be missing, or on another file system.
-    """
-    path.unlink(missing_ok=True)
-    with suppress(OSError):
-        if not old.is_symlink() and old.read_bytes() == content:
-            path.hardlink_to(old)
-            return
-    path.write_bytes(content)
-
-
 def settle(folder: Path, prefix: str = "") -> None:
     """Repair a folder after a process was killed while it replaced the folder; see `replaced`.
 

@@ -34,15 +34,20 @@ def run_python(
             timeout=TIMEOUT, check=False,
         )  # fmt: skip
     except subprocess.TimeoutExpired as error:
-        raise StartError(f"The process had not ended after {TIMEOUT} s and was killed.") from error
+        problem = f"had not ended after {TIMEOUT} s and was killed"
+        raise StartError(_report(problem, error.stdout, error.stderr)) from error
     if done.returncode not in statuses or not done.stdout.strip():
         valid = " or ".join(map(str, statuses))
-        last = "\n".join((done.stdout + done.stderr).splitlines()[-10:])
-        raise StartError(
-            f"The process ended with exit status {done.returncode}, expected {valid} and some "
-            f"output. Its last lines:\n{last}"
-        )
+        problem = f"ended with exit status {done.returncode}, expected {valid} and some output"
+        raise StartError(_report(problem, done.stdout, done.stderr))
     return done.stdout
+
+
+def _report(problem: str, *outputs: str | bytes | None) -> str:
+    """Return what is wrong with a process, with its last lines; a killed one leaves bytes."""
+    texts = (o.decode("utf8", "replace") if isinstance(o, bytes) else o or "" for o in outputs)
+    last = "\n".join("".join(texts).splitlines()[-10:])
+    return f"The process {problem}. Its last lines:\n{last}"
 
 
 def last_value(printed: str) -> Any:

@@ -52,9 +52,12 @@ class Bench:
     trace: Any = None
 
 
+STATES = ("ok", "broken", "not run")
+
+
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """The result of one step: `state` is ok, warning, broken or not run."""
+    """The result of one step; `state` is one of `STATES`."""
 
     step: str
     state: str

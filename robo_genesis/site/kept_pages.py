@@ -186,8 +186,9 @@ def leave_out_parents(app: Sphinx, builder: Any) -> None:
     builder.env.files_to_rebuild = {}
 
     def prepare(names: set[str]) -> None:
-        if not vars(builder)["robo_genesis_home"]:
-            names.discard(builder.config.root_doc)
+        home = builder.config.root_doc
+        if not vars(builder)["robo_genesis_home"] and os.path.exists(builder.get_outfilename(home)):
+            names.discard(home)
         type(builder).prepare_writing(builder, names)
 
     builder.prepare_writing = prepare

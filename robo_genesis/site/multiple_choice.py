@@ -27,6 +27,7 @@ A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
 
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from html import escape
 from types import MappingProxyType
 from typing import Any
@@ -132,9 +133,10 @@ def percents(text: str) -> float:
     Raises:
         ValueError: it is not a number between 0 and 100.
     """
-    if not 0 < (value := float(text)) < 100:
-        raise ValueError(f"{text!r} is not a tolerance. Give percents above 0 and below 100.")
-    return value
+    with suppress(ValueError):
+        if 0 < (value := float(text)) < 100:
+            return value
+    raise ValueError(f"{text!r} is not a tolerance. Give percents above 0 and below 100: 0.5.")
 
 
 class Number(Question):

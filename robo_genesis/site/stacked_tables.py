@@ -24,7 +24,7 @@ def stack_tables(page: BeautifulSoup) -> None:
             continue
         columns = table.thead.find_all("th")
         heads = [head.get_text(" ", strip=True) for head in columns]
-        lines = table.tbody.find_all("tr") if table.tbody else []
+        lines = (line for body in table.find_all("tbody") for line in body.find_all("tr"))
         rows = [line.find_all(["td", "th"]) for line in lines]
         even = all(len(row) == len(heads) for row in rows)
         if table.find_parent(class_="scroll-box") or not even or not 0 < len(rows) <= MOST_ROWS:

@@ -24,6 +24,7 @@ from tiny_book import (
 from robo_genesis.build import up_to_date
 from robo_genesis.build.kernels import described, kill_with_descendants
 from robo_genesis.build.page_folder import StoreError
+from robo_genesis.build.site import kept
 from robo_genesis.build.stages import (
     Build,
     BuildError,
@@ -32,6 +33,7 @@ from robo_genesis.build.stages import (
     run_build,
 )
 from robo_genesis.build.verification import require_contract
+from robo_genesis.core import project
 from robo_genesis.core.project import ProjectError
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.lessons.book_pages import PageError
@@ -169,6 +171,17 @@ def test_a_build_that_is_refused_leaves_the_old_site(
     with pytest.raises(error, match=said):
         build(tmp_path, **settings)
     assert marker.read_text() == "the old site"
+
+
+def test_a_site_with_problems_is_rendered_from_nothing_the_next_time(tmp_path):
+    page = make_book(tmp_path, page="# A\n\nText.\n") / "page.md"
+    state = tmp_path / "cache" / project.KEPT / kept.STATE
+    build(tmp_path)
+    assert state.is_file()
+    page.write_text("# A\n\n<a href='nowhere.html'>lost</a>\n")
+    with pytest.raises(BuildError, match=r"'nowhere\.html' leads to no file"):
+        build(tmp_path)
+    assert not state.exists()
 
 
 def test_a_bundle_of_another_backend_is_refused():

@@ -122,8 +122,8 @@ def test_a_cause_without_a_valid_key_is_refused_with_the_valid_ones(line):
 
 def test_a_tolerance_is_a_share_in_percent():
     assert [multiple_choice.percents(text) for text in ("20", "0.5")] == [20, 0.5]
-    for text in ("0", "-1", "100", "nan", "much"):
-        with pytest.raises(ValueError, match=text):
+    for text in ("0", "-1", "100", "nan", "much", "20 %"):
+        with pytest.raises(ValueError, match=f"'{text}' is not a tolerance. Give percents above 0"):
             multiple_choice.percents(text)
 
 

@@ -110,3 +110,8 @@ def keep(folder: Path, before: State, after: State) -> None:
     if before == after and before.others is not None and fit(folder):
         state = {"others": after.others, "pages": after.pages}
         (folder / STATE).write_text(json.dumps(state, indent=1) + "\n", "utf8")
+
+
+def discard(folder: Path) -> None:
+    """Make the next build empty the folder."""
+    (folder / STATE).unlink(missing_ok=True)

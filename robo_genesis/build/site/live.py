@@ -20,6 +20,7 @@ from robo_genesis.build.command import TIMEOUT, end_with_parent, say
 from robo_genesis.build.page_folder import OUTPUTS, PageRefused, read_record
 from robo_genesis.build.page_store import folders, places
 from robo_genesis.build.site import kept
+from robo_genesis.build.site.sphinx_process import HTML
 from robo_genesis.core import project
 from robo_genesis.lessons.book_pages import Page, code_digest, docnames, find_pages
 
@@ -224,7 +225,7 @@ class Live:
 
     def show(self) -> None:
         """Copy what changed to the folder that is served."""
-        html = self.work / "_build" / "html"
+        html = self.work / HTML
         new = {path.relative_to(html) for path in html.rglob("*") if path.is_file()}
         old = {p.relative_to(self.site) for p in self.site.rglob("*") if p.is_file()}
         for name in old - new:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robo_genesis.build.site.draft import Draft
-from robo_genesis.core.files import replaced, write_or_link
+from robo_genesis.core.files import replaced
 from robo_genesis.core.project import PUBLISHED
 
 if TYPE_CHECKING:  # commands that need only names load no Jupyter
@@ -27,17 +27,12 @@ def add_bundles(draft: Draft, results: Iterable["PageResult"]) -> None:
     Raises:
         OSError: a bundle cannot be read.
     """
-
-    def copy(source: str, to: str) -> None:
-        old = draft.published / Path(to).relative_to(draft.folder)
-        write_or_link(Path(to), Path(source).read_bytes(), old)
-
     for result in results:
         if result.bundle is not None:
             lesson, page = str(result.page.lesson), str(result.page.page)
             own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
             place = draft.folder.joinpath(*own, result.bundle.name)
-            shutil.copytree(result.bundle, place, copy_function=copy)
+            shutil.copytree(result.bundle, place)
 
 
 def publish(book: Path, folder: Path, finish: Callable[[Path], None] = lambda folder: None) -> Path:

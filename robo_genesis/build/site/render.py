@@ -10,8 +10,7 @@ from pathlib import Path
 from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.build.site.draft import Draft
 from robo_genesis.build.site.kept import fit, keep, prepare, read_state
-from robo_genesis.build.site.sphinx_process import PAGES, SphinxProcess
-from robo_genesis.core.project import PUBLISHED
+from robo_genesis.build.site.sphinx_process import HTML, SphinxProcess
 
 STATES = "states"
 """The folder of the states of runs. Every change on which they depend empties the kept folder."""
@@ -43,8 +42,8 @@ def render(
     """
     shutil.rmtree(staging, ignore_errors=True)
     staging.mkdir(parents=True)
-    rendered = (kept_folder or staging) / PAGES
-    draft = Draft(rendered, staging / "site", sphinx.book / PUBLISHED)
+    rendered = (kept_folder or staging) / HTML
+    draft = Draft(rendered, staging / "site")
     if kept_folder is None:
         sphinx.render(staging, built, lambda: meanwhile(draft))
     else:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:  # the process is started before the packages of Jupyter are l
 COMPLAINT = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
 LOG = "render.log"
 """Its name in the folder of the caches."""
-PAGES = "_build/html"
+HTML = "_build/html"
 """The folder of the pages in the folder that Sphinx gets."""
 OPTIONS = ("-n", "-W", "--keep-going", "--builder", "html")
 
@@ -68,7 +68,7 @@ class SphinxProcess:
         """Render the book; this can be done once.
 
         Args:
-            folder: of Sphinx's output; its folder `PAGES` gets the pages. What is there is taken
+            folder: of Sphinx's output; its folder `HTML` gets the pages. What is there is taken
                 for current, unless Sphinx finds it outdated.
             built: the executed pages.
             meanwhile: called while Sphinx works. What it raises ends Sphinx and is raised here.
@@ -86,7 +86,7 @@ class SphinxProcess:
         with self:  # nothing writes into the folder after an interrupt, or a refusal meanwhile
             meanwhile()
             self.process.wait()
-        if self.process.returncode != 0 or not (folder / PAGES / "index.html").is_file():
+        if self.process.returncode != 0 or not (folder / HTML / "index.html").is_file():
             raise RenderError(f"{complaints(self.log)}\nThe complete log is in {self.log}")
 
 

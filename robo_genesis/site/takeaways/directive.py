@@ -150,7 +150,7 @@ def bullets(*items: Iterable[str | list[nodes.Node]]) -> nodes.Node:
 
 
 def setup(app: Sphinx) -> None:
-    """Register the directive and the copying of its files."""
+    """Register the directives and their settings."""
     app.add_config_value("torch_index", "", "env", str)
     app.add_config_value("course_repository", "", "env", str)
     app.connect("config-inited", require_address)

@@ -133,6 +133,9 @@ def test_the_home_page_is_written_again_only_if_it_shows_a_change(tmp_path):
         found = publish(tmp_path, BuiltPages())
         assert (home.stat().st_mtime_ns != before) == is_written
         assert found == publish(tmp_path, BuiltPages(), keep=False)
+    home.unlink()
+    (book / "text.md").write_text("# Text\n\nWords.\n\n## A heading\n\nWords.\n")
+    assert publish(tmp_path, BuiltPages()) == publish(tmp_path, BuiltPages(), keep=False)
 
 
 def test_figures_tables_and_code_are_numbered_across_pages_wherever_they_are(tmp_path):

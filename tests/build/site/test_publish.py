@@ -20,7 +20,7 @@ def draft(tmp_path):
     rendered = tmp_path / "rendered"
     rendered.mkdir()
     (rendered / "index.html").write_text("the new site")
-    return Draft(rendered, tmp_path / "staging", tmp_path / "book/_build").complete()
+    return Draft(rendered, tmp_path / "staging").complete()
 
 
 def names(book: Path) -> set[str]:
