@@ -53,7 +53,8 @@ def in_turn(
 
     Args:
         timed: calls of each scene by name.
-        warm_up: steps of each scene whose time is not used.
+        warm_up: steps of each scene before each repeat, whose time is not used: the scene before
+            has filled the processor's cache with its own data.
         steps: of each scene in one repeat.
         repeats: their number.
         clock: returns a time [s].
@@ -61,12 +62,12 @@ def in_turn(
     Returns:
         Median, fastest and slowest of the repeats: `step_NAME`, `fastest_NAME`, `slowest_NAME` [s].
     """
-    for calls in timed.values():
+
+    def one(calls: Calls) -> float:
         seconds_per_step(calls, warm_up, clock)
-    times = [
-        {name: seconds_per_step(calls, steps, clock) for name, calls in timed.items()}
-        for _ in range(repeats)
-    ]
+        return seconds_per_step(calls, steps, clock)
+
+    times = [{name: one(calls) for name, calls in timed.items()} for _ in range(repeats)]
     return {
         f"{what}_{name}": float(of([repeat[name] for repeat in times]))
         for name in timed

@@ -21,9 +21,11 @@ def test_a_step_is_timed_from_finish_to_finish():
 def test_scenes_are_timed_in_turn_after_their_warm_up():
     made = []
     calls = {name: (lambda n=name: made.append(n), lambda: None) for name in "ab"}
-    ticks = iter([0, 0, 0, 0, 0, 2, 2, 8, 8, 18, 18, 20, 20, 24, 24, 26])
+    used = [0, 2, 2, 8, 8, 18, 18, 20, 20, 24, 24, 26]
+    unused = 2 * [0]  # begin and end of a warm-up
+    ticks = iter([t for pair in zip(used[::2], used[1::2], strict=True) for t in (*unused, *pair)])
     found = throughput.in_turn(calls, 1, 2, 3, ticks.__next__)
-    assert "".join(made) == "ab" + 3 * "aabb"
+    assert "".join(made) == 3 * "aaabbb"
     assert found == {
         "step_a": 2, "fastest_a": 1, "slowest_a": 5, "step_b": 1, "fastest_b": 1, "slowest_b": 3,
     }  # fmt: skip

@@ -21,8 +21,9 @@ STEPS = tuple(step.__name__ for step in diagnosis.STEPS)
 DOCTOR, TIMES = "doctor", "times"
 """Groups of a bundle's metrics: 1 for each step that passed, and elapsed times."""
 
-PARTS = ("import", "init", "build", "first_step", "more_steps")
-"""Parts of a start: import, `gs.init`, `build`, one step, and `MORE_STEPS` further steps."""
+PARTS = ("import", "init", "scene", "build", "first_step", "more_steps")
+"""Parts of a start: import, `gs.init`, the scene with its entities, `build`, one step, and
+`MORE_STEPS` further steps."""
 
 STARTS = ("first", "second")
 """A process that finds no compiled kernels, and one that finds those of the first."""
@@ -42,6 +43,7 @@ scene = gs.Scene(
 )
 scene.add_entity(gs.morphs.Plane())
 sphere = scene.add_entity(gs.morphs.Sphere(radius={spec.RADIUS}, pos=(0, 0, 0.5)))
+mark()
 scene.build()
 mark()
 scene.step()

@@ -27,6 +27,7 @@ COLUMNS = 42
 PARTS = {
     "import": "import of the package",
     "init": "`gs.init`",
+    "scene": "scene and entities",
     "build": "`scene.build`",
     "first_step": "first step",
     "more_steps": f"{spec.MORE_STEPS} further steps",
@@ -60,7 +61,7 @@ def start_table(run: Experiment) -> str:
         for part, words in PARTS.items()
     }
     rows["together"] = [sum(of) for of in zip(*rows.values(), strict=True)]
-    return tables.number_table("part", {f"{start} start [s]": 2 for start in machine.STARTS}, rows)
+    return tables.number_table("part", {f"{start} start [s]": 3 for start in machine.STARTS}, rows)
 
 
 def start_sentence(run: Experiment) -> str:

@@ -100,7 +100,7 @@ def rows_first(meant: Any, given: Any, point: FloatArray) -> Failure:
     apart = np.linalg.norm(cameras.project(point, K, pose) - cameras.project(point, other, pose))
     shown = bool(shapes[0] == shapes[1][::-1] and apart > 10)
     text = (
-        f"The arrays have shape {shapes[1]} instead of {shapes[0]}, and the horizontal field "
+        f"This `res` gives arrays of shape {shapes[1]} instead of {shapes[0]}, and the horizontal field "
         f"of view is {fields[1]:.1f}° instead of {fields[0]:.1f}°. With the camera matrix of "
         f"the intended picture, the target is expected {apart:.0f} pixels from its place."
     )
@@ -128,7 +128,7 @@ def beyond_far(depth: FloatArray | None, camera: Any) -> Failure:
         return Failure("beyond_far", True, "SKIP: this run has no camera.")
     heights = cameras.back_project(depth, read_intrinsics(camera), read_transform(camera))[..., 2]
     nothing = depth > 0.999 * camera.far
-    kept = nothing & (depth < camera.far)  # the mistake: the depth buffer rounds
+    kept = nothing & (depth < camera.far)  # the mistake: depths are rounded
     shown = bool(nothing.sum() > 1000 and heights[nothing].max() > 1)
     text = (
         f"{nothing.sum()} of {depth.size} pixels show no surface. Their depth is "

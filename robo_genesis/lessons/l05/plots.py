@@ -23,7 +23,7 @@ FAMILIES = ("first", "second", "third", "other", "further")
 
 PANELS = {
     "joint2 [rad]": "joint2",
-    "largest angle\nfrom start [rad]": "from_start",
+    "largest angle from\npresent posture [rad]": "from_start",
     "distance from\nlimits [rad]": "margin",
     "manipulability": "manipulability",
 }

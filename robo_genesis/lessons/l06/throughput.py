@@ -33,9 +33,9 @@ Build = Callable[[int], tuple[Any, ...]]
 class Protocol:
     """What is timed.
 
-    `sizes` are numbers of environments, in the order in which their scenes are built. Each scene
-    makes `warm_up` steps whose time is not used. Then each makes `steps` steps, in turn, and all
-    of that is done `repeats` times. `others` are names of further scenes that are timed with them.
+    `sizes` are numbers of environments, in the order in which their scenes are built. In
+    turn, each scene makes `warm_up` steps whose time is not used and `steps` steps, and all of
+    that is done `repeats` times. `others` are names of further scenes that are timed with them.
     """
 
     sizes: tuple[int, ...]

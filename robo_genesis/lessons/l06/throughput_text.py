@@ -11,10 +11,16 @@ from robo_genesis.lessons.l06.throughput import FITTED, GROUP
 from robo_genesis.sim.throughput import Model, fit
 
 
-def three(value: float) -> str:
-    """Return a number with three significant digits, large ones with commas."""
-    text = f"{float(f'{value:.3g}'):,.0f}" if abs(value) >= 999.5 else f"{value:.3g}"
+def three(value: float, digits: int = 3) -> str:
+    """Return a number with three significant digits or another number of them, with commas."""
+    rounded = float(f"{value:.{digits}g}")
+    text = f"{rounded:,.0f}" if abs(rounded) >= 100 else f"{rounded:g}"
     return text.replace("-", "−")
+
+
+def two(value: float) -> str:
+    """Return a number with two significant digits: what several runs of a page share at most."""
+    return three(value, 2)
 
 
 def ms(seconds: float) -> str:
@@ -53,8 +59,8 @@ def maximum(run: Experiment) -> str:
     """Say which of the measured numbers of environments has the largest throughput."""
     rate = {size: size / step for size, step in steps(run).items()}
     best, last = max(rate, key=rate.__getitem__), max(rate)
-    text = f"The largest throughput is {three(rate[best])} steps per second, with {best}"
-    fall = f"With {last} it is {three(rate[last])}, {three(rate[last] / rate[best])} times as much."
+    text = f"The largest throughput is {two(rate[best])} steps per second, with {best}"
+    fall = f"With {last} it is {two(rate[last])}, {two(rate[last] / rate[best])} times as much."
     return f"{text} environments. {fall if best < last else 'More were not measured.'}"
 
 
@@ -64,17 +70,18 @@ def conclusions(run: Experiment) -> str:
     rate = {size: size / found[f"step_{size}"] for size in sizes(run)}
     few, *_, many = rate
     best = max(rate, key=rate.__getitem__)
-    longer = three(found[f"step_{many}"] / found[f"step_{few}"])
+    longer = two(found[f"step_{many}"] / found[f"step_{few}"])
     spread = max(found[f"slowest_{size}"] / found[f"fastest_{size}"] for size in rate)
     lines = [
         f"A step with {many} environments takes {longer} times as long as a step with {few}.",
-        f"All environments together make {three(rate[few])} steps per second with {few} and "
-        f"{three(rate[many])} with {many} environments. The largest throughput is "
-        f"{three(rate[best])}, with {best} environments.",
-        f"In one second of the machine, an environment advances by {three(DT * rate[few] / few)} s "
-        f"with {few}, and by {three(DT * rate[many] / many)} s with {many} environments.",
-        f"The slowest repeat took up to {three(spread)} times as long as the fastest of the same "
-        "size. If this is far above 1, another program ran: measure again.",
+        f"All environments together make {two(rate[few])} steps per second with {few} and "
+        f"{two(rate[many])} with {many} environments. The largest throughput is "
+        f"{two(rate[best])}, with {best} environments.",
+        f"In one second of the machine, an environment advances by {two(DT * rate[few] / few)} s "
+        f"with {few}, and by {two(DT * rate[many] / many)} s with {many} environments.",
+        f"The slowest repeat took up to {two(spread)} times as long as the fastest of the same "
+        "size. If this is far above 1, another program ran: measure again. Two runs of this page "
+        "can differ more than the repeats of one.",
     ]
     return bullets(lines)
 
@@ -88,9 +95,9 @@ def model_table(run: Experiment) -> str:
     """Return measured time and model of each number of environments."""
     model, rows = fitted(run), {}
     for size, step in steps(run).items():
-        expected, use = float(model.step_time(size)), "fit" if size in FITTED else "test"
-        rows[f"{size}"] = ms(step), ms(expected), step / expected, use
-    heads = {"measured [ms]": 0, "model [ms]": 0, "ratio": 2, "for": 0}
+        expected, name = float(model.step_time(size)), f"{size}{', fitted' * (size in FITTED)}"
+        rows[name] = ms(step), ms(expected), step / expected
+    heads = {"measured [ms]": 0, "model [ms]": 0, "ratio": 2}
     return tables.number_table("B", heads, rows)
 
 
@@ -111,7 +118,7 @@ def content_table(run: Experiment) -> str:
     for size in (1, 256):
         sphere, robot = (run.readings[GROUP][f"step_{of}{size}"] for of in ("sphere_", ""))
         times = {"sphere [ms]": ms(sphere), "robot [ms]": ms(robot)}
-        rows.append({"environments": f"{size}"} | times | {"ratio": three(robot / sphere)})
+        rows.append({"B": f"{size}"} | times | {"ratio": three(robot / sphere)})
     return tables.markdown(rows)
 
 

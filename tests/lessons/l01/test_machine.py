@@ -40,7 +40,7 @@ def test_both_starts_share_one_folder_of_kernels(monkeypatch):
 
     def output(arguments, changed):
         seen.append(changed)
-        return "a line of the engine\n" + json.dumps([1, 2, 3, 4, len(seen)])
+        return "a line of the engine\n" + json.dumps([1, 2, 3, 4, 5, len(seen)])
 
     monkeypatch.setattr(machine, "run_python", output)
     found = machine.measure_starts()
