@@ -22,8 +22,8 @@ CLAIMS: dict[str, str] = {
     ),
     "repeatable": "From the common start, without restarts, equal questions get equal answers.",
     "restarts_repeat": (
-        "Answers repeat after a new `gs.init`. From the start of this question, the solver finds no "
-        "answer without restarts."
+        "Answers repeat after a new `gs.init`. From the start of this question, the solver finds "
+        "no answer without restarts."
     ),
     "unreachable_refused": "Beyond reach, the answer is finite, and refused for its residual.",
     "nearest_is_nearer": "Another posture is nearer than the answer, where 0.5 m counts as 1 rad.",

@@ -100,8 +100,8 @@ def rows_first(meant: Any, given: Any, point: FloatArray) -> Failure:
     apart = np.linalg.norm(cameras.project(point, K, pose) - cameras.project(point, other, pose))
     shown = bool(shapes[0] == shapes[1][::-1] and apart > 10)
     text = (
-        f"This `res` gives arrays of shape {shapes[1]} instead of {shapes[0]}, and the horizontal field "
-        f"of view is {fields[1]:.1f}° instead of {fields[0]:.1f}°. With the camera matrix of "
+        f"This `res` gives arrays of shape {shapes[1]} instead of {shapes[0]}, and the horizontal "
+        f"field of view is {fields[1]:.1f}° instead of {fields[0]:.1f}°. With the camera matrix of "
         f"the intended picture, the target is expected {apart:.0f} pixels from its place."
     )
     return Failure("rows_first", shown, text)
