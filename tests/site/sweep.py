@@ -55,13 +55,14 @@ class Kind:
     large_text: bool = False
 
 
-WIDTHS = (320, 390, 768, 1280, 1920, 3840)
+WIDTHS = (768, 1280, 1920, 3840)
 KINDS = {
     "light": Kind(RULES, "light", (1280, 800), 1280, AXE, WIDTHS, large_text=True),
     "phone": Kind((*IN_EVERY_COLOUR, *IN_EVERY_SHAPE), "dark", (390, 700), 320, AXE, (390, 320)),
     "dark": Kind(IN_EVERY_COLOUR, "dark", (1280, 800), 1280, COLOURS),
 }
-"""The phone reads from disk. Shape does not depend on the scheme, so one desktop looks at it."""
+"""The phone reads from disk. Shape does not depend on the scheme, so one desktop looks at it, at the
+widths that the phone does not have."""
 
 EVERY_STATE = {"index.html", "lessons/l02-life-cycle/lecture.html"}
 """Pages that axe-core looks at with closed folds and with large text, too (it skips what a closed
@@ -96,7 +97,7 @@ READ = """async () => {
     const { top, bottom } = image.getBoundingClientRect();
     return image.complete || !image.checkVisibility() || bottom < 0 || top > innerHeight;
   });
-  for (let top = 0; top < document.body.scrollHeight; top += innerHeight / 2) {
+  for (let top = 0; top < document.body.scrollHeight; top += 0.9 * innerHeight) {
     scrollTo({ top, behavior: "instant" });
     while (!seen() && performance.now() < end) await frame();
     await frame();
