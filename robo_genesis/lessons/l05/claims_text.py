@@ -21,10 +21,7 @@ CLAIMS: dict[str, str] = {
         "pose, except for at most 2 % of it."
     ),
     "repeatable": "From the common start, without restarts, equal questions get equal answers.",
-    "restarts_repeat": (
-        "Answers repeat after a new `gs.init`. From the start of this question, the solver finds "
-        "no answer without restarts."
-    ),
+    "restarts_repeat": "Answers repeat after a new `gs.init`; from this start, they need restarts.",
     "unreachable_refused": "Beyond reach, the answer is finite, and refused for its residual.",
     "nearest_is_nearer": "Another posture is nearer than the answer, where 0.5 m counts as 1 rad.",
     "camera_matrix": "The engine's camera matrix is that of the vertical field of view.",
