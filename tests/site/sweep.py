@@ -61,7 +61,7 @@ KINDS = {
     "phone": Kind((*IN_EVERY_COLOUR, *IN_EVERY_SHAPE), "dark", (390, 700), 320, AXE, (390, 320)),
     "dark": Kind(IN_EVERY_COLOUR, "dark", (1280, 800), 1280, COLOURS),
 }
-"""The phone reads from disk. Shape does not depend on the scheme, so one desktop looks at it, at the
+"""The phone reads from disk. Shape does not depend on the scheme, so one desktop looks at it, at
 widths that the phone does not have."""
 
 EVERY_STATE = {"index.html", "lessons/l02-life-cycle/lecture.html"}
