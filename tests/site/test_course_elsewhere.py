@@ -9,6 +9,7 @@ import re
 import shutil
 import zipfile
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 
 import nbformat
@@ -197,17 +198,18 @@ def words(path):
     if path.suffix in (".zip", ".whl"):
         with zipfile.ZipFile(path) as archive:
             for name in archive.namelist():
-                yield f"{path.name}/{name}", text_of(name, archive.read(name))
+                yield f"{path.name}/{name}", text_of(Path(name).suffix, archive.read(name))
     else:
-        yield path.name, text_of(path.name, path.read_bytes())
+        yield path.name, text_of(path.suffix, path.read_bytes())
 
 
-def text_of(name, content):
+@cache  # the archives repeat the files of the site
+def text_of(suffix, content):
     """Return a text without the marks of its format, so that lines of code are in it as written."""
     text = content.decode("utf8", "ignore")
-    if name.endswith(".html"):
+    if suffix == ".html":
         return BeautifulSoup(text, "html.parser").get_text()
-    if name.endswith(".ipynb"):
+    if suffix == ".ipynb":
         return "\n".join(cell["source"] for cell in nbformat.reads(text, 4).cells)
     return text
 
