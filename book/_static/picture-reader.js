@@ -16,7 +16,10 @@ document.addEventListener("DOMContentLoaded", () => {
   }
 
   const dot = (a, b) => a.reduce((sum, value, k) => sum + value * b[k], 0);
-  const write = (value, digits) => value.toFixed(digits).replace("-", "−");
+  const write = (value, digits) => {
+    const rounded = Number(value.toFixed(digits)) || 0; // without the sign of a negative zero
+    return rounded.toFixed(digits).replace("-", "−");
+  };
 
   async function start(root) {
     const { size, K, pose, unit, names, planes, spheres } = JSON.parse(root.dataset.view);

@@ -33,6 +33,7 @@ def page(tmp_path_factory) -> Iterator[Page]:
     hit = np.isfinite(ball)
     depth = np.where(hit, ball + 1e-3, plane_depth(start, directions))
     depth[:20, :20] = 20.0
+    depth[-20:, :20] += 4e-5  # a height that rounds to zero from below
     numbers = np.where(hit, 2, 1) * (depth < 20)
     numbers[-20:, -20:] = 3
     rgb = np.repeat(80 * numbers[..., None], 3, axis=-1).astype(np.uint8)
@@ -89,6 +90,7 @@ def test_a_pixel_has_its_recorded_depth_point_and_closed_form(page):
     ("at", "says"),
     [
         ((100, 400), ["plane", "2.0000 m", "2.0000 m", "0.00 mm"]),
+        ((5, HEIGHT - 5), ["plane", "2.0000 m", "2.0000 m", "0.04 mm"]),
         ((5, 5), ["nothing", "20.000 m: no surface", "–", "–"]),
         ((WIDTH - 5, HEIGHT - 5), ["hand", "2.0000 m", "none for this shape", "–"]),
     ],
@@ -96,6 +98,7 @@ def test_a_pixel_has_its_recorded_depth_point_and_closed_form(page):
 def test_each_kind_of_pixel_says_what_is_known(page, at, says):
     found = choose(page, *at)
     assert [found[k] for k in (1, 2, 4, 5)] == says
+    assert "−0.0000" not in found[3]
 
 
 @pytest.mark.browser
