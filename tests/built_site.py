@@ -7,7 +7,7 @@ import sys
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
+from functools import cache, partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from threading import Thread
@@ -62,6 +62,11 @@ class QuietHandler(SimpleHTTPRequestHandler):
         pass
 
 
+@cache  # each page loads most files again
+def compressed(data: bytes) -> bytes:
+    return gzip.compress(data, compresslevel=6)
+
+
 class CompressingHandler(QuietHandler):
     """Serves files as a web server does: text compressed."""
 
@@ -69,7 +74,7 @@ class CompressingHandler(QuietHandler):
         path = Path(self.translate_path(self.path))
         if not path.is_file() or path.suffix not in TEXT:
             return super().do_GET()
-        data = gzip.compress(self.read(path), compresslevel=6)
+        data = compressed(self.read(path))
         self.send_response(200)
         self.send_header("Content-Type", self.guess_type(path))
         self.send_header("Content-Encoding", "gzip")

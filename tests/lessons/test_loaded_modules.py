@@ -1,5 +1,6 @@
 """The evidence key of a lab covers what a run really loads, whatever the import statements say."""
 
+import ast
 import json
 import os
 import shutil
@@ -20,12 +21,18 @@ from robo_genesis.lessons.sources import (
     measuring_modules,
 )
 
-pytestmark = pytest.mark.engine
-
-SHORTER = {
-    "l06": ("throughput.py", "Protocol((1, 4, 16, 64, 256, 1024))", "Protocol((1, 4))"),
+IMPORTING = {"__import__", "eval", "exec", "exec_module", "import_module", "run_module", "run_path"}
+MADE_NAMES = {
+    "build/site/sphinx_process.py": "importlib.import_module(extension)",
+    "core/shown.py": "import_module(place)",
+    "lessons/declaration.py": "import_module(f'{package}.{name}')",
+    "lessons/registry.py": "import_module(f'{__package__}.{init.parent.name}')",
 }
-"""By lesson: a module, a protocol in it, and a shorter one, with which the lab loads the same."""
+"""Where the package imports by a name made at run time: extensions of Sphinx, the module of a shown
+function, and the modules of lessons, which the keys have by their folders."""
+
+SHORT = "l02"
+"""The lesson with the shortest lab, which runs each time."""
 
 LABS = {page.lesson: page for page in find_pages(BOOK) if page.page == "lab"}
 
@@ -41,7 +48,11 @@ os._exit(0)
 """
 
 
-@pytest.fixture(params=LESSONS)
+@pytest.fixture(
+    params=[
+        name if name == SHORT else pytest.param(name, marks=pytest.mark.slow) for name in LESSONS
+    ]
+)
 def lab(request):
     return LABS[request.param]
 
@@ -54,12 +65,6 @@ def loaded_modules(lab, tmp_path):
     others = [name for name in LESSONS if name != lab.lesson]
     left_out = shutil.ignore_patterns("__pycache__", *others)
     shutil.copytree(ROOT / PACKAGE, tmp_path / PACKAGE, ignore=left_out)
-    if lab.lesson in SHORTER:
-        name, long, short = SHORTER[lab.lesson]
-        module = tmp_path / PACKAGE / "lessons" / lab.lesson / name
-        text = module.read_text("utf8")
-        assert f" = {long}\n" in text
-        module.write_text(text.replace(long, short), "utf8")
     for name in ("pyproject.toml", "requirements.lock"):
         shutil.copy(ROOT / name, tmp_path)
     settings = kernel_environment(ROOT, CACHE, "a test", ROBO_GENESIS_RENDER="0")
@@ -77,16 +82,59 @@ def loaded_modules(lab, tmp_path):
     return json.loads((tmp_path / "loaded.json").read_text())
 
 
+@pytest.mark.engine
 def test_a_run_loads_only_modules_that_the_keys_know(lab, tmp_path):
     loaded = set(loaded_modules(lab, tmp_path))
     imports = imports_of(cell_sources(lab))
     reached = import_closure([f"{PACKAGE}.lessons.{lab.lesson}", *imports])
     assert loaded <= reached.keys()
-    computing = {
-        name.removeprefix(f"{PACKAGE}.")
-        for name in loaded
-        if name.startswith((f"{PACKAGE}.sim.", f"{PACKAGE}.lessons.{lab.lesson}."))
-        and computes(name, reached[name])
-    }
+    computing = computing_modules(lab.lesson, {name: reached[name] for name in loaded})
     assert {f"lessons.{lab.lesson}.metrics", "sim.session"} <= computing
     assert computing <= measuring_modules(lab.lesson, imports).keys()
+
+
+def computing_modules(lesson, modules):
+    """Return those of some modules that compute and are the engine's side or the lesson's own."""
+    own = (f"{PACKAGE}.sim.", f"{PACKAGE}.lessons.{lesson}.")
+    return {
+        name.removeprefix(f"{PACKAGE}.")
+        for name, path in modules.items()
+        if name.startswith(own) and computes(name, path)
+    }
+
+
+@pytest.mark.parametrize("page", find_pages(BOOK), ids=lambda page: f"{page.lesson}-{page.page}")
+def test_whatever_a_page_may_import_is_known_to_its_key(page):
+    """Except what only judges a finished run: its functions import what some lessons need."""
+    imports = imports_of(cell_sources(page))
+    reached = import_closure(
+        [f"{PACKAGE}.lessons.{page.lesson}", *imports],
+        enter=lambda name, path: "plausibility" not in name,
+    )
+    computing = computing_modules(page.lesson, reached)
+    assert {f"lessons.{page.lesson}.metrics", "sim.session"} <= computing
+    assert computing <= measuring_modules(page.lesson, imports).keys()
+
+
+def test_imports_are_statements_or_have_a_known_name():
+    package = ROOT / PACKAGE
+    found = {
+        path.relative_to(package).as_posix(): calls
+        for path in package.rglob("*.py")
+        if (calls := made_imports(path.read_text("utf8")))
+    }
+    assert found == {file: [call] for file, call in MADE_NAMES.items()}
+    cells = [source for page in find_pages(BOOK) for source in cell_sources(page)]
+    assert [call for source in cells for call in made_imports(source)] == []
+    assert made_imports("importlib.import_module(name)") == ["importlib.import_module(name)"]
+
+
+def made_imports(source):
+    """Return the calls that import other than by the name of a foreign module."""
+    calls = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)]
+    return [
+        ast.unparse(call)
+        for call in calls
+        if ast.unparse(call.func).rpartition(".")[2] in IMPORTING
+        and not (isinstance(name := call.args[0], ast.Constant) and PACKAGE not in name.value)
+    ]

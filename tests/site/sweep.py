@@ -23,7 +23,9 @@ AXE = {
     "preload": False,  # what it fetches again cannot be fetched from disk, and no rule needs it
     "resultTypes": ["violations"],
 }
-COLOURS = AXE | {"runOnly": ["color-contrast", "link-in-text-block"]}
+OF_COLOURS = ("color-contrast", "link-in-text-block")
+COLOURS = AXE | {"runOnly": [*OF_COLOURS]}
+SHAPES = AXE | {"rules": AXE["rules"] | {rule: {"enabled": False} for rule in OF_COLOURS}}
 
 IN_EVERY_COLOUR = ("axe", "foreign hosts", "images", "messages", "motion", "theme")
 IN_EVERY_SHAPE = ("focus", "layout shift", "lines", "scroll boxes", "tab order", "width")
@@ -58,15 +60,17 @@ class Kind:
 WIDTHS = (768, 1280, 1920, 3840)
 KINDS = {
     "light": Kind(RULES, "light", (1280, 800), 1280, AXE, WIDTHS, large_text=True),
-    "phone": Kind((*IN_EVERY_COLOUR, *IN_EVERY_SHAPE), "dark", (390, 700), 320, AXE, (390, 320)),
+    "phone": Kind((*IN_EVERY_COLOUR, *IN_EVERY_SHAPE), "dark", (390, 700), 320, SHAPES, (390, 320)),
     "dark": Kind(IN_EVERY_COLOUR, "dark", (1280, 800), 1280, COLOURS),
 }
 """The phone reads from disk. Shape does not depend on the scheme, so one desktop looks at it, at
-widths that the phone does not have."""
+widths that the phone does not have. Colours do not depend on the width, so the desktops look at
+them."""
 
 EVERY_STATE = {"index.html", "lessons/l02-life-cycle/lecture.html"}
-"""Pages that axe-core looks at with closed folds and with large text, too (it skips what a closed
-fold hides). On the desktop, these alone are gone through by Tab: all pages have the same menus."""
+"""Pages on which axe-core looks for everything with closed folds and with large text, too (it skips
+what a closed fold hides). On the desktop, these alone are gone through by Tab: all pages have the
+same menus."""
 
 WATCH_SHIFTS = """
 window.shifts = [];
@@ -262,14 +266,14 @@ class Visit:
             without.evaluate("style => style.remove()")
             settle(page)
         if self.every_state:
-            self.note("axe", violations(page, **self.kind.axe), "folds closed")
+            self.note("axe", violations(page, **AXE), "folds closed")
         if self.kind.large_text:
             page.evaluate("document.documentElement.style.fontSize = '200%'")
             settle(page)
             wide = page.evaluate("document.documentElement.scrollWidth > innerWidth")
             self.note("width", ["wider than the window"] if wide else [], "large text")
             if self.every_state:
-                self.note("axe", violations(page, **self.kind.axe), "large text")
+                self.note("axe", violations(page, **AXE), "large text")
             page.evaluate("document.documentElement.style.fontSize = '100%'")
 
     def _with_open_folds(self, page: Page) -> None:

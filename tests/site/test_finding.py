@@ -103,7 +103,8 @@ def test_who_is_lost_at_any_depth_can_search_and_go_on(page, host, lost):
     assert results(page)
 
 
-def places(site) -> set[str]:
+@pytest.fixture(scope="module")
+def anchors(site) -> set[str]:
     """Return page#anchor of each heading, figure and term that a reader may link to.
 
     Recorded runs come and go with the machines that made them, so what is in their panels is none.
@@ -121,26 +122,27 @@ def published_anchors() -> set[str]:
     return {anchor for file in ANCHORS for anchor in file.read_text().split()}
 
 
-def test_anchors_that_were_published_stay(site):
+def test_anchors_that_were_published_stay(anchors):
     published = published_anchors()
     assert len(published) > 100
-    gone = sorted(published - places(site))
+    gone = sorted(published - anchors)
     assert gone == [], "Links elsewhere lead there: keep the old name as a target `(name)=` above."
 
 
-def test_new_anchors_are_kept_from_now_on(site):
-    new = sorted(places(site) - published_anchors())
+def test_new_anchors_are_kept_from_now_on(anchors):
+    new = sorted(anchors - published_anchors())
     assert new == [], "Add these lines to anchors.txt in tests/lessons/lNN or tests/site."
 
 
 def test_each_page_leads_to_the_one_before_and_after(site):
+    pages = {name: parsed(site, name) for name in PAGES}
+
+    def neighbour(name: str, link: str) -> str:
+        return os.path.normpath(Path(name).parent / pages[name].select_one(link)["href"])
+
     for before, after in itertools.pairwise(PAGES):
-        assert neighbour(site, before, "a.right-next") == f"{after}.html"
-        assert neighbour(site, after, "a.left-prev") == f"{before}.html"
-
-
-def neighbour(site, name: str, link: str) -> str:
-    return os.path.normpath(Path(name).parent / parsed(site, name).select_one(link)["href"])
+        assert neighbour(before, "a.right-next") == f"{after}.html"
+        assert neighbour(after, "a.left-prev") == f"{before}.html"
 
 
 def test_pages_tell_their_reading_time_and_history(site):
