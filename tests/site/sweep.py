@@ -46,6 +46,7 @@ class Kind:
         axe: What axe-core looks for.
         widths: All widths at which nothing may stick out [px].
         large_text: Whether it is looked at in letters of twice the size, too.
+        colours_at: Width at which axe-core looks at the colours in the end, if `axe` does not [px].
     """
 
     rules: tuple[str, ...]
@@ -55,17 +56,25 @@ class Kind:
     axe: dict[str, Any]
     widths: tuple[int, ...] = ()
     large_text: bool = False
+    colours_at: int | None = None
 
 
 WIDTHS = (768, 1280, 1920, 3840)
 KINDS = {
     "light": Kind(RULES, "light", (1280, 800), 1280, AXE, WIDTHS, large_text=True),
-    "phone": Kind((*IN_EVERY_COLOUR, *IN_EVERY_SHAPE), "dark", (390, 700), 320, SHAPES, (390, 320)),
-    "dark": Kind(IN_EVERY_COLOUR, "dark", (1280, 800), 1280, COLOURS),
+    "phone": Kind(
+        (*IN_EVERY_COLOUR, *IN_EVERY_SHAPE),
+        "dark",
+        (390, 700),
+        narrow=320,
+        axe=SHAPES,
+        widths=(390, 320),
+        colours_at=1280,
+    ),
 }
-"""The phone reads from disk. Shape does not depend on the scheme, so one desktop looks at it, at
-widths that the phone does not have. Colours do not depend on the width, so the desktops look at
-them."""
+"""The phone reads from disk, in the dark. Shape does not depend on the scheme, so the desktop looks
+at it at widths that the phone does not have. Colours do not depend on the shape, so the dark ones
+are looked at where the phone's page has been made as wide as a desktop."""
 
 EVERY_STATE = {"index.html", "lessons/l02-life-cycle/lecture.html"}
 """Pages on which axe-core looks for everything with closed folds and with large text, too (it skips
@@ -288,6 +297,9 @@ class Visit:
             self.note("width", ["wider than the window"] if layout["wide"] else [], f"{width} px")
             self.note("width", layout["out"], f"{width} px")
             self.note("lines", layout["long"], f"{width} px")
+        if self.kind.colours_at:
+            self._resize(page, self.kind.colours_at)
+            self.note("axe", violations(page, **COLOURS), f"{self.kind.colours_at} px")
 
 
 def focus_complaints(page: Page) -> list[str]:

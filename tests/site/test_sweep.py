@@ -1,4 +1,4 @@
-"""Each page of the site is visited on a desktop in both themes and on a phone; then the rules ask.
+"""Each page of the site is visited on a desktop and on a dark phone; then the rules ask.
 
 The spoiled home page in `test_sweep_notices.py` proves that each rule can fail.
 """
