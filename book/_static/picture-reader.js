@@ -17,7 +17,7 @@ document.addEventListener("DOMContentLoaded", () => {
 
   const dot = (a, b) => a.reduce((sum, value, k) => sum + value * b[k], 0);
   const write = (value, digits) => {
-    const rounded = Number(value.toFixed(digits)) || 0; // without the sign of a negative zero
+    const rounded = Number(value.toFixed(digits)) + 0; // without the sign of a negative zero
     return rounded.toFixed(digits).replace("-", "−");
   };
 

@@ -73,7 +73,7 @@ KINDS = {
     ),
 }
 """The phone reads from disk, in the dark. Shape does not depend on the scheme, so the desktop looks
-at it at widths that the phone does not have. Colours do not depend on the shape, so the dark ones
+at it at widths that the phone does not have. Colours hardly depend on the shape, so the dark ones
 are looked at where the phone's page has been made as wide as a desktop."""
 
 EVERY_STATE = {"index.html", "lessons/l02-life-cycle/lecture.html"}
@@ -271,6 +271,7 @@ class Visit:
         self.note("tab order", page.evaluate(TAB_ORDER))
         if "focus" in self.wrong and (self.every_state or self.kind.narrow < 768):
             without = page.add_style_tag(content=f"{MIDDLE_ROWS} {{ display: none !important }}")
+            settle(page)
             self.note("focus", focus_complaints(page))
             without.evaluate("style => style.remove()")
             settle(page)
