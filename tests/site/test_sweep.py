@@ -25,7 +25,7 @@ def of(kind: Kind, name: str) -> Kind:
 
 @pytest.fixture(scope="module")
 def visits(browser, site, unpacked):
-    """Visit all pages in a way of `KINDS`: the phone reads the archive, the desktop what is served."""
+    """Visit all pages in a way of `KINDS`: out of the archive on the phone, else from a server."""
     names = [*page_names(site), FOUND]
     assert {*names} > EVERY_STATE
     with served(site, CompressingHandler) as address:
