@@ -24,12 +24,12 @@ from itertools import pairwise
 import nbformat
 import yaml
 
-from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.command import run
-from robo_genesis.build.page_store import folders
-from robo_genesis.build.worktree import environment, worktree
 from robo_genesis.core import project, tables
-from robo_genesis.lessons.book_pages import Page, find_pages
+from robo_genesis.pipeline.command import run
+from robo_genesis.pipeline.pages.book import Page, find_pages
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.store import folders
+from robo_genesis.pipeline.worktree import environment, worktree
 
 Sides = tuple[Callable[[], float], Callable[[], float]]
 """Run the course's command, or its bare counterpart, and return the elapsed time [s]."""

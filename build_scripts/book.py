@@ -13,7 +13,8 @@ Exit status: 0 published, 1 failed, 130 interrupted; unless it is 0, the old sit
 import os
 import sys
 
-from robo_genesis.build.command import (
+from robo_genesis.core.project import BOOK, PUBLISHED, RENDER, ROOT, SOLUTIONS
+from robo_genesis.pipeline.command import (
     absolute,
     choice,
     collect_rarely,
@@ -23,9 +24,8 @@ from robo_genesis.build.command import (
     run_status,
     set_contract,
 )
-from robo_genesis.build.site.sphinx_process import LOG, SphinxProcess
-from robo_genesis.build.up_to_date import nothing_changed
-from robo_genesis.core.project import BOOK, PUBLISHED, RENDER, ROOT, SOLUTIONS
+from robo_genesis.pipeline.html.sphinx_process import LOG, SphinxProcess
+from robo_genesis.pipeline.up_to_date import nothing_changed
 
 
 def main() -> int:
@@ -48,7 +48,7 @@ def main() -> int:
     if jobs is not None and not (jobs.isdecimal() and int(jobs) > 0):
         sys.exit(f"JOBS={jobs!r} is not valid. Give the number of pages that run at once, from 1.")
     if release and args.to is None:
-        from robo_genesis.build.fresh_checkout import release as build_fresh
+        from robo_genesis.pipeline.fresh_checkout import release as build_fresh
 
         options = ["--to", str(args.book), "--timeout", str(args.timeout)]
         return run_status(lambda: build_fresh(options, args.cache, executed=executed), "published")
@@ -59,7 +59,7 @@ def main() -> int:
             return 0
         collect_rarely()
         # Jupyter's packages are loaded only now, beside those of Sphinx.
-        from robo_genesis.build.stages import Build, run_build
+        from robo_genesis.pipeline.stages import Build, run_build
 
         settings = {"jobs": int(jobs) if jobs else None, "release": release, "executed": executed}
         build = Build(**vars(args), **settings, sphinx=sphinx)

@@ -9,10 +9,10 @@ Exit status: 0 recorded, 1 failed, 130 interrupted; a lab that is not recorded k
 import os
 import sys
 
-from robo_genesis.build.command import choice, parser, path, run, run_status
-from robo_genesis.build.record_all import record_all
-from robo_genesis.build.recording import Recording, record
 from robo_genesis.core.project import RENDER
+from robo_genesis.pipeline.command import choice, parser, path, run, run_status
+from robo_genesis.pipeline.recording.all_labs import record_all
+from robo_genesis.pipeline.recording.one_lab import Recording, record
 
 if __name__ == "__main__":
     args = parser(__doc__).parse_args()

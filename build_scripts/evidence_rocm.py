@@ -13,7 +13,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from robo_genesis.build.rocm_container import ContainerError, Host, record
+from robo_genesis.pipeline.recording.rocm_container import ContainerError, Host, record
 
 if __name__ == "__main__":
     argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()

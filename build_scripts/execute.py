@@ -10,9 +10,9 @@ import json
 import os
 import sys
 
-from robo_genesis.build.command import parser, path, run, set_contract
-from robo_genesis.build.stages import Build, export_one
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.pipeline.command import parser, path, run, set_contract
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.stages import Build, export_one
 
 
 def main() -> int:

@@ -6,9 +6,9 @@ Exit status: 0 added, 1 refused or failed, 130 interrupted. Unless it is 0, noth
 import os
 import sys
 
-from robo_genesis.build.command import run
 from robo_genesis.core.project import ROOT
 from robo_genesis.maintain.new_lesson import add_lesson
+from robo_genesis.pipeline.command import run
 
 if __name__ == "__main__":
     sys.exit(run(lambda: add_lesson(ROOT, os.environ.get("NEW", "")), "added"))

@@ -10,10 +10,10 @@ import asyncio
 import signal
 import sys
 
-from robo_genesis.build.command import choice, parser, port, set_contract
-from robo_genesis.build.site.live import Live
-from robo_genesis.build.site.live_server import serve
 from robo_genesis.core.project import ProjectError
+from robo_genesis.pipeline.command import choice, parser, port, set_contract
+from robo_genesis.pipeline.html.live import Live
+from robo_genesis.pipeline.html.live_server import serve
 
 
 async def until_signal(live: Live, wanted: int) -> None:

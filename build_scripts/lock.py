@@ -7,8 +7,8 @@ Exit status: 0 written, 1 failed, 130 interrupted; unless it is 0, the old lock 
 import argparse
 import sys
 
-from robo_genesis.build.command import run
 from robo_genesis.maintain.lock import write_lock
+from robo_genesis.pipeline.command import run
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])

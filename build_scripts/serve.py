@@ -5,9 +5,9 @@ from contextlib import suppress
 from functools import partial
 from http.server import ThreadingHTTPServer
 
-from robo_genesis.build.command import port
-from robo_genesis.build.site.serve import SiteHandler
 from robo_genesis.core.project import BOOK, PUBLISHED
+from robo_genesis.pipeline.command import port
+from robo_genesis.pipeline.html.serve import SiteHandler
 
 
 def main() -> int | str:

@@ -6,7 +6,7 @@ Exit status: 0 all pages keep their limits; 1 otherwise.
 import sys
 
 from robo_genesis.core.project import BOOK, ProjectError
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.page_sizes import report
 
 

@@ -10,14 +10,13 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from robo_genesis.build.command import path
 from robo_genesis.core.project import BOOK, PUBLISHED, ProjectError
 from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.evidence import bundle_files, report
 from robo_genesis.evidence.advice import advice
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.evidence.compare import compare
-from robo_genesis.evidence.status import (
+from robo_genesis.pipeline.bundles.status import (
     Status,
     bundle_status,
     changes,
@@ -25,6 +24,7 @@ from robo_genesis.evidence.status import (
     recorded_folders,
     recorded_status,
 )
+from robo_genesis.pipeline.command import path
 
 
 def all_bundles() -> Iterator[tuple[str, Status]]:

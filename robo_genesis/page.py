@@ -17,12 +17,13 @@ from IPython.display import Markdown, display
 
 from robo_genesis.core import checks, plotting, shown, tables
 from robo_genesis.core.checks import Check
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.mistakes import Failure
 from robo_genesis.evidence.recorder import Recorder
-from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.registry import find_page
-from robo_genesis.sim import camera as cameras
+from robo_genesis.lessons import find_page
+from robo_genesis.pipeline.pages import sources
 from robo_genesis.sim import session, visual_shape
+from robo_genesis.sim.camera import frames as cameras
 
 _opened: list[str] = []
 
@@ -82,7 +83,7 @@ class LessonPage:
         self, lesson: str, name: str, contract: session.Contract, engine: session.Engine
     ) -> None:
         self._declared = find_page(lesson, name)
-        self._recorder = Recorder(lesson, name, contract, engine)
+        self._recorder = Recorder(lesson, name, contract, engine, sources.running_modules(lesson))
         self._lesson, self.log, self.backend = lesson, engine.log, engine.backend
         self.render = contract.render
         self.folder: Path = contract.outputs / lesson / name

@@ -17,12 +17,12 @@ import pytest
 from browsers import launched
 from bs4 import BeautifulSoup
 
-from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.page_store import places, stored_result
-from robo_genesis.build.site.archive import ARCHIVE, FOLDER
 from robo_genesis.core.project import BOOK, CACHE, ROOT, STORE
-from robo_genesis.lessons.book_pages import docnames, find_pages
-from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.lessons import LESSONS
+from robo_genesis.pipeline.html.archive import ARCHIVE, FOLDER
+from robo_genesis.pipeline.pages.book import docnames, find_pages
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.store import places, stored_result
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

@@ -9,14 +9,16 @@ import pytest
 from spoilers import TORCH
 
 from robo_genesis.core import project
-from robo_genesis.evidence import evidence_key
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.evidence import recorder as record
-from robo_genesis.evidence.evidence_key import page_code
 from robo_genesis.evidence.recorder import Recorder
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.lessons import find_page
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.lessons.registry import find_page
-from robo_genesis.sim import camera, session
+from robo_genesis.pipeline.bundles import keys as evidence_key
+from robo_genesis.pipeline.bundles.keys import page_code
+from robo_genesis.pipeline.pages.sources import running_modules
+from robo_genesis.sim import session
+from robo_genesis.sim.camera import frames as camera
 from robo_genesis.sim.engine_log import EngineLog
 
 QUADRANTS = evidence_key.locked_version("quadrants", project.ROOT)
@@ -87,7 +89,9 @@ def recorder_of(patch, engine, outputs: Path, lesson: str, page: str) -> Recorde
     patch.setenv("ROBO_GENESIS_RUN_ID", RUN_ID)
     name_code(patch, lesson, page)
     rendered = find_page(lesson, page).camera
-    return Recorder(lesson, page, session.Contract("cpu", rendered, outputs), engine)
+    return Recorder(
+        lesson, page, session.Contract("cpu", rendered, outputs), engine, running_modules(lesson)
+    )
 
 
 def name_code(patch, lesson: str, page: str) -> None:

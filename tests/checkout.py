@@ -7,9 +7,9 @@ from pathlib import Path
 
 from tiny_book import SETTINGS
 
-from robo_genesis.build.worktree import environment
 from robo_genesis.core.git import git
 from robo_genesis.core.project import ROOT
+from robo_genesis.pipeline.worktree import environment
 
 
 def copy_checkout(work: Path) -> Path:

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from robo_genesis.sim import camera_geometry as cameras
-from robo_genesis.sim.camera_checks import Marker
-from robo_genesis.sim.camera_views import View
+from robo_genesis.sim.camera import geometry as cameras
+from robo_genesis.sim.camera.checks import Marker
+from robo_genesis.sim.camera.views import View
 
 PLANE, FAR = 1, 20.0
 """Number of the ground in the segmentation, and where the view ends [m]."""

@@ -15,17 +15,17 @@ from hypothesis import settings
 from robot_runs import driven
 from xdist.scheduler import LoadScopeScheduling
 
-from robo_genesis.build import stages
 from robo_genesis.core import project
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import CAMERA, DT, FRAME_SHAPE, SUBSTEPS
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import LAB
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.sim import joints as robot_model
+from robo_genesis.pipeline import stages
 from robo_genesis.sim import session
-from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES, per_joint
-from robo_genesis.sim.joints import JointMap
+from robo_genesis.sim.arm import joints as robot_model
+from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES, per_joint
+from robo_genesis.sim.arm.joints import JointMap
 
 pytest_plugins = ("bundles", "built_site")
 

@@ -24,8 +24,8 @@ import pytest
 from bs4 import BeautifulSoup, Tag
 
 ROOT = Path(__file__).resolve().parents[1]
-VERIFY = ("robo_genesis.evidence.verify", "verify_bundle")  # module and function
-SPOILED = ("evidence/test_verify.py", "lessons/*/test_*bundles.py")  # patterns below tests
+VERIFY = ("robo_genesis.pipeline.bundles.verify", "verify_bundle")  # module and function
+SPOILED = ("pipeline/bundles/test_verify.py", "lessons/*/test_*bundles.py")  # patterns below tests
 SHOWN = 20  # lines of a kind, or of a page, that are printed without --full
 BLOCKS = "p, li, tr, caption, dt, dd, div, figure, figcaption, table, pre, summary, h1, h2, h3, h4"
 MASKS = {

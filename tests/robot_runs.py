@@ -8,11 +8,11 @@ import mujoco
 import numpy as np
 
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim import mujoco_joints
-from robo_genesis.sim.franka import JOINT_NAMES
-from robo_genesis.sim.joint_control import ControlCase, assemble
-from robo_genesis.sim.mujoco_kinematics import link_poses
-from robo_genesis.sim.plausibility.joints import control_law
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import ControlCase, assemble
+from robo_genesis.sim.arm.laws import control_law
+from robo_genesis.sim.mujoco import joints as mujoco_joints
+from robo_genesis.sim.mujoco.kinematics import link_poses
 
 
 @cache

@@ -14,7 +14,8 @@ from robo_genesis import doctor
 from robo_genesis.core import project
 from robo_genesis.core import scene as course
 from robo_genesis.doctor import main, table
-from robo_genesis.sim import diagnosis, franka, joint_control, session
+from robo_genesis.sim import diagnosis, session
+from robo_genesis.sim.arm import franka, joint_control
 from robo_genesis.sim.diagnosis import BASELINE, STEPS, Finding, shareable
 from robo_genesis.sim.engine_log import EngineLog
 

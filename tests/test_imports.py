@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import robo_genesis
-from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.lessons import LESSONS
 
 PACKAGE = Path(robo_genesis.__file__).parent
 MODULES = sorted(PACKAGE.rglob("*.py"))
@@ -95,7 +95,9 @@ def test_every_module_imports_without_the_engine():
 
 
 def test_a_verification_imports_no_plotting():
-    found = "import sys, robo_genesis.evidence.verify as _; print('matplotlib' in sys.modules)"
+    found = (
+        "import sys, robo_genesis.pipeline.bundles.verify as _; print('matplotlib' in sys.modules)"
+    )
     names = ", ".join(LESSONS)
     plots = f"from robo_genesis.lessons import {names}; print([x.plots for x in ({names})])"
     done = subprocess.run(

@@ -133,7 +133,8 @@ def test_anything_else_is_refused(page, displayed, function, arguments, message)
 
 
 @pytest.mark.parametrize(
-    "name", ["os.system", "robo_genesis.build.shown.marked", "robo_genesis.lessons.l02.Lesson",
+    "name", ["os.system", "robo_genesis.pipeline.pages.bound.marked",
+             "robo_genesis.lessons.l02.Lesson",
              "robo_genesis.lessons.l02.text.tables", "robo_genesis.lessons.l02..text", "print",
              "robo_genesis.lessons.l02.plots.look", "robo_genesis.core.nothing.here"],
 )  # fmt: skip

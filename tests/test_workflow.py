@@ -10,9 +10,9 @@ from typing import Any
 
 import yaml
 
-from robo_genesis.build.site.sums import SUMS
 from robo_genesis.core.project import BOOK, ROOT, engine_cache_folder
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.pipeline.html.sums import SUMS
+from robo_genesis.pipeline.pages.book import find_pages
 
 FOLDER = ROOT / ".github"
 SETUP = FOLDER / "actions" / "setup" / "action.yml"

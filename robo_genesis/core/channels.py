@@ -8,6 +8,8 @@ import numpy as np
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, Trace
 
+MEASURES = False
+
 Run = Trace | BodyTrace
 
 

@@ -7,6 +7,8 @@ from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.orderings import HELD_BY, order
 from robo_genesis.core.quantities import format_value
 
+MEASURES = False
+
 
 @dataclass(frozen=True, slots=True)
 class Comparison:

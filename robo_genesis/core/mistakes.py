@@ -7,6 +7,8 @@ from typing import Any
 from robo_genesis.core.checks import Check
 from robo_genesis.core.scene import FloatArray
 
+MEASURES = False
+
 Curves = Mapping[str, tuple[FloatArray, FloatArray]]
 
 

@@ -7,6 +7,8 @@ Dashes distinguish the lines without colour; no two marks share a pattern.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+MEASURES = False
+
 GROUNDS = {"light": ("#ffffff", "#f3f4f5"), "dark": ("#14181e", "#222832", "#29313d")}
 """Backgrounds in each theme: page, panels and tables."""
 

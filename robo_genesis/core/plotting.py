@@ -20,6 +20,8 @@ from robo_genesis.core.palette import MARKS, PARTS, marks_of
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, Trace
 
+MEASURES = False
+
 WIDTH = 4.25
 """Of each figure [inch]: about the width of a phone's page."""
 

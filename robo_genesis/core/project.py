@@ -11,6 +11,8 @@ from pathlib import Path
 
 from packaging.requirements import Requirement
 
+MEASURES = False
+
 ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"
 PUBLISHED = "_build"

@@ -9,6 +9,8 @@ from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import decimal
 
+MEASURES = False
+
 
 def markdown(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return rows of equal keys as a Markdown table: numbers right-aligned, floats shortened.

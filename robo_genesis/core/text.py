@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+MEASURES = False
+
 
 @dataclass(frozen=True, slots=True)
 class Block:

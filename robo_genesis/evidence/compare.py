@@ -19,7 +19,7 @@ from robo_genesis.evidence.findings import (
 )
 from robo_genesis.evidence.strict_json import differences
 from robo_genesis.evidence.trace_files import read_any_trace
-from robo_genesis.lessons.registry import find_lesson, find_page
+from robo_genesis.lessons import find_lesson, find_page
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,9 @@ from robo_genesis.core import project
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.evidence.bundle import Manifest, Predicate, evidence_key
 from robo_genesis.evidence.fields import LINE_LIMIT
-from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.lessons import LESSONS
 from robo_genesis.sim.backends import contradictions
-from robo_genesis.sim.camera import Renderer
+from robo_genesis.sim.camera.frames import Renderer
 
 MANIFEST = "manifest.json"
 RELABEL = "Name the folder after the backend that computed."

@@ -10,7 +10,7 @@ import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from robo_genesis.sim.camera import require_frame
+from robo_genesis.sim.camera.frames import require_frame
 
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 KEY = "run_id"

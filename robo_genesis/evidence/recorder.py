@@ -8,6 +8,7 @@ import os
 import platform
 import shutil
 import uuid
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from datetime import UTC, datetime
@@ -17,14 +18,13 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core import project
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.picture_file import write_picture
 from robo_genesis.evidence.trace_files import fields_of, write_traces
-from robo_genesis.lessons import sources
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.sim import session
-from robo_genesis.sim.camera import Renderer
+from robo_genesis.sim.camera.frames import Renderer
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"
@@ -46,19 +46,21 @@ class Recorder:
         lesson, page: of the bundle; with the actual backend they name its folder.
         contract: names the folder of all outputs.
         engine: as started.
+        modules: the digest of each module that measures.
     """
 
     def __init__(
-        self, lesson: str, page: str, contract: session.Contract, engine: session.Engine
+        self,
+        lesson: str,
+        page: str,
+        contract: session.Contract,
+        engine: session.Engine,
+        modules: Mapping[str, str],
     ) -> None:
         self.lesson, self.page, self.contract, self.engine = lesson, page, contract, engine
         self.started = _now()
         self.run_id = os.environ.get(project.RUN_ID) or uuid.uuid4().hex
-        imports = os.environ.get(project.PAGE_IMPORTS, "").split()
-        self._source = {  # as it is now: a later edit has no effect on what runs here
-            "page": os.environ.get(project.PAGE_SHA256),
-            "modules": sources.measuring_modules(lesson, imports, PACKAGE.parent),
-        }
+        self._source = {"page": os.environ.get(project.PAGE_SHA256), "modules": dict(modules)}
         reader = ThreadPoolExecutor(1)  # the engine has many files; the page continues meanwhile
         self._match = reader.submit(files_match_wheel, ENGINE, COMPILER)
         reader.shutdown(wait=False)

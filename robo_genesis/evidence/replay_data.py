@@ -3,11 +3,12 @@
 from pathlib import Path
 
 from robo_genesis.core.channels import Runs, farthest_link
+from robo_genesis.core.declaration import Compared, Moving
 from robo_genesis.core.quantities import format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import any_bodies, read_joints, read_trace
-from robo_genesis.lessons.declaration import Compared, Moving
-from robo_genesis.sim import body_channels, joint_channels
+from robo_genesis.sim.arm import channels as joint_channels
+from robo_genesis.sim.bodies import channels as body_channels
 
 
 def read_runs(folder: Path, drawn: Compared | Moving) -> Runs:

@@ -15,7 +15,7 @@ from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.core.trace import BodyTrace, ContactTrace, TimeSeries, Trace, TraceError
 from robo_genesis.evidence.bundle import Arrays, CaseArrays, JointRecord, Variable
 from robo_genesis.evidence.npz_archive import read_archive, write_archive
-from robo_genesis.sim.joints import EFFORT_UNIT, POSITION_UNIT, JointMap
+from robo_genesis.sim.arm.joints import EFFORT_UNIT, POSITION_UNIT, JointMap
 
 Field = tuple[str, list[str], str | None, str]
 

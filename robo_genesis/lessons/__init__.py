@@ -1,1 +1,109 @@
-"""The lessons: one folder each, found by `registry`."""
+"""The lessons of the course: each folder of this sub-package with an `__init__.py`."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+
+from robo_genesis.core.declaration import Compared, Filmed, Lesson, Moving
+from robo_genesis.core.experiment import MeasuringPage
+
+
+class _Lessons(Mapping[str, Lesson]):
+    """The lessons by name, in the order of the course; each is imported when it is asked for."""
+
+    def __init__(self, names: Iterable[str]) -> None:
+        self.found: dict[str, Lesson | None] = dict.fromkeys(names)
+
+    def __getitem__(self, name: str) -> Lesson:
+        lesson = self.found[name]
+        if lesson is None:
+            lesson = getattr(import_module(f"{__name__}.{name}"), "LESSON", None)
+            if not isinstance(lesson, Lesson):
+                raise TypeError(
+                    f"lessons/{name}/__init__.py declares LESSON as {lesson!r}. Each folder of a "
+                    "lesson declares one: LESSON = Lesson(spec=..., metrics=..., pages=..., "
+                    "filmed=...)."
+                )
+            self.found[name] = lesson
+        return lesson
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.found)
+
+    def __len__(self) -> int:
+        return len(self.found)
+
+
+LESSONS = _Lessons(sorted(init.parent.name for init in Path(__file__).parent.glob("*/__init__.py")))
+
+
+@cache
+def course_marks() -> dict[str, str]:
+    """Return the palette's mark of each case that has one of its own, from all lessons.
+
+    Raises:
+        ValueError: two lessons give one case different marks.
+    """
+    found = {"baseline": "baseline"}
+    for name, lesson in LESSONS.items():
+        for case, mark in lesson.marks.items():
+            if found.setdefault(case, mark) != mark:
+                raise ValueError(
+                    f"{name} gives the case {case} the mark {mark!r}, an earlier lesson gives it "
+                    f"{found[case]!r}. Use one mark for a name, or rename the case."
+                )
+    return found
+
+
+def find_lesson(name: str) -> Lesson:
+    """Return a lesson by its name.
+
+    Raises:
+        LookupError: it does not exist; the message lists the lessons.
+    """
+    if name not in LESSONS:
+        raise LookupError(f"Lesson {name!r} does not exist. Choices: {', '.join(LESSONS)}.")
+    return LESSONS[name]
+
+
+def compared_cases(lesson: str) -> Compared | Moving | None:
+    """Return the cases in the pictures of a lesson, None if it declares none."""
+    return LESSONS[lesson].compared if lesson in LESSONS else None
+
+
+def drawn_cases(lesson: str, name: str = "") -> Compared | Moving:
+    """Return the cases of a replay: the compared cases, or further cases by their name.
+
+    Raises:
+        LookupError: the lesson declares no such cases; the message lists the declared names.
+    """
+    compared = compared_cases(lesson)
+    if compared is None:
+        raise LookupError(
+            f"The lesson {lesson} declares no compared cases, so it has no replay. Add `compared` "
+            f"to the LESSON in robo_genesis/lessons/{lesson}/__init__.py."
+        )
+    further = LESSONS[lesson].further
+    if name and name not in further:
+        known = ", ".join(further) or "none"
+        raise LookupError(f"{lesson} has no further cases called {name!r}. Choices: {known}.")
+    return further[name] if name else compared
+
+
+def filmed(lesson: str) -> Filmed:
+    """Return the subject of the camera frames, `the scene` for an unknown lesson."""
+    return LESSONS[lesson].filmed if lesson in LESSONS else Filmed("the scene")
+
+
+def find_page(lesson: str, page: str) -> MeasuringPage:
+    """Return a page that measures.
+
+    Raises:
+        LookupError: it does not exist; the message lists the measuring pages of the lesson.
+    """
+    pages = find_lesson(lesson).pages
+    if page not in pages:
+        known = ", ".join(f"{lesson}/{name}" for name in pages)
+        raise LookupError(f"{lesson}/{page} does not measure anything. Choices: {known}.")
+    return pages[page]

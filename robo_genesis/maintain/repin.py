@@ -10,9 +10,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from robo_genesis.build.command import Progress, end_with_parent, say
-from robo_genesis.build.kernels import kill_with_descendants
-from robo_genesis.build.worktree import environment, worktree
 from robo_genesis.core import project
 from robo_genesis.core.files import locked
 from robo_genesis.core.git import git, unclean
@@ -29,6 +26,9 @@ from robo_genesis.maintain.pin import (
     require_plain_files,
     set_pin,
 )
+from robo_genesis.pipeline.command import Progress, end_with_parent, say
+from robo_genesis.pipeline.pages.kernels import kill_with_descendants
+from robo_genesis.pipeline.worktree import environment, worktree
 
 HEARTBEAT = 60.0
 """Seconds between two lines of progress of one command."""

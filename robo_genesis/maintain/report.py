@@ -10,13 +10,13 @@ from pathlib import Path
 
 from bs4 import BeautifulSoup
 
-from robo_genesis.build.site.publish import PAGES
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.findings import SEVERITY, worst
 from robo_genesis.evidence.report import Row
-from robo_genesis.evidence.status import Status, recorded_folders, recorded_status
 from robo_genesis.maintain.pin import locked_versions
+from robo_genesis.pipeline.bundles.status import Status, recorded_folders, recorded_status
+from robo_genesis.pipeline.html.publish import PAGES
 
 Pair = tuple[str, str]
 

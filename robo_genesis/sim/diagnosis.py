@@ -15,8 +15,10 @@ from robo_genesis.core import project, scene
 from robo_genesis.core.project import RENDER
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.trace import TraceError
-from robo_genesis.sim import camera, franka, joint_control, session
-from robo_genesis.sim import joints as robot_model
+from robo_genesis.sim import session
+from robo_genesis.sim.arm import franka, joint_control
+from robo_genesis.sim.arm import joints as robot_model
+from robo_genesis.sim.camera import frames as camera
 
 STEPPED_JOINT, ANGLE = "joint4", 0.25
 """The joint that the run commands, and by how much [rad]."""

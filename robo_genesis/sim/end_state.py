@@ -6,7 +6,7 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding, above, equal
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.camera import FrameError, require_frame
+from robo_genesis.sim.camera.frames import FrameError, require_frame
 
 
 def findings(

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.sim.joints import to_numpy
+from robo_genesis.sim.arm.joints import to_numpy
 
 MIB = 2**20
 """Bytes of one MiB."""

@@ -11,7 +11,7 @@ from sphinx.application import Sphinx
 from sphinx.config import Config
 from sphinx.errors import ConfigError
 
-from robo_genesis.build.site.address import AddressError, site_address, site_root
+from robo_genesis.pipeline.html.address import AddressError, site_address, site_root
 
 NOT_FOUND = """\
 <h1>There is no such page</h1>

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from robo_genesis.core.channels import Runs
-from robo_genesis.lessons.registry import COURSE_MARKS, LESSONS, find_lesson
+from robo_genesis.lessons import LESSONS, course_marks, find_lesson
 
 
 def labels_of(lesson: str) -> Mapping[str, str]:
@@ -19,11 +19,11 @@ def label(lesson: str, case: str) -> str:
     return labels_of(lesson).get(case, case)
 
 
-MARKS = COURSE_MARKS | {
-    words: COURSE_MARKS[case]
+MARKS = course_marks() | {
+    words: course_marks()[case]
     for lesson in LESSONS
     for case, words in labels_of(lesson).items()
-    if case in COURSE_MARKS
+    if case in course_marks()
 }
 """The palette's mark of each case that has one of its own, also by its words."""
 

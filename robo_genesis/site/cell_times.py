@@ -10,9 +10,9 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.built_pages import LAST_OUTPUTS, page_record
 from robo_genesis.core import tables
-from robo_genesis.lessons.book_pages import Page, find_pages
+from robo_genesis.pipeline.pages.book import Page, find_pages
+from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, page_record
 
 
 class CellTimes(SphinxDirective):

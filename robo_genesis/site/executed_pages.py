@@ -11,9 +11,9 @@ from nbformat import NotebookNode
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
 
-from robo_genesis.build.built_pages import executed_notebook
-from robo_genesis.build.page_folder import code_and_kernel
 from robo_genesis.core.project import EXECUTED_PAGES
+from robo_genesis.pipeline.pages.built import executed_notebook
+from robo_genesis.pipeline.pages.folder import code_and_kernel
 from robo_genesis.site import mathml
 
 ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)

@@ -11,13 +11,13 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.built_pages import page_outputs
-from robo_genesis.build.shown import accepted_experiment
 from robo_genesis.core import project
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
 from robo_genesis.core.shown import ShownError, find
 from robo_genesis.evidence import bundle
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.pipeline.pages.bound import accepted_experiment
+from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.site.evidence.measured import BACKEND
 
 

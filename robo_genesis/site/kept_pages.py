@@ -32,8 +32,8 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util.nodes import clean_astext
 
-from robo_genesis.build.site.kept import UNFIT
-from robo_genesis.build.up_to_date import history
+from robo_genesis.pipeline.html.kept import UNFIT
+from robo_genesis.pipeline.up_to_date import history
 from robo_genesis.site.glossary import glossary_terms
 
 HEADS = (nodes.caption, nodes.title, nodes.literal_block)

@@ -14,8 +14,8 @@ from typing import Any
 from docutils import nodes
 from sphinx.application import Sphinx
 
-from robo_genesis.build import npm
 from robo_genesis.core.files import derived
+from robo_genesis.pipeline import npm
 
 PACKAGE = "@fontsource/stix-two-math"
 FILE = f"{PACKAGE}/files/stix-two-math-latin-400-normal.woff"

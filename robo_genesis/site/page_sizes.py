@@ -11,7 +11,7 @@ from nbformat import NotebookNode
 from sphinx.config import Config
 from sphinx.directives.code import LiteralIncludeReader
 
-from robo_genesis.lessons.book_pages import Page
+from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.site.excerpts import without_docstrings
 from robo_genesis.site.page_facts import (
     HIDDEN,

@@ -14,7 +14,7 @@ from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
 from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, Mark, css_name
-from robo_genesis.lessons.registry import COURSE_MARKS
+from robo_genesis.lessons import course_marks
 from robo_genesis.site import case_labels
 
 THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
@@ -23,7 +23,7 @@ STROKE = 2
 """Width of the SVG lines that the dashes are meant for, in their own units."""
 LINE, LENGTH = 0.12, 1.9
 """Width of the line beside a case's name, and about its length, in letter heights."""
-NAMES = sorted({*COURSE_MARKS} - {"baseline"})
+NAMES = sorted({*course_marks()} - {"baseline"})
 NAME = re.compile(rf"\b({'|'.join(map(re.escape, NAMES)) or '(?!)'})\b")
 """A case's name in prose; without named cases it matches nothing."""
 OTHER_TEXT = (nodes.literal, nodes.literal_block, nodes.math, nodes.raw, nodes.reference)
@@ -111,7 +111,7 @@ def _named(text: nodes.Text) -> list[nodes.Node]:
     for number, part in enumerate(NAME.split(text)):
         if number % 2:
             parts.append(
-                nodes.inline(part, part, classes=["case-name", css_name(COURSE_MARKS[part])])
+                nodes.inline(part, part, classes=["case-name", css_name(course_marks()[part])])
             )
         elif part:
             parts.append(nodes.Text(part))

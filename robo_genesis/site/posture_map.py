@@ -17,12 +17,12 @@ from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import tables
 from robo_genesis.core.channels import View
+from robo_genesis.core.declaration import Compared
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.declaration import Compared
-from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.registry import drawn_cases
+from robo_genesis.lessons import drawn_cases
 from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND

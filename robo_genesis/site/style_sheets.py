@@ -14,10 +14,10 @@ from urllib.parse import urlsplit
 
 from bs4 import BeautifulSoup
 
-from robo_genesis.build import npm
-from robo_genesis.build.command import end_with_parent
 from robo_genesis.core.files import derived
 from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.pipeline import npm
+from robo_genesis.pipeline.command import end_with_parent
 
 SHEETS = (
     "_static/basic.css",

@@ -19,13 +19,13 @@ import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.evidence import bundle, bundle_files, npz_archive, trace_files
 from robo_genesis.evidence.fields import LINE_LIMIT
 from robo_genesis.evidence.npz_archive import UNPACKED_LIMIT
 from robo_genesis.evidence.picture_file import read_picture, write_picture
 from robo_genesis.evidence.reader import from_bundle
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import LAB
 from robo_genesis.lessons.l04 import spec as l04
 

@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 from built_site import MEASURING_PAGES, executed_pages
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.core.trace import TimeSeries, TraceError
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.reader import from_bundle
-from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.sim import mujoco_contacts, mujoco_joints
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
+from robo_genesis.sim.mujoco import joints as mujoco_joints
 
 pytestmark = pytest.mark.engine  # the bundles of the built site
 

@@ -24,9 +24,9 @@ from robo_genesis.evidence.recorder import (
     files_match_wheel,
     git_record,
 )
-from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.l04 import LAB, spec
-from robo_genesis.lessons.sources import measuring_modules
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.pipeline.pages.sources import measuring_modules, running_modules
 from robo_genesis.sim import session
 from robo_genesis.sim.engine_log import EngineLog
 
@@ -99,14 +99,14 @@ def test_the_build_names_run_command_and_page(quiet, tmp_path, engine, experimen
     names = {"RUN_ID": "f" * 32, "COMMAND": "make book", "PAGE_SHA256": "a" * 64}
     for name, value in names.items():
         quiet.setenv(f"ROBO_GENESIS_{name}", value)
-    recorder = Recorder("l04", "lab", session.Contract("cpu", True, tmp_path), engine)
+    recorder = Recorder("l04", "lab", session.Contract("cpu", True, tmp_path), engine, {})
     found = read_manifest(recorder.write(experiment, RENDERER)).predicate
     assert [found.run_id, found.command, found.source.page] == list(names.values())
 
 
 def test_a_run_by_hand_has_an_id_of_its_own(quiet, tmp_path, engine):
     contract = session.Contract("cpu", True, tmp_path)
-    ids = {Recorder("l04", "lab", contract, engine).run_id for _ in range(2)}
+    ids = {Recorder("l04", "lab", contract, engine, {}).run_id for _ in range(2)}
     assert len(ids) == 2
     assert all(re.fullmatch("[0-9a-f]{32}", run_id) for run_id in ids)
 
@@ -176,15 +176,12 @@ def test_a_message_of_the_engine_never_ends_a_recording(recorder, experiment):
     assert third == "a\nb\ufffd\nc\ufffd"
 
 
-def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(
-    quiet, tmp_path, engine, experiment
-):
+def test_modules_of_the_lesson_and_imports_of_the_page_are_digested(quiet):
     quiet.setenv(
-        "ROBO_GENESIS_PAGE_IMPORTS", "robo_genesis.sim.contacts robo_genesis.core.plotting"
+        "ROBO_GENESIS_PAGE_IMPORTS", "robo_genesis.sim.bodies.contacts robo_genesis.core.plotting"
     )
-    recorder = Recorder("l04", "lab", session.Contract("cpu", True, tmp_path), engine)
-    found = read_manifest(recorder.write(experiment, RENDERER)).predicate.source.modules
-    expected = measuring_modules("l04", ["robo_genesis.sim.contacts"])
+    found = running_modules("l04")
+    expected = measuring_modules("l04", ["robo_genesis.sim.bodies.contacts"])
     assert found == expected != measuring_modules("l04", [])
 
 

@@ -16,7 +16,7 @@ from robo_genesis.evidence.trace_files import (
     read_trace,
     write_traces,
 )
-from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.arm.franka import JOINT_NAMES
 
 LINKS = ["link0", "link4", "hand"]
 

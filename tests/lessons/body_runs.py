@@ -4,8 +4,8 @@ import numpy as np
 
 from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.trace import BodyTrace, ContactTrace
-from robo_genesis.sim.contacts import ContactCase
-from robo_genesis.sim.rigid_bodies import Drop
+from robo_genesis.sim.bodies.contacts import ContactCase
+from robo_genesis.sim.bodies.rigid_bodies import Drop
 
 
 def body_run(t, x=0.0, y=0.0, z=0.0, *, vx=0.0, vz=0.0, quat=(1, 0, 0, 0), contacts=None):

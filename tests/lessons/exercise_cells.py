@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.project import BOOK
-from robo_genesis.lessons.book_pages import Page, find_pages
+from robo_genesis.pipeline.pages.book import Page, find_pages
 
 LONGEST = 15
 """Most lines of a solution below its first one."""

@@ -9,18 +9,19 @@ import pytest
 from bundles import written
 from spoilers import edit, predicate, seal
 
-from robo_genesis.build.shown import accepted_experiment, calls_of
 from robo_genesis.core import project
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.shown import mime_data
-from robo_genesis.evidence import bundle, evidence_key
+from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.reader import from_bundle
-from robo_genesis.evidence.status import bundle_status
 from robo_genesis.evidence.trace_files import read_any_trace
-from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.book_pages import find_pages
-from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.lessons.registry import find_page
+from robo_genesis.lessons import find_page
+from robo_genesis.pipeline.bundles import keys as evidence_key
+from robo_genesis.pipeline.bundles.status import bundle_status
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.bound import accepted_experiment, calls_of
 from robo_genesis.site.takeaways.files import csv_text
 
 

@@ -6,27 +6,23 @@ import os
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-from robo_genesis.build.execute import kernel_environment
 from robo_genesis.core.project import BOOK, CACHE, ROOT
-from robo_genesis.lessons.book_pages import cell_sources, find_pages
-from robo_genesis.lessons.registry import LESSONS
-from robo_genesis.lessons.sources import (
-    PACKAGE,
-    computes,
-    import_closure,
-    imports_of,
-    measuring_modules,
-)
+from robo_genesis.lessons import LESSONS
+from robo_genesis.pipeline.pages.book import cell_sources, find_pages
+from robo_genesis.pipeline.pages.execute import kernel_environment
+from robo_genesis.pipeline.pages.sources import import_closure, measures, measuring_modules
+from robo_genesis.pipeline.pages.syntax import PACKAGE, imports_of
 
 IMPORTING = {"__import__", "eval", "exec", "exec_module", "import_module", "run_module", "run_path"}
 MADE_NAMES = {
-    "build/site/sphinx_process.py": "importlib.import_module(extension)",
+    "pipeline/html/sphinx_process.py": "importlib.import_module(extension)",
     "core/shown.py": "import_module(place)",
-    "lessons/declaration.py": "import_module(f'{package}.{name}')",
-    "lessons/registry.py": "import_module(f'{__package__}.{init.parent.name}')",
+    "core/declaration.py": "import_module(f'{package}.{name}')",
+    "lessons/__init__.py": "import_module(f'{__name__}.{name}')",
 }
 """Where the package imports by a name made at run time: extensions of Sphinx, the module of a shown
 function, and the modules of lessons, which the keys have by their folders."""
@@ -100,7 +96,7 @@ def computing_modules(lesson, modules):
     return {
         name.removeprefix(f"{PACKAGE}.")
         for name, path in modules.items()
-        if name.startswith(own) and computes(name, path)
+        if name.startswith(own) and measures(name, path, Path.read_text)
     }
 
 

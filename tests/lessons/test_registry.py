@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import pytest
 
+from robo_genesis import lessons as registry
+from robo_genesis.core.declaration import Compared
 from robo_genesis.core.orderings import HELD_BY
 from robo_genesis.core.palette import CASE_CLASSES
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence.trace_files import KINDS
-from robo_genesis.lessons import registry
-from robo_genesis.lessons.book_pages import find_pages
-from robo_genesis.lessons.declaration import Compared
-from robo_genesis.lessons.registry import LESSONS, find_lesson, find_page
+from robo_genesis.lessons import LESSONS, find_lesson, find_page
+from robo_genesis.pipeline.pages.book import find_pages
 
 
 def test_the_pages_that_measure_are_those_of_the_book():

@@ -12,9 +12,9 @@ from bs4 import BeautifulSoup
 from built_site import PAGES
 from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
 
-from robo_genesis.build import npm
 from robo_genesis.core.project import CACHE
-from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.lessons import LESSONS
+from robo_genesis.pipeline import npm
 
 pytestmark = [pytest.mark.engine, pytest.mark.slow]
 

@@ -18,8 +18,8 @@ TOC, COURSE_MAP = (BOOK / name for name in ("_toc.yml", "course_map.yml"))
 PUBLISHED = "test_the_course_s_map_names_the_lessons_that_are_published"
 ADDED = """
 from pathlib import Path
-from robo_genesis.lessons.book_pages import find_pages
-from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.lessons import LESSONS
 from robo_genesis.site.course_map import read_map
 print(list(LESSONS), [m.page for m in read_map(Path("book")) if m.id == "L99"])
 print([(p.lesson, p.page) for p in find_pages(Path("book")) if p.lesson == "l99"])

@@ -234,7 +234,7 @@ def test_the_command_refuses_without_a_traceback(tmp_path):
 RUN = """
 import sys
 from pathlib import Path
-from robo_genesis.build.command import run
+from robo_genesis.pipeline.command import run
 from robo_genesis.maintain.repin import Repin, run_repin
 root = Path(sys.argv[1])
 asked = Repin(sys.argv[2], root, root / ".cache", lambda prereleases: [sys.argv[2]])

@@ -7,10 +7,11 @@ import pytest
 from spoilers import metrics, part, predicate, seal
 
 from robo_genesis.core import project
-from robo_genesis.evidence import bundle, status
-from robo_genesis.evidence.status import Status
+from robo_genesis.evidence import bundle
 from robo_genesis.maintain import report as refresh
 from robo_genesis.maintain.report import LEFT_OUT, changed_sentences, compare_builds, recorded
+from robo_genesis.pipeline.bundles import status
+from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.site.evidence.ledger import LEDGER
 
 

@@ -3,7 +3,7 @@
 import pytest
 from bundles import RENDERER
 
-from robo_genesis.build.built_pages import BuiltPages
+from robo_genesis.pipeline.pages.built import BuiltPages
 
 
 @pytest.fixture

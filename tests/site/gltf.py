@@ -5,7 +5,7 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.build import npm
+from robo_genesis.pipeline import npm
 
 VALIDATE = """
 const [, , validator, file] = process.argv;

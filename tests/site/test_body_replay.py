@@ -15,12 +15,12 @@ from playwright.sync_api import Browser, Page
 from watching import errors, violations
 from without_sphinx import Panel, page_of
 
+from robo_genesis import lessons as registry
+from robo_genesis.core.declaration import Filmed, Lesson, Moving
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.trace_files import read_any_trace, write_traces
-from robo_genesis.lessons import registry
-from robo_genesis.lessons.declaration import Filmed, Lesson, Moving
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence import glance as sphinx_glance
 from robo_genesis.site.evidence.panel import response
@@ -58,7 +58,8 @@ def dropped(folder, monkeypatch, tmp_path, built):
     arrays = write_traces(folder, traces, None, ["box"])
     (folder / "arrays.json").write_text(arrays.model_dump_json(by_alias=True))
     spec = registry.LESSONS["l04"].spec
-    monkeypatch.setitem(registry.LESSONS, LESSON, Lesson(spec, {}, {}, Filmed("the box"), DROPPED))
+    lesson = Lesson(spec, {}, {}, Filmed("the box"), DROPPED)
+    monkeypatch.setitem(registry.LESSONS.found, LESSON, lesson)
     built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
     box = trimesh.creation.box((0.2, 0.2, 0.2))
     part = visual_shape.Part("box", (200, 80, 0), box.vertices.astype(np.float32), box.faces)

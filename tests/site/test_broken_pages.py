@@ -6,14 +6,14 @@ import pytest
 import yaml
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
-from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.execute import execute_pages
-from robo_genesis.build.page_folder import write_page
-from robo_genesis.build.page_results import PageResult
-from robo_genesis.build.page_store import places
-from robo_genesis.build.site.render import render
-from robo_genesis.build.site.sphinx_process import RenderError, SphinxProcess
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import RenderError, SphinxProcess
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.execute import execute_pages
+from robo_genesis.pipeline.pages.folder import write_page
+from robo_genesis.pipeline.pages.results import PageResult
+from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site import course_map, glossary
 
 TEXT = {

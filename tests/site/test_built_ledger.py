@@ -12,8 +12,8 @@ from bs4 import BeautifulSoup
 from built_site import PAGES, parsed
 
 from robo_genesis.core.project import BOOK
-from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.lessons import LESSONS
+from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.site.evidence.ledger_data import UNMEASURED
 
 pytestmark = pytest.mark.engine

@@ -6,11 +6,11 @@ import subprocess
 import pytest
 from built_site import LESSON_PAGES, MEASURING_PAGES, parsed
 
-from robo_genesis.build import npm
-from robo_genesis.build.site.sums import SUMS
 from robo_genesis.core import project
-from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.registry import LESSONS, find_page
+from robo_genesis.lessons import LESSONS, find_page
+from robo_genesis.pipeline import npm
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.pipeline.html.sums import SUMS
 
 pytestmark = pytest.mark.engine
 PIN = project.engine_pin()

@@ -5,12 +5,12 @@ from copy import deepcopy
 from built_site import parsed
 from tiny_book import cell, make_book, notebook
 
-from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.page_folder import write_page
-from robo_genesis.build.page_results import PageResult
-from robo_genesis.build.site.render import render
-from robo_genesis.build.site.sphinx_process import SphinxProcess
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.folder import write_page
+from robo_genesis.pipeline.pages.results import PageResult
 
 SECONDS = {"page": [0.26, 12.345, 3.0], "other": [2.0]}
 

@@ -19,12 +19,12 @@ from built_site import executed_pages, parsed
 from PIL import Image
 from spoilers import TORCH, edit, measured_elsewhere, own_run_id, part, predicate, seal
 
-from robo_genesis.build.site.checks import check_site
-from robo_genesis.build.site.render import render
-from robo_genesis.build.site.sphinx_process import SphinxProcess
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence import bundle
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.pipeline.html.checks import check_site
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
+from robo_genesis.pipeline.pages.book import find_pages
 
 pytestmark = pytest.mark.engine  # waits for the site
 

@@ -7,11 +7,11 @@ import yaml
 from built_site import LESSON_PAGES, parsed
 from tiny_book import make_book
 
-from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.site.render import render
-from robo_genesis.build.site.sphinx_process import SphinxProcess
 from robo_genesis.core.project import BOOK, ROOT
-from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.lessons import LESSONS
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
+from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.site.course_map import FILE, CourseMapError, Lesson, read_map
 
 MAP = [

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.evidence.bundle import read_manifest
-from robo_genesis.evidence.status import Status
+from robo_genesis.pipeline.bundles.status import Status
+from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.site.evidence.course_runs import measured_line
 from robo_genesis.site.evidence.ledger_data import Run
 

@@ -4,9 +4,9 @@ import pytest
 from built_site import parsed
 from tiny_book import make_book
 
-from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.site.render import render
-from robo_genesis.build.site.sphinx_process import SphinxProcess
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
+from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.site import glossary
 
 GLOSSARY = """\

@@ -4,7 +4,7 @@ import zipfile
 import pytest
 from docutils import nodes
 
-from robo_genesis.evidence.status import Status
+from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger import run_block
 from robo_genesis.site.evidence.ledger_data import Item, Run

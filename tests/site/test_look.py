@@ -11,7 +11,7 @@ from playwright.sync_api import Page
 
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import GROUNDS, MARKS, PARTS, contrast, css_name
-from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.lessons import LESSONS
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 

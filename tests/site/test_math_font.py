@@ -7,7 +7,7 @@ import pytest
 from fontTools.ttLib import TTFont
 from PIL import Image
 
-from robo_genesis.build import npm
+from robo_genesis.pipeline import npm
 from robo_genesis.site import math_font
 from robo_genesis.site.mathml import to_mathml
 

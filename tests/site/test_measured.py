@@ -4,10 +4,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from robo_genesis.build.built_pages import BuiltPages
 from robo_genesis.core import project
 from robo_genesis.evidence.bundle import BundleRefused
-from robo_genesis.evidence.status import Status
+from robo_genesis.pipeline.bundles.status import Status
+from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.measured import measured as insert
 from robo_genesis.site.evidence.measured import state_words, status_fold, visit_status

@@ -7,7 +7,7 @@ import pytest
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 from tiny_book import LAB_FRONT, cell, make_book, notebook
 
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.takeaways.notebooks import (
     Course,
     Origin,

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from watching import SERVED_ONLY, watch
 
-from robo_genesis.build.site.archive import ARCHIVE
-from robo_genesis.build.site.checks import Site, check_site
-from robo_genesis.build.site.sums import SUMS
+from robo_genesis.pipeline.html.archive import ARCHIVE
+from robo_genesis.pipeline.html.checks import Site, check_site
+from robo_genesis.pipeline.html.sums import SUMS
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 

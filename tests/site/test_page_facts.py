@@ -7,9 +7,9 @@ from docutils import nodes
 from docutils.core import publish_doctree
 from tiny_book import git, make_book
 
-from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.site.render import render
-from robo_genesis.build.site.sphinx_process import SphinxProcess
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
+from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.site import page_facts as facts
 from robo_genesis.site.multiple_choice import choice
 

@@ -16,15 +16,15 @@ from spoilers import edit, metrics, on, part, predicate, seal
 from without_sphinx import Panel
 
 from robo_genesis.core import project
+from robo_genesis.core.declaration import Filmed
 from robo_genesis.core.quantities import format_value, six_digits
 from robo_genesis.evidence import bundle, recorder, replay_data, report
 from robo_genesis.evidence.bundle_store import put
 from robo_genesis.evidence.compare import compare
-from robo_genesis.evidence.status import Status, recorded_status
 from robo_genesis.evidence.trace_files import read_trace
-from robo_genesis.lessons.declaration import Filmed
+from robo_genesis.lessons import LESSONS
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.pipeline.bundles.status import Status, recorded_status
 from robo_genesis.sim import visual_shape
 from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.evidence import ledger as sphinx_ledger

@@ -12,9 +12,9 @@ from without_sphinx import Panel, page_of
 
 from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.evidence.picture_file import write_picture
-from robo_genesis.lessons import view_record
-from robo_genesis.sim.camera_geometry import intrinsics, rays
-from robo_genesis.sim.camera_views import View
+from robo_genesis.sim.camera import record as view_record
+from robo_genesis.sim.camera.geometry import intrinsics, rays
+from robo_genesis.sim.camera.views import View
 from robo_genesis.site.picture_reader import reader_block
 
 WIDTH, HEIGHT = CAMERA_RES

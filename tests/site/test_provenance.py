@@ -7,13 +7,13 @@ from docutils.core import publish_doctree
 from myst_parser.parsers.docutils_ import Parser
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
-from robo_genesis.build.built_pages import BuiltPages
-from robo_genesis.build.execute import execute_pages
-from robo_genesis.build.page_store import places
-from robo_genesis.build.site.render import render
-from robo_genesis.build.site.sphinx_process import SphinxProcess
-from robo_genesis.evidence.status import Status
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.pipeline.bundles.status import Status
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.execute import execute_pages
+from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site.evidence.measured import badge_node
 from robo_genesis.site.evidence.refusals import problems
 

@@ -18,9 +18,9 @@ from watching import errors, violations
 from robo_genesis.core.project import BOOK
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import read_joints, read_trace
+from robo_genesis.lessons import LESSONS
 from robo_genesis.lessons.l04.spec import STEPPED_JOINT
 from robo_genesis.lessons.l04.study_spec import ASSIGNED
-from robo_genesis.lessons.registry import LESSONS
 from robo_genesis.site.replay import directive as sphinx_replay
 from robo_genesis.site.replay.model import rotations
 

@@ -12,8 +12,8 @@ from falling import LINKS, falling
 
 from robo_genesis.core.channels import Runs
 from robo_genesis.evidence.replay_data import read_runs
-from robo_genesis.lessons.registry import LESSONS
-from robo_genesis.sim import body_channels
+from robo_genesis.lessons import LESSONS
+from robo_genesis.sim.bodies import channels as body_channels
 from robo_genesis.site.replay import controls
 from robo_genesis.site.replay.scenery import Camera, Scenery
 

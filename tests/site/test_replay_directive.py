@@ -6,7 +6,7 @@ import re
 
 import pygltflib as gltf
 
-from robo_genesis.build.site.checks import SERVICES
+from robo_genesis.pipeline.html.checks import SERVICES
 from robo_genesis.site.replay import directive as sphinx_replay
 from robo_genesis.site.replay import viewer
 

@@ -11,7 +11,7 @@ import trimesh
 from gltf import report
 from trimesh.transformations import rotation_matrix, translation_matrix
 
-from robo_genesis.lessons.registry import LESSONS
+from robo_genesis.lessons import LESSONS
 from robo_genesis.sim import visual_shape
 from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.replay import model as replay_model

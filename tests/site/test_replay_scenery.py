@@ -10,7 +10,7 @@ from trimesh.transformations import quaternion_from_matrix, rotation_matrix, tra
 
 from robo_genesis.core.channels import Channel, Level, Runs, View
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.sim import body_channels
+from robo_genesis.sim.bodies import channels as body_channels
 from robo_genesis.sim.visual_shape import WORLD, Part, slab
 from robo_genesis.site.replay import scenery
 from robo_genesis.site.replay.scenery import ROOM, Camera, find_hinge, fitted, floor_of

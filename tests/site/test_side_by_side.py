@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from falling import LINKS, falling
 
-from robo_genesis.sim import body_channels
+from robo_genesis.sim.bodies import channels as body_channels
 from robo_genesis.sim.visual_shape import WORLD, Part, floor
 from robo_genesis.site.replay.scenery import scenery
 from robo_genesis.site.replay.side_by_side import side_by_side

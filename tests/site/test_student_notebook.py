@@ -12,9 +12,9 @@ import nbformat
 import pytest
 from built_site import LESSON_PAGES, parsed
 
-from robo_genesis.build import stages
 from robo_genesis.core import project
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.pipeline import stages
+from robo_genesis.pipeline.pages.book import find_pages
 
 pytestmark = [pytest.mark.engine, pytest.mark.slow]
 LABS = {lesson: name for (lesson, page), name in LESSON_PAGES.items() if page == "lab"}

@@ -5,7 +5,7 @@ from typing import Any
 
 from playwright.sync_api import Page
 
-from robo_genesis.build import npm
+from robo_genesis.pipeline import npm
 
 RUN_AXE = """([part, options]) => axe.run(part, options).then(({ violations, passes }) => [
   violations.flatMap(rule => rule.nodes.map(node => `${rule.id}: ${node.target.join(" ")}`)),

@@ -3,13 +3,13 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from robo_genesis.core.declaration import Filmed, Lesson, Moving, on_demand
+from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.declaration import Filmed, Lesson, Moving, on_demand
-from robo_genesis.lessons.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.lessons.l01 import checks, exercises, machine, mistakes, spec, text
 from robo_genesis.lessons.l01.metrics import FallMetrics, fall_metrics
-from robo_genesis.sim.plausibility.falling import require_falls
-from robo_genesis.sim.rigid_bodies import read_model, run_drop
+from robo_genesis.sim.bodies.falling import require_falls
+from robo_genesis.sim.bodies.rigid_bodies import read_model, run_drop
 from robo_genesis.sim.visual_shape import floor, read_shape
 
 if TYPE_CHECKING:

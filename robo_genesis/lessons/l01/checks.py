@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from robo_genesis.core.checks import Finding, at_most, equal, model_counts
-from robo_genesis.lessons.common_checks import posture, stamps, start
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l01 import machine, spec
+from robo_genesis.sim.common_checks import posture, stamps, start
 
 
 def structure(run: Experiment) -> Iterator[Finding]:

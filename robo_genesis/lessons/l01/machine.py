@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
+from robo_genesis.core.experiment import Readings, counts
 from robo_genesis.core.fresh_process import last_value, run_python
-from robo_genesis.lessons.experiment import Readings, counts
 from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim import diagnosis
 

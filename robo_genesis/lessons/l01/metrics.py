@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l01.spec import ASKED_STEPS
-from robo_genesis.sim.falls import continuous_gap, fallen, formula_error
-from robo_genesis.sim.rigid_bodies import Drop
+from robo_genesis.sim.bodies.falls import continuous_gap, fallen, formula_error
+from robo_genesis.sim.bodies.rigid_bodies import Drop
 
 
 @dataclass(frozen=True, slots=True)

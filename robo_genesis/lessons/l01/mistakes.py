@@ -10,6 +10,8 @@ from robo_genesis.core.fresh_process import run_python
 from robo_genesis.core.mistakes import Failure
 from robo_genesis.lessons.l01 import machine
 
+MEASURES = False
+
 
 def broken_step(name: str, report: Mapping[str, Any], step: str) -> Failure:
     """Return a failure on purpose by the step at which the doctor stopped."""

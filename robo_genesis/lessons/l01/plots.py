@@ -3,9 +3,11 @@
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.plotting import look
-from robo_genesis.lessons.experiment import Experiment
+
+MEASURES = False
 
 
 def height(run: Experiment) -> Figure:

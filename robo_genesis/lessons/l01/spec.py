@@ -5,9 +5,11 @@ The module is data and computes nothing. `parameters()` has the values that deci
 
 from typing import Any
 
+from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, DT
-from robo_genesis.lessons.experiment import inputs
-from robo_genesis.sim.rigid_bodies import Drop
+from robo_genesis.sim.bodies.rigid_bodies import Drop
+
+MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
 

@@ -3,8 +3,10 @@
 import textwrap
 
 from robo_genesis.core import tables
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l01 import machine, spec
+
+MEASURES = False
 
 RULES_OUT = {
     "version": "another version of the engine, with other defaults",

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from robo_genesis.core.checks import Finding, above, at_most, equal, masses, model_counts
-from robo_genesis.lessons.common_checks import posture, stamps, start
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
-from robo_genesis.sim.falls import fallen
+from robo_genesis.sim.bodies.falls import fallen
+from robo_genesis.sim.common_checks import posture, stamps, start
 
 
 def structure(run: Experiment) -> Iterator[Finding]:

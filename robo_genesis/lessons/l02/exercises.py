@@ -11,8 +11,10 @@ from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.scene import FRAME_SHAPE
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import spec
-from robo_genesis.sim.joints import to_numpy
-from robo_genesis.sim.rigid_bodies import Drop
+from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.bodies.rigid_bodies import Drop
+
+MEASURES = False
 
 TINY = 1e-6
 """Largest difference of a height [m] that rounding explains."""

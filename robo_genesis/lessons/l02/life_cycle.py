@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from robo_genesis.core.checks import Finding, equal
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.lessons.l02.spec import AFTER, BEFORE
 

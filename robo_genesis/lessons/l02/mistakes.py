@@ -10,8 +10,10 @@ import numpy as np
 from robo_genesis.core.free_fall import continuous_drop
 from robo_genesis.core.mistakes import Failure, quoted, refused
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.sim.camera import FrameError, require_frame
-from robo_genesis.sim.rigid_bodies import Drop, read_body
+from robo_genesis.sim.bodies.rigid_bodies import Drop, read_body
+from robo_genesis.sim.camera.frames import FrameError, require_frame
+
+MEASURES = False
 
 LEAP = 0.5
 """Rise from which a box counts as leaping, as a share of its edge."""

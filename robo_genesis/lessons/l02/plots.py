@@ -4,12 +4,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.free_fall import continuous_drop
 from robo_genesis.core.plotting import look
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02 import spec, trials
 from robo_genesis.lessons.l02.study import step_study
-from robo_genesis.sim.falls import fallen, predicted
+from robo_genesis.sim.bodies.falls import fallen, predicted
+
+MEASURES = False
 
 
 def posture(run: Experiment) -> Figure:

@@ -7,9 +7,11 @@ what is read; only a change there makes evidence stale. All other values only ju
 from dataclasses import replace
 from typing import Any
 
+from robo_genesis.core.experiment import case_inputs, inputs
 from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
-from robo_genesis.lessons.experiment import case_inputs, inputs
-from robo_genesis.sim.rigid_bodies import Drop
+from robo_genesis.sim.bodies.rigid_bodies import Drop
+
+MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
 STUDY_PAGE = "lecture"

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from robo_genesis.core.checks import Finding, factors, within
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.free_fall import ahead_of_continuous
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.lessons.l02.metrics import DropMetrics
-from robo_genesis.sim.rigid_bodies import Drop
+from robo_genesis.sim.bodies.rigid_bodies import Drop
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 
 from robo_genesis.core import tables
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.free_fall import ahead_of_continuous, continuous_drop, summed_drop
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block, signed
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02 import spec, trials
 from robo_genesis.lessons.l02 import study as studies
 from robo_genesis.lessons.l02.metrics import DropMetrics
@@ -17,7 +17,9 @@ from robo_genesis.lessons.l02.spec import (
     SPEED_SHARE,
 )
 from robo_genesis.lessons.l02.study import StepStudy
-from robo_genesis.sim.rigid_bodies import Drop
+from robo_genesis.sim.bodies.rigid_bodies import Drop
+
+MEASURES = False
 
 TENTH, MILLIMETRE = 0.1, 1e-3
 """Lengths below the first are written in mm, below the second in µm [m]."""

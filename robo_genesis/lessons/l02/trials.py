@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Check, Finding, above, below, conclude, equal, within
+from robo_genesis.core.experiment import Experiment, Readings, counts
 from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.experiment import Experiment, Readings, counts
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.end_state import usable_frame
 

@@ -5,9 +5,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from robo_genesis.core.checks import Finding
-from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.declaration import Filmed, Lesson, Moving, on_demand
-from robo_genesis.lessons.experiment import (
+from robo_genesis.core.declaration import Filmed, Lesson, Moving, on_demand
+from robo_genesis.core.experiment import (
     Experiment,
     MeasuringPage,
     Readings,
@@ -15,6 +14,7 @@ from robo_genesis.lessons.experiment import (
     counts,
     runs_of,
 )
+from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import (
     checks,
     claims_text,
@@ -32,8 +32,7 @@ from robo_genesis.lessons.l03 import (
     text,
 )
 from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
-from robo_genesis.sim import mujoco_contacts
-from robo_genesis.sim.contacts import (
+from robo_genesis.sim.bodies.contacts import (
     SETTINGS,
     SURFACE_SIZE,
     TOP,
@@ -42,7 +41,8 @@ from robo_genesis.sim.contacts import (
     record_world,
     time_constant,
 )
-from robo_genesis.sim.rigid_bodies import read_model
+from robo_genesis.sim.bodies.rigid_bodies import read_model
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 from robo_genesis.sim.visual_shape import read_shape, slab
 
 if TYPE_CHECKING:

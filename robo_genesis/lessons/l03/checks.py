@@ -15,12 +15,12 @@ from robo_genesis.core.checks import (
     model_counts,
     within,
 )
-from robo_genesis.lessons.common_checks import posture, stamps
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, spec
 from robo_genesis.lessons.l03.energy import kept_at_bounces
 from robo_genesis.lessons.l03.metrics import BounceMetrics, LandingMetrics, SlideMetrics
-from robo_genesis.sim.contacts import SETTINGS, TOP
+from robo_genesis.sim.bodies.contacts import SETTINGS, TOP
+from robo_genesis.sim.common_checks import posture, stamps
 
 
 def landings(run: Experiment) -> dict[str, LandingMetrics]:

@@ -2,6 +2,8 @@
 
 from robo_genesis.lessons.l03 import spec
 
+MEASURES = False
+
 CLAIMS: dict[str, str] = {
     "structure": (
         "The scene has two entities; the cube is one link, one geom, one joint, 6 DOFs and 7 qpos."

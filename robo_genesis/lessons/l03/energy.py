@@ -9,7 +9,7 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.sim.contacts import TOP, ContactCase
+from robo_genesis.sim.bodies.contacts import TOP, ContactCase
 
 SHORTEST = 3
 """Smallest number of consecutive states in the air that count as a flight."""

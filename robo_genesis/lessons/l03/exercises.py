@@ -10,8 +10,10 @@ from robo_genesis.core.exercises import as_test, compared
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03.energy import clearance
 from robo_genesis.lessons.l03.metrics import LandingMetrics, SlideMetrics
-from robo_genesis.sim.contacts import SURFACE_SIZE, TOP, ContactCase
-from robo_genesis.sim.joints import to_numpy
+from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
+
+MEASURES = False
 
 TINY = 1e-6
 """Largest difference of a returned length or time that rounding explains."""

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from robo_genesis.core.free_fall import GRAVITY
-from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim.bodies.contacts import ContactCase
 
 RULES: Mapping[str, Callable[[float, float], float]] = {
     "the larger": max,

@@ -8,7 +8,7 @@ from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace, first_time, settled_from
 from robo_genesis.lessons.l03.energy import clearance, conserved_energy, flights, total_energy
-from robo_genesis.sim.contacts import BOUNCE, LANDING, SLIDE, ContactCase
+from robo_genesis.sim.bodies.contacts import BOUNCE, LANDING, SLIDE, ContactCase
 
 CLEAR = 1e-4
 """Clearance from which a body without contact points counts as separated [m]."""

@@ -2,13 +2,15 @@
 
 from collections.abc import Iterator, Mapping
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import study_spec
-from robo_genesis.sim import mujoco_contacts
-from robo_genesis.sim.contacts import ContactCase
-from robo_genesis.sim.plausibility.bodies import body_on_surface, never_still, reported_contacts
-from robo_genesis.sim.plausibility.rules import Breach, computed_again, copied, refuse, times
+from robo_genesis.sim.bodies.contacts import ContactCase
+from robo_genesis.sim.bodies.laws import body_on_surface, never_still, reported_contacts
+from robo_genesis.sim.laws import Breach, computed_again, copied, refuse, times
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
+
+MEASURES = False
 
 BY_MUJOCO = {*study_spec.IN_MUJOCO}
 

@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import LINE, legend_above, look
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import checks, friction, spec
 from robo_genesis.lessons.l03.energy import (
     clearance,
@@ -18,7 +18,9 @@ from robo_genesis.lessons.l03.energy import (
     kept_at_bounces,
     total_energy,
 )
-from robo_genesis.sim.contacts import TOP, ContactCase
+from robo_genesis.sim.bodies.contacts import TOP, ContactCase
+
+MEASURES = False
 
 LANDING_MARKS = {
     "baseline": "baseline",

@@ -10,9 +10,11 @@ Source of the parameters of landing and sliding: the public course robo-genesis-
 from dataclasses import replace
 from typing import Any
 
+from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA
-from robo_genesis.lessons.experiment import inputs
-from robo_genesis.sim.contacts import SURFACE_SIZE, TOP, ContactCase
+from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
+
+MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
 LINK = "body"

@@ -5,12 +5,12 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 
 from robo_genesis.core.checks import Finding, above, at_most, equal, noted, within
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, spec, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics, SlideMetrics
-from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim.bodies.contacts import ContactCase
 
 GROUP = "time_constant"
 """Group of a bundle's metrics: the engine's time constant of a contact by scene [s]."""

@@ -5,13 +5,13 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from robo_genesis.core.checks import Finding, above, at_most, noted, within
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, spec, study, study_spec
 from robo_genesis.lessons.l03.metrics import LandingMetrics, SlideMetrics
 from robo_genesis.lessons.l03.study import slide
-from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim.bodies.contacts import ContactCase
 
 LANES = {"low": "low_on_050", "high": "high_on_050"}
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from robo_genesis.core.checks import Finding, at_most, within
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l03 import checks, study, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR
 

@@ -5,12 +5,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import LINE, legend_above, look
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, plots, study, study_contact, study_spec, theory
 from robo_genesis.lessons.l03.energy import clearance
 from robo_genesis.lessons.l03.metrics import CLEAR
 from robo_genesis.lessons.l03.study import slide
+
+MEASURES = False
 
 STEP_MARKS = {
     "h_20000us_10000": "second",

@@ -3,9 +3,11 @@
 from dataclasses import replace
 from typing import Any
 
-from robo_genesis.lessons.experiment import case_inputs
+from robo_genesis.core.experiment import case_inputs
 from robo_genesis.lessons.l03.spec import BASELINE, BESIDE, BOUNCES, LANDINGS, PUSHED, SLIDES
-from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim.bodies.contacts import ContactCase
+
+MEASURES = False
 
 DROPPED = {name: replace(LANDINGS[name], duration=0.5) for name in ("baseline", "dt10_sub1")}
 """The landings of the lecture's first replay; the cubes have settled at its end."""

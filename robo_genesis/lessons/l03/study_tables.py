@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import (
     friction,
     spec,
@@ -18,6 +18,8 @@ from robo_genesis.lessons.l03 import (
 )
 from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics
 from robo_genesis.lessons.l03.study import slide
+
+MEASURES = False
 
 Rows = Sequence[dict[str, str]]
 Metrics = Mapping[str, CaseMetrics]

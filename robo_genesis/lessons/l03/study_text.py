@@ -4,12 +4,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import bullets, listed
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, study, study_contact, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR
 from robo_genesis.lessons.l03.study import slide
 from robo_genesis.lessons.l03.study_tables import metres, millimetres, milliseconds, span
+
+MEASURES = False
 
 
 def step_conclusions(run: Experiment) -> str:

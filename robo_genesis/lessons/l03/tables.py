@@ -4,11 +4,13 @@ import re
 from collections.abc import Mapping, Sequence
 
 from robo_genesis.core import tables
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.quantities import NOT_OBSERVED, format_value
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import checks, spec
-from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim.bodies.contacts import ContactCase
+
+MEASURES = False
 
 SHORT = {"m": ("mm", 0.1), "J": ("mJ", 1.0)}
 """By unit, a unit a thousand times smaller for values below a limit."""

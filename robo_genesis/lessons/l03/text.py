@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import Block, listed, signed
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import checks, friction, spec
 from robo_genesis.lessons.l03.energy import kept_at_bounces
 from robo_genesis.lessons.l03.metrics import (
@@ -16,7 +16,9 @@ from robo_genesis.lessons.l03.metrics import (
     LandingMetrics,
     SlideMetrics,
 )
-from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim.bodies.contacts import ContactCase
+
+MEASURES = False
 
 INSPECT = (
     "Check the settings of the cases, the times of the samples, and contacts with the body first."

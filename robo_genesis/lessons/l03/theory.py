@@ -7,8 +7,8 @@ At a damping ratio of one, a contact with time constant T gives a body the accel
 import numpy as np
 
 from robo_genesis.lessons.l03.friction import pair_friction
-from robo_genesis.sim import mujoco_contacts
-from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim.bodies.contacts import ContactCase
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 
 def contact_seconds(case: ContactCase) -> float:

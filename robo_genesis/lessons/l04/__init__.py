@@ -6,11 +6,8 @@ from typing import TYPE_CHECKING
 
 from robo_genesis.core.channels import View
 from robo_genesis.core.checks import Finding
-from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
-from robo_genesis.core.text import listed
-from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, on_demand
-from robo_genesis.lessons.experiment import (
+from robo_genesis.core.declaration import Compared, Filmed, Lesson, on_demand
+from robo_genesis.core.experiment import (
     Experiment,
     MeasuringPage,
     Readings,
@@ -18,6 +15,9 @@ from robo_genesis.lessons.experiment import (
     counts,
     runs_of,
 )
+from robo_genesis.core.scene import CAMERA, DT, SUBSTEPS
+from robo_genesis.core.text import listed
+from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import (
     backend_mistake,
     checks,
@@ -36,10 +36,9 @@ from robo_genesis.lessons.l04 import (
     theory_text,
 )
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics
-from robo_genesis.sim import mujoco_joints
-from robo_genesis.sim.batch import run_batch
-from robo_genesis.sim.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joint_control import (
+from robo_genesis.sim.arm.batch import run_batch
+from robo_genesis.sim.arm.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import (
     assign_path,
     describe,
     differences,
@@ -47,7 +46,8 @@ from robo_genesis.sim.joint_control import (
     run_case,
     validate,
 )
-from robo_genesis.sim.joints import resolve_joints
+from robo_genesis.sim.arm.joints import resolve_joints
+from robo_genesis.sim.mujoco import joints as mujoco_joints
 from robo_genesis.sim.visual_shape import read_shape
 
 if TYPE_CHECKING:

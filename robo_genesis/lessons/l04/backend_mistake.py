@@ -6,6 +6,8 @@ import sys
 
 from robo_genesis.core.mistakes import Failure
 
+MEASURES = False
+
 REQUEST = """
 import json, logging, sys
 import genesis as gs

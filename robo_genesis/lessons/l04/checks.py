@@ -7,18 +7,18 @@ import numpy as np
 
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE, READ_BACK
 from robo_genesis.core.checks import Finding, at_most, below, equal, model_counts
-from robo_genesis.lessons import common_checks
-from robo_genesis.lessons.common_checks import posture
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import (
     RISE_FRACTION,
     SATURATION_THRESHOLD,
     SETTLING_BAND,
 )  # fmt: skip
-from robo_genesis.sim.franka import JOINT_NAMES
-from robo_genesis.sim.joint_control import differences
-from robo_genesis.sim.joints import EFFORT_UNIT, POSITION_UNIT
+from robo_genesis.sim import common_checks
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import differences
+from robo_genesis.sim.arm.joints import EFFORT_UNIT, POSITION_UNIT
+from robo_genesis.sim.common_checks import posture
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:

@@ -1,5 +1,7 @@
 """What the named checks of lesson L04 require."""
 
+MEASURES = False
+
 CLAIMS: dict[str, str] = {
     "mapping": "Seven arm joints and two finger joints are found by name, each with its own DOF.",
     "configuration": (

@@ -6,16 +6,18 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core import tables
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.orderings import HELD
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, listed
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated
 from robo_genesis.lessons.l04.study import ENGINES, GROUP, relation_outcome
-from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+
+MEASURES = False
 
 NOUNS, UNITS = StepMetrics.about("noun"), StepMetrics.about("unit")
 

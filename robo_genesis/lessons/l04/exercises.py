@@ -17,8 +17,10 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import CONTROL_LAW_TOLERANCE, ENTRY
 from robo_genesis.lessons.l04.theory import IdealJoint, stepped_joint
-from robo_genesis.sim.joint_control import ControlCase
-from robo_genesis.sim.joints import JointMap
+from robo_genesis.sim.arm.joint_control import ControlCase
+from robo_genesis.sim.arm.joints import JointMap
+
+MEASURES = False
 
 TINY = 1e-6
 """Largest difference of a returned time or angle that rounding explains."""

@@ -12,14 +12,16 @@ import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.checks import evaluate
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04.claims_text import CLAIMS
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, RESOLUTION, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_checks import GRID_CHECKS
 from robo_genesis.lessons.l04.study_spec import CASE_POINTS, KP, KV, POINTS, STEP_SIZES, GridPoint
+
+MEASURES = False
 
 PACKED = {"q": 1e-4, "force": 1e-2}
 """Value of one unit of the packed integers [rad, N·m]. Metrics come from the full arrays."""

@@ -8,15 +8,17 @@ import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.comparison import compare
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.orderings import HELD_BY, order
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import bullets, listed
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study, study_spec, text
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics, is_saturated
 from robo_genesis.lessons.l04.study import same_beginning
 from robo_genesis.lessons.l04.theory_text import share_text
+
+MEASURES = False
 
 
 def force_ranges(run: Experiment) -> str:

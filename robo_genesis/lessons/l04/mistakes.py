@@ -14,8 +14,10 @@ from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import is_saturated, step_metrics
-from robo_genesis.sim.joint_control import CaseError, ControlCase, reset, run_case, validate
-from robo_genesis.sim.joints import JointMap, to_numpy
+from robo_genesis.sim.arm.joint_control import CaseError, ControlCase, reset, run_case, validate
+from robo_genesis.sim.arm.joints import JointMap, to_numpy
+
+MEASURES = False
 
 SMALL = 0.05
 """Share of the commanded step that counts as negligible."""

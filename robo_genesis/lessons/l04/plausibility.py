@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l04 import study_spec
-from robo_genesis.sim import mujoco_joints
-from robo_genesis.sim.plausibility.joints import assigned_path, driven_in_mujoco, driven_run
-from robo_genesis.sim.plausibility.rules import Breach, computed_again, copied, refuse, times
+from robo_genesis.sim.arm.laws import assigned_path, driven_in_mujoco, driven_run
+from robo_genesis.sim.laws import Breach, computed_again, copied, refuse, times
+from robo_genesis.sim.mujoco import joints as mujoco_joints
+
+MEASURES = False
 
 
 def require_possible_runs(run: Experiment) -> None:

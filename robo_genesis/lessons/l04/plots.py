@@ -8,17 +8,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import marks_of
 from robo_genesis.core.plotting import BAND, LIMIT, LINE, look
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 from robo_genesis.lessons.l04.spec import CASE_MARKS, ENTRY, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_spec import ASSIGNED, COMPARED, EXAMPLE
-from robo_genesis.sim.franka import LINK_PARENTS
-from robo_genesis.sim.joints import JointMap
+from robo_genesis.sim.arm.franka import LINK_PARENTS
+from robo_genesis.sim.arm.joints import JointMap
+
+MEASURES = False
 
 START = 0.4
 """End of the time axis where the compared cases differ [s]."""

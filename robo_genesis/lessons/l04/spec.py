@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import DT, FloatArray, read_only
-from robo_genesis.lessons.experiment import inputs
 from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
-from robo_genesis.sim import franka
-from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joint_control import course_case
+from robo_genesis.sim.arm import franka
+from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import course_case
+
+MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
 

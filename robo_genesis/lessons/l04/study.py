@@ -6,17 +6,18 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.orderings import Relation, Value, outcome
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated, step_metrics
 from robo_genesis.lessons.l04.theory import IdealJoint, step_share, stepped_joint
-from robo_genesis.sim import dynamics, mujoco_joints
-from robo_genesis.sim.franka import JOINT_NAMES
-from robo_genesis.sim.joint_control import ControlCase, run_case
-from robo_genesis.sim.joints import JointMap
+from robo_genesis.sim.arm import dynamics
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import ControlCase, run_case
+from robo_genesis.sim.arm.joints import JointMap
+from robo_genesis.sim.mujoco import joints as mujoco_joints
 
 ENGINES = ("Genesis", *study_spec.SECOND_INTEGRATORS)
 """Genesis, and MuJoCo by its integrator."""

@@ -15,12 +15,12 @@ from robo_genesis.core.checks import (
     noted,
     within,
 )
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.orderings import HELD
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import is_saturated
 from robo_genesis.lessons.l04.theory import overshoot_share
-from robo_genesis.sim.joint_control import differences
+from robo_genesis.sim.arm.joint_control import differences
 
 
 def study_factors(run: Experiment) -> Iterator[Finding]:

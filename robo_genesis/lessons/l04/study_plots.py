@@ -8,10 +8,10 @@ from matplotlib.colors import LinearSegmentedColormap, to_rgba
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import MARKS, PARTS
 from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study
 from robo_genesis.lessons.l04.engine_comparison import ENGINE_LABELS
 from robo_genesis.lessons.l04.explorer import cell_labels
@@ -26,6 +26,8 @@ from robo_genesis.lessons.l04.study_spec import (
     SMALL_STEPPED,
     STEP_SIZES,
 )
+
+MEASURES = False
 
 IDEAL = look("target", linestyle=(0, (4, 2)), linewidth=1.6)
 """The one dashed line of a figure: theory. Measured data have solid lines."""

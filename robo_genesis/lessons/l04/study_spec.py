@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
+from robo_genesis.core.experiment import case_inputs
 from robo_genesis.core.scene import DT, SUBSTEPS
-from robo_genesis.lessons.experiment import case_inputs
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 from robo_genesis.lessons.l04.spec import (
     ENTRY,
@@ -16,7 +16,9 @@ from robo_genesis.lessons.l04.spec import (
     STEP,
     with_entry,
 )  # fmt: skip
-from robo_genesis.sim.joint_control import ControlCase
+from robo_genesis.sim.arm.joint_control import ControlCase
+
+MEASURES = False
 
 COMPARED = {"G1": G1, "G2": G2, "G3": G3}
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.comparison import compare, comparison_sentence, prediction_sentence
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import (
     SATURATION_THRESHOLD,
@@ -21,7 +21,9 @@ from robo_genesis.lessons.l04.metrics import (
     is_saturated,
 )  # fmt: skip
 from robo_genesis.lessons.l04.study_spec import AT_REST, COMPARED
-from robo_genesis.sim.joint_control import differences
+from robo_genesis.sim.arm.joint_control import differences
+
+MEASURES = False
 
 INSPECT = (
     "Before blaming the model, inspect saturation, the time stamps, the initial states and "

@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from robo_genesis.core.channels import View
+from robo_genesis.core.declaration import Compared, Filmed, Lesson, on_demand
+from robo_genesis.core.experiment import MeasuringPage, Run, case_inputs, counts, runs_of
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons import view_record
-from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, on_demand
-from robo_genesis.lessons.experiment import MeasuringPage, Run, case_inputs, counts, runs_of
 from robo_genesis.lessons.l05 import (
     checks,
     claims_text,
@@ -25,11 +24,12 @@ from robo_genesis.lessons.l05 import (
 )
 from robo_genesis.lessons.l05.metrics import ReachMetrics, reach_metrics
 from robo_genesis.lessons.l05.run import ask, reach, solve_all
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim.camera_views import look, segment_number
-from robo_genesis.sim.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joint_control import describe, reset
-from robo_genesis.sim.joints import resolve_joints
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import describe, reset
+from robo_genesis.sim.arm.joints import resolve_joints
+from robo_genesis.sim.camera import record as view_record
+from robo_genesis.sim.camera.views import look, segment_number
 from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
 
 if TYPE_CHECKING:

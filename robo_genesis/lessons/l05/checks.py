@@ -5,16 +5,17 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from robo_genesis.core.checks import Finding, above, at_most, below, equal, model_counts
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.common_checks import posture, stamps
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import restarts, spec, study
-from robo_genesis.lessons.view_record import SEGMENTS, view_of
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim import camera_checks, mujoco_kinematics
-from robo_genesis.sim.arm_kinematics import ARM, CHAIN, HAND, Pose, measured_hand
-from robo_genesis.sim.camera_checks import Marker
-from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+from robo_genesis.sim.arm.kinematics import ARM, CHAIN, HAND, Pose, measured_hand
+from robo_genesis.sim.camera import checks as camera_checks
+from robo_genesis.sim.camera.checks import Marker
+from robo_genesis.sim.camera.record import SEGMENTS, view_of
+from robo_genesis.sim.common_checks import posture, stamps
+from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 OF_CHAIN = slice(HAND - ARM, HAND + 1)
 """The links of the chain among those of the arrays."""

@@ -9,10 +9,12 @@ from robo_genesis.core.checks import Finding, at_most, below, equal
 from robo_genesis.core.exercises import as_test, same_array
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim import camera_geometry as cameras
-from robo_genesis.sim import mujoco_kinematics
-from robo_genesis.sim.arm_kinematics import ARM, CHAIN, Pose, measured_hand
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.kinematics import ARM, CHAIN, Pose, measured_hand
+from robo_genesis.sim.camera import geometry as cameras
+from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+
+MEASURES = False
 
 CLOSE = 5e-6
 """Largest difference to a pose of the engine, which computes in float32 [m or rad]."""

@@ -4,11 +4,13 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.lessons.l05.solutions_text import MEASURES, records
-from robo_genesis.lessons.view_record import DEPTH_UNIT, SEGMENTS, view_of
-from robo_genesis.sim.camera_geometry import other_axes
+from robo_genesis.lessons.l05.solutions_text import QUANTITIES, records
+from robo_genesis.sim.camera.geometry import other_axes
+from robo_genesis.sim.camera.record import DEPTH_UNIT, SEGMENTS, view_of
+
+MEASURES = False
 
 COLUMNS = 9
 """Most cells in a row of a map."""
@@ -50,7 +52,7 @@ def posture_maps(run: Experiment, which: str) -> list[dict[str, Any]]:
         shown = {str(key) for row in one["rows"] for key in row["cells"]}
         one["targets"] = spec.QUESTIONS[one["run"]].positions
         one["columns"] = [f"{value:g}" for value in one["columns"]]
-        one["measures"] = tuple(MEASURES)
+        one["measures"] = tuple(QUANTITIES)
         one["records"] = [row for row in records(run, one["run"]) if row["answer"] in shown]
     return maps
 

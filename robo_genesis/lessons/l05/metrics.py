@@ -11,7 +11,7 @@ import numpy as np
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05.run import ReachCase
-from robo_genesis.sim.arm_kinematics import Pose, distance_and_angle, hand_pose, measured_hand
+from robo_genesis.sim.arm.kinematics import Pose, distance_and_angle, hand_pose, measured_hand
 
 MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
 

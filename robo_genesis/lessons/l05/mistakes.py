@@ -12,12 +12,14 @@ import numpy as np
 from robo_genesis.core.mistakes import Failure, quoted, refused
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l05.run import END_EFFECTOR, ReachCase, ask, control_case
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim import camera_geometry as cameras
-from robo_genesis.sim.camera_views import read_intrinsics, read_transform
-from robo_genesis.sim.joint_control import reset, run_case, validate
-from robo_genesis.sim.joints import JointMap, to_numpy
-from robo_genesis.sim.kinematics import IkAnswer, link_poses_at
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.engine_kinematics import IkAnswer, link_poses_at
+from robo_genesis.sim.arm.joint_control import reset, run_case, validate
+from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.camera import geometry as cameras
+from robo_genesis.sim.camera.views import read_intrinsics, read_transform
+
+MEASURES = False
 
 
 def written(answer: IkAnswer, case: ReachCase) -> str:

@@ -1,9 +1,11 @@
 """What arrays of a reach cannot be, whatever metrics and checks they give."""
 
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05.run import SolveCase
-from robo_genesis.sim.plausibility.joints import assigned_postures, driven_run
-from robo_genesis.sim.plausibility.rules import refuse
+from robo_genesis.sim.arm.laws import assigned_postures, driven_run
+from robo_genesis.sim.laws import refuse
+
+MEASURES = False
 
 
 def require_possible_runs(run: Experiment) -> None:

@@ -4,16 +4,18 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import PARTS
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
 from robo_genesis.lessons.l05.solutions_text import CRITERIA, chosen
-from robo_genesis.lessons.view_record import view_of
-from robo_genesis.sim import camera_geometry as cameras
-from robo_genesis.sim.arm_kinematics import ARM, HAND, link_poses
-from robo_genesis.sim.franka import LINK_PARENTS
+from robo_genesis.sim.arm.franka import LINK_PARENTS
+from robo_genesis.sim.arm.kinematics import ARM, HAND, link_poses
+from robo_genesis.sim.camera import geometry as cameras
+from robo_genesis.sim.camera.record import view_of
+
+MEASURES = False
 
 AROUND = 45
 """Half the width of the shown part of the picture around the marker [pixel]."""

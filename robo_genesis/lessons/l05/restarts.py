@@ -4,8 +4,8 @@ import json
 import os
 from typing import Any
 
+from robo_genesis.core.experiment import counts
 from robo_genesis.core.fresh_process import last_value, run_python
-from robo_genesis.lessons.experiment import counts
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.run import ask
 from robo_genesis.sim import diagnosis, session

@@ -7,17 +7,18 @@ import numpy as np
 
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim import franka, mujoco_kinematics
-from robo_genesis.sim.arm_kinematics import ARM, accepted, distances
-from robo_genesis.sim.joint_control import (
+from robo_genesis.sim.arm import franka
+from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, solve_ik
+from robo_genesis.sim.arm.joint_control import (
     ControlCase,
     Controlled,
     assign_postures,
     course_case,
     run_case,
 )
-from robo_genesis.sim.joints import JointMap
-from robo_genesis.sim.kinematics import IkAnswer, IkSettings, solve_ik
+from robo_genesis.sim.arm.joints import JointMap
+from robo_genesis.sim.arm.kinematics import ARM, accepted, distances
+from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 END_EFFECTOR = "hand"
 MOVED = franka.JOINT_NAMES[:ARM]

@@ -3,12 +3,14 @@
 import numpy as np
 
 from robo_genesis.core import tables
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import decimal
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+
+MEASURES = False
 
 THRESHOLDS = (0.05, 0.1, 0.3, 0.5, 1.0)
 """Largest joint differences within which two answers count as one [rad]."""
@@ -20,7 +22,7 @@ CRITERIA = {
 }
 """What chooses one of several answers: a key of `study.answers`, and which value is best."""
 
-MEASURES = {
+QUANTITIES = {
     "manipulability": ("manipulability", 1, 3),
     "distance from limits [rad]": ("margin", 1, 3),
     "largest angle from the present posture [rad]": ("from_start", 1, 3),
@@ -44,7 +46,9 @@ def records(run: Experiment, name: str) -> list[dict[str, str]]:
             "joint1 [rad]": decimal(q[k, 0], 3),
             "nearest to a limit": JOINT_NAMES[nearest[k]],
         }
-        shown = {label: (max(by * found[key][k], 0), n) for label, (key, by, n) in MEASURES.items()}
+        shown = {
+            label: (max(by * found[key][k], 0), n) for label, (key, by, n) in QUANTITIES.items()
+        }
         rows.append(row | {label: f"{round(x, 6):.{n}g}" for label, (x, n) in shown.items()})
     return rows
 
@@ -80,7 +84,7 @@ def span(values: FloatArray, digits: int) -> str:
 
 def choice_table(run: Experiment) -> str:
     """Return the answers that the criteria choose."""
-    rows, shown = records(run, "many_starts"), ("answer", "joint1 [rad]", *[*MEASURES][:3])
+    rows, shown = records(run, "many_starts"), ("answer", "joint1 [rad]", *[*QUANTITIES][:3])
     found = chosen(run).items()
     return tables.markdown([{"criterion": n} | {s: rows[k][s] for s in shown} for n, k in found])
 
@@ -104,7 +108,7 @@ def reach_table(run: Experiment) -> str:
         found = study.answers(run.traces[name], spec.QUESTIONS[name])
         yes = found["accepted"].astype(bool)
         row = {"plane": name, "targets": len(yes), "accepted": int(yes.sum())}
-        row |= {head: span(found[MEASURES[head][0]][yes], 3) for head in [*MEASURES][:2]}
+        row |= {head: span(found[QUANTITIES[head][0]][yes], 3) for head in [*QUANTITIES][:2]}
         left = span(1000 * found["position"][~yes], 1)
         rows.append(row | {"distance left where refused [mm]": left})
     return tables.markdown(rows)

@@ -9,11 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, read_only
-from robo_genesis.lessons.experiment import inputs
 from robo_genesis.lessons.l05.run import ReachCase, SolveCase
-from robo_genesis.sim import franka
-from robo_genesis.sim.kinematics import IkSettings
+from robo_genesis.sim.arm import franka
+from robo_genesis.sim.arm.engine_kinematics import IkSettings
+
+MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
 

@@ -5,17 +5,17 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core.experiment import Experiment, Readings, counts
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Experiment, Readings, counts
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.run import END_EFFECTOR, SolveCase, ask
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim import kinematics as engine
-from robo_genesis.sim import mujoco_kinematics
-from robo_genesis.sim.arm_kinematics import ARM, Pose, measured_hand
-from robo_genesis.sim.joint_control import reset
-from robo_genesis.sim.joints import JointMap, to_numpy
+from robo_genesis.sim.arm import engine_kinematics as engine
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.joint_control import reset
+from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.arm.kinematics import ARM, Pose, measured_hand
+from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 GROUP, REPEAT_GROUP = "ik", "ik_repeated"
 """Groups of a bundle's metrics: what the engine's solver reported, and counts of two answers."""

@@ -5,17 +5,19 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core import tables
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import bullets
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
 from robo_genesis.lessons.l05.metrics import ReachMetrics
-from robo_genesis.lessons.view_record import SEGMENTS, view_of
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim import camera_geometry as cameras
-from robo_genesis.sim import mujoco_kinematics
-from robo_genesis.sim.camera_checks import PLANE_FAR, computed, from_plane, from_sphere
-from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+from robo_genesis.sim.camera import geometry as cameras
+from robo_genesis.sim.camera.checks import PLANE_FAR, computed, from_plane, from_sphere
+from robo_genesis.sim.camera.record import SEGMENTS, view_of
+from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+
+MEASURES = False
 
 NO_PICTURE = "SKIP: no camera"
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from robo_genesis.core.channels import View
+from robo_genesis.core.declaration import Compared, Filmed, Lesson, on_demand
+from robo_genesis.core.experiment import MeasuringPage, Run, counts, runs_of
 from robo_genesis.core.palette import MARKS
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.declaration import Compared, Filmed, Lesson, on_demand
-from robo_genesis.lessons.experiment import MeasuringPage, Run, counts, runs_of
 from robo_genesis.lessons.l06 import (
     checks,
     claims_text,
@@ -24,10 +24,10 @@ from robo_genesis.lessons.l06 import (
     throughput_text,
 )
 from robo_genesis.lessons.l06.metrics import WorldMetrics, world_metrics
-from robo_genesis.sim.batch import set_link_mass
-from robo_genesis.sim.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joint_control import describe
-from robo_genesis.sim.joints import resolve_joints
+from robo_genesis.sim.arm.batch import set_link_mass
+from robo_genesis.sim.arm.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import describe
+from robo_genesis.sim.arm.joints import resolve_joints
 from robo_genesis.sim.visual_shape import Part, ball, read_shape
 
 if TYPE_CHECKING:

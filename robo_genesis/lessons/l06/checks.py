@@ -6,13 +6,14 @@ import numpy as np
 
 from robo_genesis.core.check_spec import MASS_SHARE
 from robo_genesis.core.checks import Finding, above, at_most, equal, model_counts, within
-from robo_genesis.lessons.common_checks import stamps
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study, throughput
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim import end_state, mujoco_kinematics
-from robo_genesis.sim.arm_kinematics import ARM, Pose
-from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim import end_state
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+from robo_genesis.sim.arm.kinematics import ARM, Pose
+from robo_genesis.sim.common_checks import stamps
+from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:

@@ -1,5 +1,7 @@
 """What the named checks of lesson L06 require."""
 
+MEASURES = False
+
 CLAIMS: dict[str, str] = {
     "mapping": "The engine has the expected links, joints and DOFs.",
     "stamps": "Each run has its configured steps and states at times k · dt from zero.",

@@ -8,8 +8,8 @@ from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06.run import World
-from robo_genesis.sim.arm_kinematics import HAND, Pose, distance_and_angle, hand_pose, measured_hand
-from robo_genesis.sim.franka import LINK_PARENTS
+from robo_genesis.sim.arm.franka import LINK_PARENTS
+from robo_genesis.sim.arm.kinematics import HAND, Pose, distance_and_angle, hand_pose, measured_hand
 
 MEASURED, COMMANDED = ("link_pos_m", "link_quat_wxyz"), ("target_rad_or_m",)
 

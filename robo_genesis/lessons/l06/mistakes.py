@@ -18,10 +18,12 @@ from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.metrics import measured_hand
 from robo_genesis.lessons.l06.run import World, ask, commands
 from robo_genesis.lessons.l06.throughput import Build, start
-from robo_genesis.sim.arm_kinematics import ARM
-from robo_genesis.sim.batch import Batch
-from robo_genesis.sim.joints import JointMap, to_numpy
+from robo_genesis.sim.arm.batch import Batch
+from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.throughput import calls_of, seconds_per_step
+
+MEASURES = False
 
 COMPILING = "Compiling"
 """How a line of the engine's log begins when `build` compiles kernels, or loads stored ones."""

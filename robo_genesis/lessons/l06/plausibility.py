@@ -1,9 +1,11 @@
 """What arrays of an environment cannot be, whatever metrics and checks they give."""
 
-from robo_genesis.lessons.experiment import Experiment
-from robo_genesis.sim.franka import per_joint
-from robo_genesis.sim.plausibility.joints import commanded, driven_run
-from robo_genesis.sim.plausibility.rules import refuse
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.sim.arm.franka import per_joint
+from robo_genesis.sim.arm.laws import commanded, driven_run
+from robo_genesis.sim.laws import refuse
+
+MEASURES = False
 
 NET_FORCE = per_joint(*(1e-2,) * 7, 0.6, 0.6)
 """Tolerance of an internal force [N·m or N]. A hand that turns sideways pushes its fingers, which

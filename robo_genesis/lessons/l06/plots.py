@@ -7,14 +7,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.mistakes import Curves
 from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.run import World
-from robo_genesis.sim.arm_kinematics import ARM, HAND
-from robo_genesis.sim.franka import LINK_PARENTS
+from robo_genesis.sim.arm.franka import LINK_PARENTS
+from robo_genesis.sim.arm.kinematics import ARM, HAND
+
+MEASURES = False
 
 FLOOR = 1e-9
 """Smallest difference on a logarithmic axis; smaller ones, zeros among them, are drawn here."""

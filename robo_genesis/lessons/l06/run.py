@@ -8,12 +8,12 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim import franka
-from robo_genesis.sim.arm_kinematics import ARM, accepted
-from robo_genesis.sim.batch import Batch
-from robo_genesis.sim.joint_control import Controlled
-from robo_genesis.sim.joints import JointMap
-from robo_genesis.sim.kinematics import IkAnswer, IkSettings, solve_ik
+from robo_genesis.sim.arm import franka
+from robo_genesis.sim.arm.batch import Batch
+from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, solve_ik
+from robo_genesis.sim.arm.joint_control import Controlled
+from robo_genesis.sim.arm.joints import JointMap
+from robo_genesis.sim.arm.kinematics import ARM, accepted
 
 END_EFFECTOR = "hand"
 MOVED = franka.JOINT_NAMES[:ARM]

@@ -7,11 +7,13 @@ nothing. `parameters()` has the values that decide what runs; all other values o
 from dataclasses import asdict, replace
 from typing import Any
 
+from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, read_only
-from robo_genesis.lessons.experiment import inputs
 from robo_genesis.lessons.l06.run import World
-from robo_genesis.sim import franka
-from robo_genesis.sim.kinematics import IkSettings
+from robo_genesis.sim.arm import franka
+from robo_genesis.sim.arm.engine_kinematics import IkSettings
+
+MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
 

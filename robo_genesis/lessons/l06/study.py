@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core.experiment import Readings, counts
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Readings, counts
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.run import END_EFFECTOR, ask, reach, reset_some, start
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim.batch import set_link_mass
-from robo_genesis.sim.franka import JOINT_NAMES
-from robo_genesis.sim.joints import resolve_joints
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.batch import set_link_mass
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+from robo_genesis.sim.arm.joints import resolve_joints
 
 MIXED = {f"row_{k}_m": "m" for k in spec.ENVS}
 """Position residuals of a question with one target beyond reach."""

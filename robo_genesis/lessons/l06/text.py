@@ -5,13 +5,15 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core import tables
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, decimal, listed
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study
-from robo_genesis.sim import mujoco_kinematics
-from robo_genesis.sim.arm_kinematics import ARM
+from robo_genesis.sim.arm.kinematics import ARM
+from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+
+MEASURES = False
 
 SHOWN_TORQUES = (1, 3)
 """The joints with a torque in the table of variants: joint2 and joint4."""

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core.experiment import Readings, counts
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.experiment import Readings, counts
 from robo_genesis.sim import throughput as timing
-from robo_genesis.sim.arm_kinematics import ARM
-from robo_genesis.sim.franka import Q_START
-from robo_genesis.sim.joints import to_numpy
+from robo_genesis.sim.arm.franka import Q_START
+from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.throughput import Calls, Clock, calls_of
 
 GROUP, EQUAL = "throughput", "rows_that_differ"

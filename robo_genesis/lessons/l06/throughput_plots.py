@@ -6,11 +6,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator, ScalarFormatter
 
 from robo_genesis.core import plotting
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.plotting import look
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06.throughput import FITTED, GROUP
 from robo_genesis.lessons.l06.throughput_text import fitted, sizes
+
+MEASURES = False
 
 THEORY = look("target", linestyle=(0, (4, 2)), linewidth=1.6)
 MEASURED = look("first", linestyle="-", marker="o", markersize=4)

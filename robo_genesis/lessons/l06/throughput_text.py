@@ -4,11 +4,13 @@ They are correct for every outcome, because elapsed times are different in each 
 """
 
 from robo_genesis.core import tables
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT
 from robo_genesis.core.text import bullets
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06.throughput import FITTED, GROUP
 from robo_genesis.sim.throughput import Model, fit
+
+MEASURES = False
 
 
 def three(value: float, digits: int = 3) -> str:

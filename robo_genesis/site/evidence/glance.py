@@ -11,11 +11,11 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.built_pages import LAST_OUTPUTS
+from robo_genesis.core.declaration import Compared, Moving
 from robo_genesis.evidence.bundle import Predicate, read_manifest
 from robo_genesis.evidence.replay_data import read_runs
-from robo_genesis.lessons.declaration import Compared, Moving
-from robo_genesis.lessons.registry import COURSE_MARKS, compared_cases, filmed
+from robo_genesis.lessons import compared_cases, course_marks, filmed
+from robo_genesis.pipeline.pages.built import LAST_OUTPUTS
 from robo_genesis.site.evidence.ledger_data import Run
 from robo_genesis.site.evidence.measured import page_run
 from robo_genesis.site.evidence.panel import Picture, figure, frames
@@ -71,7 +71,7 @@ def response(folder: Path, compared: Compared | Moving) -> Picture:
     with plotting.course_style():
         drawing = plotting.figure(3.2)
         ax = drawing.subplots()
-        plotting.first_channel(ax, runs, COURSE_MARKS)
+        plotting.first_channel(ax, runs, course_marks())
         ax.set_xlim(0, compared.until)
         ends = [(values[0], values[-1]) for values in runs.channels[0].values.values()]
         fall = sum(last < first for first, last in ends) > len(ends) / 2

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.evidence.bundle import Predicate
-from robo_genesis.evidence.status import Status
+from robo_genesis.pipeline.bundles.status import Status
 
 ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)
 """The oldest time that a zip can hold: the same bundle always gives the same bytes."""

@@ -28,12 +28,11 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
-from robo_genesis.build.built_pages import built_pages, page_outputs
 from robo_genesis.core import project
 from robo_genesis.core.files import write_whole
 from robo_genesis.core.quantities import SCALED, format_value
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.status import (
+from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,
     Status,
     bundle_status,
@@ -41,6 +40,7 @@ from robo_genesis.evidence.status import (
     recorded_folders,
     recorded_status,
 )
+from robo_genesis.pipeline.pages.built import built_pages, page_outputs
 from robo_genesis.site.evidence.ledger_data import Run
 
 T = TypeVar("T")

@@ -17,6 +17,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
+from robo_genesis.core.declaration import Compared, Filmed, Moving
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import listed
 from robo_genesis.evidence import bundle
@@ -24,8 +25,7 @@ from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison, compare, specification
 from robo_genesis.evidence.findings import DIFFERS
 from robo_genesis.evidence.replay_data import read_runs
-from robo_genesis.lessons.declaration import Compared, Filmed, Moving
-from robo_genesis.lessons.registry import COURSE_MARKS, compared_cases, filmed, find_lesson
+from robo_genesis.lessons import compared_cases, course_marks, filmed, find_lesson
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import Run
 from robo_genesis.site.evidence.measured import BACKEND, READABLE
@@ -152,7 +152,7 @@ def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture
         axes = drawing.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
         for ax, drawn in zip(axes, runs.channels, strict=True):
             levels = runs.levels_of(drawn)
-            plotting.channel(ax, runs.t, drawn, runs.subject, COURSE_MARKS, levels)
+            plotting.channel(ax, runs.t, drawn, runs.subject, course_marks(), levels)
             ax.label_outer()
         drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     names = listed([channel.name for channel in runs.channels])

@@ -19,9 +19,9 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util import logging
 
-from robo_genesis.build.built_pages import executed_notebook
-from robo_genesis.build.shown import marked
-from robo_genesis.lessons.book_pages import find_pages
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.bound import marked
+from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
 from robo_genesis.site.evidence.ledger_data import MEASURED, Item, Run

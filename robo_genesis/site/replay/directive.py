@@ -19,13 +19,13 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.build.built_pages import page_outputs
 from robo_genesis.core import project
 from robo_genesis.core.channels import Runs
 from robo_genesis.core.files import derived
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
-from robo_genesis.lessons.registry import drawn_cases
+from robo_genesis.lessons import drawn_cases
+from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.case_labels import labelled
 from robo_genesis.site.evidence.ledger import scroll_box

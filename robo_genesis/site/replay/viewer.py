@@ -8,8 +8,8 @@ from pathlib import Path
 
 from sphinx.application import Sphinx
 
-from robo_genesis.build import npm
-from robo_genesis.build.site.scripts import VIEWER
+from robo_genesis.pipeline import npm
+from robo_genesis.pipeline.html.scripts import VIEWER
 from robo_genesis.site.page_files import REPLAYS
 
 FOLDER = REPLAYS

@@ -14,10 +14,10 @@ from sphinx.config import Config
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
-from robo_genesis.build.built_pages import executed_notebook, page_outputs
 from robo_genesis.core.project import solutions_shown
 from robo_genesis.evidence import bundle
-from robo_genesis.lessons.book_pages import Page, find_pages
+from robo_genesis.pipeline.pages.book import Page, find_pages
+from robo_genesis.pipeline.pages.built import executed_notebook, page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.page_files import TAKEAWAYS, note_files
 from robo_genesis.site.takeaways.files import Takeaways, run_commands, system, write_takeaways

@@ -19,8 +19,8 @@ from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Variable
 from robo_genesis.evidence.trace_files import fields_of, read_any_trace
-from robo_genesis.lessons.book_pages import Page
-from robo_genesis.lessons.sources import import_closure
+from robo_genesis.pipeline.pages.book import Page
+from robo_genesis.pipeline.pages.sources import import_closure
 from robo_genesis.site.takeaways.notebooks import (
     Course,
     Origin,

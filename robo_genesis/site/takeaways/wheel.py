@@ -9,9 +9,9 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from robo_genesis.build.command import end_with_parent
 from robo_genesis.core.files import derived
 from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.pipeline.command import end_with_parent
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
 PACKAGE = "robo_genesis"

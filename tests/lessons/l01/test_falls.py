@@ -10,12 +10,12 @@ from lessons.body_runs import body_run, make_drop
 from lessons.lesson_bundles import differing_outputs, in_archive, metric, refused
 from spoilers import seal
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.project import BOOK
 from robo_genesis.evidence.compare import compare
-from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l01 import LAB, LECTURE, machine, spec
 from robo_genesis.lessons.l01.metrics import fall_metrics
+from robo_genesis.pipeline.bundles.verify import verify_bundle
 
 CASE = spec.BASELINE
 TIMES = {f"{start}_{part}": 0.5 for start in machine.STARTS for part in machine.PARTS}
@@ -101,8 +101,8 @@ def test_a_spoiled_bundle_is_refused(sound, tmp_path, code, spoil):
 @pytest.mark.engine
 def test_the_lab_passes_its_checks_and_falls_twice_the_same(real_engine):
     from robo_genesis.core import checks
-    from robo_genesis.sim import rigid_bodies
-    from robo_genesis.sim.camera import capture
+    from robo_genesis.sim.bodies import rigid_bodies
+    from robo_genesis.sim.camera.frames import capture
 
     gs = real_engine.gs
     scene = gs.Scene(

@@ -22,15 +22,15 @@ from lessons.lesson_bundles import (
 )  # fmt: skip
 from spoilers import predicate
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.project import BOOK
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace, read_run, read_trace
-from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02 import LECTURE, checks, life_cycle, spec
+from robo_genesis.pipeline.bundles.verify import verify_bundle
 
 
 @pytest.fixture(scope="module")

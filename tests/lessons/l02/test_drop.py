@@ -9,17 +9,17 @@ from lessons.body_runs import make_drop
 
 from robo_genesis.core import tables
 from robo_genesis.core.checks import evaluate, require
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.free_fall import (
     ahead_of_continuous,
     continuous_drop,
     stepped_drop,
     summed_drop,
 )
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l02 import LAB, LECTURE, plots, spec, study, text
 from robo_genesis.lessons.l02.metrics import drop_metrics
-from robo_genesis.sim.falls import fallen
-from robo_genesis.sim.rigid_bodies import Drop, DropError, run_drop
+from robo_genesis.sim.bodies.falls import fallen
+from robo_genesis.sim.bodies.rigid_bodies import Drop, DropError, run_drop
 
 ALL_CASES = spec.CASES | spec.SUBSTEP_CASES
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from robo_genesis.core import checks
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l02 import LAB, life_cycle, spec
-from robo_genesis.sim import rigid_bodies
-from robo_genesis.sim.camera import capture
+from robo_genesis.sim.bodies import rigid_bodies
+from robo_genesis.sim.camera.frames import capture
 
 pytestmark = pytest.mark.engine
 

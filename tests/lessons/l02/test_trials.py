@@ -10,8 +10,8 @@ from lessons.body_runs import make_drop
 from lessons.l02.readings import COUNTS, TRIALS
 
 from robo_genesis.core.project import BOOK
-from robo_genesis.lessons.book_pages import find_pages
 from robo_genesis.lessons.l02 import LECTURE, plots, spec, text, trials
+from robo_genesis.pipeline.pages.book import find_pages
 
 
 def geom(faces):

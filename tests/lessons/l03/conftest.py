@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from lessons.body_runs import slide_on_corners
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l03 import LESSON, spec, study, study_spec, theory
-from robo_genesis.sim import contacts, mujoco_contacts
-from robo_genesis.sim.contacts import ContactCase
+from robo_genesis.sim.bodies import contacts
+from robo_genesis.sim.bodies.contacts import ContactCase
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 MASSES = {"cube": spec.BASELINE.mass, "ball": spec.DROPPED_BALL.mass}
 SECONDS = {name: theory.contact_seconds(study.case_of(name)) for name in study.ROWS}

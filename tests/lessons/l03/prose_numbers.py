@@ -4,7 +4,8 @@ import numpy as np
 
 from robo_genesis.lessons.l03 import spec, study_spec
 from robo_genesis.lessons.l03.metrics import CLEAR, STOP_HOLD, STOP_SPEED
-from robo_genesis.sim import contacts, mujoco_contacts
+from robo_genesis.sim.bodies import contacts
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 LOW, HIGH = spec.PUSHED.friction, spec.PUSHED.surface_friction
 CONFIGURED = {

@@ -24,8 +24,8 @@ from robo_genesis.core.trace import ContactTrace
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace
-from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.l03 import LESSON, spec, study_spec
+from robo_genesis.pipeline.bundles.verify import verify_bundle
 
 
 @pytest.fixture(scope="module")

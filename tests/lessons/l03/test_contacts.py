@@ -11,8 +11,8 @@ from matplotlib.text import Text
 
 from robo_genesis.core import plotting
 from robo_genesis.core.checks import require
+from robo_genesis.core.experiment import Experiment, Run
 from robo_genesis.core.trace import ContactTrace, TraceError
-from robo_genesis.lessons.experiment import Experiment, Run
 from robo_genesis.lessons.l03 import LAB, energy, friction, plots, spec, study_spec, tables, text
 from robo_genesis.lessons.l03.metrics import (
     bounce_metrics,
@@ -21,8 +21,8 @@ from robo_genesis.lessons.l03.metrics import (
     slide_metrics,
     stopped_at,
 )
-from robo_genesis.sim import contacts
-from robo_genesis.sim.contacts import TOP, ContactError
+from robo_genesis.sim.bodies import contacts
+from robo_genesis.sim.bodies.contacts import TOP, ContactError
 
 THREE = ("bounce_sub1", "bounce_sub2", "bounce_sub100")
 

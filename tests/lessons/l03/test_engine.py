@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from robo_genesis.lessons.l03 import spec
-from robo_genesis.sim import contacts, mujoco_contacts, visual_shape
+from robo_genesis.sim import visual_shape
+from robo_genesis.sim.bodies import contacts
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 pytestmark = pytest.mark.engine
 FIELDS = ("link_pos", "link_quat", "link_vel", "link_ang", "contacts", "penetration")

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from robo_genesis.lessons.l03 import spec
-from robo_genesis.sim import mujoco_contacts
-from robo_genesis.sim.plausibility.bodies import (
+from robo_genesis.sim.bodies.continuation import NEXT, by_mujoco, cross, level, up_and_down
+from robo_genesis.sim.bodies.laws import (
     depths_before_last_step,
     never_still,
     reported_contacts,
 )
-from robo_genesis.sim.plausibility.continuation import NEXT, by_mujoco, cross, level, up_and_down
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 AT_REST = mujoco_contacts.run_case(replace(spec.BASELINE, start=(0, 0, 0.765), duration=0.1))
 

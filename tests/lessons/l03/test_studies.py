@@ -19,7 +19,7 @@ from robo_genesis.lessons.l03 import (
     study_text,
     theory,
 )  # fmt: skip
-from robo_genesis.sim import mujoco_contacts
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 PAGES = ("lecture", "contact", "energy", "mistakes")
 

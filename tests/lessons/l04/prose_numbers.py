@@ -1,7 +1,7 @@
 """The decimal numbers that prose of L04 may hold: configured inputs."""
 
 from robo_genesis.lessons.l04 import metrics, spec, study_spec
-from robo_genesis.sim.franka import Q_START
+from robo_genesis.sim.arm.franka import Q_START
 
 CONFIGURED = {
     "window [s]": spec.WINDOW,

@@ -12,8 +12,8 @@ from bs4 import BeautifulSoup
 from matplotlib.figure import Figure
 
 from robo_genesis.core.checks import evaluate
+from robo_genesis.core.experiment import Run
 from robo_genesis.core.quantities import format_value
-from robo_genesis.lessons.experiment import Run
 from robo_genesis.lessons.l04 import (
     LECTURE,
     explorer,
@@ -23,7 +23,7 @@ from robo_genesis.lessons.l04 import (
     study_spec,
 )
 from robo_genesis.lessons.l04.study_spec import POINTS, GridPoint
-from robo_genesis.sim.franka import JOINT_NAMES
+from robo_genesis.sim.arm.franka import JOINT_NAMES
 
 K = JOINT_NAMES.index(spec.STEPPED_JOINT)
 G2 = study_spec.CASE_POINTS["G2"]

@@ -6,8 +6,8 @@ from lessons.changed_runs import with_trace
 from lessons.lesson_bundles import differing_outputs
 
 from robo_genesis.core.checks import Check, CheckFailed, require
+from robo_genesis.core.experiment import runs_of
 from robo_genesis.core.project import BOOK
-from robo_genesis.lessons.experiment import runs_of
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.checks import CHECKS
 

@@ -5,26 +5,27 @@ import pytest
 from bundles import name_code
 
 from robo_genesis.core import project
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.trace import Trace
 from robo_genesis.evidence.bundle import read_arrays
-from robo_genesis.evidence.evidence_key import page_code
 from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.evidence.trace_files import read_trace
-from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import LAB, spec
+from robo_genesis.pipeline.bundles.keys import page_code
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.pipeline.pages.sources import running_modules
 from robo_genesis.sim import session
-from robo_genesis.sim.camera import capture, read_renderer
-from robo_genesis.sim.franka import JOINT_NAMES, LINK_PARENTS
-from robo_genesis.sim.joint_control import CaseError, reset, run_case
-from robo_genesis.sim.joints import (
+from robo_genesis.sim.arm.franka import JOINT_NAMES, LINK_PARENTS
+from robo_genesis.sim.arm.joint_control import CaseError, reset, run_case
+from robo_genesis.sim.arm.joints import (
     JointError,
     link_parents,
     one_dof_joint,
     resolve_joints,
     to_numpy,
 )
+from robo_genesis.sim.camera.frames import capture, read_renderer
 
 pytestmark = pytest.mark.engine
 
@@ -53,7 +54,7 @@ def bundle_folder(lab, measured_run):
     with pytest.MonkeyPatch.context() as patch:
         patch.delenv("ROBO_GENESIS_RUN_ID", raising=False)
         name_code(patch, "l04", "lab")
-        recorder = Recorder("l04", "lab", lab.contract, lab.engine)
+        recorder = Recorder("l04", "lab", lab.contract, lab.engine, running_modules("l04"))
         return recorder.write(measured_run, read_renderer(lab.scene))
 
 

@@ -8,10 +8,10 @@ import pytest
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import step_metrics
-from robo_genesis.sim.batch import run_batch
-from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joint_control import CaseError, run_case
-from robo_genesis.sim.joints import resolve_joints
+from robo_genesis.sim.arm.batch import run_batch
+from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import CaseError, run_case
+from robo_genesis.sim.arm.joints import resolve_joints
 
 pytestmark = pytest.mark.engine
 

@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 from lessons.l04.conftest import LINKS
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l04 import LECTURE, spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import step_metrics
 from robo_genesis.lessons.l04.theory import overshoot_share, step_share
-from robo_genesis.sim import dynamics, mujoco_joints
-from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES, Q_START
-from robo_genesis.sim.joint_control import run_case
-from robo_genesis.sim.joints import resolve_joints
+from robo_genesis.sim.arm import dynamics
+from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES, Q_START
+from robo_genesis.sim.arm.joint_control import run_case
+from robo_genesis.sim.arm.joints import resolve_joints
+from robo_genesis.sim.mujoco import joints as mujoco_joints
 
 pytestmark = pytest.mark.engine
 

@@ -11,8 +11,8 @@ from robo_genesis.core.mistakes import Failure
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l04 import mistakes, spec
 from robo_genesis.lessons.l04.backend_mistake import absent_backend, absent_backend_failure
-from robo_genesis.sim.franka import FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.joints import resolve_joints
+from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.arm.joints import resolve_joints
 
 JOINT = spec.STEPPED_JOINT
 STAY = replace(spec.BASELINE, q_target=spec.BASELINE.q_start)

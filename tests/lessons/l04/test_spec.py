@@ -9,9 +9,9 @@ import pytest
 
 from robo_genesis.core import project
 from robo_genesis.lessons.l04 import spec, study_spec
-from robo_genesis.lessons.sources import measuring_modules
-from robo_genesis.sim.franka import EFFORT_LIMIT, JOINT_NAMES, Q_START, per_joint
-from robo_genesis.sim.joint_control import ControlCase
+from robo_genesis.pipeline.pages.sources import measuring_modules
+from robo_genesis.sim.arm.franka import EFFORT_LIMIT, JOINT_NAMES, Q_START, per_joint
+from robo_genesis.sim.arm.joint_control import ControlCase
 
 PACKAGE = Path(spec.__file__).parents[2]
 ENTRY = JOINT_NAMES.index("joint4")

@@ -21,8 +21,8 @@ from robo_genesis.lessons.l04 import (
 )  # fmt: skip
 from robo_genesis.lessons.l04.metrics import step_metrics
 from robo_genesis.lessons.l04.theory import IdealJoint, Parting
-from robo_genesis.sim import mujoco_joints
-from robo_genesis.sim.franka import JOINT_NAMES, Q_START
+from robo_genesis.sim.arm.franka import JOINT_NAMES, Q_START
+from robo_genesis.sim.mujoco import joints as mujoco_joints
 
 K = spec.ENTRY
 

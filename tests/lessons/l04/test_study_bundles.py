@@ -15,8 +15,8 @@ from spoilers import edit, seal
 from robo_genesis.core.shown import ShownError
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare
-from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.l04 import LESSON, spec, study_spec
+from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.site.explorer import explorer_html
 
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from robot_runs import driven
 
-from robo_genesis.lessons.experiment import Experiment
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05 import SOLUTIONS, restarts, spec
 from robo_genesis.lessons.l05.run import control_case
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim import mujoco_kinematics
-from robo_genesis.sim.franka import Q_START
-from robo_genesis.sim.joint_control import assemble
-from robo_genesis.sim.kinematics import IkAnswer
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.engine_kinematics import IkAnswer
+from robo_genesis.sim.arm.franka import Q_START
+from robo_genesis.sim.arm.joint_control import assemble
+from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
 DOWN = kinematics.Pose(spec.TARGET, spec.DOWN)

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from lessons.changed_runs import failed, with_reading, with_trace
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.refusals import BundleRefused
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l05 import plausibility, restarts, spec, study
 from robo_genesis.lessons.l05.metrics import reach_metrics
 from robo_genesis.lessons.l05.run import NotAccepted, control_case
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim.arm_kinematics import HAND
-from robo_genesis.sim.kinematics import IkAnswer
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.engine_kinematics import IkAnswer
+from robo_genesis.sim.arm.kinematics import HAND
 
 
 def moved_hand(run, name, by):

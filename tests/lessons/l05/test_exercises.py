@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from robo_genesis.lessons.l05 import exercises
-from robo_genesis.sim import arm_kinematics as of
-from robo_genesis.sim import camera_geometry as cameras
+from robo_genesis.sim.arm import kinematics as of
+from robo_genesis.sim.camera import geometry as cameras
 
 
 def forward(q, links, multiply=of.quat_multiply, turned=of.rotate, angle=1.0, fixed_last=True):

@@ -11,11 +11,11 @@ from lessons.lesson_bundles import in_archive, in_json, metric, refused
 
 from robo_genesis.core.checks import evaluate
 from robo_genesis.core.scene import CAMERA_RES, FRAME_SHAPE
-from robo_genesis.evidence.verify import verify_bundle
-from robo_genesis.lessons import view_record
 from robo_genesis.lessons.l05 import LAB, checks, plots, spec, text
 from robo_genesis.lessons.l05.claims_text import CLAIMS
-from robo_genesis.sim.camera_checks import Marker
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.sim.camera import record as view_record
+from robo_genesis.sim.camera.checks import Marker
 
 SPHERE = Marker(13, spec.TARGET, spec.MARKER_RADIUS)
 

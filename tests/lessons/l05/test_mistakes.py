@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.lessons.l05 import mistakes, spec
-from robo_genesis.sim.camera_geometry import extrinsics, intrinsics
+from robo_genesis.sim.camera.geometry import extrinsics, intrinsics
 
 CASE = spec.BASELINE
 BEYOND = replace(CASE, position=spec.BEYOND_REACH)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from robot_runs import driven
 
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.experiment import Experiment
 from robo_genesis.lessons.l06 import LECTURE, checks, spec, study
 from robo_genesis.lessons.l06.run import World
-from robo_genesis.sim import arm_kinematics as kinematics
-from robo_genesis.sim.franka import JOINT_NAMES
-from robo_genesis.sim.mujoco_kinematics import bare_robot, gravity_effort
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+from robo_genesis.sim.mujoco.kinematics import bare_robot, gravity_effort
 
 LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
 ROUNDING = np.float32(1.2e-7)

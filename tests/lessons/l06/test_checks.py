@@ -10,8 +10,8 @@ from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.lessons.l06 import plausibility, spec
 from robo_genesis.lessons.l06.metrics import world_metrics
 from robo_genesis.lessons.l06.run import NotAccepted, commands
-from robo_genesis.sim.arm_kinematics import HAND
-from robo_genesis.sim.kinematics import IkAnswer
+from robo_genesis.sim.arm.engine_kinematics import IkAnswer
+from robo_genesis.sim.arm.kinematics import HAND
 
 PLAIN, STIFF, LOADED, _ = spec.VARIANTS
 

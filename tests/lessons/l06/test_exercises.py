@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.lessons.l06 import exercises
-from robo_genesis.sim import arm_kinematics as of
+from robo_genesis.sim.arm import kinematics as of
 
 
 def checked(robot, dofs, q, envs, known=range(4), axes=2, twice=False):

@@ -10,9 +10,9 @@ from lessons.exercise_cells import require_exercise, solutions
 from lessons.lesson_bundles import in_archive, metric, refused
 
 from robo_genesis.core.palette import MARKS
-from robo_genesis.evidence.verify import verify_bundle
 from robo_genesis.lessons.l06 import LECTURE, exercises, plots, spec, study, target_parts, text
-from robo_genesis.sim.arm_kinematics import HAND
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.sim.arm.kinematics import HAND
 
 
 @pytest.fixture(scope="module", params=[True, False], ids=["camera", "RENDER=0"])

@@ -1,1 +1,0 @@
-"""The stages of `make book`, and what executes, checks and publishes pages."""

@@ -1,1 +1,0 @@
-"""The site of a build: rendered, packed, checked, published and served."""

@@ -1,0 +1,148 @@
+"""The evidence key of the current checkout, and whether a bundle still has it."""
+
+import json
+import os
+import re
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import Any
+
+from robo_genesis.core import project
+from robo_genesis.core.files import derived
+from robo_genesis.core.project import PUBLISHED
+from robo_genesis.core.refusals import BundleRefused, expect, shown
+from robo_genesis.core.scene import SEED
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.strict_json import differences
+from robo_genesis.lessons import find_page
+from robo_genesis.pipeline.pages import sources, syntax
+from robo_genesis.sim import session
+
+
+def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
+    """Return the fields that `bundle.evidence_key` covers, with the values of a checkout.
+
+    Args:
+        lesson: as the front matter of the page declares it.
+        page: likewise.
+        root: the checkout, for pin, lock and modules.
+        book: the folder of the pages.
+
+    Raises:
+        BundleRefused: `lesson`, the book has no such page.
+    """
+    try:
+        measuring = find_page(lesson, page)
+    except LookupError as error:
+        raise BundleRefused("lesson", f"manifest.json: {error}") from error
+    digest, imports = page_code(lesson, page, book)
+    return {
+        "schema_version": bundle.SCHEMA_VERSION,
+        "lesson": lesson,
+        "page": page,
+        "engine": {
+            "version": project.engine_pin(root),
+            "quadrants_version": locked_version("quadrants", root),
+            "precision": session.PRECISION,
+        },
+        "seed": SEED,
+        "parameters": json.loads(json.dumps(measuring.parameters())),
+        "source": {
+            "page": digest,
+            "modules": sources.measuring_modules(lesson, imports, root),
+        },
+    }
+
+
+def locked_version(package: str, root: Path) -> str:
+    """Return the version of a package in requirements.lock.
+
+    Raises:
+        ProjectError: the lock does not pin it exactly once.
+    """
+    lock = root / "requirements.lock"
+    found = re.findall(rf"^{re.escape(package)}==(\S+)", lock.read_text("utf8"), re.MULTILINE)
+    if len(found) != 1:
+        raise project.ProjectError(
+            f"{lock} pins {package} to {found or 'nothing'}, expected one version. "
+            "`make lock` writes it again."
+        )
+    return str(found[0])
+
+
+def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:
+    """Return the digest of the code cells of a page in the book, and what they import.
+
+    Raises:
+        BundleRefused: `lesson`, the book has no such page.
+    """
+    files = _page_files(book)
+    versions = tuple((str(path), path.stat().st_mtime_ns, path.stat().st_size) for path in files)
+    found = _page_codes(book, versions)
+    if (lesson, page) not in found:
+        wanted, pages = f"{lesson}/{page}", " or ".join(sorted(map("/".join, found)))
+        remedy = "Put the bundle into the folder of its own lesson."
+        expect("lesson", "manifest.json", "lesson and page", wanted, pages, remedy)
+    return found[lesson, page]
+
+
+def _page_files(book: Path) -> list[Path]:
+    """Return the table of contents and every file that may be a page, also in linked folders."""
+    pages: list[str] = []
+    for here, folders, files in os.walk(book, followlinks=True):
+        skipped = PUBLISHED if here == os.fspath(book) else None
+        folders[:] = [name for name in folders if name[0] != "." and name != skipped]
+        pages += (os.path.join(here, n) for n in files if n.endswith(".md") and n[0] != ".")
+    return [*book.glob("_toc.yml"), *map(Path, sorted(pages))]
+
+
+@lru_cache(maxsize=8)
+def _page_codes(
+    book: Path, versions: tuple[Any, ...]
+) -> dict[tuple[str, str], tuple[str, list[str]]]:
+    """Return digest and imports by lesson and page; read again if `versions` changed."""
+    files = _page_files(book)
+    inputs = [path.relative_to(book).as_posix().encode() for path in files]
+    readers = [Path(syntax.__file__).with_name("book.py"), Path(syntax.__file__)]
+    inputs += [path.read_bytes() for path in (*files, *readers)]
+    listed = derived("page-code", inputs, partial(_read_codes, book))
+    return {(lesson, page): (digest, names) for lesson, page, digest, names in json.loads(listed)}
+
+
+def _read_codes(book: Path) -> bytes:
+    """Return lesson, page, digest and imports of each page that declares a bundle, as JSON.
+
+    The reader of pages is imported here, because MyST-NB and Jupyter take longer to load than a
+    whole verification.
+    """
+    from robo_genesis.pipeline.pages import book as pages
+
+    found = [page for page in pages.find_pages(book) if page.declares_bundle]
+    codes = [
+        (p.lesson, p.page, pages.code_digest(p), syntax.imports_of(pages.cell_sources(p)))
+        for p in found
+    ]
+    return json.dumps(codes).encode()
+
+
+def check_current(manifest: bundle.Manifest, root: Path, book: Path) -> None:
+    """Require that a bundle has the evidence key of the checkout.
+
+    Raises:
+        BundleRefused: `stale`, with everything that differs; `lesson`.
+    """
+    predicate = manifest.predicate.model_dump()
+    expected = question(predicate["lesson"], predicate["page"], root, book)
+    if predicate["evidence_key"] == bundle.evidence_key(expected):
+        return
+    found = {name: predicate[name] for name in expected}
+    found["engine"] = {name: found["engine"][name] for name in expected["engine"]}
+    changed = [
+        f"{path} is {shown(here)}, expected {shown(there)}"
+        for path, here, there in differences(found, expected)
+    ]
+    raise BundleRefused(
+        "stale",
+        f"manifest.json: {'; '.join(changed) or 'evidence_key differs'}. The bundle answers an "
+        f"older question. Record it again: `make evidence LESSON={predicate['lesson']}`.",
+    )

@@ -1,0 +1,86 @@
+"""The verification stage: each bundle of a build is accepted, and its page shows what it holds."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from robo_genesis.core.files import derived
+from robo_genesis.core.project import BACKEND, RENDER, environment_contract
+from robo_genesis.core.refusals import BundleRefused, expect
+from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.lessons import find_page
+from robo_genesis.pipeline.command import Progress
+from robo_genesis.pipeline.pages import bound as shown
+from robo_genesis.pipeline.pages.folder import RECORD, stored_notebook
+from robo_genesis.pipeline.pages.results import PageResult
+from robo_genesis.pipeline.pages.sources import import_closure
+from robo_genesis.pipeline.pages.store import Verify
+
+
+def verify_results(
+    verify: Verify, results: Sequence[PageResult], progress: Progress
+) -> tuple[dict[str, Any], list[str]]:
+    """Verify the bundles of a build, and compare what the pages show with them.
+
+    Args:
+        verify: verifies one bundle.
+        results: of all executed pages, of which none failed.
+        progress: prints a line for each accepted bundle.
+
+    Returns:
+        The accepted manifests by page name, and a line for each refused bundle.
+    """
+    contract = environment_contract()
+    manifests: dict[str, Any] = {}
+    refused: list[str] = []
+    for result in results:
+        if result.bundle is None:
+            continue
+        try:
+            manifest = verify(result.bundle, result.run_id)
+            require_contract(manifest.predicate, contract)
+            compared = outputs_compared(result, manifest)
+            manifests[result.page.docname] = manifest
+            progress("verify", result.page.docname, f"accepted, {compared} outputs compared")
+        except BundleRefused as error:
+            refused.append(f"{result.page.docname}: the bundle {result.bundle} is refused: {error}")
+    return manifests, refused
+
+
+def outputs_compared(result: PageResult, manifest: Manifest) -> str:
+    """Compare the outputs of a page with its bundle, and return their number.
+
+    A page is compared once: the result is kept for the record of its files with their digests, and
+    for the code that compares.
+
+    Raises:
+        BundleRefused: `shown`.
+    """
+    folder, bundle = result.folder, result.bundle
+    assert folder is not None  # the page did not fail
+    assert bundle is not None
+    record = (folder / RECORD).read_bytes()
+    code = [path.read_bytes() for path in import_closure([shown.__name__]).values()]
+
+    def compare() -> bytes:
+        notebook = stored_notebook(result)
+        return str(shown.require_shown(result.page, notebook, bundle, manifest)).encode()
+
+    return derived("shown", [record, *code], compare, folder.parents[2]).decode()
+
+
+def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:
+    """Raise BundleRefused if a bundle's backend or camera is not the requested one.
+
+    A page that declares no camera must have none.
+
+    Args:
+        predicate: the predicate of the bundle's manifest.
+        contract: the variables that requested it.
+    """
+    remedy = "Write gs.init(backend=rg.backend(), ...), and a camera where page.render is true."
+    backend, render = contract[BACKEND], contract[RENDER]
+    camera = render == "1" and find_page(predicate.lesson, predicate.page).camera
+    mode = "camera" if camera else "skip"
+    found = predicate.backend.requested
+    expect("backend", "manifest.json", "backend.requested", found, backend, remedy)
+    expect("frames", "manifest.json", "render.mode", predicate.render.mode, mode, remedy)

@@ -1,0 +1,156 @@
+"""Accept or refuse a bundle: whatever can be recomputed from its arrays is recomputed."""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from functools import lru_cache, partial
+from pathlib import Path
+
+from robo_genesis.core import project
+from robo_genesis.core.checks import Check, Value
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.files import derived
+from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, shown
+from robo_genesis.evidence import bundle, bundle_files, manifest_rules
+from robo_genesis.evidence.bundle import Manifest, Metric
+from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.evidence.strict_json import differences
+from robo_genesis.pipeline.bundles import keys as evidence_key
+
+SAME_FLOAT = 1e-9
+"""Relative tolerance of a recorded value of a check against the recomputed one."""
+
+ROUNDING = 1e-12
+"""Tolerance of such a value near zero, in its own unit."""
+
+
+def verify_bundle(
+    folder: Path,
+    run_id: str | None = None,
+    *,
+    lesson: str | None = None,
+    page: str | None = None,
+    root: Path = project.ROOT,
+    book: Path = project.BOOK,
+    once: bool = False,
+) -> Manifest:
+    """Check one bundle against its files, the checkout and the pin.
+
+    Damaged and false bundles are refused before `stale`, so that a stale bundle is sound.
+
+    Args:
+        folder: the bundle, named after its actual backend.
+        run_id: the required run, None for any.
+        lesson: the required lesson, None for any.
+        page: the required page, None for any.
+        root: the checkout, for pin, lock and modules.
+        book: the folder of the pages.
+        once: whether metrics and checks are not computed again if they were accepted before, with
+            the same files of the bundle and the same code of the course. All other rules apply each
+            time, and a refusal is not kept.
+
+    Returns:
+        The accepted manifest; its checks have today's verdicts.
+
+    Raises:
+        BundleRefused: with a code, and a message that names the found and the expected value.
+        ProjectError, PageError: the checkout itself cannot be read.
+    """
+    present = bundle_files.scan(folder)
+    manifest = bundle.read_manifest(folder)
+    manifest_rules.check_identity(manifest, run_id, lesson, page)
+    bundle_files.check_files(folder, present, manifest)
+    manifest_rules.check_backend(folder, manifest)
+    manifest_rules.check_environment(manifest)
+    manifest_rules.check_render(manifest)
+    manifest_rules.check_log(folder, manifest, root)
+    manifest_rules.check_engine_files(manifest)
+    evidence_key.check_current(manifest, root, book)
+    if once:
+        contents = [(folder / name).read_bytes() for name in sorted(present)]
+        inputs = [json.dumps(sorted(present)).encode(), *contents, _code()]
+        derived("accepted", inputs, partial(_recompute, folder, manifest))
+    else:
+        _recompute(folder, manifest)
+    return as_judged_today(manifest)
+
+
+def _recompute(folder: Path, manifest: Manifest) -> bytes:
+    """Compute metrics and checks again from the arrays of a bundle.
+
+    Raises:
+        BundleRefused: see `verify_bundle`.
+    """
+    metrics = bundle.read_metrics(folder)
+    experiment = from_bundle(folder, manifest, metrics)
+    check_metrics(metrics, experiment)
+    check_outcomes(manifest, experiment.outcomes())
+    return b"accepted"
+
+
+@lru_cache(maxsize=1)
+def _code() -> bytes:
+    """Return the whole code of the course."""
+    files = sorted((project.ROOT / "robo_genesis").rglob("*.py"))
+    return b"\0".join(path.read_bytes() for path in files)
+
+
+def check_metrics(recorded: Mapping[str, Mapping[str, Metric]], experiment: Experiment) -> None:
+    """Require that metrics.json has the values, units, classes and sources of the runs.
+
+    Raises:
+        BundleRefused: `bad-trace` if the arrays of a run give no metrics; `metrics`.
+    """
+    found = {
+        group: {name: metric.model_dump(by_alias=True) for name, metric in metrics.items()}
+        for group, metrics in recorded.items()
+    }
+    try:
+        expected = experiment.records()
+    except (LookupError, ValueError, ArithmeticError) as error:
+        raise BundleRefused("bad-trace", f"arrays: {error} {AGAIN}") from error
+    for name, here, there in differences(found, expected):
+        expect("metrics", "metrics.json", name, here, there)
+
+
+def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:
+    """Require that the checks found what is recorded, and that all pass by today's judgement.
+
+    The recorded verdicts are not used, so a changed tolerance leaves a bundle current.
+
+    Raises:
+        BundleRefused: `checks` if names or found values differ; `failed` if a check fails.
+    """
+    recorded, file = manifest.predicate.checks, "manifest.json"
+    names = [check.name for check in outcomes]
+    expect("checks", file, "list of checks", [check.name for check in recorded], names)
+    for check, computed in zip(recorded, outcomes, strict=True):
+        for label in sorted(check.found.keys() | computed.found.keys()):
+            here, there = (of.get(label, "absent") for of in (check.found, computed.found))
+            if not agree(here, there):
+                what = f"{label}, found by check {check.name},"
+                values = f"{what} is {shown(here)}, expected {shown(there)}"
+                raise BundleRefused("checks", f"{file}: {values}. {AGAIN}")
+    failed = [f"[{check.name}] {check.detail}" for check in outcomes if not check.passed]
+    if failed:
+        raise BundleRefused(
+            "failed",
+            f"{file}: failed checks {' '.join(failed)}, expected none. Correct the lesson or "
+            "report the cause to the engine's developers, then record the bundle again.",
+        )
+
+
+def as_judged_today(manifest: Manifest) -> Manifest:
+    """Return an accepted manifest with the verdicts of `check_outcomes`: every check passed."""
+    predicate = manifest.predicate
+    passed = [check.model_copy(update={"passed": True}) for check in predicate.checks]
+    return manifest.model_copy(
+        update={"predicate": predicate.model_copy(update={"checks": passed})}
+    )
+
+
+def agree(recorded: Value, computed: Value) -> bool:
+    """Return whether two found values are equal; floats may differ by rounding on another CPU."""
+    if isinstance(recorded, float) and isinstance(computed, float):
+        return math.isclose(recorded, computed, rel_tol=SAME_FLOAT, abs_tol=ROUNDING)
+    return type(recorded) is type(computed) and recorded == computed

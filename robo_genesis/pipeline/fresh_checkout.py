@@ -1,0 +1,145 @@
+"""`make book RELEASE=1`: the build runs in a fresh checkout of HEAD, with caches of its own.
+
+The fresh checkout gets the commit's objects through git's own transfer, which computes their names
+again, and nothing else: no file that the user's checkout or its index hides or changes, no
+configuration of git, no bytecode, nothing of `.cache` except what the engine compiled. Compiling
+takes minutes, and a test requires equal arrays from reused and from new kernels.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from robo_genesis.core.files import locked
+from robo_genesis.core.git import git, unclean, without_git
+from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.pipeline.command import end_with_parent
+from robo_genesis.pipeline.pages.kernels import (
+    ALLOWED,
+    MACHINE,
+    interrupts_blocked,
+    kill_with_descendants,
+)
+
+FOLDER = "release"
+"""The fresh checkout in the folder of the caches. It stays if the release fails, with its log."""
+
+SETTINGS = ("RENDER", "JOBS", "SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "ROBO_GENESIS_BACKEND")
+NETWORK = ("HTTP_PROXY", "HTTPS_PROXY", "NO_PROXY", "NODE_EXTRA_CA_CERTS")
+"""What npm needs to fetch the locked packages; it compares them with the lock."""
+
+GIT_CONFIG = """\
+[safe]
+directory = *
+[core]
+attributesFile = /dev/null
+excludesFile = /dev/null
+autocrlf = false
+"""
+"""The whole configuration of the git that makes the checkout. A container's user may differ from
+the owner of the checkout, which git would refuse."""
+
+
+def release(
+    arguments: Sequence[str], cache: Path, root: Path = ROOT, executed: Path | None = None
+) -> int:
+    """Build the last commit in a fresh checkout, and return the exit status of its build.
+
+    Args:
+        arguments: of `build_scripts/book.py` there.
+        cache: the folder of the caches.
+        root: the checkout whose HEAD is built.
+        executed: the folder of pages that other machines executed at this commit.
+
+    Raises:
+        ProjectError: the tree has changes, git failed, or another release runs here.
+    """
+    if problems := unclean(root):
+        raise ProjectError("\n".join(["RELEASE=1 cannot be met.", *problems]))
+    busy = "Another release runs here (process {}). Wait for it, or stop it with Ctrl-C there."
+    with locked(cache / "release.lock", lambda process: ProjectError(busy.format(process))):
+        work = check_out(root, cache / FOLDER)
+        (cache / "engine").mkdir(parents=True, exist_ok=True)
+        (work / ".cache").mkdir()
+        (work / ".cache" / "engine").symlink_to((cache / "engine").resolve())
+        status = _build(work, [*arguments], environment(work, executed))
+        if status == 0:
+            shutil.rmtree(cache / FOLDER)
+        return status
+
+
+def check_out(root: Path, folder: Path) -> Path:
+    """Check HEAD of a repository out into a new one; return its folder.
+
+    Args:
+        root: the checkout whose HEAD is taken, with its history.
+        folder: its older content is removed.
+
+    Raises:
+        ProjectError: git failed.
+    """
+    commit = git(root, "rev-parse", "HEAD").strip()
+    shutil.rmtree(folder, ignore_errors=True)
+    work = folder / "checkout"
+    work.mkdir(parents=True)
+    config = folder / "gitconfig"
+    config.write_text(GIT_CONFIG)
+    own = {"GIT_CONFIG_GLOBAL": str(config), "GIT_CONFIG_NOSYSTEM": "1", "GIT_ATTR_NOSYSTEM": "1"}
+    for command in (
+        ["init", "--quiet", "--template="],
+        ["fetch", "--quiet", "--no-tags", "--update-shallow", root.resolve().as_uri(), "HEAD"],
+        ["checkout", "--quiet", "--detach", commit],
+    ):
+        done = subprocess.run(
+            ["git", "-C", str(work), *command],
+            env=without_git(os.environ) | own,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if done.returncode:
+            raise ProjectError(f"git {command[0]} failed for {root}: {done.stderr.strip()}")
+    return work
+
+
+def environment(work: Path, executed: Path | None = None) -> dict[str, str]:
+    """Return the whole environment of a release's build: of this process's, only listed names.
+
+    Args:
+        work: the fresh checkout.
+        executed: see `release`.
+    """
+    names = {*MACHINE, *SETTINGS, *NETWORK, *(name.lower() for name in NETWORK)}
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if name in names or name.startswith(ALLOWED) or name.lower().startswith("npm_config_")
+    }
+    own = {
+        "RELEASE": "1",
+        "PYTHONPATH": str(work),
+        "PYTHONPYCACHEPREFIX": str(work.parent / "bytecode"),
+        "PYTHONNOUSERSITE": "1",
+        "PYDANTIC_DISABLE_PLUGINS": "__all__",
+    }
+    return kept | own | ({"EXECUTED": str(executed.absolute())} if executed else {})
+
+
+def _build(work: Path, arguments: Sequence[str], environment: Mapping[str, str]) -> int:
+    """Run the build of a checkout; it ends with this process, by Ctrl-C too."""
+    script = str(work / "build_scripts" / "book.py")
+    with interrupts_blocked():
+        process = subprocess.Popen(
+            [sys.executable, script, *arguments],
+            cwd=work,
+            env=environment,
+            preexec_fn=end_with_parent(),
+        )
+    try:
+        return process.wait()
+    finally:
+        if process.poll() is None:
+            kill_with_descendants([process.pid])

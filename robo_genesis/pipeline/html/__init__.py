@@ -1,0 +1,1 @@
+"""The built HTML: render, check, pack, publish and serve it."""

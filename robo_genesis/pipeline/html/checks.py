@@ -1,0 +1,257 @@
+"""Checks on the built site that need no browser: links, alt texts, scripts, leftovers."""
+
+import json
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path, PurePosixPath
+from urllib.parse import unquote, urldefrag, urlsplit
+
+from bs4 import BeautifulSoup, Tag
+
+from robo_genesis.core.files import derived
+from robo_genesis.pipeline.html import scripts
+
+ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
+# A link of these kinds names a page for readers or crawlers; the browser does not load it.
+NOT_LOADED = {"canonical", "alternate", "author", "license", "next", "prev", "index", "search"}
+ELSEWHERE = re.compile(r"^(?:https?|wss?|ftp):|^//", re.IGNORECASE)
+CSS_ADDRESS = re.compile(r"""(?:(?:@import\s+)?url\(|@import)\s*["']?([^"')\s;]+)""", re.IGNORECASE)
+CSS_COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+SCRIPT_ADDRESS = re.compile(r"""["'`]((?:https?:)?//[\w.-]+\.[a-z]{2,}[^"'`]*)""", re.IGNORECASE)
+SERVICES = re.compile(
+    r"unpkg\.com|jsdelivr\.net|cdnjs\.|googleapis\.com|gstatic\.com|polyfill\.io|mybinder\.org",
+    re.IGNORECASE,
+)
+FILE_NAME = re.compile(r"^\S*\.(?:png|jpe?g|svg|webp|gif)$|^[0-9a-f]{16,}$", re.IGNORECASE)
+LEFTOVERS = re.compile(r"\{[a-z][a-z:_-]*\}(?=`|\()|\\[\[\(]|\$\$|\[\[[^\]]*\]\]|<Figure size ")
+
+
+@dataclass(frozen=True, slots=True)
+class SiteCheck:
+    """One check: how many things it examined, and a line for each problem."""
+
+    name: str
+    count: int
+    problems: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PageFacts:
+    """What the checks use of one page; a page is parsed again only when it or a check changed.
+
+    An address of `addresses` comes with whether the browser itself asks for it. The problems and
+    `leftovers` are whole lines without the name of the page.
+    """
+
+    anchors: list[str]
+    addresses: list[tuple[str, bool]]
+    styles: list[str]
+    inline_addresses: list[str]
+    images: int
+    alt_problems: list[str]
+    scripts: int
+    script_problems: list[str]
+    leftovers: list[str]
+
+
+class Site:
+    """The files of a built site, and the facts of each page."""
+
+    def __init__(self, html: Path, base: str = "/"):
+        self.root, self.base = html.resolve(), base
+        self.files: dict[str, Path | None] = {}
+        self.pages = {path: self._facts(path) for path in sorted(self.root.rglob("*.html"))}
+        self.anchors = {path: set(page.anchors) for path, page in self.pages.items()}
+        self.style_addresses = [
+            (path, url) for path, page in self.pages.items() for url in page.styles
+        ]
+        for path in sorted(self.root.rglob("*.css")):
+            self.style_addresses += [(path, url) for url in _in_style(path.read_text("utf8"))]
+
+    def _facts(self, path: Path) -> PageFacts:
+        text = path.read_text("utf8")
+        place = json.dumps([self.name(path), self.base]).encode()
+        sources = (Path(module).read_bytes() for module in (__file__, scripts.__file__))
+
+        def make() -> bytes:
+            parsed = BeautifulSoup(text, "html.parser")
+            page = scripts.Page(self.root, self.base, path, parsed, text)
+            return json.dumps(asdict(page_facts(page))).encode()
+
+        return PageFacts(**json.loads(derived("checked", [text.encode(), place, *sources], make)))
+
+    def file(self, folder: Path, place: str) -> Path | None:
+        """Return the file at a place relative to a folder, None if the site has no such file."""
+        named = os.path.normpath(folder / place)
+        if named not in self.files:
+            found = Path(named).resolve()
+            found = found / "index.html" if found.is_dir() else found
+            inside = found.is_relative_to(self.root) and found.is_file()
+            self.files[named] = found if inside else None
+        return self.files[named]
+
+    def name(self, path: Path) -> str:
+        """Return a file's name for messages."""
+        return path.relative_to(self.root).as_posix()
+
+
+def page_facts(page: scripts.Page) -> PageFacts:
+    """Return what the checks use of a page."""
+    tags = page.parsed.find_all(True)
+    names = (tag.get(name) for tag in tags for name in ("id", "name"))
+    style = [tag.get_text() for tag in tags if tag.name == "style"]
+    style += [str(tag["style"]) for tag in tags if tag.has_attr("style")]
+    inline = page.parsed.find_all("script", src=False)
+    return PageFacts(
+        anchors=sorted({str(name) for name in names if name}),
+        addresses=[(url, _is_loaded(tag)) for tag in tags for url in _addresses(tag)],
+        styles=[url for text in style for url in _in_style(text)],
+        inline_addresses=[url for tag in inline for url in SCRIPT_ADDRESS.findall(tag.get_text())],
+        images=len(_images(page.parsed)),
+        alt_problems=list(_alt_problems(page.parsed)),
+        scripts=len(page.parsed.find_all("script")),
+        script_problems=sorted(set(scripts.page_problems(page))),
+        leftovers=list(_leftovers(page.parsed)),
+    )
+
+
+def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
+    """Run all checks on a built site.
+
+    Args:
+        html: the folder with the site's `index.html`.
+        base: the path that this folder will have on its server, with a slash at both ends.
+    """
+    return run_checks(Site(html, base))
+
+
+def run_checks(site: Site) -> list[SiteCheck]:
+    """Run all checks on a site whose pages were read."""
+    checks = (check_links, check_alt_texts, check_third_parties, check_scripts, check_leftovers)
+    return [check(site) for check in checks]
+
+
+def check_links(site: Site) -> SiteCheck:
+    """Every address inside the site leads to a file, and every fragment to an element."""
+    found = [(path, url) for path, page in site.pages.items() for url, _ in page.addresses]
+    found += site.style_addresses
+    inside = [(path, url) for path, url in found if not urlsplit(url).scheme and url[:2] != "//"]
+    problems = {
+        f"{site.name(path)}: {url!r} {reason}"
+        for path, url in dict.fromkeys(inside)
+        if (reason := _broken(site, path, url))
+    }
+    return SiteCheck("links", len(inside), tuple(sorted(problems)))
+
+
+def _broken(site: Site, page: Path, url: str) -> str | None:
+    """Return why an address inside the site leads nowhere."""
+    address, fragment = urldefrag(url)
+    place = unquote(urlsplit(address).path)
+    if place.startswith("/") and not place.startswith(site.base):
+        return f"leads out of {site.base}, the path of the site."
+    base = site.root if place.startswith("/") else page.parent
+    target = site.file(base, place.removeprefix(site.base)) if place else page
+    if target is None:
+        return "leads to no file of the site."
+    known = site.anchors.get(target)
+    if fragment and fragment != "top" and known is not None and unquote(fragment) not in known:
+        return f"names no element of {site.name(target)}."
+    return None
+
+
+def check_alt_texts(site: Site) -> SiteCheck:
+    """Every image has an alternative text that is neither empty nor a file name nor a hash."""
+    problems = _lines(site, {path: page.alt_problems for path, page in site.pages.items()})
+    return SiteCheck("alt texts", sum(page.images for page in site.pages.values()), problems)
+
+
+def check_third_parties(site: Site) -> SiteCheck:
+    """Nothing is loaded from another address; links that a reader may follow are allowed."""
+    found = [
+        (path, url)
+        for path, page in site.pages.items()
+        for url in [
+            *(url for url, is_loaded in page.addresses if is_loaded),
+            *page.inline_addresses,
+        ]
+    ]
+    found += site.style_addresses + _services(site)
+    problems = sorted({f"{site.name(path)}: {url}" for path, url in found if ELSEWHERE.match(url)})
+    return SiteCheck("third parties", len(found), tuple(problems))
+
+
+def check_scripts(site: Site) -> SiteCheck:
+    """The site runs the scripts of the theme and of the course only; see `scripts`."""
+    problems = _lines(site, {path: page.script_problems for path, page in site.pages.items()})
+    number = sum(page.scripts for page in site.pages.values())
+    return SiteCheck("scripts", number, (*problems, *scripts.file_problems(site.root)))
+
+
+def check_leftovers(site: Site) -> SiteCheck:
+    """No page shows unprocessed markup, or an error of the page generator."""
+    problems = _lines(site, {path: page.leftovers for path, page in site.pages.items()})
+    return SiteCheck("leftovers", len(site.pages), problems)
+
+
+def _lines(site: Site, found: Mapping[Path, Sequence[str]]) -> tuple[str, ...]:
+    """Return problems with the names of their pages."""
+    return tuple(f"{site.name(path)}: {line}" for path in found for line in found[path])
+
+
+def _images(page: BeautifulSoup) -> list[Tag]:
+    """Return a page's images and drawings."""
+    return [*page.find_all("img"), *page.find_all("svg", class_="drawing")]
+
+
+def _alt_problems(page: BeautifulSoup) -> Iterator[str]:
+    for image in _images(page):
+        names = ("alt", "src") if image.name == "img" else ("aria-label", "data-file")
+        text, source = (str(image.get(name) or "").strip() for name in names)
+        if not text or FILE_NAME.match(text) or text == PurePosixPath(urlsplit(source).path).stem:
+            yield f"{source} has the alt text {text!r}."
+
+
+def _leftovers(page: BeautifulSoup) -> Iterator[str]:
+    for tag in page.find_all(class_=["system-message", "problematic"]):
+        yield repr(tag.get_text(" ", strip=True)[:80])
+    article = page.find("article")
+    for text in (article if isinstance(article, Tag) else page).find_all(string=LEFTOVERS):
+        if not text.find_parent(["pre", "code", "script", "style"]):
+            yield repr(text.strip()[:80])
+
+
+def _addresses(tag: Tag) -> Iterator[str]:
+    """Yield every address that an element carries."""
+    for name in tag.attrs.keys() & ADDRESSES:
+        value = str(tag.get(name) or "").strip()
+        listed = [part.split()[:1] for part in value.split(",")] if name == "srcset" else [[value]]
+        yield from (url for urls in listed for url in urls if url)
+
+
+def _is_loaded(tag: Tag) -> bool:
+    """Whether the browser itself asks for the element's address."""
+    kinds = {str(kind).lower() for kind in tag.get("rel") or []}
+    return tag.name not in ("a", "area") and not (tag.name == "link" and kinds & NOT_LOADED)
+
+
+def _in_style(text: str) -> list[str]:
+    """Return the addresses in a style sheet, style element or style attribute."""
+    return [url for url in CSS_ADDRESS.findall(CSS_COMMENT.sub("", text)) if url[:1] != "#"]
+
+
+def _services(site: Site) -> list[tuple[Path, str]]:
+    """Return the addresses of known services in script files.
+
+    Script files of the theme contain addresses in licence notes and messages, and their text does
+    not show which ones they load; so files are searched for the usual services only.
+    """
+    return [
+        (path, url)
+        for path in sorted(site.root.rglob("*.js"))
+        if path.name != "searchindex.js"
+        for url in SCRIPT_ADDRESS.findall(path.read_text("utf8", errors="replace"))
+        if SERVICES.search(url)
+    ]

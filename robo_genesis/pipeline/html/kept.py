@@ -1,0 +1,117 @@
+"""The folder in which a build keeps Sphinx's doctrees and pages, and what they were made from.
+
+The next build then reads and writes only the pages that changed. Everything else that decides a
+page empties the folder. A render that did not succeed leaves a folder without `STATE`, which the
+next build empties: a warning is given only when a page is read.
+"""
+
+import json
+import shutil
+from collections.abc import Iterable
+from contextlib import suppress
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from robo_genesis.core.project import ROOT
+from robo_genesis.pipeline import up_to_date
+from robo_genesis.pipeline.pages.book import docnames
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.folder import RECORD
+
+STATE = "state.json"
+UNFIT = "unfit"
+"""Sphinx writes this file if the pages must not be kept; see `site.kept_pages`."""
+DOCTREES = "_build/.doctrees"
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """What a render reads: the digest of each page's source by name, and that of all else.
+
+    `others` is None if some of it cannot be seen: then nothing is kept.
+    """
+
+    others: str | None
+    pages: dict[str, str]
+
+
+def read_state(book: Path, built: BuiltPages, root: Path = ROOT) -> State:
+    """Return the state of all that a render reads.
+
+    Args:
+        book: the folder of the pages.
+        built: the executed pages. Whether this build ran them is not in the state: no page shows
+            it.
+        root: the checkout.
+    """
+    names = [name.removesuffix(".md") for name in docnames(book / "_toc.yml")]
+    sources = {name: book / f"{name}.md" for name in names}
+    pages = {
+        name: sha256(path.read_bytes()).hexdigest()
+        for name, path in sources.items()
+        if path.is_file()
+    }
+    with suppress(up_to_date.UnseenError):
+        others = up_to_date.other_inputs(root, book, set(sources.values()))
+        return State(up_to_date.json_digest(others | {"runs": _runs(built)}), pages)
+    return State(None, pages)
+
+
+def _runs(built: BuiltPages) -> dict[str, object]:
+    """Return the runs of a build; a page's record has digests of all files that its run left."""
+    records = {
+        name: [str(folder), sha256((folder / RECORD).read_bytes()).hexdigest()]
+        for name, folder in built.folders.items()
+    }
+    return {"records": records, "outputs": {name: str(p) for name, p in built.outputs.items()}}
+
+
+def prepare(folder: Path, state: State) -> bool:
+    """Empty the folder, or mark in it the pages that changed; return whether it was usable.
+
+    The mark of success is removed. `keep` writes it again.
+
+    Raises:
+        OSError: the folder cannot be emptied.
+    """
+    try:
+        last = State(**json.loads((folder / STATE).read_text("utf8")))
+        (folder / STATE).unlink()
+    except (OSError, ValueError, TypeError):
+        last = State(None, {})
+    usable = last.others is not None and last.others == state.others
+    if not usable and folder.exists():
+        shutil.rmtree(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    read_again(folder, {n for n, digest in state.pages.items() if last.pages.get(n) != digest})
+    return usable
+
+
+def read_again(folder: Path, pages: Iterable[str]) -> None:
+    """Make Sphinx read some pages again, whatever the times of their files are."""
+    for name in pages:
+        (folder / DOCTREES / f"{name}.doctree").unlink(missing_ok=True)
+
+
+def fit(folder: Path) -> bool:
+    """Return whether Sphinx found nothing that an incremental render could get wrong."""
+    return not (folder / UNFIT).exists()
+
+
+def keep(folder: Path, before: State, after: State) -> None:
+    """Mark a render as successful, unless an input changed meanwhile or the pages are unfit.
+
+    Args:
+        folder: the kept folder.
+        before: the state from which the render began.
+        after: the state now.
+    """
+    if before == after and before.others is not None and fit(folder):
+        state = {"others": after.others, "pages": after.pages}
+        (folder / STATE).write_text(json.dumps(state, indent=1) + "\n", "utf8")
+
+
+def discard(folder: Path) -> None:
+    """Make the next build empty the folder."""
+    (folder / STATE).unlink(missing_ok=True)

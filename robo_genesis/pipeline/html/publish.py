@@ -1,0 +1,55 @@
+"""Publish a rendered site in one move: built beside the old one, swapped in by renames."""
+
+import shutil
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from robo_genesis.core.files import replaced
+from robo_genesis.core.project import PUBLISHED
+from robo_genesis.pipeline.html.draft import Draft
+
+if TYPE_CHECKING:  # commands that need only names load no Jupyter
+    from robo_genesis.pipeline.pages.results import PageResult
+
+PAGES = "pages"
+"""The folder beside `evidence` with the bundles of other pages than labs."""
+
+
+def add_bundles(draft: Draft, results: Iterable["PageResult"]) -> None:
+    """Copy the bundles of executed pages into a draft.
+
+    Args:
+        draft: bundles of pages named `lab` become `evidence/<lesson>/<backend>` in its folder,
+            others `pages/<lesson>/<page>/<backend>`.
+        results: the executed pages.
+
+    Raises:
+        OSError: a bundle cannot be read.
+    """
+    for result in results:
+        if result.bundle is not None:
+            lesson, page = str(result.page.lesson), str(result.page.page)
+            own = ("evidence", lesson) if page == "lab" else (PAGES, lesson, page)
+            place = draft.folder.joinpath(*own, result.bundle.name)
+            shutil.copytree(result.bundle, place)
+
+
+def publish(book: Path, folder: Path, finish: Callable[[Path], None] = lambda folder: None) -> Path:
+    """Replace the published site and its pages' bundles by new ones.
+
+    Args:
+        book: the folder that holds `_build`.
+        folder: the site, rendered and checked, and the bundles; it is moved away.
+        finish: called with the complete folder before it is put in place.
+
+    Returns:
+        The folder of the published site's HTML.
+
+    Raises:
+        OSError: nothing is changed.
+    """
+    with replaced(book / PUBLISHED) as following:
+        shutil.move(folder, following)
+        finish(following)
+    return book / PUBLISHED / "html"

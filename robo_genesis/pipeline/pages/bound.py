@@ -1,0 +1,188 @@
+"""What a page shows is what was measured: its measured outputs follow again from its bundle.
+
+Each `page.show(function, ...)` leaves one output, and the metadata of the output name the function.
+The same function, called on the experiment of the bundle with the accepted metrics, must give the
+same output. Other outputs are not compared, and the site says so below them.
+"""
+
+import ast
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from nbformat import NotebookNode
+
+from robo_genesis.core import shown
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.core.refusals import shown as quoted
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.pipeline.pages.book import Page, cell_sources
+from robo_genesis.pipeline.pages.svg_difference import svg_difference
+
+PAGE = "page"
+"""The name that pages give to the result of `rg.open_page`."""
+
+AGAIN = "Do not edit executed pages: execute the page again."
+BOUNDARY = 60
+"""Characters that a message shows on both sides of a difference."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """One call that shows an output: the name of its function, and its arguments."""
+
+    function: str
+    arguments: list[Any]
+
+
+def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Manifest) -> int:
+    """Require that each measured output of an executed page follows from its bundle.
+
+    Args:
+        page: the page as it is now.
+        executed: its code cells with outputs.
+        folder: its bundle, which was accepted.
+        manifest: of that bundle.
+
+    Returns:
+        The number of outputs compared.
+
+    Raises:
+        BundleRefused: `shown`, naming page, cell and function.
+    """
+    calls = calls_of(page)
+    outputs = [marked(cell) for cell in executed.cells if cell.cell_type == "code"]
+    experiment, compared = None, 0
+    for number, (named, found) in enumerate(zip(calls, outputs, strict=True), start=1):
+        place = f"{page.docname}, code cell {number}"
+        if len(named) != len(found):
+            raise _refused(
+                f"{place}: its code shows {len(named)} measured outputs, found are {len(found)}. "
+                "Call page.show once for each output, outside of loops and conditions."
+            )
+        for call, output in zip(named, found, strict=True):
+            experiment = experiment or accepted_experiment(folder, manifest)
+            _compare(f"{place}, {call.function}", call, output, experiment)
+            compared += 1
+    return compared
+
+
+def accepted_experiment(folder: Path, manifest: Manifest) -> Experiment:
+    """Return the experiment of an accepted bundle, with the metrics that were accepted.
+
+    Metrics that another machine computes again may differ in the last digit.
+    """
+    recorded = bundle.read_metrics(folder)
+    run = from_bundle(folder, manifest, recorded)
+    metrics = {
+        case: type(found)(**{name: recorded[case][name].value for name in found.about("unit")})
+        for case, found in run.metrics.items()
+    }
+    return replace(run, accepted=metrics)
+
+
+def calls_of(page: Page) -> list[list[Shown]]:
+    """Return the calls of each code cell that show a measured output, in their order.
+
+    Raises:
+        BundleRefused: `shown` if a function is not found by its name, or if an argument is not
+            written out.
+    """
+    names: dict[str, str] = {}
+    found = []
+    for number, source in enumerate(cell_sources(page), start=1):
+        try:
+            tree = ast.parse(source)
+        except SyntaxError:  # an expected error of the page
+            tree = ast.Module([], [])
+        names |= dict(_imported(tree))
+        place = f"{page.docname}, code cell {number}"
+        calls = [node for node in ast.walk(tree) if _method(node) in ("show", "finish")]
+        calls.sort(key=lambda node: (node.lineno, node.col_offset))  # type: ignore[attr-defined]
+        found.append([_call(place, node, names) for node in calls])  # type: ignore[arg-type]
+    return found
+
+
+def _method(node: ast.AST) -> str | None:
+    """Return the method of the page that a node calls."""
+    match node:
+        case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr=method)) if name == PAGE:
+            return method
+    return None
+
+
+def _call(place: str, node: ast.Call, names: Mapping[str, str]) -> Shown:
+    if _method(node) == "finish":
+        return Shown(shown.CHECKS, [])
+    name = ast.unparse(node.args[0]) if node.args else ""
+    root, _, rest = name.partition(".")
+    function = f"{names.get(root, root)}.{rest}"
+    try:
+        shown.find(function)
+        arguments = [ast.literal_eval(argument) for argument in node.args[1:]]
+        if node.keywords:
+            raise ValueError
+    except shown.ShownError as error:
+        raise _refused(f"{place}: page.show({name}): {error}") from error
+    except ValueError as error:
+        raise _refused(
+            f"{place}: `{ast.unparse(node)}` has an argument that is not written out. Give text, "
+            "numbers or lists of them by position, or let the function choose them."
+        ) from error
+    return Shown(function, arguments)
+
+
+def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
+    """Yield (name, module or object) of the imports of a cell."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                yield alias.asname or alias.name, f"{node.module}.{alias.name}"
+        elif isinstance(node, ast.Import):
+            for alias in node.names:
+                if alias.asname:
+                    yield alias.asname, alias.name
+
+
+def marked(cell: NotebookNode) -> list[NotebookNode]:
+    """Return the outputs of an executed cell whose metadata name a function."""
+    return [out for out in cell.get("outputs", []) if shown.METADATA in out.get("metadata", {})]
+
+
+def _compare(place: str, call: Shown, output: NotebookNode, experiment: Experiment) -> None:
+    """Raise BundleRefused unless an output is that of its call."""
+    says = output.metadata[shown.METADATA]
+    expected = {"function": call.function, "arguments": call.arguments}
+    if says != expected:
+        raise _refused(f"{place}: the output is of {quoted(says)}, the cell names {expected}.")
+    try:
+        valid = shown.mime_data(call.function, experiment, call.arguments)
+    except (shown.ShownError, LookupError, ValueError, ArithmeticError, TypeError) as error:
+        raise _refused(f"{place}: it cannot be called on the bundle: {error!r}") from error
+    data: Mapping[str, Any] = output.get("data", {})
+    if output.output_type != "display_data" or data.keys() != valid.keys():
+        kinds = quoted(sorted(data))
+        raise _refused(f"{place}: the output has {kinds}, the bundle gives {sorted(valid)}.")
+    for kind, text in valid.items():
+        found = str(data[kind])
+        difference = svg_difference(found, text) if kind == shown.DRAWING else _text(found, text)
+        if difference:
+            raise _refused(f"{place}: the page shows another {kind} than the bundle: {difference}.")
+
+
+def _text(found: str, valid: str) -> str | None:
+    """Return the first difference of two texts, None if they are equal."""
+    if found == valid:
+        return None
+    pairs = enumerate(zip(found, valid, strict=False))
+    start = next((k for k, (a, b) in pairs if a != b), min(len(found), len(valid)))
+    part = slice(max(0, start - BOUNDARY), start + BOUNDARY)
+    return f"found {quoted(found[part])}, expected {quoted(valid[part])}"
+
+
+def _refused(message: str) -> BundleRefused:
+    return BundleRefused("shown", f"{message} {AGAIN}")

@@ -1,0 +1,116 @@
+"""The executed pages of this build, as the build tells them to Sphinx's process."""
+
+import os
+from collections.abc import Iterable, Sequence
+from difflib import SequenceMatcher
+from pathlib import Path
+from typing import Self
+
+import nbformat
+from nbformat import NotebookNode
+from pydantic import Field
+
+from robo_genesis.core.project import EXECUTED_PAGES
+from robo_genesis.evidence.fields import Strict
+from robo_genesis.pipeline.pages.folder import NOTEBOOK, OUTPUTS, Record, read_record
+from robo_genesis.pipeline.pages.results import PageResult
+
+LAST_OUTPUTS = "ROBO_GENESIS_LAST_OUTPUTS"
+"""A variable: if it is set, a page whose code changed is shown with the outputs of its last run."""
+
+
+class BuiltPages(Strict):
+    """A file that the environment names.
+
+    `folders` has the folder in the store of each executed page by name, and `outputs` the files
+    that the run of each measuring page left, by `lesson/page`. `states` is a folder that keeps the
+    states of runs for the next render; None keeps nothing.
+    """
+
+    folders: dict[str, Path] = Field(default_factory=dict)
+    outputs: dict[str, Path] = Field(default_factory=dict)
+    states: Path | None = None
+
+    @classmethod
+    def of(cls, results: Iterable[PageResult]) -> Self:
+        """Return the pages of a build from their results, of which none failed."""
+        found = cls()
+        for result in results:
+            page, folder = result.page, result.folder
+            assert folder is not None  # only a failed page has none
+            found.folders[page.docname] = folder
+            if page.declares_bundle:
+                found.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
+        return found
+
+    def keeping(self, states: Path) -> Self:
+        """Return these pages with a folder for the states of their runs."""
+        return self.model_copy(update={"states": states})
+
+    def write(self, path: Path) -> dict[str, str]:
+        """Write the file and return the variable that names it."""
+        path.write_text(self.model_dump_json(indent=1), "utf8")
+        return {EXECUTED_PAGES: str(path)}
+
+
+def built_pages() -> BuiltPages:
+    """Return the pages that the environment names."""
+    return BuiltPages.model_validate_json(Path(os.environ[EXECUTED_PAGES]).read_bytes())
+
+
+def executed_notebook(docname: str, page: NotebookNode) -> NotebookNode:
+    """Return the code cells of a page with their outputs.
+
+    Args:
+        docname: the name of the page.
+        page: the page as a notebook. Its code cells differ from those of the run only if it is
+            shown with the outputs of its last run.
+
+    Raises:
+        KeyError: the page is not executed.
+    """
+    executed = nbformat.read(built_pages().folders[docname] / NOTEBOOK, as_version=4)
+    if LAST_OUTPUTS in os.environ:
+        cells = [cell for cell in page.cells if cell.cell_type == "code"]
+        executed.cells = with_last_outputs(cells, executed.cells)
+    return executed
+
+
+def with_last_outputs(
+    cells: Sequence[NotebookNode], ran: Sequence[NotebookNode]
+) -> list[NotebookNode]:
+    """Return code cells with the outputs of a run of other cells.
+
+    A cell gets the outputs of the cell with equal source. Changed cells get the outputs of those in
+    their places, if there are as many. Others get none.
+
+    Args:
+        cells: of the page now.
+        ran: the cells of the run.
+    """
+    found = [NotebookNode(cell | {"outputs": [], "execution_count": None}) for cell in cells]
+    before, now = ([cell.source for cell in some] for some in (ran, cells))
+    for _, begin, end, at, to in SequenceMatcher(None, before, now, False).get_opcodes():
+        if end - begin == to - at:
+            for cell, old in zip(found[at:to], ran[begin:end], strict=True):
+                cell.outputs, cell.execution_count = old.outputs, old.execution_count
+    return found
+
+
+def page_record(docname: str) -> Record:
+    """Return the record of an executed page.
+
+    Raises:
+        KeyError: the page is not executed.
+    """
+    return read_record(built_pages().folders[docname])
+
+
+def page_outputs(lesson_page: str) -> Path:
+    """Return the folder of what a page's run left, with the bundle in `<backend>/`.
+
+    Args:
+        lesson_page: `l04/lab`. Without such a page in this build, the folder does not exist.
+    """
+    absent = Path(os.environ[EXECUTED_PAGES]).with_name("not executed") / lesson_page
+    return built_pages().outputs.get(lesson_page, absent)

@@ -1,0 +1,196 @@
+"""Execute the pages' code cells in clean kernels, in parallel, and keep them in the store."""
+
+import multiprocessing
+import os
+import tempfile
+import uuid
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from multiprocessing.connection import wait
+from pathlib import Path
+from typing import Any
+
+from robo_genesis.core import project
+from robo_genesis.core.project import COMMAND
+from robo_genesis.pipeline.command import TIMEOUT
+from robo_genesis.pipeline.pages.book import Page, cell_sources
+from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, Record
+from robo_genesis.pipeline.pages.kernels import interrupts_blocked, kill_with_descendants
+from robo_genesis.pipeline.pages.progress import Lines, Underway
+from robo_genesis.pipeline.pages.results import Failure, PageResult, find_bundle
+from robo_genesis.pipeline.pages.store import last_record, stored_result
+from robo_genesis.pipeline.pages.worker import PageRun, work
+
+
+@dataclass(frozen=True, slots=True)
+class Worker:
+    """The process that executes one page, the run, and how far it is."""
+
+    process: Any
+    run: PageRun
+    underway: Underway
+
+
+Running = dict[Any, Worker]
+"""The workers that run, by the connection of their progress and result."""
+
+
+def execute_pages(
+    pages: Sequence[Page],
+    places: Mapping[str, Path],
+    *,
+    reuse: bool = True,
+    jobs: int = 1,
+    timeout: int = TIMEOUT,
+    environment: Mapping[str, str] | None = None,
+    logs: Path | None = None,
+    report: Lines | None = None,
+) -> list[PageResult]:
+    """Execute the pages that the store does not have yet; try all of them, the longest first.
+
+    A page that declares `alone` runs when no other page does.
+
+    A `multiprocessing.Pool` waits for ever when a worker is killed for memory, and leaves kernels
+    behind on Ctrl-C.
+
+    Args:
+        pages: the pages of the book.
+        places: where the store has each page, or will have it; see `page_store.places`. A page
+            that fails leaves its place as it is.
+        reuse: whether a page that the store has is not executed again.
+        jobs: how many pages run at once.
+        timeout: seconds for one cell; a page's front matter may set another.
+        environment: variables for the kernels.
+        logs: the folder that keeps, for each page, a file with all that its last run wrote. By
+            default it is not kept.
+        report: gets each event, and shows how far the running pages are; by default nothing
+            is shown.
+
+    Returns:
+        One result for each page, in the order of `pages`.
+
+    Raises:
+        OSError: the store cannot be used.
+    """
+    report, environment = report or Lines(), environment or {}
+    results = _reused(pages, places, report) if reuse else {}
+    last = {page.docname: last_record(places[page.docname].parents[1], page) for page in pages}
+    waiting = longest_first((page for page in pages if page.docname not in results), last)
+    for folder in [*(places[page.docname].parent for page in waiting), *([logs] if logs else [])]:
+        folder.mkdir(parents=True, exist_ok=True)  # fails before any run
+    running: Running = {}
+    with tempfile.TemporaryDirectory(prefix="robo-") as scratch:
+        own = Path(scratch)
+        try:
+            while waiting or running:
+                while waiting and len(running) < (1 if waiting[0].alone else jobs):
+                    page = waiting.pop(0)
+                    place, cells = places[page.docname], len(cell_sources(page))
+                    log = (logs or own) / f"{place.parent.name}.log"
+                    run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
+                    kept = log if logs else None
+                    underway = Underway(page.docname, cells, last[page.docname], kept)
+                    report.say(page.docname, underway.started())
+                    _start(run, underway, running)
+                for connection in wait(list(running), timeout=report.pause()):
+                    result = _receive(connection, running[connection])
+                    if result is None:
+                        continue
+                    del running[connection]
+                    results[result.page.docname] = result
+                    report.say(result.page.docname, f"{result.status} in {result.seconds:.0f} s")
+                report.show([worker.underway for worker in running.values()])
+        finally:
+            kill_with_descendants(worker.process.pid for worker in running.values())
+    return [results[page.docname] for page in pages]
+
+
+def kernel_environment(root: Path, cache: Path, command: str, **settings: str) -> dict[str, str]:
+    """Return the variables that every kernel of a command gets.
+
+    Args:
+        root: the checkout.
+        cache: the folder of the caches.
+        command: the command that bundles name.
+        settings: variables that replace those of this process.
+    """
+    return {
+        **project.engine_cache_environment(root, cache),
+        **project.environment_contract({**os.environ, **settings}),
+        COMMAND: command,
+    }
+
+
+def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> list[Page]:
+    """Return pages in the order in which they start.
+
+    Those that run alone come last, so no other page starts beside them.
+
+    Args:
+        pages: the pages to execute.
+        last: the record of the last execution of each page, by name. Pages without one come first,
+            and among them those with the most cells.
+    """
+
+    def sooner(page: Page) -> tuple[bool, float, int]:
+        record = last[page.docname]
+        seconds = -record.seconds if record else float("-inf")
+        return page.alone, seconds, -len(cell_sources(page))
+
+    return sorted(pages, key=sooner)
+
+
+def _reused(
+    pages: Sequence[Page], places: Mapping[str, Path], report: Lines
+) -> dict[str, PageResult]:
+    """Return the results of the pages that need no run, by name, and report them."""
+    results = {}
+    for page in pages:
+        try:
+            result = stored_result(page, places[page.docname])
+        except PageRefused as refused:
+            reason = str(refused).splitlines()[0]
+            report.say(page.docname, f"changed since it was stored; executed again ({reason})")
+            continue
+        if result is not None:
+            results[page.docname] = result
+            report.say(page.docname, result.status)
+    return results
+
+
+def _start(run: PageRun, underway: Underway, running: Running) -> None:
+    """Start the worker process of one page and enter it in `running`."""
+    # Spawned, not forked: the worker inherits neither threads nor open databases.
+    context = multiprocessing.get_context("spawn")
+    receiver, sender = context.Pipe(duplex=False)
+    process = context.Process(target=work, args=(run, sender))
+    with interrupts_blocked():  # a Ctrl-C from here on finds the worker among the running
+        process.start()
+        running[receiver] = Worker(process, run, underway)
+    sender.close()
+
+
+def _receive(connection: Any, worker: Worker) -> PageResult | None:
+    """Return the result of a page whose worker sent it, or died without sending it.
+
+    It is None if a cell starts.
+    """
+    run, log = worker.run, worker.underway.log
+    try:
+        received = connection.recv()
+        if isinstance(received, int):
+            worker.underway.reach(received)
+            return None
+        seconds, failure = received
+    except EOFError:
+        worker.process.join()
+        cell = f" in cell {worker.underway.cell}" if worker.underway.cell else ""
+        status = worker.process.exitcode
+        message = f"the worker process ended{cell} with status {status}; out of memory?"
+        seconds, failure = 0.0, Failure("WorkerDied", message)
+    worker.process.join()
+    connection.close()
+    if failure:
+        return PageResult(run.page, "failed", seconds, run.run_id, failure=failure, log=log)
+    bundle = find_bundle(run.place / OUTPUTS, run.run_id) if run.page.declares_bundle else None
+    return PageResult(run.page, "executed", seconds, run.run_id, bundle, folder=run.place, log=log)

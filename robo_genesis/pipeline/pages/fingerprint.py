@@ -1,0 +1,64 @@
+"""The fingerprint of a page: a digest of everything that decides its outputs."""
+
+import json
+import platform
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+
+from robo_genesis.core.files import derived
+from robo_genesis.core.project import (
+    ROOT,
+    environment_contract,
+    installed_packages,
+    lock_digest,
+)
+from robo_genesis.pipeline.pages.book import Page, cell_sources
+from robo_genesis.pipeline.pages.sources import Tree, import_closure, lesson_modules
+from robo_genesis.pipeline.pages.syntax import cell_digests, imports_of, sha256_of, syntax_digest
+
+
+def page_fingerprint(
+    page: Page,
+    root: Path = ROOT,
+    environment: Mapping[str, str] | None = None,
+    tree: Tree | None = None,
+) -> str:
+    """Return a digest of everything that decides the outputs of a page.
+
+    It covers the lock, all installed versions, the version of Python, the environment contract,
+    whether the page is executed alone, the syntax of the page's cells, of the modules that they
+    import and of the modules of its lesson, and the data files of the package, except those of
+    other lessons.
+
+    Args:
+        page: an executed page.
+        root: the checkout.
+        environment: variables, by default those of this process.
+        tree: the files below `root`, if they were read before.
+
+    Returns:
+        20 hex digits.
+    """
+    tree, cells = tree or Tree(root), cell_sources(page)
+    own = lesson_modules(page.lesson, root) if page.lesson else []
+    modules = import_closure([*imports_of(cells), *own], root, tree=tree)
+    parts = {
+        "lock": lock_digest(root),
+        "installed": _installed(),
+        "python": platform.python_version(),
+        "environment": environment_contract(environment),
+        "cells": cell_digests(cells),
+        "modules": {name: syntax_digest(tree.text(path)) for name, path in modules.items()},
+        "data": tree.data_for(page.lesson),
+        "alone": page.alone,
+    }
+    return sha256_of(parts)[:20]
+
+
+@lru_cache(maxsize=1)
+def _installed() -> list[str]:
+    names: list[str] = json.loads(
+        derived("packages", [], lambda: json.dumps(installed_packages()).encode())
+    )
+    return names

@@ -1,0 +1,210 @@
+"""The result of executing a page: expected exceptions, its bundle, the failure and the report."""
+
+import json
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from nbformat import NotebookNode
+
+from robo_genesis.core.project import OUTPUTS_DIR, RUN_ID
+from robo_genesis.pipeline.command import ANSI
+from robo_genesis.pipeline.pages.book import Page
+
+LOG_LINES = 15
+Status = Literal["executed", "reused", "failed"]
+PICTURES = {"image/svg+xml", "image/png", "image/jpeg"}
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """Why a page failed.
+
+    `cell` counts the code cells from 1; `line` is the number of the failing line in the page's
+    source, and `source` that line: the one that raised, or called what raised, or the cell's first
+    if no line is known. Number and cell are None when the failure belongs to no cell. `log` holds
+    the last lines that were written.
+    """
+
+    error: str
+    message: str
+    cell: int | None = None
+    line: int | None = None
+    source: str = ""
+    log: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PageResult:
+    """The result of one page in one build.
+
+    `bundle` is None if the page declares none. `folder` is the page's folder in the store; a failed
+    page may have none. `log` is the file with all that an executed page wrote, None if that is not
+    kept.
+    """
+
+    page: Page
+    status: Status
+    seconds: float
+    run_id: str
+    bundle: Path | None = None
+    failure: Failure | None = None
+    folder: Path | None = None
+    log: Path | None = None
+
+
+def find_bundle(left: Path, run_id: str) -> Path | None:
+    """Return the bundle folder that a run of a page left, None if there is none of that run.
+
+    Args:
+        left: the folder of the files that the page left.
+        run_id: the run that the bundle's manifest must name.
+    """
+    for manifest in sorted(left.glob("*/manifest.json")):
+        try:
+            found = json.loads(manifest.read_text("utf8"))["predicate"]["run_id"]
+        except (ValueError, KeyError, TypeError):
+            continue
+        if found == run_id:
+            return manifest.parent
+    return None
+
+
+def missing_bundle(left: Path, page: Page, run_id: str) -> Failure | None:
+    """Return the failure of a page that declares a bundle and did not leave it."""
+    if not page.declares_bundle or find_bundle(left, run_id):
+        return None
+    wanted = f"{page.lesson}/{page.page}/<backend>/manifest.json"
+    return Failure(
+        "BundleMissing",
+        f"the front matter declares a bundle, but the run left no {wanted} with predicate.run_id "
+        f"{run_id}. Write one to {OUTPUTS_DIR} with {RUN_ID}, "
+        "or remove `robo_genesis` from the front matter.",
+    )
+
+
+def unexpected_outcome(page: Page, executed: NotebookNode) -> Failure | None:
+    """Return the first cell that lacks its figure, or whose exception is not the expected one.
+
+    Args:
+        page: the page now; tags and `expects` are read here, because a stored notebook keeps those
+            of its execution.
+        executed: the same code cells with outputs.
+    """
+    source = page.notebook
+    ran = [cell for cell in executed.cells if cell.cell_type == "code"]
+    places = [index for index, cell in enumerate(source.cells) if cell.cell_type == "code"]
+    for index, cell in zip(places, ran, strict=True):
+        metadata = source.cells[index].metadata
+        kinds = {kind for out in cell.outputs for kind in out.get("data", {})}
+        if "figure" in metadata.get("tags", []) and not kinds & PICTURES:
+            reason = "the cell is tagged figure, but shows none."
+            return at_cell(page, index, "FigureMissing", reason)
+        raised = [out for out in cell.outputs if out.output_type == "error"]
+        if contradiction := _contradiction(metadata, raised):
+            return at_cell(page, index, "ExpectedException", contradiction, cell)
+    return None
+
+
+def _contradiction(metadata: NotebookNode, raised: Sequence[NotebookNode]) -> str | None:
+    """Return how a cell's exception contradicts its metadata, None if it does not."""
+    tags, expects = metadata.get("tags", []), metadata.get("expects")
+    happened = f"{raised[-1].ename}: {raised[-1].evalue}" if raised else "no exception"
+    if "skip-execution" in tags:
+        return "the tag skip-execution is not allowed; show code that is not run in a plain fence."
+    if "raises-exception" not in tags:
+        if raised:
+            return f"the cell raised {happened}, but is not tagged raises-exception."
+        return "the cell has `expects` without the tag raises-exception." if expects else None
+    if not expects:
+        return (
+            "the cell is tagged raises-exception but does not say what it expects; "
+            f'it raised {happened}. Add the option `expects: "ValueError: part of the message"`.'
+        )
+    name, _, text = str(expects).partition(":")
+    if raised and raised[-1].ename == name.strip() and text.strip() in raised[-1].evalue:
+        return None
+    return f"expected was {expects!r}, but the cell raised {happened}."
+
+
+def at_cell(
+    page: Page, index: int, error: str, message: str, ran: NotebookNode | None = None
+) -> Failure:
+    """Return a failure with the place of a cell.
+
+    Args:
+        page: the page, read with its source map.
+        index: the cell's position among all cells.
+        error: name of the exception.
+        message: its whole message.
+        ran: the cell with its outputs; the traceback among them names the failing line.
+    """
+    cells = page.notebook.cells
+    lines = cells[index].source.splitlines() or [""]
+    same = ran and ran.source == cells[index].source  # no comment was added after the run
+    failing = min(_failing_line(ran), len(lines)) if same else 1
+    return Failure(
+        error,
+        message,
+        cell=[cell.cell_type for cell in cells[: index + 1]].count("code"),
+        line=_first_line(page, index) + failing - 1,
+        source=lines[failing - 1].strip(),
+    )
+
+
+def _failing_line(ran: NotebookNode) -> int:
+    """Return which line of an executed cell failed, 1 if its outputs do not say so.
+
+    It is the last line of this cell in the traceback: later frames are of other cells and files.
+    """
+    errors = [out for out in ran.get("outputs", []) if out.output_type == "error"]
+    if not errors:
+        return 1
+    text = ANSI.sub("", "\n".join(errors[-1].traceback))
+    found = re.findall(rf"^ *Cell In\[{ran.execution_count}\], line (\d+)", text, re.MULTILINE)
+    # A syntax error that is found before the cell is compiled has a line, but no frame.
+    found = found or re.findall(r"\(<\w+>, line (\d+)\)$", errors[-1].evalue)
+    # IPython counts from the first line that is not empty.
+    empty = len(ran.source) - len(ran.source.lstrip("\n"))
+    return int(found[-1]) + empty if found else 1
+
+
+def _first_line(page: Page, index: int) -> int:
+    """Return the number of a cell's first line of code in the page's source, counted from 1.
+
+    The source map has the line after the fence, where options of the cell may be.
+    """
+    code, begin = page.notebook.cells[index].source.splitlines(), page.notebook.metadata.source_map
+    text: list[str] = []
+    with suppress(OSError, UnicodeError):  # the page may have been edited since it was read
+        text = page.path.read_text("utf8").splitlines()
+    places = range(begin[index], len(text))
+    return 1 + next((n for n in places if text[n : n + len(code)] == code), begin[index])
+
+
+def last_lines(text: str) -> tuple[str, ...]:
+    """Return the last lines of a text, colours removed."""
+    return tuple(ANSI.sub("", text).splitlines()[-LOG_LINES:])
+
+
+def failure_report(results: Sequence[PageResult]) -> str:
+    """Return one text that names page, cell, exception and last log lines of every failed page.
+
+    Args:
+        results: all pages of the build.
+    """
+    failed = [(r.page, r.failure, r.log) for r in results if r.failure]
+    lines = [f"{len(failed)} of {len(results)} pages failed."]
+    for page, failure, log in failed:
+        place = page.docname
+        if failure.cell is not None:
+            place += f", code cell {failure.cell}, line {failure.line}: {failure.source}"
+        message = f"{failure.error}: {failure.message}".splitlines()
+        lines += ["", place, *(f"    {line}" for line in message)]
+        if failure.log:
+            whole = f" of {log}" if log else ""
+            lines += [f"    last lines{whole}:", *(f"    | {line}" for line in failure.log)]
+    return "\n".join(lines)

@@ -1,0 +1,165 @@
+"""What code does: a digest of its syntax tree, and what it imports. Nothing is imported or run."""
+
+import ast
+import hashlib
+import io
+import json
+import tokenize
+from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
+from importlib.util import resolve_name
+from pathlib import Path
+from typing import Any
+
+from robo_genesis.core.files import derived
+
+PACKAGE = "robo_genesis"
+QUIET = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.ENDMARKER)
+
+
+@lru_cache(maxsize=1024)
+def syntax_digest(source: str) -> str:
+    """Return the sha256 of what a module does: of its syntax tree, not of its text.
+
+    Comments, layout, quotes and strings that are statements of their own do not count. Python
+    3.11 to 3.14 give the same digest, because fields that are empty or have to do with positions
+    are left out, and the constant parts of f-strings are joined. An exception is a backslash in the
+    format of an f-string: Python 3.11 and later versions read it differently.
+
+    Args:
+        source: Python. One that does not parse counts by its text.
+    """
+
+    def make() -> bytes:
+        try:
+            tree = ast.parse(source)
+        except (SyntaxError, ValueError):
+            return sha256_of(source).encode()
+        return sha256_of(_canonical(tree)).encode()
+
+    return derived("syntax", [source.encode(), _own_source()], make).decode()
+
+
+def cell_digests(cells: Sequence[str]) -> list[str]:
+    """Return the digest of each code cell of a page; see `cell_digest`."""
+    inputs = [json.dumps(cells).encode(), _own_source()]
+    made = derived("cells", inputs, lambda: json.dumps([*map(cell_digest, cells)]).encode())
+    digests: list[str] = json.loads(made)
+    return digests
+
+
+def cell_digest(source: str) -> str:
+    """Return the sha256 of the syntax of one code cell, in which IPython's magics are translated.
+
+    A string that is a statement counts, other than in a module, because it may be the output of the
+    cell. So does a semicolon at the end, which hides the output.
+    """
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return sha256_of(source)
+    statements = [_canonical(statement) for statement in tree.body]
+    return sha256_of([statements, _ends_with_semicolon(source)])
+
+
+def _canonical(node: Any) -> Any:
+    """Return a syntax tree as nested lists, the same in each version of Python."""
+    if isinstance(node, list):
+        return [_canonical(each) for each in node]
+    if isinstance(node, ast.Constant):
+        return ["Constant", type(node.value).__name__, ascii(node.value)]
+    if not isinstance(node, ast.AST):
+        return node
+    fields = dict(ast.iter_fields(node))
+    fields.pop("kind", None)
+    fields.pop("type_comment", None)
+    if isinstance(node, ast.JoinedStr):
+        fields["values"] = list(_joined(node.values))
+    for name in ("body", "orelse", "finalbody"):
+        if isinstance(fields.get(name), list):
+            fields[name] = [s for s in fields[name] if not _is_text(s)]
+    filled = {
+        name: _canonical(value)
+        for name, value in fields.items()
+        if value is not None and value != []
+    }
+    return [type(node).__name__, filled]
+
+
+def _is_text(statement: ast.AST) -> bool:
+    """Whether a statement is only a string, as docstrings are."""
+    return (
+        isinstance(statement, ast.Expr)
+        and isinstance(statement.value, ast.Constant)
+        and isinstance(statement.value.value, str)
+    )
+
+
+def _joined(parts: Iterable[ast.expr]) -> Iterator[ast.expr]:
+    """Yield the parts of an f-string with adjacent constants joined and empty ones left out."""
+    text = ""
+    for part in parts:
+        if isinstance(part, ast.Constant) and isinstance(part.value, str):
+            text += part.value
+            continue
+        if text:
+            yield ast.Constant(text)
+        text = ""
+        yield part
+    if text:
+        yield ast.Constant(text)
+
+
+def _ends_with_semicolon(source: str) -> bool:
+    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
+    words = [token.string for token in tokens if token.type not in QUIET and token.string]
+    return words[-1:] == [";"]
+
+
+def sha256_of(value: Any) -> str:
+    """Return the sha256 of a JSON value."""
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+@lru_cache(maxsize=1024)
+def imported_names(source: str, package: str = "") -> tuple[str, ...]:
+    """Return the dotted names below the course package that a source imports anywhere.
+
+    A name may be that of a module or of something in a module.
+
+    Args:
+        source: Python. One that does not parse imports nothing: its page fails when it is executed.
+        package: the package of the source, to which relative imports refer.
+    """
+    inputs = [source.encode(), package.encode(), _own_source()]
+    made = derived("imports", inputs, lambda: " ".join(_names(source, package)).encode())
+    return tuple(made.decode().split())
+
+
+def _names(source: str, package: str) -> list[str]:
+    names: list[str] = []
+    try:
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.Import):
+                names += [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                base = resolve_name("." * node.level + (node.module or ""), package)
+                names += [base, *(f"{base}.{alias.name}" for alias in node.names)]
+    except (SyntaxError, ValueError, ImportError):
+        return []
+    return [name for name in names if name.split(".")[0] == PACKAGE]
+
+
+def imports_of(cells: Sequence[str]) -> list[str]:
+    """Return the dotted names below the course package that the code cells of a page import."""
+    found = derived(
+        "cell-imports",
+        [json.dumps(cells).encode(), _own_source()],
+        lambda: " ".join(sorted({n for cell in cells for n in _names(cell, "")})).encode(),
+    )
+    return found.decode().split()
+
+
+@lru_cache(maxsize=1)
+def _own_source() -> bytes:
+    return Path(__file__).read_bytes()

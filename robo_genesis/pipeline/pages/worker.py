@@ -1,0 +1,177 @@
+"""Execute one page in a process of its own, and put it into the store if it did not fail."""
+
+import os
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+import nbclient
+from nbclient.exceptions import CellExecutionError, CellTimeoutError
+from nbformat import NotebookNode
+
+from robo_genesis.core.project import COMMAND, OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, ROOT, RUN_ID
+from robo_genesis.pipeline.pages.book import Page, cell_sources, code_digest
+from robo_genesis.pipeline.pages.folder import StoreError, write_page
+from robo_genesis.pipeline.pages.kernels import (
+    ARGUMENTS,
+    CleanKernelManager,
+    clean_environment,
+    die_with_parent,
+)
+from robo_genesis.pipeline.pages.results import (
+    Failure,
+    at_cell,
+    last_lines,
+    missing_bundle,
+    unexpected_outcome,
+)
+from robo_genesis.pipeline.pages.syntax import imports_of
+
+
+@dataclass(frozen=True, slots=True)
+class PageRun:
+    """One run of one page: what its worker process needs to know.
+
+    `place` is the page's folder in the store; `scratch` is temporary, and is removed with the build
+    even where the worker is killed; `log` is the file that gets what cells and kernel write;
+    `timeout` is in seconds, for one cell.
+    """
+
+    page: Page
+    run_id: str
+    place: Path
+    scratch: Path
+    log: Path
+    timeout: int
+    environment: Mapping[str, str]
+
+    @property
+    def outputs(self) -> Path:
+        """The folder that the contract names to the page."""
+        return self.scratch / self.run_id
+
+    @property
+    def left(self) -> Path:
+        """The folder of the files that the page leaves."""
+        return self.outputs / str(self.page.lesson) / str(self.page.page)
+
+
+def work(run: PageRun, connection: Connection) -> None:
+    """Execute one page in this process and send back its progress, then seconds and failure.
+
+    Args:
+        run: what to execute.
+        connection: takes the number of each code cell that starts, counted from 1, and in the end
+            one pair; a process that ends without sending it has failed as well.
+    """
+    die_with_parent(run.scratch)
+    runtime = Path(tempfile.mkdtemp(dir=run.scratch))
+    own = {
+        RUN_ID: run.run_id,
+        OUTPUTS_DIR: str(run.outputs),
+        PAGE_SHA256: code_digest(run.page),
+        PAGE_IMPORTS: " ".join(imports_of(cell_sources(run.page))),
+    }
+    environment = clean_environment(runtime / "home", runtime, ROOT, {**run.environment, **own})
+    os.environ.clear()
+    os.environ.update(environment)
+    # The engine's compiled parts write past Python: to a file, because the build prints its
+    # progress here, and because a crash would lose the last lines.
+    descriptor = os.open(run.log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND, 0o644)
+    for standard in (1, 2):
+        os.dup2(descriptor, standard)
+    begin = time.monotonic()
+    failure = execute_page(run, connection.send)
+    if failure:
+        failure = replace(failure, log=last_lines(run.log.read_text("utf8", errors="replace")))
+    connection.send((time.monotonic() - begin, failure))
+
+
+class LoggingClient(nbclient.NotebookClient):
+    """Writes what cells print to this process's standard output, which is the page's log."""
+
+    def process_message(
+        self, msg: dict[str, Any], cell: NotebookNode, cell_index: int
+    ) -> NotebookNode | None:
+        """Keep one message of the kernel in the notebook, and write its text."""
+        if msg["msg_type"] == "stream":
+            os.write(1, msg["content"]["text"].encode("utf8", errors="replace"))
+        return super().process_message(msg, cell, cell_index)
+
+
+def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None:
+    """Execute a page in an empty temporary folder; store it, or return why it failed.
+
+    Args:
+        run: what to execute.
+        on_cell: called with the number of each code cell that starts.
+    """
+    notebook, error = run.page.notebook, None
+    begins: dict[int, float] = {}  # of each cell that started, by its index
+    seconds: list[float] = []
+
+    def cell_starts(cell: NotebookNode, cell_index: int) -> None:
+        CleanKernelManager.busy = True
+        begins[cell_index] = time.monotonic()
+        before = notebook.cells[: cell_index + 1]
+        on_cell(sum(cell.cell_type == "code" for cell in before))
+
+    def cell_ends(cell: NotebookNode, cell_index: int, execute_reply: object) -> None:
+        CleanKernelManager.busy = False
+        seconds.append(round(time.monotonic() - begins[cell_index], 3))
+
+    begin = time.monotonic()
+    with tempfile.TemporaryDirectory(dir=run.scratch) as folder:
+        try:
+            LoggingClient(
+                notebook,
+                resources={"metadata": {"path": folder}},
+                timeout=notebook.metadata.get("execution", {}).get("timeout", run.timeout),
+                kernel_manager_class=CleanKernelManager,
+                extra_arguments=ARGUMENTS,
+                record_timing=False,
+                on_cell_execute=cell_starts,
+                on_cell_executed=cell_ends,
+            ).execute()
+        except Exception as caught:  # a dead kernel, or none that starts, is a failed page as well
+            error = caught
+    elapsed = time.monotonic() - begin
+    failure = _failure(run, error, list(begins))
+    if failure is None:
+        notebook.metadata.setdefault("robo_genesis", NotebookNode())["run_id"] = run.run_id
+        try:
+            write_page(
+                run.place,
+                run.page,
+                notebook,
+                run.left,
+                run_id=run.run_id,
+                command=run.environment.get(COMMAND),
+                seconds=elapsed,
+                cell_seconds=seconds,
+            )
+        except (StoreError, OSError) as caught:
+            failure = Failure("NotStored", f"the executed page cannot be stored: {caught}")
+    return failure
+
+
+def _failure(run: PageRun, error: Exception | None, started: list[int]) -> Failure | None:
+    """Return why a page failed, None if it did not."""
+    notebook = run.page.notebook
+    if error is None:
+        return unexpected_outcome(run.page, notebook) or missing_bundle(
+            run.left, run.page, run.run_id
+        )
+    name, message = type(error).__name__, str(error)
+    if isinstance(error, CellExecutionError):
+        name, message = error.ename, error.evalue
+    elif isinstance(error, CellTimeoutError):
+        message = message.splitlines()[0]
+    if not started:
+        return Failure(name, message)
+    last = started[-1]
+    return at_cell(run.page, last, name, message, notebook.cells[last])

@@ -1,0 +1,1 @@
+"""Recording the labs on a machine with an accelerator."""

@@ -1,0 +1,317 @@
+"""The stages of `make book`: execute, render and verify, pack, sums, check, publish.
+
+`make execute` is the first of them, for one page.
+"""
+
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from robo_genesis.core import project
+from robo_genesis.core.files import locked, settle
+from robo_genesis.core.git import unclean
+from robo_genesis.evidence import bundle_store
+from robo_genesis.pipeline import npm, up_to_date
+from robo_genesis.pipeline.bundles.of_build import verify_results
+from robo_genesis.pipeline.bundles.status import refused_records
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.pipeline.command import TIMEOUT, Progress, say
+from robo_genesis.pipeline.html.address import site_address, site_root
+from robo_genesis.pipeline.html.checks import Site, run_checks
+from robo_genesis.pipeline.html.draft import Draft
+from robo_genesis.pipeline.html.kept import discard
+from robo_genesis.pipeline.html.publish import add_bundles, publish
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import LOG, SphinxProcess
+from robo_genesis.pipeline.html.sums import write_sums
+from robo_genesis.pipeline.pages.book import Page, find_pages
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.execute import execute_pages, kernel_environment
+from robo_genesis.pipeline.pages.kernels import described
+from robo_genesis.pipeline.pages.progress import reporting
+from robo_genesis.pipeline.pages.results import PageResult, failure_report
+from robo_genesis.pipeline.pages.store import (
+    Verify,
+    export_page,
+    forget,
+    import_pages,
+    places,
+    require_export_folder,
+)
+from robo_genesis.pipeline.release import missing_for_release
+
+
+class BuildError(project.ProjectError):
+    """A stage failed; the message is the whole report, and the old site is unchanged."""
+
+
+@dataclass(frozen=True, slots=True)
+class Build:
+    """What to build, with which resources, and where progress is printed.
+
+    `jobs` None means one for each core; `verify` None is the course's own verification. `release`
+    demands a clean tree and every lesson's required evidence, and reuses no executed page of the
+    cache; `fresh_checkout` calls it so. `executed` holds all pages as another machine executed
+    them; then none is executed here. `to` is the book that gets the site, by default `book`.
+    `command` is the command that bundles name. `sphinx` loads Sphinx, by default a process that the
+    build starts.
+    """
+
+    root: Path = project.ROOT
+    book: Path = project.BOOK
+    cache: Path = project.CACHE
+    jobs: int | None = None
+    timeout: int = TIMEOUT
+    verify: Verify | None = None
+    release: bool = False
+    executed: Path | None = None
+    to: Path | None = None
+    command: str = "make book"
+    sphinx: SphinxProcess | None = None
+    say: Callable[[str], None] = say
+
+
+def run_build(build: Build) -> list[str]:
+    """Build the site and publish it.
+
+    Args:
+        build: see there.
+
+    Returns:
+        The last lines for the user: where the site is and what it was built with.
+
+    Raises:
+        BuildError: a stage failed; nothing was published.
+        StoreError: pages that were executed elsewhere are refused; nothing was published.
+        ProjectError: the checkout or SITE_URL is not fit for a build.
+    """
+    with (
+        build.sphinx or SphinxProcess(build.book, build.cache / LOG) as sphinx,
+        build_lock(build.cache),
+        staging_folder(build.cache) as staging,
+    ):
+        target = build.to or build.book
+        settle(target / project.PUBLISHED)
+        bundle_store.recover(build.book / "evidence")
+        inputs = up_to_date.inputs_digest(build.root, build.book)
+        progress = Progress(build.say)
+        npm.require_published()
+        engine, pages, into = _prepare(build)
+        from_nothing = build.release or build.executed or site_address()
+        verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
+        if build.release:
+            _require_for_release(unclean(build.root))
+        if build.executed:
+            for record in import_pages(build.executed, pages, into, verify):
+                progress("import", record.docname, f"run {record.run_id[:8]}")
+        results = _execute(build, pages, into, progress)
+        manifests: dict[str, Any] = {}
+
+        def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
+            draft.prepare()  # first: most files are still those of the last render
+            manifests.update(_accepted(build, verify, results, progress))
+            add_bundles(draft, results)
+
+        progress("render", "all pages")
+        kept = None if from_nothing else build.cache / project.KEPT
+        draft = render(sphinx, staging, BuiltPages.of(results), kept, meanwhile=accept)
+        with ThreadPoolExecutor(1) as beside:  # compression runs beside Python
+            packing = beside.submit(draft.pack)
+            site = Site(draft.html, site_root())
+            progress("pack", packing.result().name)
+        sums = write_sums(draft.html, draft.digests)  # last of the site's files, before the checks
+        progress("sums", sums.name)
+        try:
+            checked = _check(site, progress)
+        except BuildError:
+            if kept:  # what is wrong may be a file that the kept folder has lost
+                discard(kept)
+            raise
+        forget(build.cache / project.STORE, results)
+        summary = partial(_summary, engine, results, manifests, checked)
+
+        def finish(published: Path) -> None:
+            now = up_to_date.inputs_digest(build.root, build.book)
+            up_to_date.record(published, inputs, now, summary(executed=0), draft.digests)
+
+        html = publish(target, draft.folder, finish)  # last: after it, nothing may fail
+        progress("publish", str(html))
+        ran = sum(result.status == "executed" for result in results)
+        return [f"Site: {html / 'index.html'}", *summary(executed=ran)]
+
+
+@contextmanager
+def staging_folder(cache: Path) -> Iterator[Path]:
+    """Make the folder in which one build renders; remove it in the end.
+
+    The build lock must be held: folders of killed builds are removed first. A process that a killed
+    build left would write into its own folder and not into this one.
+
+    Args:
+        cache: folder of the caches.
+    """
+    for left in cache.glob(f"{project.STAGING}*"):
+        shutil.rmtree(left, ignore_errors=True)
+    with tempfile.TemporaryDirectory(
+        prefix=f"{project.STAGING}-", dir=cache, ignore_cleanup_errors=True
+    ) as own:
+        yield Path(own)
+
+
+def export_one(name: str, to: Path | None, build: Build) -> list[str]:
+    """Execute one page of the book, unless the store has it, and export it as files.
+
+    Args:
+        name: the page as the table of contents names it, or as `l04/lab`.
+        to: gets the page's folder.
+        build: where book and caches are, and with which resources.
+
+    Returns:
+        The last lines for the user: where the page is, and what executed it.
+
+    Raises:
+        BuildError: there is no such page, it failed, or a build runs here. Nothing was exported.
+        ProjectError: folder, checkout or book are not fit for it.
+    """
+    with build_lock(build.cache):
+        engine, pages, into = _prepare(build)
+        names = {page.docname: page for page in pages}
+        names |= {f"{page.lesson}/{page.page}": page for page in pages if page.declares_bundle}
+        if name not in names:
+            valid = ", ".join(page.docname for page in pages) or "none"
+            raise BuildError(f"PAGE={name!r} is not valid. Executed pages of this book: {valid}.")
+        if to is None:
+            raise BuildError("TO is not set. Name the folder that gets the page: TO=folder.")
+        bundle_store.require_folder(to)
+        require_export_folder(to)
+        progress = Progress(build.say)
+        [result] = _execute(build, [names[name]], into, progress)
+        place = export_page(result, to)
+        progress("export", result.page.docname, result.status)
+    return [f"Executed page: {place}", f"Engine: {project.ENGINE} {engine}, run {result.run_id}"]
+
+
+def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path]]:
+    """Return the engine's version, the pages of the book, and their places in the store."""
+    engine = project.require_pinned_engine(build.root)
+    project.remove_stale_kernel_lock(build.cache)
+    pages = find_pages(build.book)
+    return engine, pages, places(pages, build.cache / project.STORE, build.root)
+
+
+def _require_for_release(problems: Sequence[str]) -> None:
+    """Raise BuildError if there is a reason against a release."""
+    if problems:
+        raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
+
+
+def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
+    """Return the folder of the lab's bundle of this build, by lesson of the book."""
+    labs: dict[str, Path | None] = {
+        str(result.page.lesson): None for result in results if result.page.declares_bundle
+    }
+    return labs | {str(r.page.lesson): r.bundle for r in results if r.page.page == "lab"}
+
+
+def _execute(
+    build: Build, pages: Sequence[Page], into: Mapping[str, Path], progress: Progress
+) -> list[PageResult]:
+    """Run the execution stage; every page is tried before the report.
+
+    A release is executed at its commit, so it reuses nothing.
+    """
+    cores = os.cpu_count() or 1
+    progress("execute", f"{len(pages)} pages")
+    with reporting(progress) as report:
+        results = execute_pages(
+            pages,
+            into,
+            reuse=not build.release,
+            jobs=build.jobs or max(1, min(cores, len(pages))),
+            timeout=build.timeout,
+            environment=kernel_environment(build.root, build.cache, build.command),
+            logs=build.cache / project.LOGS,
+            report=report,
+        )
+    if any(result.failure for result in results):
+        raise BuildError(failure_report(results))
+    return results
+
+
+def _accepted(
+    build: Build, verify: Verify, results: Sequence[PageResult], progress: Progress
+) -> dict[str, Any]:
+    """Return the accepted manifests by page name.
+
+    Raises:
+        BuildError: a bundle of this build or a recorded one is refused, or a release lacks one.
+    """
+    manifests, refused = verify_results(verify, results, progress)
+    if refused := refused + refused_records(build.book, _labs(results)):
+        raise BuildError("\n".join(refused))
+    if build.release:
+        problems = missing_for_release(build.book, _labs(results), manifests, build.root)
+        _require_for_release([*unclean(build.root), *problems])
+        progress("release", "clean tree, current evidence")
+    return manifests
+
+
+def _check(site: Site, progress: Progress) -> int:
+    """Check the rendered site and return the number of checks passed."""
+    checks = run_checks(site)
+    for check in checks:
+        found = f"{len(check.problems)} problems" if check.problems else "passed"
+        progress("check", f"{check.name} ({check.count})", found)
+    problems = [f"{check.name}: {line}" for check in checks for line in check.problems]
+    if problems:
+        raise BuildError("\n".join([f"The site has {len(problems)} problems.", *problems]))
+    return len(checks)
+
+
+def _summary(
+    engine: str,
+    results: Sequence[PageResult],
+    manifests: Mapping[str, Any],
+    checked: int,
+    executed: int,
+) -> list[str]:
+    """Return the facts that a build ends with, one line for each lab."""
+    lines = [f"Engine: {project.ENGINE} {engine}"]
+    for page in (result.page for result in results if result.page.page == "lab"):
+        facts = manifests[page.docname].predicate
+        renderer = facts.render.renderer or "SKIP: no camera frames"
+        lines.append(
+            f"Lesson {page.lesson}: engine {facts.engine.version}, backend requested "
+            f"{facts.backend.requested}, actual {facts.backend.actual}, "
+            f"render {facts.render.mode} ({renderer})"
+        )
+    lines.append(f"Pages: {executed} executed, {len(results) - executed} reused.")
+    measured = sum(len(manifest.predicate.checks) for manifest in manifests.values())
+    lines.append(f"Checks passed: {measured} on what was measured, {checked} on the site.")
+    return lines
+
+
+def build_lock(cache: Path) -> AbstractContextManager[None]:
+    """Hold the lock of builds and of tests that run the engine.
+
+    Args:
+        cache: folder of the caches. The lock lies beside the compiled kernels, which two cache
+            folders may share.
+
+    Raises:
+        BuildError: another process holds it; the message names that process, its command and start.
+    """
+    return locked(
+        cache / project.COMPILED / "build.lock",
+        lambda process: BuildError(
+            f"Another build, or a test of the engine, runs here:\n{described(process)}\n"
+            f"Wait until it ends, or stop it with Ctrl-C in its terminal or `kill {process}`."
+        ),
+    )

@@ -1,0 +1,205 @@
+"""One robot in each environment of a batched scene: reset, command and step all or some of them.
+
+Row k of an array belongs to environment k. A scene that was built without environments has arrays
+without this axis; here it counts as one row.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim.arm import joint_control
+from robo_genesis.sim.arm.joint_control import CaseError, ControlCase
+from robo_genesis.sim.arm.joints import JointMap, to_numpy
+
+
+class Batch:
+    """The robot in all environments from a complete reset on, and the record of its states."""
+
+    def __init__(
+        self, scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase]
+    ) -> None:
+        """Reset every environment to the start of its case; raises as `reset_batch`."""
+        self.scene, self.robot, self.cases = scene, robot, list(cases)
+        self.dofs: list[int] = joints.dofs_idx_local.tolist()
+        batch = reset_batch(scene, robot, joints, self.cases)
+        self.q_start = np.reshape(batch.q_start, (len(self.cases), -1))
+        self.target = self.q_start.astype(np.float64)
+        self.states, self.readings = [self._rows(joint_control.read_state)], list[Any]()
+        self.sent: list[FloatArray] = []
+        self.begin = np.zeros(len(self.cases), int)
+        self.start_qd, self.start_force = np.zeros((2, *self.q_start.shape), np.float32)
+        self.effort_limit = to_numpy(robot.get_dofs_force_range(self.dofs)[1]).reshape(
+            self.q_start.shape
+        )
+
+    def command(self, q_target: FloatArray, envs: Sequence[int] | None = None) -> None:
+        """Command positions to all environments, or to some of them; the others keep theirs.
+
+        Args:
+            q_target: (k, d), row j for environment `envs[j]` [rad or m]. Nothing broadcasts.
+            envs: numbers of k environments; all, in their order, by default.
+
+        Raises:
+            CaseError: the rows are not one for each environment, or an environment does not exist
+                or is named twice.
+        """
+        chosen = self._chosen(envs)
+        if np.shape(q_target) != (len(chosen), len(self.dofs)):
+            raise CaseError(
+                f"The command has shape {np.shape(q_target)}, expected one row of "
+                f"{len(self.dofs)} positions for each of the environments {chosen}."
+            )
+        values = np.array(q_target, dtype=np.float64)
+        if self.scene.n_envs:
+            self.robot.control_dofs_position(values, self.dofs, envs_idx=chosen)
+        else:
+            self.robot.control_dofs_position(values[0], self.dofs)
+        self.target[chosen] = values
+        fresh = [k for k in chosen if self.begin[k] == len(self.sent)]
+        qd, force, _ = self._rows(joint_control.read_step)
+        self.start_qd[fresh], self.start_force[fresh] = qd[fresh], force[fresh]
+
+    def step(self, steps: int) -> None:
+        """Step all environments, and record each state and the command that led to it."""
+        for _ in range(steps):
+            self.scene.step()
+            self.states.append(self._rows(joint_control.read_state))
+            self.readings.append(self._rows(joint_control.read_step))
+            self.sent.append(self.target.copy())
+
+    def reset_rows(self, envs: Sequence[int]) -> None:
+        """Reset some environments to the start of their cases; the others keep their state.
+
+        Gains and ranges of force remain; the command of the chosen environments ends, so send a
+        new one before the next step. Their traces begin here.
+
+        Raises:
+            CaseError: an environment does not exist, or is named twice.
+        """
+        chosen = self._chosen(envs)
+        self.scene.reset(envs_idx=chosen)
+        self.robot.set_dofs_position(
+            self.q_start[chosen], self.dofs, envs_idx=chosen, zero_velocity=True
+        )
+        self.begin[chosen] = len(self.sent)
+        self.states[-1] = self._rows(joint_control.read_state)
+
+    def trace(self, row: int) -> Trace:
+        """Return the run of one environment since its last reset."""
+        first, case = int(self.begin[row]), self.cases[row]
+        return joint_control.assemble(
+            replace(case, steps=len(self.sent) - first),
+            [tuple(values[row] for values in state) for state in self.states[first:]],
+            [tuple(values[row] for values in reading) for reading in self.readings[first:]],
+            [target[row] for target in self.sent[first:]],
+            self.start_qd[row],
+            self.start_force[row],
+            self.effort_limit[row],
+        )
+
+    def _rows(self, read: Any) -> tuple[FloatArray, ...]:
+        """Return what a function of `joint_control` reads, each array with an axis of rows."""
+        found = read(self.robot, self.dofs)
+        return tuple(values if self.scene.n_envs else values[None] for values in found)
+
+    def _chosen(self, envs: Sequence[int] | None) -> list[int]:
+        """Return the numbers of environments as a list, of all where none are given."""
+        known = range(len(self.cases))
+        chosen = list(known) if envs is None else [int(k) for k in envs]
+        if not chosen or not set(chosen) <= set(known) or len(set(chosen)) != len(chosen):
+            raise CaseError(
+                f"Environments {chosen} were given. Valid are different numbers from 0 to "
+                f"{len(self.cases) - 1}, at least one. The engine itself does not check them."
+            )
+        return chosen
+
+
+def run_batch(
+    scene: Any, robot: Any, joints: JointMap, cases: Mapping[str, ControlCase]
+) -> dict[str, Trace]:
+    """Do as `joint_control.run_case` does, with each case in an environment of its own.
+
+    Args:
+        scene: built with `n_envs` = number of cases, and with `batch_dofs_info`, without which all
+            environments share one set of gains.
+        robot: the scene's robot.
+        joints: its map.
+        cases: by name, of equal `dt`, `substeps` and `steps`.
+
+    Raises:
+        CaseError: as `reset_batch`.
+
+    Returns:
+        The trace of each case by name.
+    """
+    batch = Batch(scene, robot, joints, list(cases.values()))
+    batch.command(np.stack([case.q_target for case in cases.values()]))
+    batch.step(batch.cases[0].steps)
+    return {name: batch.trace(row) for row, name in enumerate(cases)}
+
+
+def reset_batch(
+    scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase]
+) -> ControlCase:
+    """Do as `joint_control.reset` does in every environment, and read back what was set.
+
+    Raises:
+        CaseError: the scene does not fit the cases, a case must not be run, or a value reads back
+            differently from the value that was set.
+
+    Returns:
+        The cases as one: its arrays are (cases, joints), without environments (joints,).
+    """
+    for case in cases:
+        joint_control.validate(case, joints)
+    found = (scene.n_envs, scene.dt, scene.substeps)
+    rows = len(cases) if scene.n_envs or len(cases) != 1 else 0
+    required = {(rows, case.dt, case.substeps) for case in cases}
+    if required != {found} or len({case.steps for case in cases}) != 1:
+        raise CaseError(
+            f"The scene has (environments, dt, substeps) {found}, the cases require "
+            f"{sorted(required)}. Build it with n_envs={rows}, for cases of equal length."
+        )
+    dofs = joints.dofs_idx_local.tolist()
+    arrays: dict[str, Any] = {
+        name: np.array(np.stack(each) if rows else each[0])
+        for name in ("q_start", "q_target", "kp", "kv", "effort_limit")
+        for each in [[getattr(case, name) for case in cases]]
+    }
+    batch = replace(cases[0], **arrays)
+    scene.reset()
+    robot.set_dofs_kp(batch.kp, dofs)
+    robot.set_dofs_kv(batch.kv, dofs)
+    robot.set_dofs_force_range(-batch.effort_limit, batch.effort_limit, dofs)
+    robot.set_dofs_position(batch.q_start, dofs, zero_velocity=True)
+    joint_control.require_read_back(robot, dofs, batch)
+    return batch
+
+
+def set_link_mass(
+    robot: Any, link: str, masses: FloatArray, envs: Sequence[int]
+) -> FloatArray:  # fmt: skip
+    """Give a link another mass in some environments; return all masses as read back (B,) [kg].
+
+    Centre of mass and inertia of the link remain. A reset of the scene keeps the masses. A newer
+    engine computes what follows from a mass again when it is written, also when the mass is the
+    same: forces may then differ in the last bit. So name no environment that keeps its mass.
+
+    Args:
+        robot: of a scene with `batch_links_info`, without which there is one mass for all.
+        link: its name.
+        masses: (k,) [kg], one for each environment of `envs`.
+        envs: k environments.
+    """
+    at = [robot.get_link(link).idx_local]
+    # Newer versions of the engine have other names.
+    new = hasattr(robot, "set_links_mass")
+    write = robot.set_links_mass if new else robot.set_links_inertial_mass
+    read = robot.get_links_mass if new else robot.get_links_inertial_mass
+    write(np.array(masses, dtype=np.float32)[:, None], at, list(envs))
+    return np.asarray(to_numpy(read(at))[:, 0])

@@ -1,0 +1,69 @@
+"""Runs of a joint as channels: position, velocity, control force, target and effort limit."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from robo_genesis.core.channels import Channel, Level
+from robo_genesis.core.text import with_unit
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim.arm.joints import JointMap
+
+MEASURES = False
+
+
+def channels(traces: Mapping[str, Trace], joints: JointMap, joint: str) -> list[Channel]:
+    """Return position, velocity and control force of one joint.
+
+    The force of the first state is that of the controller after the target has been set and before
+    the first step.
+    """
+    k = joints.entry(joint)
+    unit, effort = joints.position_units[k], joints.effort_units[k]
+    q = {case: trace.q[:, k] for case, trace in traces.items()}
+    qd = {case: np.append(trace.start_qd[k], trace.qd[:, k]) for case, trace in traces.items()}
+    force = {
+        case: np.append(trace.start_control_force[k], trace.control_force[:, k])
+        for case, trace in traces.items()
+    }
+    return [
+        Channel("position", "q", unit, 4, q),
+        Channel("velocity", "q̇", f"{unit}/s", 4, qd),
+        Channel("control force", "force", effort, 2, force),
+    ]
+
+
+def levels(traces: Mapping[str, Trace], joints: JointMap, joint: str, band: float) -> list[Level]:
+    """Return the target with its settling band of half width `band`, and the force limit."""
+    k = joints.entry(joint)
+    unit, effort = joints.position_units[k], joints.effort_units[k]
+    values = {case: targets(trace, k) for case, trace in traces.items()}
+    limit = {case: float(trace.effort_limit[k]) for case, trace in traces.items()}
+    texts = {case: one_by_one(found, unit, ",\n") for case, found in values.items()}
+    limits = {case: (-value, value) for case, value in limit.items()}
+    limit_texts = {case: f"±{with_unit(value, effort, 0)}" for case, value in limit.items()}
+    legend = "Short dashes, at the edges of the control force: its limits."
+    return [
+        Level("target", "position", "target", "Dotted: the target.", values, texts, band),
+        Level("force limit", "control force", "limit", legend, limits, limit_texts),
+    ]
+
+
+def motion(trace: Trace, joints: JointMap, joint: str) -> str:
+    """Return a sentence with the start and the targets of one joint."""
+    k = joints.entry(joint)
+    unit = joints.position_units[k]
+    start, target = with_unit(trace.q[0, k], unit), one_by_one(targets(trace, k), unit)
+    return f"`{joint}` starts at {start} and gets the target {target}."
+
+
+def targets(trace: Trace, entry: int) -> tuple[float, ...]:
+    """Return the commands of one joint in their order, equal ones in a row once."""
+    command = trace.target[:, entry]
+    begins = [0, *(np.flatnonzero(np.diff(command)) + 1).tolist()]
+    return tuple(float(command[k]) for k in begins)
+
+
+def one_by_one(values: Sequence[float], unit: str, between: str = ", then ") -> str:
+    """Return values in their order as text: `0.5 rad`, or `0.5 rad, then 0.7 rad`."""
+    return between.join(with_unit(value, unit) for value in values)

@@ -1,0 +1,155 @@
+"""Inverse kinematics, link poses and Jacobian of a robot in Genesis."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.arm.joints import JointMap, to_numpy
+
+
+class KinematicsError(ValueError):
+    """A query has the wrong shape or a value that is not finite; the message says which."""
+
+
+@dataclass(frozen=True, slots=True)
+class IkSettings:
+    """Settings of the engine's solver. All are given to it, because its defaults may change.
+
+    It stops when both residuals are within `position_tolerance` [m] and `rotation_tolerance` [rad].
+    After `iterations` it draws another start within the joint limits, up to `samples` starts with
+    the given one. With `samples=1` it draws nothing, so equal calls give equal answers.
+    """
+
+    position_tolerance: float = 5e-4
+    rotation_tolerance: float = 5e-3
+    samples: int = 50
+    iterations: int = 20
+    damping: float = 0.01
+    largest_step: float = 0.5
+
+    @property
+    def tolerances(self) -> tuple[float, float]:
+        """Return the largest accepted residuals of position [m] and rotation [rad]."""
+        return self.position_tolerance, self.rotation_tolerance
+
+
+@dataclass(frozen=True, slots=True)
+class IkAnswer:
+    """What the engine's solver returned, accepted or not.
+
+    `q` (…, d) has the order of the joint map. `error` (…, 6) leads from the pose of the answer to
+    the target: a translation [m] and a rotation vector [rad], both in the axes of the world. The
+    leading axis has one row for each environment; without environments there is none.
+    """
+
+    q: FloatArray
+    error: FloatArray
+
+
+def solve_ik(
+    robot: Any, joints: JointMap, link: str, position: FloatArray, quat: FloatArray,
+    q_start: FloatArray, moved: Sequence[str], settings: IkSettings,
+    envs: Sequence[int] | None = None,
+) -> IkAnswer:  # fmt: skip
+    """Ask the engine for joint positions that bring a link to a pose. Nothing is commanded.
+
+    In a scene with environments all arrays have one row for each asked environment, and so has the
+    answer. The engine would broadcast some other shapes; here they are errors.
+
+    Args:
+        robot: rigid entity of a built scene.
+        joints: all its joints.
+        link: name of the link whose origin has the target.
+        position: (…, 3) target in the world [m].
+        quat: (…, 4) target orientation, (w, x, y, z).
+        q_start: (…, d) first start [rad or m].
+        moved: names of the joints that the solver may move.
+        settings: of the solver.
+        envs: numbers of the environments that are asked, all by default.
+
+    Raises:
+        KinematicsError: an array has the wrong shape, or a value that is not finite.
+    """
+    d, count = len(joints.names), robot.scene.n_envs
+    rows = () if count == 0 else (count if envs is None else len(envs),)
+    require_finite("position", position, (*rows, 3))
+    require_finite("quat", quat, (*rows, 4))
+    require_finite("q_start", q_start, (*rows, d))
+    chosen = {} if envs is None else {"envs_idx": list(envs)}
+    dofs = [int(joints.dofs_idx_local[joints.entry(name)]) for name in moved]
+    q, error = robot.inverse_kinematics(
+        link=robot.get_link(link),
+        pos=np.array(position, dtype=np.float32),
+        quat=np.array(quat, dtype=np.float32),
+        init_qpos=in_model_order(joints, q_start),
+        respect_joint_limit=True,
+        max_samples=settings.samples,
+        max_solver_iters=settings.iterations,
+        damping=settings.damping,
+        pos_tol=settings.position_tolerance,
+        rot_tol=settings.rotation_tolerance,
+        max_step_size=settings.largest_step,
+        dofs_idx_local=dofs,
+        return_error=True,
+        **chosen,
+    )
+    return IkAnswer(to_numpy(q)[..., joints.qs_idx_local], to_numpy(error))
+
+
+def link_poses_at(
+    robot: Any, joints: JointMap, links: Sequence[str], q: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return where the engine puts links at joint positions, without a step.
+
+    The state is assigned, read and assigned back. That also ends contacts and velocities: reset
+    before the next run. The engine's own `forward_kinematics` is missing in newer versions, and in
+    older ones it fails before the first call of the solver.
+
+    Args:
+        robot: rigid entity of a built scene, without parallel environments.
+        joints: all its joints.
+        links: names of the links.
+        q: (d,) joint positions [rad or m].
+
+    Returns:
+        Positions (l, 3) [m] and orientations (l, 4) in the world.
+
+    Raises:
+        KinematicsError: `q` has the wrong shape, or a value that is not finite.
+    """
+    require_finite("q", q, (len(joints.names),))
+    before = robot.get_qpos()
+    robot.set_qpos(in_model_order(joints, q), zero_velocity=True)
+    at = [robot.get_link(name).idx_local for name in links]
+    poses = to_numpy(robot.get_links_pos())[at], to_numpy(robot.get_links_quat())[at]
+    robot.set_qpos(before, zero_velocity=True)
+    return poses
+
+
+def jacobian(robot: Any, joints: JointMap, link: str) -> FloatArray:
+    """Return the Jacobian (6, d) of a link's origin in the state now.
+
+    The first three rows are its velocity, the others its angular velocity, in the world's axes.
+    """
+    found = to_numpy(robot.get_jacobian(link=robot.get_link(link)))
+    return np.asarray(found[:, joints.dofs_idx_local])
+
+
+def in_model_order(joints: JointMap, q: FloatArray) -> FloatArray:
+    """Return joint positions (…, d) in the order of the model, for one entity with d qpos."""
+    ordered = np.empty(np.shape(q), dtype=np.float32)
+    ordered[..., joints.qs_idx_local] = q
+    return ordered
+
+
+def require_finite(name: str, values: FloatArray, shape: tuple[int, ...]) -> None:
+    """Raise KinematicsError unless an array has a shape and finite values."""
+    if np.shape(values) != shape:
+        raise KinematicsError(
+            f"{name} has shape {np.shape(values)}, expected {shape}. Give one value for each entry."
+        )
+    if not np.isfinite(values).all():
+        raise KinematicsError(f"{name} is {np.asarray(values)}, expected finite numbers.")

@@ -1,0 +1,277 @@
+"""Position control of a robot's joints: reset, command a target, step, record."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.check_spec import LIMIT_TOLERANCE
+from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim.arm import franka
+from robo_genesis.sim.arm.joints import JointMap, resolve_joints, to_numpy
+from robo_genesis.sim.session import require_built
+
+
+class CaseError(ValueError):
+    """A control case is not valid; the message names the entry and the valid values."""
+
+
+@dataclass(frozen=True, slots=True)
+class ControlCase:
+    """All settings of one run. Arrays have one entry for each joint, in the order of the map.
+
+    `q_start`, `q_target` [rad or m]; `kp` [N·m/rad or N/m]; `kv` [N·m·s/rad or N·s/m];
+    `effort_limit` [N·m or N], symmetric; `dt` [s]; `steps` counts outer steps.
+    """
+
+    q_start: FloatArray
+    q_target: FloatArray
+    kp: FloatArray
+    kv: FloatArray
+    effort_limit: FloatArray
+    steps: int
+    dt: float = DT
+    substeps: int = SUBSTEPS
+    seed: int = SEED
+
+
+def describe(page: Any, robot: Any) -> JointMap:
+    """Give a page the counts, links and joints of the course's robot, and return its joints."""
+    counted = (robot.n_links, robot.n_joints, robot.n_dofs, robot.n_qs)
+    page.readings["model"] = dict(zip(franka.MODEL_COUNTS, counted, strict=True))
+    page.links = [link.name for link in robot.links]
+    page.joints = resolve_joints(robot, franka.JOINT_NAMES)
+    return page.joints
+
+
+def course_case(q_target: FloatArray, steps: int) -> ControlCase:
+    """Return the case of the course's robot with its gains, from its start to `q_target` (9,)."""
+    gains = franka.KP_BASELINE, franka.KV_BASELINE, franka.EFFORT_LIMIT
+    return ControlCase(franka.Q_START, q_target, *gains, steps)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Controlled:
+    """A robot under position control. A lesson's case adds what it commands.
+
+    The arrays have one entry for each joint, by default the course's: `q_start` [rad or m], `kp`
+    [N·m/rad or N/m], `kv` [N·m·s/rad or N·s/m], `effort_limit` [N·m or N].
+    """
+
+    steps: int
+    q_start: FloatArray = field(default_factory=lambda: franka.Q_START)
+    kp: FloatArray = field(default_factory=lambda: franka.KP_BASELINE)
+    kv: FloatArray = field(default_factory=lambda: franka.KV_BASELINE)
+    effort_limit: FloatArray = field(default_factory=lambda: franka.EFFORT_LIMIT)
+    dt: float = DT
+    substeps: int = SUBSTEPS
+    seed: int = SEED
+
+    def commanding(self, q_target: FloatArray) -> ControlCase:
+        """Return the control case that commands joint positions (d,) or (n, d) [rad or m]."""
+        return ControlCase(
+            self.q_start, q_target, self.kp, self.kv, self.effort_limit,
+            self.steps, self.dt, self.substeps, self.seed,
+        )  # fmt: skip
+
+
+def differences(one: ControlCase, other: ControlCase, joints: JointMap) -> list[str]:
+    """Name every field, and joint within it, in which two cases differ: `["kp[joint4]"]`."""
+    found = []
+    for one_field in fields(ControlCase):
+        a, b = getattr(one, one_field.name), getattr(other, one_field.name)
+        if np.ndim(a) == 0:
+            found += [one_field.name] if a != b else []
+        else:
+            found += [f"{one_field.name}[{joints.names[k]}]" for k in np.flatnonzero(a != b)]
+    return found
+
+
+def validate(case: ControlCase, joints: JointMap) -> None:
+    """Refuse a case that is not valid as written; nothing is clipped or broadcast.
+
+    Raises:
+        CaseError: naming the field, the joint, the value and what is valid.
+    """
+    n = len(joints.names)
+    for name in ("q_start", "q_target", "kp", "kv", "effort_limit"):
+        values = getattr(case, name)
+        if np.shape(values) != (n,):
+            raise CaseError(
+                f"{name} has shape {np.shape(values)}, expected ({n},): one value for each of "
+                f"{', '.join(joints.names)}. Slice values and indices together."
+            )
+        for k in np.flatnonzero(~np.isfinite(values)):
+            raise CaseError(f"{name}[{joints.names[k]}] is {values[k]}, expected a finite number.")
+    for name in ("q_start", "q_target"):
+        q = getattr(case, name)
+        outside = (q < joints.lower - LIMIT_TOLERANCE) | (q > joints.upper + LIMIT_TOLERANCE)
+        for k in np.flatnonzero(outside):
+            raise CaseError(
+                f"{name}[{joints.names[k]}] is {q[k]:g} {joints.position_units[k]}, outside its "
+                f"range [{joints.lower[k]:g}, {joints.upper[k]:g}]. Choose a value inside; none is "
+                "clipped."
+            )
+    for name in ("kp", "kv", "effort_limit"):
+        for k in np.flatnonzero(np.asarray(getattr(case, name)) < 0):
+            value = getattr(case, name)[k]
+            raise CaseError(f"{name}[{joints.names[k]}] is {value}, expected zero or more.")
+    if case.steps < 1 or not case.dt > 0 or case.substeps < 1:
+        raise CaseError(
+            f"steps={case.steps}, dt={case.dt}, substeps={case.substeps}: all must be positive."
+        )
+
+
+def reset(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> None:
+    """Bring scene and controller to the case's start, whatever ran before.
+
+    `scene.reset()` clears state and control mode but keeps gains and effort range, so these are
+    set again and read back; then the start position is assigned with zero velocity.
+
+    Raises:
+        CaseError: the scene is not built yet or has another time step, or what the engine reads
+            back differs from what was asked for.
+    """
+    require_built(scene, case, CaseError)
+    validate(case, joints)
+    dofs = joints.dofs_idx_local.tolist()
+    scene.reset()
+    robot.set_dofs_kp(case.kp.copy(), dofs)  # copies: Torch takes no read-only array
+    robot.set_dofs_kv(case.kv.copy(), dofs)
+    robot.set_dofs_force_range(-case.effort_limit, case.effort_limit.copy(), dofs)
+    robot.set_dofs_position(case.q_start.copy(), dofs, zero_velocity=True)
+    require_read_back(robot, dofs, case)
+
+
+def require_read_back(robot: Any, dofs: list[int], case: ControlCase) -> None:
+    """Raise CaseError unless the engine has gains, effort range and start of a case, at rest.
+
+    The case's arrays are (d,), or (environments, d) in a batch.
+    """
+    lower, upper = robot.get_dofs_force_range(dofs)
+    read_back = {
+        "kp": (robot.get_dofs_kp(dofs), case.kp),
+        "kv": (robot.get_dofs_kv(dofs), case.kv),
+        "effort_limit": (upper, case.effort_limit),
+        "-effort_limit": (lower, -case.effort_limit),
+        "q_start": (robot.get_dofs_position(dofs), case.q_start),
+        "velocity": (robot.get_dofs_velocity(dofs), np.zeros_like(case.q_start)),
+    }
+    for name, (found, asked) in read_back.items():
+        if not np.allclose(to_numpy(found), asked, rtol=1e-6, atol=LIMIT_TOLERANCE):
+            raise CaseError(f"{name} reads back {to_numpy(found)} after reset, asked for {asked}.")
+
+
+def run_case(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Trace:
+    """Reset, then command the constant target and step; record every state.
+
+    Position, link poses: before the first step and after each. Velocity and both forces: after
+    each step, with the time at which the step ends. `get_dofs_control_force` computes
+    its value from the state at the call, so after a step it belongs to the new state.
+
+    Returns:
+        A trace of `case.steps` steps.
+    """
+    reset(scene, robot, joints, case)
+    dofs = joints.dofs_idx_local.tolist()
+    states, steps, targets = [read_state(robot, dofs)], [], []
+    start_qd = to_numpy(robot.get_dofs_velocity(dofs))
+    q_target = case.q_target.copy()
+    robot.control_dofs_position(q_target, dofs)
+    start_control_force = to_numpy(robot.get_dofs_control_force(dofs))
+    effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
+    begin = engine_time(scene)
+    for _ in range(case.steps):
+        robot.control_dofs_position(q_target, dofs)  # at t[k]: repeat the target
+        scene.step()  # bounded effort drives the dynamics for dt
+        states.append(read_state(robot, dofs))  # at t[k+1]: the new state
+        steps.append(read_step(robot, dofs))
+        targets.append(q_target)
+    passed = engine_time(scene) - begin
+    if not np.isclose(passed, case.steps * case.dt, rtol=1e-5, atol=0):
+        raise CaseError(
+            f"The engine's clock advanced {passed:g} s in {case.steps} steps of {case.dt:g} s: the "
+            "times k · dt would be wrong. Build the scene with the dt of the case."
+        )
+    return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)
+
+
+def engine_time(scene: Any) -> float:
+    """Return the time of the engine's clock [s]."""
+    return float(scene.get_time() if hasattr(scene, "get_time") else scene.t * scene.dt)
+
+
+def assign_path(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Trace:
+    """Assign the states of a straight line from start to target, without control and steps.
+
+    This sequence of resets is the contrast to `run_case`; see `assign_postures`.
+    """
+    path = np.linspace(case.q_start, case.q_target, case.steps + 1)[1:]
+    return assign_postures(scene, robot, joints, case, path)
+
+
+def assign_postures(
+    scene: Any, robot: Any, joints: JointMap, case: ControlCase, postures: FloatArray
+) -> Trace:
+    """Reset, then assign postures (case.steps, d) [rad or m] one after the other, and read each.
+
+    Returns:
+        A trace of the start and the assigned postures. Its time is nominal: none passed.
+    """
+    reset(scene, robot, joints, case)
+    dofs = joints.dofs_idx_local.tolist()
+    start_qd, start_force, _ = read_step(robot, dofs)
+    effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
+    states, steps = [read_state(robot, dofs)], []
+    for q in postures:
+        robot.set_dofs_position(q, dofs, zero_velocity=True)
+        states.append(read_state(robot, dofs))
+        steps.append(read_step(robot, dofs))
+    return assemble(case, states, steps, list(postures), start_qd, start_force, effort_limit)
+
+
+def assemble(
+    case: ControlCase,
+    states: Sequence[tuple[FloatArray, ...]],
+    steps: Sequence[tuple[FloatArray, ...]],
+    targets: Sequence[FloatArray],
+    start_qd: FloatArray,
+    start_control_force: FloatArray,
+    effort_limit: FloatArray,
+) -> Trace:
+    """Stack the n+1 states, n step readings and n targets of a run of `case` into a trace."""
+    q, link_pos, link_quat = (np.stack(column) for column in zip(*states, strict=True))
+    qd, control_force, internal_force = (np.stack(column) for column in zip(*steps, strict=True))
+    return Trace(
+        t=np.arange(case.steps + 1) * case.dt,
+        q=q,
+        qd=qd,
+        target=np.stack(targets),
+        control_force=control_force,
+        internal_force=internal_force,
+        start_control_force=start_control_force,
+        start_qd=start_qd,
+        effort_limit=effort_limit,
+        link_pos=link_pos,
+        link_quat=link_quat,
+    )
+
+
+def read_state(robot: Any, dofs: list[int]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return position (d,), link positions (l, 3) [m] and orientations (l, 4), now."""
+    return (
+        to_numpy(robot.get_dofs_position(dofs)),
+        to_numpy(robot.get_links_pos()),
+        to_numpy(robot.get_links_quat()),
+    )
+
+
+def read_step(robot: Any, dofs: list[int]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return velocity, control force and internal force, each (d,), of the state now."""
+    return (
+        to_numpy(robot.get_dofs_velocity(dofs)),
+        to_numpy(robot.get_dofs_control_force(dofs)),
+        to_numpy(robot.get_dofs_force(dofs)),
+    )

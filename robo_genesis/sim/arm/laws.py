@@ -1,0 +1,212 @@
+"""What the arrays of a position-controlled Franka must have in common, by the model's mechanics.
+
+The poses of the links are a function of the positions, the control force is the control law, and
+the internal force is the net force at the state before the last solver step. MuJoCo computes poses,
+masses and gravity of the same model file in float64. What computes them is imported where it is
+used: a page measures without it.
+
+| tolerance | residual of the CPU runs | value |
+|---|---|---|
+| `LIMIT_TOLERANCE` of a start | 5e-8 rad | 1e-6 rad |
+| `LAW`, control force | 4e-4 N·m | 5e-3 N·m |
+| `POSE`, link positions and quaternions | 3e-7 m, 2e-7 | 5e-6 |
+| `NET_FORCE`, internal force of the arm | 9e-4 N·m | 1e-2 N·m |
+| `NET_FORCE`, of the fingers | 6e-3 N | 6e-2 N |
+| `STEPPED`, velocity before the last solver step | 2e-4 rad/s | 2e-3 rad/s |
+| `NEXT`, position and velocity after one outer step in MuJoCo | 2e-7 rad, 6e-5 rad/s | 2e-6, 6e-4 |
+| `MEAN`, mean velocity beyond those of the two samples | 0.07 rad/s | 0.7 rad/s |
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim.arm.franka import per_joint
+from robo_genesis.sim.arm.joint_control import LIMIT_TOLERANCE, ControlCase
+from robo_genesis.sim.laws import Breach, apart, times, unit_quaternions
+
+MEASURES = False
+
+LAW = 5e-3
+"""Tolerance of a control force [N·m or N]: float32 in KP times a position error."""
+
+POSE = 5e-6
+"""Tolerance of link positions [m] and of quaternions."""
+
+NET_FORCE = per_joint(*(1e-2,) * 7, *(6e-2,) * 2)
+"""Tolerance of the internal force [N·m or N]. The fingers also have a force between them, which the
+rule does not know."""
+
+STEPPED, MEAN = 2e-3, 0.7
+"""Tolerances of velocities [rad/s or m/s]: of the one before the last solver step, and of the mean
+of several solver steps beyond the velocities at both samples."""
+
+
+NEXT = 2e-6, 6e-4
+"""Tolerances of position [rad or m] and velocity [rad/s or m/s] after one outer step in MuJoCo."""
+
+
+def driven_run(
+    trace: Trace, case: ControlCase, links: Sequence[str], net_force: FloatArray = NET_FORCE
+) -> Iterator[Breach]:
+    """Yield what no run of `joint_control.run_case` has.
+
+    Args:
+        trace: the run.
+        case: its settings; the target is one for all steps, (d,), or one for each, (n, d).
+        links: names of the links of the trace.
+        net_force: (d,) tolerances of the internal force [N·m or N].
+    """
+    yield from commanded(trace, case, links)
+    yield from dynamics(trace, case, net_force)
+
+
+def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+    """Yield what no run with a commanded target has, whatever engine steps; arguments as before."""
+    yield from times(trace, case.steps, case.dt)
+    yield from start_and_limits(trace, case)
+    yield from apart("start", "target [rad or m]", trace.target, case.q_target, 0.0)
+    first = replace(case, q_target=np.atleast_2d(case.q_target)[0])
+    start = control_law(first, trace.q[0], trace.start_qd)
+    yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, start, LAW)
+    law = control_law(case, trace.q[1:], trace.qd)
+    yield from apart("law", "control_force [N·m or N]", trace.control_force, law, LAW)
+    yield from poses(trace, links)
+
+
+def assigned_path(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+    """Yield what no run of `joint_control.assign_path` has; the arguments are as before."""
+    yield from assigned_postures(trace, case, links)
+    path = np.linspace(case.q_start, case.q_target, case.steps + 1)[1:]
+    yield from apart("start", "target [rad or m]", trace.target, path, 0.0)
+
+
+def assigned_postures(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+    """Yield what no run of `joint_control.assign_postures` has; the arguments are as before."""
+    yield from times(trace, case.steps, case.dt)
+    yield from start_and_limits(trace, case)
+    yield from apart("start", "q [rad or m]", trace.q[1:], trace.target, LIMIT_TOLERANCE)
+    yield from never_stepped(trace)
+    yield from poses(trace, links)
+
+
+def never_stepped(trace: Trace) -> Iterator[Breach]:
+    """Yield velocities and forces that no assigned states have."""
+    zero = np.zeros(())
+    yield from apart("motion", "qd [rad/s or m/s]", trace.qd, zero, 0.0)
+    yield from apart("law", "control_force [N·m or N]", trace.control_force, zero, 0.0)
+    yield from apart("law", "start_control_force [N·m or N]", trace.start_control_force, zero, 0.0)
+    first = trace.internal_force[0]  # of the last step that the engine took, whenever that was
+    yield from apart("motion", "internal_force [N·m or N]", trace.internal_force, first, 0.0)
+
+
+def start_and_limits(trace: Trace, case: ControlCase) -> Iterator[Breach]:
+    """Yield a start that is not the case's, or not at rest, and an effort limit of another case."""
+    yield from apart("start", "start of q [rad or m]", trace.q[0], case.q_start, LIMIT_TOLERANCE)
+    yield from apart("start", "start_qd [rad/s or m/s]", trace.start_qd, np.zeros(()), 0.0)
+    yield from apart(
+        "law", "effort_limit [N·m or N]", trace.effort_limit, case.effort_limit, LIMIT_TOLERANCE
+    )
+
+
+def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
+    """Return clip(KP (q_target − q) − KV q̇) of states (…, d) [N·m or N]."""
+    effort = case.kp * (case.q_target - q) - case.kv * qd
+    return np.asarray(np.clip(effort, -case.effort_limit, case.effort_limit))
+
+
+def poses(trace: Trace, links: Sequence[str]) -> Iterator[Breach]:
+    """Yield a link that is not where the positions of the joints put it."""
+    from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+
+    yield from unit_quaternions(trace.link_quat)
+    unknown = sorted(set(links) - mujoco_kinematics.link_names())
+    if unknown:
+        yield Breach("pose", "list of links that the model does not have", unknown, [])
+        return
+    position, orientation = mujoco_kinematics.link_poses(trace.q, links)
+    yield from apart("pose", "link_pos [m]", trace.link_pos, position, POSE)
+    yield from apart("pose", "link_quat", trace.link_quat, orientation, POSE)
+
+
+def dynamics(
+    trace: Trace, case: ControlCase, net_force: FloatArray = NET_FORCE
+) -> Iterator[Breach]:
+    """Yield an internal force that is not the net force, and motion that the samples do not have.
+
+    `net_force` (d,) are the tolerances of the first [N·m or N].
+
+    Semi-implicit Euler gives the state before the last solver step from the state after it: the
+    position is q − h q̇, and the velocity is q̇ − h a with (M + h D) a = f, the internal force, where
+    D are passive damping and KV. The net force there is control force − bias − passive damping.
+    """
+    h, n = case.dt / case.substeps, case.substeps
+    speeds = np.vstack([trace.start_qd, trace.qd]).astype(np.float64)
+    q = trace.q.astype(np.float64)
+    q_before = q[1:] - h * speeds[1:]
+    qd_before, force = last_step(trace, case, q_before)
+    name = "internal_force [N·m or N]"
+    yield from apart("motion", name, trace.internal_force, force, net_force)
+    if n <= 2:  # then the step began at a sample, or the only other step did
+        middle = (q_before - q[:-1]) / h if n == 2 else speeds[:-1]
+        name = "velocity before the last solver step [rad/s or m/s]"
+        yield from apart("motion", name, qd_before, middle, STEPPED)
+    mean, middle = np.diff(q, axis=0) / case.dt, (speeds[1:] + speeds[:-1]) / 2
+    beyond = np.maximum(np.abs(mean - middle) - np.abs(np.diff(speeds, axis=0)) / 2, 0)
+    name = "mean velocity beyond those of both samples [rad/s or m/s]"
+    yield from apart("motion", name, beyond, np.zeros(()), MEAN)
+
+
+def last_step(
+    trace: Trace, case: ControlCase, q_before: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return velocity and net force, each (n, d), at the positions (n, d) before the last step."""
+    import mujoco
+
+    from robo_genesis.sim.mujoco.kinematics import bare_robot
+
+    (model, data, q_at, dof_at), h = bare_robot(), case.dt / case.substeps
+    damping, diagonal = model.dof_damping[dof_at], model.M_rowadr + model.M_rownnz - 1
+    states, impulses, speeds, bias = np.zeros((4, len(q_before), model.nv))
+    states[:, q_at], speeds[:, dof_at] = q_before, trace.qd
+    impulses[:, dof_at] = -h * trace.internal_force.astype(np.float64)
+    qpos, qvel, mass, solved = data.qpos, data.qvel, data.M, np.zeros((1, model.nv))
+    change = solved[0]
+    implicit = np.zeros(mass.shape)
+    implicit[diagonal[dof_at]] = h * (damping + case.kv)
+    for state, impulse, speed, effort in zip(states, impulses[:, None], speeds, bias, strict=True):
+        qpos[:] = state
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_makeM(model, data)
+        mass += implicit
+        mujoco.mj_factorM(model, data)
+        mujoco.mj_solveM(model, data, solved, impulse)
+        speed += change
+        qvel[:] = speed
+        mujoco.mj_comVel(model, data)
+        mujoco.mj_rne(model, data, 0, effort)
+    velocity = speeds[:, dof_at]
+    control = control_law(case, q_before, velocity)
+    return velocity, control - bias[:, dof_at] - damping * velocity
+
+
+def driven_in_mujoco(
+    trace: Trace, case: ControlCase, links: Sequence[str], timestep: float, integrator: str
+) -> Iterator[Breach]:
+    """Yield what no run of `mujoco_joints.run_case` has; the arguments are as there.
+
+    Each state follows from the state before it. A whole run is not comparable on another CPU where
+    the integrator is nearly unstable: there the rounding of float64 grows to 0.6 rad/s.
+    """
+    from robo_genesis.sim.mujoco import joints as mujoco_joints
+
+    yield from commanded(trace, case, links)
+    q, qd, force = mujoco_joints.each_step(trace, case, timestep, integrator)
+    yield from apart("motion", "q [rad or m]", trace.q[1:], q, NEXT[0])
+    yield from apart("motion", "qd [rad/s or m/s]", trace.qd, qd, NEXT[1])
+    name = "internal_force [N·m or N]"
+    yield from apart("motion", name, trace.internal_force, force, NET_FORCE)

@@ -1,0 +1,1 @@
+"""Free rigid bodies: falls, contacts, and the laws of their runs."""

@@ -1,0 +1,105 @@
+"""Runs of free bodies as channels: position and velocity of the origin of a link along axes."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from robo_genesis.core.channels import Channel, Runs, View, farthest_link
+from robo_genesis.core.text import listed, time_digits, with_unit
+from robo_genesis.core.trace import BodyTrace
+
+MEASURES = False
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """Words for an axis of the world: its two channels, a position on it, and both directions."""
+
+    number: int
+    position: str
+    velocity: str
+    heads: tuple[str, str]
+    at: str
+    forward: str
+    backward: str
+
+
+AXES = {
+    "x": Axis(0, "x", "velocity along x", ("x", "ẋ"), "x =", "moved on by", "moved back by"),
+    "y": Axis(1, "y", "velocity along y", ("y", "ẏ"), "y =", "moved on by", "moved back by"),
+    "z": Axis(2, "height", "vertical velocity", ("z", "ż"), "a height of", "rose by", "fell by"),
+}
+
+
+def runs(
+    traces: Mapping[str, BodyTrace],
+    links: Sequence[str],
+    link: str,
+    thing: str,
+    axes: Sequence[str] = ("z",),
+) -> Runs:
+    """Return the runs of free bodies with their descriptions.
+
+    Args:
+        traces: by case.
+        links: names, in the order of the traces' arrays.
+        link: the link whose origin the channels follow.
+        thing: the body in words: "box".
+        axes: of the world, each a key of `AXES`.
+
+    Raises:
+        ValueError: the runs have no such link, or there is no such axis; as `Runs`.
+    """
+    for name, valid in ((link, links), *((axis, tuple(AXES)) for axis in axes)):
+        if name not in valid:
+            raise ValueError(
+                f"{name!r} cannot be followed. Available: {', '.join(valid)}. Correct the lesson's "
+                "`Moving` declaration."
+            )
+    subject, k, followed = f"the {thing}", links.index(link), [AXES[name] for name in axes]
+    first, cases = followed[0].position.capitalize(), listed(list(traces))
+    return Runs(
+        subject=subject,
+        traces=traces,
+        links=links,
+        channels=[channel for axis in followed for channel in _channels(traces, k, axis)],
+        levels=(),
+        moves={
+            case: f"**{case}**: the {thing} "
+            + "; it ".join(_along(trace, k, axis) for axis in followed)
+            + (f". {farthest_link(links, trace)}" if len(links) > 1 else ".")
+            for case, trace in traces.items()
+        },
+        view=View(
+            thing=thing,
+            alt=f"{subject.capitalize()} in 3D, where it is at the sample that is shown.",
+        ),
+        alt=f"{first} of {subject} over time{f': {cases}' if len(traces) > 1 else ''}.",
+        caption=f"{first} of {subject}, from get_links_pos.",
+    )
+
+
+def _channels(traces: Mapping[str, BodyTrace], k: int, axis: Axis) -> tuple[Channel, Channel]:
+    """Return position and velocity of the origin of link `k` along an axis."""
+    position = {case: trace.link_pos[:, k, axis.number] for case, trace in traces.items()}
+    velocity = {case: trace.link_vel[:, k, axis.number] for case, trace in traces.items()}
+    return (
+        Channel(axis.position, axis.heads[0], "m", 4, position),
+        Channel(axis.velocity, axis.heads[1], "m/s", 4, velocity),
+    )
+
+
+def _along(trace: BodyTrace, k: int, axis: Axis) -> str:
+    """Describe where the origin of link `k` starts and ends along an axis, and its top speed."""
+    path, velocity = (array[:, k, axis.number] for array in (trace.link_pos, trace.link_vel))
+    distance, fastest = float(path[-1] - path[0]), int(np.abs(velocity).argmax())
+    start, end = (f"{axis.at} {with_unit(value, 'm')}" for value in path[[0, -1]])
+    ends = f"starts at {start} and ends at {end}"
+    if float(f"{distance:.4f}") != 0:
+        verb = axis.forward if distance > 0 else axis.backward
+        ends += f": it {verb} {with_unit(abs(distance), 'm')}"
+    if float(f"{velocity[fastest]:.4f}") == 0:
+        return f"{ends}, at rest all the time"
+    when = with_unit(trace.t[fastest], "s", time_digits(trace.dt))
+    return f"{ends}, fastest at {when} with {with_unit(velocity[fastest], 'm/s')}"

@@ -1,0 +1,285 @@
+"""Bodies that land, slide and bounce on a surface: build the scene, run it, record the contacts."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.free_fall import GRAVITY
+from robo_genesis.core.scene import DT, SUBSTEPS, FloatArray
+from robo_genesis.core.trace import ContactTrace
+from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stacked, times
+
+SURFACE_SIZE = (2.0, 0.8, 0.05)
+"""Length, width and thickness of the fixed box under the bodies [m]."""
+
+TOP = 0.725
+"""Height of its upper face [m]."""
+
+VALID: Mapping[str, tuple[str | None, ...]] = {
+    "shape": ("cube", "ball"),
+    "cone": ("pyramidal", "elliptic"),
+    "resolution": (None, "convex", "signorini"),
+}
+
+SHARED = (
+    "surface_friction", "duration", "settle", "dt", "substeps", "cone", "resolution", "impratio",
+    "gravity", "time_constant",
+)  # fmt: skip
+"""Settings that cases in one scene have in common."""
+
+SETTINGS = ("friction", "surface_friction", "substeps")
+"""Settings that no array of a run shows; they are read back from the scene."""
+
+LANDING, SLIDE, BOUNCE = "landing", "slide", "bounce"
+
+State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatArray]
+
+
+class ContactError(ValueError):
+    """A case is not valid; the message says what was found and what is valid."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactCase:
+    """All settings of one run of a body above or on the surface.
+
+    `start` is the position of its centre [m]; `size` the edge of a cube or the diameter of a ball
+    [m]; `density` [kg/m³]; `friction` its own coefficient, `surface_friction` that of the surface.
+    After `settle` seconds it gets `speed` along x [m/s], and `duration` seconds are recorded.
+    `cone` is the shape of the friction cone, `resolution` the engine's scheme for normal force and
+    friction, `impratio` the ratio of frictional to normal impedance; for None the engine chooses
+    the last two by the cone. `time_constant` is that of all contacts of the scene [s]; the engine
+    uses at least two solver steps. `spring` are time constant [s] and damping ratio of the contacts
+    of this body and the surface. None for both means the engine's defaults. `gravity` is a
+    magnitude [m/s²].
+    """
+
+    start: tuple[float, float, float]
+    duration: float
+    friction: float = 0.5
+    surface_friction: float = 0.8
+    speed: float = 0.0
+    settle: float = 0.0
+    shape: str = "cube"
+    size: float = 0.08
+    density: float = 500.0
+    dt: float = DT
+    substeps: int = SUBSTEPS
+    cone: str = "pyramidal"
+    resolution: str | None = None
+    impratio: float | None = None
+    time_constant: float | None = None
+    spring: tuple[float, float] | None = None
+    gravity: float = GRAVITY
+
+    def __post_init__(self) -> None:
+        for name, valid in VALID.items():
+            if (given := getattr(self, name)) not in valid:
+                known = " or ".join(map(repr, valid))
+                raise ContactError(f"The {name} {given!r} was given, valid is {known}.")
+        for name, seconds in (("duration", self.duration), ("settle", self.settle)):
+            if abs(round(seconds / self.dt) * self.dt - seconds) > 1e-9:
+                raise ContactError(
+                    f"{name} is {seconds} s, no whole number of outer steps of {self.dt} s. "
+                    "Cases are compared over equal simulated time. Choose a dt that divides it."
+                )
+
+    @property
+    def h(self) -> float:
+        """Length of one solver step [s]."""
+        return self.dt / self.substeps
+
+    @property
+    def steps(self) -> int:
+        """Outer steps that are recorded."""
+        return round(self.duration / self.dt)
+
+    @property
+    def mass(self) -> float:
+        """Mass of the solid body [kg]."""
+        volume = self.size**3 * (1.0 if self.shape == "cube" else np.pi / 6)
+        return float(self.density * volume)
+
+    @property
+    def inertia(self) -> float:
+        """Moment of inertia about any axis through the centre [kg·m²]."""
+        return self.mass * self.size**2 * (1 / 6 if self.shape == "cube" else 1 / 10)
+
+    @property
+    def rest_height(self) -> float:
+        """Height of the centre of a body on the surface without penetration [m]."""
+        return TOP + self.size / 2
+
+    @property
+    def kind(self) -> str:
+        """The motion that the case studies: landing, slide or bounce."""
+        if self.spring:
+            return BOUNCE
+        return SLIDE if self.speed else LANDING
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """A built scene with the surface, one body for each case, and a camera or None."""
+
+    scene: Any
+    surface: Any
+    bodies: Mapping[str, Any]
+    cases: Mapping[str, ContactCase]
+    camera: Any = None
+
+
+def build_world(
+    gs: Any, cases: Mapping[str, ContactCase], view: Mapping[str, Any] | None = None
+) -> World:
+    """Declare a scene with the surface and a body for each case, and build it.
+
+    Args:
+        gs: the engine after `gs.init`.
+        cases: by name; cases in one scene have the fields of `SHARED` in common.
+        view: settings of the camera, None for no camera.
+
+    Raises:
+        ContactError: there are no cases, or they differ in a field of `SHARED`.
+    """
+    common = shared_case(cases)
+    scene = gs.Scene(
+        sim_options=gs.options.SimOptions(
+            dt=common.dt, substeps=common.substeps, gravity=(0.0, 0.0, -common.gravity)
+        ),
+        rigid_options=gs.options.RigidOptions(**rigid_options(gs, common)),
+        profiling_options=gs.options.ProfilingOptions(show_FPS=False),  # no speed in the log
+        show_viewer=False,
+    )
+    surface = scene.add_entity(
+        morph=gs.morphs.Box(
+            size=SURFACE_SIZE, pos=(0.0, 0.0, TOP - SURFACE_SIZE[2] / 2), fixed=True
+        ),
+        material=gs.materials.Rigid(friction=common.surface_friction),
+        surface=gs.surfaces.Default(color=(0.62, 0.60, 0.56, 1.0)),
+    )
+    colours = ((0.90, 0.50, 0.10, 1.0), (0.16, 0.45, 0.70, 1.0))
+    bodies = {
+        name: scene.add_entity(
+            morph=(
+                gs.morphs.Box(size=(case.size,) * 3, pos=case.start)
+                if case.shape == "cube"
+                else gs.morphs.Sphere(radius=case.size / 2, pos=case.start)
+            ),
+            material=gs.materials.Rigid(rho=case.density, friction=case.friction),
+            surface=gs.surfaces.Default(color=colours[place % len(colours)]),
+        )
+        for place, (name, case) in enumerate(cases.items())
+    }
+    camera = scene.add_camera(**view) if view else None
+    scene.build()
+    for name, case in cases.items():
+        if case.spring:
+            for geom in (*surface.geoms, *bodies[name].geoms):
+                geom.set_sol_params((*case.spring, *contact_constants(scene, geom)[2:]))
+    return World(scene, surface, bodies, dict(cases), camera)
+
+
+def rigid_options(gs: Any, case: ContactCase) -> dict[str, Any]:
+    """Return friction model and time constant of a case as options; None is the default."""
+    resolution = gs.contact_resolution[case.resolution] if case.resolution else None
+    seconds = {"constraint_timeconst": case.time_constant} if case.time_constant else {}
+    return {
+        "friction_cone": gs.friction_cone[case.cone],
+        "contact_resolution": resolution,
+        "impratio": case.impratio,
+        **seconds,
+    }
+
+
+def contact_constants(scene: Any, geom: Any) -> FloatArray:
+    """Return the seven contact parameters of a geom; the first is the time constant [s].
+
+    Damping ratio and impedance follow. The solver uses at least two solver steps as time constant.
+    """
+    return to_numpy(scene.rigid_solver.get_sol_params(geoms_idx=[geom.idx]))[0]
+
+
+def time_constant(world: World) -> float:
+    """Return the time constant of the contacts of the surface [s]."""
+    return float(contact_constants(world.scene, world.surface.geoms[0])[0])
+
+
+def read_settings(world: World) -> dict[str, dict[str, float]]:
+    """Return the values of `SETTINGS` in the built scene, by case."""
+    solver, substeps = world.scene.rigid_solver, float(world.scene.substeps)
+
+    def friction(body: Any) -> float:
+        return float(to_numpy(solver.get_geoms_friction([body.geoms[0].idx]))[0])
+
+    surface = friction(world.surface)
+    return {
+        "friction": {name: friction(body) for name, body in world.bodies.items()},
+        "surface_friction": dict.fromkeys(world.bodies, surface),
+        "substeps": dict.fromkeys(world.bodies, substeps),
+    }
+
+
+def record_world(
+    world: World,
+    traces: dict[str, ContactTrace],
+    settings: dict[str, dict[str, float]],
+) -> None:
+    """Run a world; add its traces and its settings, which are read back, to those of others."""
+    traces |= run_world(world)
+    for name, found in read_settings(world).items():
+        settings.setdefault(name, {}).update(found)
+
+
+def run_world(world: World) -> dict[str, ContactTrace]:
+    """Reset the scene, settle, set the speeds, step; record every state of each body."""
+    common = shared_case(world.cases)
+    world.scene.reset()
+    for _ in range(round(common.settle / common.dt)):
+        world.scene.step()
+    for name, case in world.cases.items():
+        if case.speed:
+            velocity = np.array([case.speed, 0, 0, 0, 0, 0])
+            world.bodies[name].set_dofs_velocity(velocity)
+    steps = common.steps
+    states = record_states(world.scene.step, steps, lambda: read_world(world))
+    return {
+        name: ContactTrace(times(case), *stacked([state[name] for state in states]))
+        for name, case in world.cases.items()
+    }
+
+
+def read_world(world: World) -> dict[str, State]:
+    """Return position, orientation, velocities, contact count and penetration of each body, now.
+
+    The contacts are those of the beginning of the latest solver step.
+    """
+    states = {}
+    for name, body in world.bodies.items():
+        depths = to_numpy(body.get_contacts(with_entity=world.surface)["penetration"])
+        count = np.array([len(depths)], np.int32)
+        deepest = np.array([depths.max(initial=0.0)], np.float32)
+        states[name] = (*read_body(body), count, deepest)
+    return states
+
+
+def shared_case(cases: Mapping[str, ContactCase]) -> ContactCase:
+    """Return the first case, whose fields of `SHARED` are those of all cases.
+
+    Raises:
+        ContactError: there are no cases, or they differ in a field of `SHARED`.
+    """
+    if not cases:
+        raise ContactError("No cases were given; a scene takes at least one. Name a case.")
+    first = next(iter(cases.values()))
+    for name, case in cases.items():
+        for field in SHARED:
+            if getattr(case, field) != getattr(first, field):
+                raise ContactError(
+                    f"{name} asks for {field}={getattr(case, field)}, another case of the scene "
+                    f"for {getattr(first, field)}. Build a separate scene for it."
+                )
+    return first

@@ -1,0 +1,47 @@
+"""What arrays of a body that falls freely cannot be, whatever metrics and checks they give.
+
+| tolerance | residual of the CPU runs | value |
+|---|---|---|
+| `FALLEN`, place | 4e-7 m | 5e-6 m |
+| `FALLING`, velocity | 5e-6 m/s | 1e-4 m/s |
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.free_fall import summed_drop
+from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.bodies.rigid_bodies import Drop
+from robo_genesis.sim.laws import Breach, apart, refuse, times, unit_quaternions
+
+MEASURES = False
+
+FALLEN, FALLING = 5e-6, 1e-4
+"""Tolerances of place [m] and velocity [m/s]."""
+
+
+def require_falls(run: Any) -> None:
+    """Require of each run of an experiment that nothing but gravity moves its body.
+
+    Raises:
+        BundleRefused: `stamps`, `pose` or `motion`.
+    """
+    for name, case in run.cases.items():
+        refuse(f"arrays/{name}.npz", falling(run.traces[name], case))
+
+
+def falling(trace: BodyTrace, case: Drop) -> Iterator[Breach]:
+    """Yield what no run of `rigid_bodies.run_drop` has that ends in the air, upright."""
+    yield from times(trace, case.steps, case.dt)
+    yield from unit_quaternions(trace.link_quat)
+    place, motion = np.zeros((2, trace.steps + 1, 3))
+    solver_steps = case.substeps * np.arange(trace.steps + 1)
+    place[:, 2] = case.height - summed_drop(case.h, solver_steps, case.gravity)
+    motion[:, 2] = -case.gravity * trace.t
+    upright = np.array([1.0, 0, 0, 0])
+    yield from apart("motion", "link_pos [m]", trace.link_pos[:, 0], place, FALLEN)
+    yield from apart("motion", "link_vel [m/s]", trace.link_vel[:, 0], motion, FALLING)
+    yield from apart("motion", "link_quat", trace.link_quat[:, 0], upright, 0.0)
+    yield from apart("motion", "link_ang [rad/s]", trace.link_ang[:, 0], np.zeros(()), 0.0)

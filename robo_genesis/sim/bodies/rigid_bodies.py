@@ -1,0 +1,129 @@
+"""Free rigid bodies: read their states, record a run, drop a cube from rest."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+
+from robo_genesis.core.check_spec import START_TOLERANCE
+from robo_genesis.core.free_fall import GRAVITY
+from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
+from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.session import require_built
+
+Read = TypeVar("Read")
+
+
+class DropError(ValueError):
+    """A drop is not valid; the message says what was found and what is valid."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drop:
+    """All settings of one drop of a cube from rest.
+
+    `size` is the cube's edge [m], `density` [kg/m³], `height` that of its centre at the start [m],
+    `gravity` the magnitude of the acceleration downwards [m/s²], `dt` the outer step [s], `steps`
+    the number of outer steps.
+    """
+
+    size: float
+    density: float
+    height: float
+    steps: int
+    dt: float = DT
+    substeps: int = SUBSTEPS
+    gravity: float = GRAVITY
+    seed: int = SEED
+
+    @property
+    def h(self) -> float:
+        """Length of one solver step [s]."""
+        return self.dt / self.substeps
+
+    @property
+    def mass(self) -> float:
+        """Mass of the solid cube [kg]."""
+        return self.density * self.size**3
+
+    @property
+    def clearance(self) -> float:
+        """Distance from the cube's underside to the ground at the start [m]."""
+        return self.height - self.size / 2
+
+
+def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:
+    """Reset the scene, step, and record every state.
+
+    Raises:
+        DropError: the scene is not built or has another time step, or the box is not at rest
+            at the height that the case asks for.
+    """
+    require_built(scene, case, DropError)
+    scene.reset()
+    _check_start(read_body(box), case)
+    states = record_states(scene.step, case.steps, lambda: read_body(box))
+    return BodyTrace(times(case), *stacked(states))
+
+
+def record_states(
+    step: Callable[[], object],
+    steps: int,
+    read: Callable[[], Read],
+) -> list[Read]:
+    """Read the state, then step and read again, `steps` times; return the steps + 1 states.
+
+    Args:
+        step: advances the simulation by one outer step.
+        steps: number of outer steps.
+        read: returns the state now.
+    """
+    states = [read()]
+    for _ in range(steps):
+        step()
+        states.append(read())
+    return states
+
+
+def stacked(states: Sequence[tuple[FloatArray, ...]]) -> tuple[FloatArray, ...]:
+    """Return each array of a state for all states, with the states along a new first axis."""
+    return tuple(np.stack(column) for column in zip(*states, strict=True))
+
+
+def times(case: Any) -> FloatArray:
+    """Return the times k · dt of the states of a case, (steps+1,) [s]."""
+    return np.arange(case.steps + 1) * case.dt
+
+
+def read_model(scene: Any, body: Any) -> dict[str, int]:
+    """Return the engine's counts: entities of the scene; links, geoms and more of the body."""
+    return {
+        "entities": len(scene.entities),
+        "links": body.n_links,
+        "geoms": body.n_geoms,
+        "joints": body.n_joints,
+        "dofs": body.n_dofs,
+        "qpos": body.n_qs,
+    }
+
+
+def read_body(body: Any) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Return position (l, 3), orientation (l, 4), velocity and angular velocity (l, 3), now."""
+    return (
+        to_numpy(body.get_links_pos()),
+        to_numpy(body.get_links_quat()),
+        to_numpy(body.get_links_vel()),
+        to_numpy(body.get_links_ang()),
+    )
+
+
+def _check_start(state: tuple[FloatArray, ...], case: Drop) -> None:
+    position, _, velocity, angular_velocity = state
+    height = float(position[0, 2])
+    if abs(height - case.height) > START_TOLERANCE or velocity.any() or angular_velocity.any():
+        raise DropError(
+            f"The box starts at a height of {height:g} m with velocity {velocity[0].tolist()} m/s; "
+            f"the case asks for {case.height:g} m, at rest. Set its position before scene.build()."
+        )

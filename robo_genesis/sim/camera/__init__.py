@@ -1,0 +1,1 @@
+"""Cameras: frames, views, geometry, and checks of both."""

@@ -1,0 +1,154 @@
+"""Named checks of a camera view: camera matrix, pose, projection of a marker, depth of its surface.
+
+Each yields findings about one `View`; the label of a view keeps several apart. A view without
+pictures passes the checks of pictures with the note SKIP.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from robo_genesis.core.checks import Finding, above, at_most, equal, noted
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.camera import geometry as cameras
+from robo_genesis.sim.camera.geometry import Residuals
+from robo_genesis.sim.camera.views import View
+from robo_genesis.sim.visual_shape import rotate
+
+SKIP = "SKIP"
+
+SAME_MATRIX = 1e-9
+"""Largest difference of two camera matrices, both in float64 [pixel]."""
+
+SAME_POSE = 2e-6
+"""Largest difference of a pose computed in float64 to the engine's float32 [m or 1]."""
+
+FEWEST_PIXELS = 200
+"""A surface with fewer pixels is not judged by its picture."""
+
+CENTROID = 0.15
+"""Largest distance of a centroid from the centre of the computed silhouette [pixel].
+
+A mask has whole pixels. At random places, the centroid of a disc of 200 pixels is up to 0.14 pixels
+from the centre of the disc.
+"""
+
+MESH_SHARE = 0.006
+"""Largest distance of a point from a sphere's surface, as a share of the radius.
+
+The engine draws a sphere as 1280 triangles, whose centres are 0.45 % nearer to its middle.
+"""
+
+PLANE = 1e-4
+"""Largest distance of a point from a plane that is nearer than `PLANE_FAR` [m]."""
+
+PLANE_FAR = 3.0
+"""Depth up to which the bound of a plane holds [m]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Marker:
+    """A sphere in view: number in the segmentation, centre (3,) and radius [m].
+
+    Two markers are equal only if they are the same object, because a centre is an array.
+    """
+
+    number: int
+    centre: FloatArray
+    radius: float
+
+
+def camera_matrix(label: str, view: View, fov: float) -> Iterator[Finding]:
+    """Require the engine's camera matrix to be that of the vertical field of view [degree]."""
+    apart = np.abs(view.intrinsics - cameras.intrinsics(fov, view.size)).max()
+    yield at_most(f"{label}.intrinsics_error_px", float(apart), SAME_MATRIX)
+
+
+def mounted_camera(
+    label: str, view: View, position: FloatArray, quat: FloatArray, offset: FloatArray
+) -> Iterator[Finding]:
+    """Require the pose of a camera on a link to be the pose of the link times the offset.
+
+    Args:
+        label: of the view.
+        view: as it was read.
+        position: (3,) of the link in the world [m].
+        quat: (4,) orientation of the link, (w, x, y, z).
+        offset: (4, 4) the camera in the frame of the link [m].
+    """
+    link = np.eye(4)
+    link[:3, :3], link[:3, 3] = rotate(quat, np.eye(3)).T, position
+    apart = np.abs(view.transform - link @ offset)
+    yield at_most(f"{label}.position_error_m", float(apart[:3, 3].max()), SAME_POSE)
+    yield at_most(f"{label}.axes_error", float(apart[:3, :3].max()), SAME_POSE)
+
+
+def computed(view: View, marker: Marker) -> tuple[FloatArray, FloatArray]:
+    """Return where a marker's centre and the centre of its silhouette are, (2,) each [pixel]."""
+    camera = view.intrinsics, view.transform
+    ellipse = cameras.silhouette_centre(marker.centre, marker.radius, *camera)
+    return cameras.project(marker.centre, *camera), ellipse
+
+
+def projection(label: str, view: View, marker: Marker) -> Iterator[Finding]:
+    """Require the centroid of a whole marker in the segmentation to be where a sphere's picture is.
+
+    The picture of its centre is recorded too: perspective puts it nearer to the middle.
+    """
+    if view.segmentation is None:
+        yield noted(f"{label}.segmentation", SKIP)
+        return
+    mask = view.segmentation == marker.number
+    yield equal(f"{label}.pixels_at_the_border", int(mask.sum() - mask[1:-1, 1:-1].sum()), 0)
+    yield above(f"{label}.pixels", int(mask.sum()), FEWEST_PIXELS)
+    found = cameras.centroid(mask)
+    to_centre, to_ellipse = (float(np.linalg.norm(found - of)) for of in computed(view, marker))
+    yield noted(f"{label}.centroid_to_centre_px", to_centre)
+    yield at_most(f"{label}.centroid_to_silhouette_px", to_ellipse, CENTROID)
+
+
+def from_sphere(view: View, marker: Marker) -> Residuals | None:
+    """Return how far outside a marker its back-projected pixels are, None without pictures."""
+    if view.depth is None or view.segmentation is None:
+        return None
+    points = cameras.back_project(view.depth, view.intrinsics, view.transform)
+    apart = np.linalg.norm(points - marker.centre, axis=-1) - marker.radius
+    return cameras.residuals(apart[view.segmentation == marker.number])
+
+
+def from_plane(view: View, number: int, height: float = 0.0) -> Residuals | None:
+    """Return how far above a horizontal plane its back-projected pixels are.
+
+    Pixels deeper than `PLANE_FAR` are left out: the depth buffer resolves less there.
+
+    Args:
+        view: of the plane; without pictures, the result is None.
+        number: of the plane in the segmentation.
+        height: of the plane [m].
+    """
+    if view.depth is None or view.segmentation is None:
+        return None
+    points = cameras.back_project(view.depth, view.intrinsics, view.transform)
+    mask = (view.segmentation == number) & (view.depth < PLANE_FAR)
+    return cameras.residuals((points[..., 2] - height)[mask])
+
+
+def sphere_surface(label: str, view: View, marker: Marker) -> Iterator[Finding]:
+    """Require the back-projected pixels of a marker, its edge included, to be on its surface."""
+    return _surface(label, from_sphere(view, marker), MESH_SHARE * marker.radius)
+
+
+def plane_surface(label: str, view: View, number: int, height: float = 0.0) -> Iterator[Finding]:
+    """Require the back-projected pixels of a horizontal plane to be at its height [m]."""
+    return _surface(label, from_plane(view, number, height), PLANE)
+
+
+def _surface(label: str, found: Residuals | None, most: float) -> Iterator[Finding]:
+    """Require pixels within a distance [m] of a surface; without pictures, they pass."""
+    if found is None:
+        yield noted(f"{label}.depth", SKIP)
+        return
+    yield above(f"{label}.pixels", found.count, FEWEST_PIXELS)
+    yield noted(f"{label}.mean_m", found.mean)
+    yield at_most(f"{label}.largest_m", found.largest, most)

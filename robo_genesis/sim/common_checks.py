@@ -1,0 +1,38 @@
+"""Named checks that several lessons use."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from robo_genesis.core import checks
+from robo_genesis.core.check_spec import START_TOLERANCE
+from robo_genesis.core.checks import Finding, equal, within
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.sim import end_state
+
+
+def sample_times(run: Experiment) -> Iterator[Finding]:
+    """Require of each run one state at t = 0 and one after each outer step, at k · dt."""
+    return checks.sample_times(run.cases, run.traces)
+
+
+def stamps(run: Experiment) -> Iterator[Finding]:
+    """Require what `sample_times` requires; lessons L01 to L06 publish this name."""
+    return sample_times(run)
+
+
+def start(run: Experiment) -> Iterator[Finding]:
+    """Require each run of a body to begin at rest, at the height of its case."""
+    for name, case in run.cases.items():
+        trace = run.traces[name]
+        height = float(trace.link_pos[0, 0, 2])
+        yield within(f"{name}.start_height_m", height, case.height, START_TOLERANCE)
+        yield equal(f"{name}.start_velocity_m_s", np.abs(trace.link_vel[0]).max(), 0.0)
+        yield equal(f"{name}.start_turning_rad_s", np.abs(trace.link_ang[0]).max(), 0.0)
+
+
+def posture(run: Experiment) -> Iterator[Finding]:
+    """Require evidence of both ends of the baseline; a frame that is not declared fails it."""
+    views = {*run.page.frames} - {"initial", "final"} if run.rendered else set()
+    frames = {name: frame for name, frame in run.frames.items() if name not in views}
+    return end_state.findings(run.rendered, frames, run.traces["baseline"].link_pos)

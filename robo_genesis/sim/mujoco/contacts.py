@@ -1,0 +1,109 @@
+"""Contact cases in MuJoCo with the contact parameters of Genesis, for comparison."""
+
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.trace import ContactTrace
+from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
+from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
+from robo_genesis.sim.visual_shape import rotate
+
+VERSION = version("mujoco")
+
+DEFAULT_TIME_CONSTANT = 0.01
+"""Default of Genesis for contacts, unless two solver steps are longer [s]."""
+
+OWN_TIME_CONSTANT = 0.02
+"""MuJoCo's default [s]."""
+
+IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
+"""Impedance of a contact as a function of depth, the default of both engines."""
+
+
+def time_constant(h: float, requested: float | None = None) -> float:
+    """Return the time constant of a contact in Genesis at solver step `h` [s].
+
+    Args:
+        h: the solver step [s].
+        requested: `constraint_timeconst` [s], None for the default.
+    """
+    return max(DEFAULT_TIME_CONSTANT if requested is None else requested, 2 * h)
+
+
+def load(case: ContactCase, own_defaults: bool = False) -> Any:
+    """Compile the surface and one free body with the case's step, friction, cone and spring.
+
+    Args:
+        case: of a cube or a ball.
+        own_defaults: use the default time constant of MuJoCo instead of that of Genesis.
+    """
+    import mujoco
+
+    spec = mujoco.MjSpec()
+    spec.option.timestep = case.h
+    spec.option.gravity = (0, 0, -case.gravity)
+    cones = {
+        "pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL,
+        "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC,
+    }
+    spec.option.cone = cones[case.cone]
+    spec.option.impratio = case.impratio or 1.0
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    seconds = OWN_TIME_CONSTANT if own_defaults else time_constant(case.h, case.time_constant)
+    contact = {"solref": case.spring or (seconds, 1.0), "solimp": IMPEDANCE}
+    box, ball = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_SPHERE
+    spec.worldbody.add_geom(
+        type=box,
+        size=np.array(SURFACE_SIZE) / 2,
+        pos=(0, 0, TOP - SURFACE_SIZE[2] / 2),
+        friction=(case.surface_friction, 0, 0),
+        **contact,
+    )
+    body = spec.worldbody.add_body(pos=case.start)
+    body.add_freejoint()
+    body.add_geom(
+        type=box if case.shape == "cube" else ball,
+        size=(case.size / 2,) * 3,
+        density=case.density,
+        friction=(case.friction, 0, 0),
+        **contact,
+    )
+    return spec.compile()
+
+
+def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
+    """Run a case as `contacts.run_world` does, computed in float64, stored in float32.
+
+    The contacts are those of the beginning of the latest solver step, as in Genesis.
+
+    Args:
+        case: of a cube or a ball.
+        own_defaults: as in `load`.
+    """
+    import mujoco
+
+    model = load(case, own_defaults)
+    data = mujoco.MjData(model)
+    settle = round(case.settle / case.h)
+    if settle:
+        mujoco.mj_step(model, data, nstep=settle)
+    data.qvel[0] += case.speed
+    states = record_states(
+        lambda: mujoco.mj_step(model, data, nstep=case.substeps), case.steps, lambda: _state(data)
+    )
+    return ContactTrace(times(case), *stacked(states))
+
+
+def _state(data: Any) -> tuple[np.ndarray, ...]:
+    """Return position, orientation, velocity, angular velocity in the world's axes, contacts."""
+    quat = data.qpos[3:7]
+    angular_velocity = rotate(quat, data.qvel[None, 3:6])  # MuJoCo has it in the body's axes
+    deepest = max((-contact.dist for contact in data.contact), default=0.0)
+    state = (data.qpos[None, :3], quat[None], data.qvel[None, :3], angular_velocity)
+    return (
+        *(np.array(values, np.float32) for values in state),
+        np.array([data.ncon], np.int32),
+        np.array([max(deepest, 0.0)], np.float32),
+    )

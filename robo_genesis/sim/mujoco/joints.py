@@ -1,0 +1,165 @@
+"""Control cases in MuJoCo, on the model file that Genesis bundles, for comparison."""
+
+from collections.abc import Sequence
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import Trace
+from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import CaseError, ControlCase, assemble
+from robo_genesis.sim.session import asset
+
+VERSION = version("mujoco")
+
+INTEGRATORS = {"implicitfast": "mjINT_IMPLICITFAST", "Euler": "mjINT_EULER"}
+"""Names of integrators, and what MuJoCo calls them."""
+
+
+def load(case: ControlCase, timestep: float, integrator: str) -> Any:
+    """Compile the bundled Franka with one bounded PD actuator per joint and no others.
+
+    The shapes are left out: no links touch each other in the course's runs, and every link has its
+    inertia in the file.
+
+    An affine actuator's force is gain · ctrl + bias[1] · q + bias[2] · q̇, clipped to its range.
+    With (KP, −KP, −KV) and the target as ctrl, it is the PD law of the course.
+
+    Raises:
+        CaseError: the integrator is unknown, or the time step does not divide the dt of the case.
+    """
+    import mujoco
+
+    substeps = round(case.dt / timestep)
+    if integrator not in INTEGRATORS or not np.isclose(substeps * timestep, case.dt, rtol=1e-9):
+        raise CaseError(
+            f"integrator={integrator!r}, timestep={timestep:g} s: expected one of "
+            f"{', '.join(INTEGRATORS)}, and a time step that divides dt={case.dt:g} s."
+        )
+
+    def padded(*values: float) -> FloatArray:  # MuJoCo has ten parameters
+        return np.pad(np.array(values, dtype=np.float64), (0, mujoco.mjNGAIN - len(values)))
+
+    spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
+    for part in (*spec.actuators, *spec.keys, *spec.geoms, *spec.meshes):
+        spec.delete(part)
+    for k, name in enumerate(JOINT_NAMES):
+        spec.add_actuator(
+            name=name,
+            target=name,
+            trntype=mujoco.mjtTrn.mjTRN_JOINT,
+            gaintype=mujoco.mjtGain.mjGAIN_FIXED,
+            gainprm=padded(case.kp[k]),
+            biastype=mujoco.mjtBias.mjBIAS_AFFINE,
+            biasprm=padded(0, -case.kp[k], -case.kv[k]),
+            forcelimited=True,
+            forcerange=[-case.effort_limit[k], case.effort_limit[k]],
+        )
+    spec.option.timestep = timestep
+    spec.option.integrator = getattr(mujoco.mjtIntegrator, INTEGRATORS[integrator])
+    return spec.compile()
+
+
+def run_case(
+    case: ControlCase, links: Sequence[str], timestep: float, integrator: str = "implicitfast"
+) -> Trace:
+    """Run a case from rest as `joint_control.run_case` does, in MuJoCo.
+
+    After each outer step the forces are computed again from the new state, so they have the same
+    times as those of Genesis: the clipped control force, and the net force along each DOF. The run
+    is computed in float64 and stored in float32, like every trace of the course.
+
+    Args:
+        case: its `substeps` is not used; `timestep` replaces it.
+        links: bodies whose poses the trace holds, in this order.
+        timestep: length of one solver step [s].
+        integrator: one of `INTEGRATORS`.
+    """
+    import mujoco
+
+    model = load(case, timestep, integrator)
+    data = mujoco.MjData(model)
+    q_at, dof_at = _addresses(model)
+    bodies = [model.body(name).id for name in links]
+    data.qpos[q_at], data.ctrl[:] = case.q_start, case.q_target
+
+    def read() -> tuple[FloatArray, ...]:
+        mujoco.mj_forward(model, data)  # poses and forces of the state as it is now
+        net = (data.qfrc_smooth + data.qfrc_constraint)[dof_at]
+        state = (data.qpos[q_at], data.xpos[bodies], data.xquat[bodies])
+        return tuple(map(_kept, (*state, data.qvel[dof_at], data.actuator_force, net)))
+
+    readings = [read()]
+    for _ in range(case.steps):
+        mujoco.mj_step(model, data, nstep=round(case.dt / timestep))
+        readings.append(read())
+    states, steps = [r[:3] for r in readings], [r[3:] for r in readings[1:]]
+    start_qd, start_control_force = readings[0][3:5]
+    targets = [case.q_target] * case.steps
+    effort_limit = _kept(model.actuator_forcerange[:, 1])
+    return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)
+
+
+def each_step(
+    trace: Trace, case: ControlCase, timestep: float, integrator: str
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return what follows from a run's states, the arguments as of `run_case`.
+
+    Returns:
+        Position and velocity after one outer step from each state but the last, and the net force
+        at each state but the first; each (n, d).
+    """
+    import mujoco
+
+    model = load(case, timestep, integrator)
+    data = mujoco.MjData(model)
+    q_at, dof_at = _addresses(model)
+    data.ctrl[:] = case.q_target
+    q, qd, force = np.empty((3, *trace.qd.shape))
+    speeds = np.vstack([trace.start_qd, trace.qd])
+    for k, (position, velocity) in enumerate(zip(trace.q, speeds, strict=True)):
+        data.qpos[q_at], data.qvel[dof_at] = position, velocity
+        mujoco.mj_forward(model, data)
+        if k > 0:
+            force[k - 1] = (data.qfrc_smooth + data.qfrc_constraint)[dof_at]
+        if k < trace.steps:
+            mujoco.mj_step(model, data, nstep=round(case.dt / timestep))
+            q[k], qd[k] = data.qpos[q_at], data.qvel[dof_at]
+    return q, qd, force
+
+
+def _kept(values: FloatArray) -> FloatArray:
+    """Return a copy in the precision of the course's traces."""
+    return np.array(values, dtype=np.float32)
+
+
+def at_rest(case: ControlCase, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the mass matrix's diagonal (d,) and the effort (d,) that holds posture `q` (d,).
+
+    Diagonal: [kg·m² or kg]; effort: [N·m or N]. Neither contains a term of the integrator.
+    """
+    import mujoco
+
+    model = load(case, case.dt, "implicitfast")
+    data = mujoco.MjData(model)
+    q_at, dof_at = _addresses(model)
+    data.qpos[q_at] = q
+    mujoco.mj_forward(model, data)
+    columns = np.zeros((model.nv, model.nv))
+    for k, unit in enumerate(np.eye(model.nv)):
+        mujoco.mj_mulM(model, data, columns[k], unit)
+    return columns.diagonal()[dof_at].copy(), data.qfrc_bias[dof_at].copy()
+
+
+def passive_damping(case: ControlCase) -> FloatArray:
+    """Return the joint damping (d,) of the model [N·m·s/rad or N·s/m], without gains."""
+    model = load(case, case.dt, "implicitfast")
+    return np.array(model.dof_damping[_addresses(model)[1]])
+
+
+def _addresses(model: Any) -> tuple[list[int], list[int]]:
+    """Return the indices of the course's joints in qpos and among the DOFs."""
+    joints = [model.joint(name) for name in JOINT_NAMES]
+    return [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]

@@ -1,1 +1,0 @@
-"""What the arrays of a run must have in common, whatever metrics and checks they give."""

@@ -1,0 +1,199 @@
+import ast
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from spoilers import SPOILED, moved, on, part, seal
+
+import robo_genesis
+from robo_genesis.core import project
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.pipeline.bundles import verify
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+
+READERS = ("evidence/*.py", "pipeline/bundles/*.py", "core/refusals.py", "sim/**/*.py")
+OF_BODIES = {"contact", "second-engine"}  # the tests of L03 spoil its runs
+
+
+def codes():
+    """Every code that the readers can refuse with, from their source."""
+    package = Path(robo_genesis.__file__).parent
+    trees = [ast.parse(file.read_text("utf8")) for name in READERS for file in package.glob(name)]
+    return {
+        call.args[0].value
+        for tree in trees
+        for call in ast.walk(tree)
+        if isinstance(call, ast.Call)
+        and isinstance(call.func, ast.Name)
+        and call.func.id in ("BundleRefused", "expect", "Breach", "apart")
+        and isinstance(call.args[0], ast.Constant)
+    }
+
+
+def test_every_code_has_a_spoiler():
+    reached = {code for *both, _ in SPOILED.values() for code in both if code}
+    assert reached | {"run-id", "copy"} | OF_BODIES == codes()  # the first two need a second run
+
+
+def test_a_sound_bundle_is_accepted_also_when_sealed_again(folder):
+    assert verify_bundle(folder) == bundle.read_manifest(folder)
+    seal(folder)
+    verify_bundle(folder)
+
+
+def test_an_accepted_bundle_is_recomputed_only_when_something_changed(folder, monkeypatch):
+    recomputed, recompute = [], verify._recompute
+
+    def counted(*given):
+        recomputed.append(given)
+        return recompute(*given)
+
+    monkeypatch.setattr(verify, "_recompute", counted)
+    accepted = verify_bundle(folder, once=True)
+    assert accepted == verify_bundle(folder) == bundle.read_manifest(folder)
+    recomputed.clear()  # another test may have had the same bundle accepted
+    assert verify_bundle(folder, once=True) == accepted
+    assert recomputed == []
+    with pytest.raises(BundleRefused, match="run_id"):
+        verify_bundle(folder, "0" * 32, once=True)
+    code = os.urandom(16)  # in no cache
+    monkeypatch.setattr(verify, "_code", lambda: code)
+    verify_bundle(folder, once=True)
+    assert len(recomputed) == 1
+    (folder / "metrics.json").write_text((folder / "metrics.json").read_text().replace("1", "2", 1))
+    seal(folder)
+    for _ in range(2):  # a refusal is not kept
+        with pytest.raises(BundleRefused):
+            verify_bundle(folder, once=True)
+    assert len(recomputed) == 3
+
+
+@pytest.mark.parametrize("accelerator", ["amdgpu", "cuda"])
+def test_a_sound_bundle_of_an_accelerator_is_accepted(folder, accelerator):
+    accepted = verify_bundle(on(accelerator)(folder))
+    assert accepted.predicate.backend.actual == accelerator
+
+
+def test_a_cpu_run_with_a_torch_build_for_an_accelerator_is_accepted(folder):
+    part("backend", requested="auto", cuda_version="13.0")(folder)
+    verify_bundle(folder)
+
+
+def refusal(folder):
+    with pytest.raises(BundleRefused) as caught:
+        verify_bundle(folder)
+    assert str(caught.value).startswith(f"{caught.value.code}: ")
+    return caught.value
+
+
+def spoiled(how, folder):
+    return moved(SPOILED[how][2](folder), folder)
+
+
+@pytest.mark.parametrize("how", SPOILED)
+def test_a_spoiled_bundle_is_refused_with_its_code(folder, how):
+    refused = refusal(spoiled(how, folder))
+    assert refused.code == SPOILED[how][0]
+    assert "expected" in str(refused) or refused.code == "bad-schema"
+    assert str(refused).endswith(".")
+    assert len(str(refused)) < 900
+
+
+@pytest.mark.parametrize("how", [how for how, (_, code, _) in SPOILED.items() if code])
+def test_digests_and_key_made_right_again_do_not_help(folder, how):
+    there = spoiled(how, folder)
+    if (there / "manifest.json").exists():
+        seal(there)
+    assert refusal(there).code == SPOILED[how][1]
+
+
+def test_the_run_is_the_expected_one(folder):
+    verify_bundle(folder, bundle.read_manifest(folder).predicate.run_id)
+    with pytest.raises(BundleRefused, match=r"^run-id: .*Execute the page again"):
+        verify_bundle(folder, "f" * 32)
+
+
+def test_the_page_is_the_expected_one(folder):
+    verify_bundle(folder, lesson="l04", page="lab")
+    with pytest.raises(BundleRefused, match=r"^lesson: .*page is 'lab', expected 'lecture'"):
+        verify_bundle(folder, page="lecture")
+
+
+@pytest.fixture(scope="module")
+def checkout(tmp_path_factory):
+    """A copy of the files that decide the evidence key."""
+    root = tmp_path_factory.mktemp("checkout")
+    for name in ("book", "robo_genesis"):
+        ignored = shutil.ignore_patterns("_build*", "__pycache__")
+        shutil.copytree(project.ROOT / name, root / name, ignore=ignored)
+    for name in ("pyproject.toml", "requirements.lock"):
+        shutil.copy(project.ROOT / name, root)
+    return root
+
+
+VERIFY = """
+import sys
+from pathlib import Path
+from robo_genesis.pipeline.bundles.status import bundle_status
+status = bundle_status(Path(sys.argv[1]))
+print(status.state, status.reason)
+"""
+LAB = "book/lessons/l04-joint-control/lab.md"
+SPEC, METRICS, CLAIMS = (
+    f"robo_genesis/lessons/l04/{name}.py" for name in ("spec", "metrics", "claims_text")
+)
+STALE = "stale stale: manifest.json: {} is "
+
+
+HARMLESS = [
+    (LAB, "page.facts()", "page.facts()  # once"),
+    (LAB, "\n# ", "\n# Another title, and "),
+    (METRICS, "Share of the step that counts", "The share that counts"),
+    (CLAIMS, "Start, target, gains", "Start, gains, target"),
+    (SPEC, '"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'),
+    (SPEC, '"overshoot": 1e-3', '"overshoot": 1e-2'),
+    ("robo_genesis/core/plotting.py", '"""\n', '"""\n\nMORE = 1\n'),
+]
+
+
+@pytest.mark.parametrize(
+    ("edits", "said"),
+    [
+        (HARMLESS, "verified"),
+        ([("pyproject.toml", "-world==", "-world==9.")], STALE.format("engine.version")),
+        ([("requirements.lock", "\nquadrants==", "\nquadrants==9.")],
+         STALE.format("engine.quadrants_version")),
+        ([(LAB, "page.facts()", "pass")], STALE.format("source.page")),
+        ([(METRICS, "float(qd[-1])", "float(abs(qd[-1]))")],
+         STALE.format("source.modules.lessons.l04.metrics")),
+        ([(METRICS, "RISE_FRACTION = 0.9", "RISE_FRACTION = 0.8")], "stale "),
+        ([(METRICS, "SETTLING_BAND = 0.01", "SETTLING_BAND = 0.02")], "stale "),
+        ([(SPEC, "7000.0", "7100.0")], STALE.format("parameters.cases.G2.kp")),
+        ([(SPEC, "WINDOW = 1.2", "WINDOW = 1.3")], "stale "),
+        ([(SPEC, '("rise_time", "no later")', '("rise_time", "later")')], "inconclusive "),
+    ],
+)  # fmt: skip
+def test_an_edit_makes_stale_what_it_decides_and_nothing_else(folder, checkout, edits, said):
+    """The edited checkout itself verifies the bundle, in a process of its own."""
+    sources = {name: (checkout / name).read_text("utf8") for name, *_ in edits}
+    for name, old, new in edits:
+        source = (checkout / name).read_text("utf8")
+        assert old in source
+        (checkout / name).write_text(source.replace(old, new, 1), "utf8")
+    try:
+        done = subprocess.run(
+            [sys.executable, "-B", "-c", VERIFY, str(folder)],
+            cwd=checkout,
+            env={**os.environ, "PYTHONPATH": str(checkout)},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+    finally:
+        for name, source in sources.items():
+            (checkout / name).write_text(source, "utf8")
+    assert done.stdout.startswith(said)

@@ -1,0 +1,28 @@
+"""The site's address; test_render and test_course_elsewhere look at sites without and with one."""
+
+import pytest
+
+from robo_genesis.pipeline.html.address import AddressError, site_address, site_root
+
+
+@pytest.mark.parametrize(
+    ("given", "address", "root"),
+    [
+        ({}, None, "/"),
+        ({"SITE_URL": ""}, None, "/"),
+        ({"SITE_URL": "https://example.org"}, "https://example.org/", "/"),
+        ({"SITE_URL": "http://example.org/a/b/"}, "http://example.org/a/b/", "/a/b/"),
+    ],
+)
+def test_an_address_ends_with_a_slash_and_has_a_root(given, address, root):
+    assert site_address(given) == address
+    assert site_root(given) == root
+
+
+@pytest.mark.parametrize(
+    "given",
+    ["example.org", "ftp://example.org", "https://", "https://a.org/?x", "https://a.org/#x"],
+)
+def test_another_text_is_refused(given):
+    with pytest.raises(AddressError, match="Give an address like"):
+        site_address({"SITE_URL": given})

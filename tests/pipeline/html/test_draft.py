@@ -1,0 +1,131 @@
+"""A draft is in the end what Sphinx leaves, whatever it changes while the draft copies."""
+
+import hashlib
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.pipeline.html.archive import ARCHIVE
+from robo_genesis.pipeline.html.draft import BUILD_INFO, Draft
+
+FILES = {
+    "index.html": "home",
+    "lessons/one.html": "one",
+    "replay/model.glb": "a robot",
+    "takeaways/lab/lab.ipynb": "a lab",
+    "_static/site.css": "p {}",
+}
+
+
+@pytest.fixture
+def rendered(tmp_path):
+    folder = tmp_path / "rendered"
+    write(folder, FILES)
+    return folder
+
+
+def write(folder: Path, files: dict[str, str]) -> None:
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+
+
+def content(folder: Path) -> dict[str, str | None]:
+    """Return the text of each file except the archive, and None for each folder but its own."""
+    return {
+        p.relative_to(folder).as_posix(): p.read_text() if p.is_file() else None
+        for p in folder.rglob("*")
+        if not (folder / ARCHIVE).is_relative_to(p)
+    }
+
+
+def rewrite(rendered: Path) -> None:
+    """Do what Sphinx does: change, add and remove pages, and write style sheets again."""
+    shutil.rmtree(rendered / "_static")
+    shutil.rmtree(rendered / "takeaways")
+    write(
+        rendered, {"_static/site.css": "p {}", "lessons/one.html": "two", "lessons/more.html": ""}
+    )
+    (rendered / "index.html").unlink()
+
+
+@pytest.mark.parametrize("early", [True, False], ids=["prepared", "from nothing"])
+def test_a_draft_is_what_sphinx_leaves_whether_it_was_prepared_or_not(tmp_path, rendered, early):
+    (rendered / BUILD_INFO).write_text("a note")
+    draft = Draft(rendered, tmp_path / "draft")
+    if early:
+        draft.prepare()
+        assert (draft.html / "index.html").read_text() == "home"
+    rewrite(rendered)
+    draft.complete()
+    found = {name: text for name, text in content(rendered).items() if name != BUILD_INFO}
+    assert content(draft.html) == found
+    assert found["lessons/one.html"] == "two"
+    files = {name: text for name, text in found.items() if text is not None}
+    assert draft.digests == {n: hashlib.sha256(t.encode()).hexdigest() for n, t in files.items()}
+
+
+def test_what_sphinx_changes_while_the_draft_copies_is_copied_again(
+    tmp_path, rendered, monkeypatch
+):
+    copy = Draft._copy
+
+    def disturbed(draft: Draft, name: str) -> bool:
+        path = rendered / name
+        if name == "index.html":
+            path.unlink()  # it was listed before
+        copied = copy(draft, name)
+        before = path.stat()
+        path.write_text(
+            FILES[name].upper()
+        )  # of the same size and, as copies have it, the same time
+        os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+        return copied
+
+    draft = Draft(rendered, tmp_path / "draft")
+    with monkeypatch.context() as patch:
+        patch.setattr(Draft, "_copy", disturbed)
+        draft.prepare()
+    found = content(draft.complete().html)
+    assert found["lessons/one.html"] == "ONE"
+    assert {name: found.get(name) for name in FILES} == {
+        name: None if name == "index.html" else text.upper() for name, text in FILES.items()
+    }
+
+
+def test_a_file_may_become_a_folder_and_a_folder_a_file(tmp_path, rendered):
+    draft = Draft(rendered, tmp_path / "draft")
+    draft.prepare()
+    shutil.rmtree(rendered / "lessons")
+    (rendered / "index.html").unlink()
+    write(rendered, {"lessons": "a file", "index.html/inside": "a folder"})
+    found = content(draft.complete().html)
+    assert (found["lessons"], found["index.html/inside"]) == ("a file", "a folder")
+
+
+def test_what_cannot_be_read_in_the_end_fails(tmp_path, rendered):
+    draft = Draft(rendered, tmp_path / "draft")
+    (rendered / "lessons/two.html").symlink_to("nothing")
+    draft.prepare()
+    with pytest.raises(FileNotFoundError, match="two"):
+        draft.complete()
+    shutil.rmtree(rendered)
+    with pytest.raises(FileNotFoundError, match="rendered"):
+        draft.complete()
+
+
+@pytest.mark.parametrize("model", ["a robot", "another robot"])
+def test_the_archive_is_the_same_however_early_it_was_begun(tmp_path, rendered, model):
+    drafts = [Draft(rendered, tmp_path / name) for name in ("early", "late")]
+    drafts[0].prepare()
+    rewrite(rendered)
+    write(rendered, {"replay/model.glb": model, "takeaways/lab/lab.ipynb": "a lab"})
+    early, late = (draft.complete().pack().read_bytes() for draft in drafts)
+    assert early == late
+
+
+def test_a_draft_shares_no_file_with_what_sphinx_writes(tmp_path, rendered):
+    draft = Draft(rendered, tmp_path / "draft").complete()
+    assert not any((draft.html / name).samefile(rendered / name) for name in FILES)

@@ -1,0 +1,286 @@
+"""A render that keeps doctrees and pages publishes the same bytes as a render from nothing."""
+
+import json
+import os
+import pickle
+import re
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import nbformat
+import pytest
+import yaml
+from docutils import nodes
+from docutils.utils import new_document
+from sphinx.events import EventManager
+from tiny_book import cell, make_book, notebook
+
+from robo_genesis.pipeline.html import kept
+from robo_genesis.pipeline.html.draft import Draft
+from robo_genesis.pipeline.html.kept import State
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import RenderError, SphinxProcess
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.folder import NOTEBOOK, RECORD
+from robo_genesis.site.kept_pages import forget_own_pictures, outlines, setup
+
+GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
+LAW = "# Law\n\n(spring)=\n## The spring\n\nA gain of two, and a rareword.\n\n{ref}`text <there>`\n"
+TEXT = "# Text\n\n(there)=\n## There\n\nSee [](law.md) and {ref}`spring`.\n\n![A drawing](a.svg)\n"
+TEXT += "\nState: {lesson-state}`l04`.\n"
+FIGURE = "\n```{figure} a.svg\n%s\nA drawing\n```\n"
+CITING = "# Citing\n\nSee {numref}`drawn` and {eq}`force`.\n"
+DRAWN = "# Drawn\n" + FIGURE % ":name: drawn" + "\n$$\nF = k x\n$$ (force)\n"
+TABLE = "```{list-table} Rows\n:name: rows\n* - one\n  - two\n```\n"
+DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>'
+STD = SimpleNamespace(get_enumerable_node_type=lambda node: isinstance(node, nodes.figure))
+SOME = State("a", {"one": "1", "two": "2"})
+
+
+def publish(folder: Path, built: BuiltPages, keep: bool = True) -> dict[str, bytes]:
+    """Render a book and return its files."""
+    kept_folder = folder / "kept" if keep else None
+    sphinx = SphinxProcess(folder / "book", folder / "log")
+    html = render(sphinx, folder / "staging", built, kept_folder).html
+    return {p.relative_to(html).as_posix(): p.read_bytes() for p in html.rglob("*") if p.is_file()}
+
+
+def ran(folder: Path, printed: str) -> BuiltPages:
+    """Return the book's executed page with an output, without a run."""
+    place = folder / f"run {printed}"
+    place.mkdir()
+    (page,) = find_pages(folder / "book")
+    (code,) = (c for c in page.notebook.cells if c.cell_type == "code")
+    code.outputs = [nbformat.v4.new_output("stream", name="stdout", text=printed)]
+    page.notebook.cells = [code]
+    page.notebook.metadata["language_info"] = {"name": "python", "pygments_lexer": "python"}
+    nbformat.write(page.notebook, place / NOTEBOOK)
+    (place / RECORD).write_text(printed)
+    return BuiltPages(folders={page.docname: place})
+
+
+def replace(page: Path, *pairs: tuple[str, str]) -> None:
+    for old, new in pairs:
+        assert old in page.read_text()
+        page.write_text(page.read_text().replace(old, new))
+
+
+def edit_prose(book: Path) -> None:
+    """Edit a page and make its file look older than its last render."""
+    replace(book / "law.md", ("rareword", "frequent word"))
+    os.utime(book / "law.md", (0, 0))
+
+
+def edit_what_others_show(book: Path) -> None:
+    """Change a title, a term, a target's heading, and the picture of another page."""
+    replace(book / "law.md", ("# Law", "# Hooke"), ("## The spring", "## The stiff spring"))
+    replace(book / "glossary.md", ("A factor", "A measured factor"))
+    replace(book / "text.md", ("\n\n![A drawing](a.svg)", ""))
+
+
+def edit_numbers(book: Path) -> None:
+    """Add a figure before the one that another page cites by its number."""
+    page = book / "law.md"
+    page.write_text(page.read_text() + FIGURE % "")
+
+
+def edit_contents(book: Path) -> None:
+    """Remove a page, and add one."""
+    (book / "extra.md").rename(book / "added.md")
+    toc = yaml.safe_load((book / "_toc.yml").read_text())
+    toc["chapters"][-1] = {"file": "added"}
+    (book / "_toc.yml").write_text(yaml.safe_dump(toc))
+
+
+def test_each_edit_publishes_the_same_bytes_as_a_render_from_nothing(tmp_path):
+    pages = {"glossary": GLOSSARY, "law": LAW, "text": TEXT, "run": notebook(cell("print(7)"))}
+    pages |= {"drawn": DRAWN, "citing": CITING}
+    book = make_book(tmp_path, **pages, extra="# Extra\n\nMore.\n")
+    (book / "a.svg").write_text(DRAWING)
+    built = ran(tmp_path, "seven")
+    publish(tmp_path, built)
+    said = []
+    for edit in (edit_prose, edit_what_others_show, edit_numbers, edit_contents):
+        edit(book)
+        if edit is edit_contents:
+            built = ran(tmp_path, "eight")
+        found = publish(tmp_path, built)
+        said.append(re.search(r"\d+ added, \d+ changed", (tmp_path / "log").read_text())[0])
+        expected = publish(tmp_path, built, keep=False)
+        assert found.keys() == expected.keys()
+        assert [name for name in found if found[name] != expected[name]] == []
+    assert said == [
+        "0 added, 1 changed",
+        "0 added, 3 changed",
+        "0 added, 1 changed",
+        "8 added, 0 changed",
+    ]
+
+
+def test_the_home_page_is_written_again_only_if_it_shows_a_change(tmp_path):
+    book = make_book(tmp_path, text="# Text\n\nWords.\n")
+    home = tmp_path / "kept/_build/html/index.html"
+    publish(tmp_path, BuiltPages())
+    for page, change, is_written in (
+        ("text.md", "\nMore words.\n", False),
+        ("index.md", "\nMore words.\n", True),
+        ("text.md", "\n## A heading\n", True),
+    ):
+        (book / page).write_text((book / page).read_text() + change)
+        before = home.stat().st_mtime_ns
+        found = publish(tmp_path, BuiltPages())
+        assert (home.stat().st_mtime_ns != before) == is_written
+        assert found == publish(tmp_path, BuiltPages(), keep=False)
+    home.unlink()
+    (book / "text.md").write_text("# Text\n\nWords.\n\n## A heading\n\nWords.\n")
+    assert publish(tmp_path, BuiltPages()) == publish(tmp_path, BuiltPages(), keep=False)
+
+
+def test_figures_tables_and_code_are_numbered_across_pages_wherever_they_are(tmp_path):
+    captioned = (
+        FIGURE % ":name: drawn-%d"
+        + "\n```{code-block} python\n:caption: Code\n:name: code-%d\npass\n```\n"
+    )
+    pages = {
+        "first": "# First\n" + captioned % (1, 1) + "\n## Below\n\n```{figure} a.svg\n```\n",
+        "second": "# Second\n\n````{note}\n" + captioned % (2, 2) + "````\n\n" + TABLE,
+    }
+    (make_book(tmp_path, **pages) / "a.svg").write_text(DRAWING)
+    publish(tmp_path, BuiltPages())
+    with open(tmp_path / "kept" / kept.DOCTREES / "environment.pickle", "rb") as stream:
+        numbers = pickle.load(stream).toc_fignumbers
+    assert numbers["first"] == {"figure": {"drawn-1": (1,)}, "code-block": {"code-1": (1,)}}
+    assert numbers["second"] == {
+        "figure": {"drawn-2": (2,)},
+        "code-block": {"code-2": (2,)},
+        "table": {"rows": (1,)},
+    }
+
+
+def test_an_outline_has_the_ids_that_later_handlers_add_and_nothing_else_without_ids(tmp_path):
+    def name_first(app: Any, doctree: nodes.document) -> None:
+        doctree[0]["ids"].append("added")
+
+    env = SimpleNamespace(docname="text", dependencies={"text": set()}, domains={"std": STD})
+    app = SimpleNamespace(pdb=False, env=env, outdir=str(tmp_path), srcdir=str(tmp_path))
+    events = EventManager(app)
+    app.connect = lambda event, does, priority=500: events.connect(event, does, priority)
+    app.setup_extension = lambda name: None
+    setup(app)
+    events.connect("doctree-read", name_first, priority=900)
+    page = new_document("text")
+    page += [nodes.figure("", nodes.caption("", text)) for text in "AB"]
+    events.emit("doctree-read", page)
+    assert outlines(env)["text"].astext() == "A"
+    assert outlines(env)["text"][0]["ids"] == ["added"]
+
+
+def test_a_page_does_not_depend_on_pictures_that_reading_another_page_writes_again(tmp_path):
+    written = "../.cache/render/_build/jupyter_execute/71f4.svg"
+    files = {written, "a.svg", "text.md", str(tmp_path / "book/map.yml"), "../.cache/other.svg"}
+    env = SimpleNamespace(docname="text", dependencies={"text": set(files), "law": {written}})
+    html = str(tmp_path / ".cache/render/_build/html")
+    app = SimpleNamespace(outdir=html, srcdir=str(tmp_path / "book"), env=env)
+    forget_own_pictures(app, None)
+    assert env.dependencies == {"text": files - {written}, "law": {written}}
+
+
+def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
+    book = make_book(tmp_path, text="# Text\n\n{doc}`nowhere`\n")
+    for _ in range(2):
+        with pytest.raises(RenderError, match=r"text\.md:3.*nowhere"):
+            publish(tmp_path, BuiltPages())
+        assert not (tmp_path / "kept" / kept.STATE).exists()
+    replace(book / "text.md", ("{doc}`nowhere`", "Words."))
+    assert publish(tmp_path, BuiltPages())
+    (tmp_path / "kept" / kept.STATE).unlink()  # as after a kill
+    publish(tmp_path, BuiltPages())
+    assert "2 added, 0 changed" in (tmp_path / "log").read_text()
+
+
+def test_a_refusal_beside_sphinx_ends_it_and_a_render_without_changes_is_complete(tmp_path):
+    def refuse(draft: Draft) -> None:
+        raise ValueError("refused")
+
+    sphinx = SphinxProcess(make_book(tmp_path, text="# Text\n"), tmp_path / "log")
+    with pytest.raises(ValueError, match="refused"):
+        render(sphinx, tmp_path / "staging", BuiltPages(), tmp_path / "kept", refuse)
+    assert sphinx.process.poll() is not None
+    assert not (tmp_path / "kept" / kept.STATE).exists()
+    assert publish(tmp_path, BuiltPages()) == publish(tmp_path, BuiltPages())
+    assert "0 added, 0 changed" in (tmp_path / "log").read_text()
+
+
+def test_equal_names_of_pictures_make_a_folder_unfit(tmp_path):
+    """Sphinx gives them numbers in the order of reading."""
+    book = make_book(tmp_path, one="# One\n\nWords.\n", two="# Two\n\n![Two](b/a.svg)\n")
+    for place in (book, book / "b"):
+        place.mkdir(exist_ok=True)
+        (place / "a.svg").write_text(DRAWING.replace("9", str(len(place.name))))
+    publish(tmp_path, BuiltPages())
+    assert (tmp_path / "kept" / kept.STATE).exists()
+    replace(book / "one.md", ("Words.", "![One](a.svg)"))
+    assert publish(tmp_path, BuiltPages()) == publish(tmp_path, BuiltPages(), keep=False)
+    assert not (tmp_path / "kept" / kept.STATE).exists()
+
+
+@pytest.mark.parametrize(
+    ("state", "usable", "left"),
+    [
+        (SOME, True, {"one", "two"}),
+        (State("a", {"one": "1", "two": "other"}), True, {"one"}),
+        (State("b", SOME.pages), False, set()),
+        (State(None, SOME.pages), False, set()),
+    ],
+)
+def test_changed_pages_are_read_again_and_other_changes_empty_the_folder(
+    tmp_path, state, usable, left
+):
+    doctrees = tmp_path / kept.DOCTREES
+    doctrees.mkdir(parents=True)
+    for name in SOME.pages:
+        (doctrees / f"{name}.doctree").touch()
+    kept.keep(tmp_path, SOME, SOME)
+    assert kept.prepare(tmp_path, state) == usable
+    assert {path.stem for path in doctrees.glob("*")} == left
+    assert not (tmp_path / kept.STATE).exists()
+
+
+@pytest.mark.parametrize("content", ["", "{}", "[]", '{"others": 3}', json.dumps({"others": None})])
+def test_a_damaged_state_is_no_state(tmp_path, content):
+    (tmp_path / kept.STATE).write_text(content)
+    (tmp_path / "stale").touch()
+    assert not kept.prepare(tmp_path, SOME)
+    assert not (tmp_path / "stale").exists()
+
+
+def test_an_input_that_changes_while_sphinx_runs_leaves_no_state(tmp_path):
+    kept.keep(tmp_path, SOME, State("a", {"one": "1", "two": "edited"}))
+    assert not (tmp_path / kept.STATE).exists()
+
+
+def test_the_state_has_sources_runs_and_everything_else(tmp_path, monkeypatch):
+    book = make_book(tmp_path, text="# Text\n", run=notebook(cell("print(7)")))
+    built = ran(tmp_path, "seven")
+    found = [kept.read_state(book, built)]
+
+    def changed() -> bool:
+        """Whether anything but the pages changed since the last call."""
+        found.append(kept.read_state(book, built))
+        return found[-1].others != found[-2].others
+
+    assert found[0].pages.keys() == {"index", "text", "run"}
+    assert not changed()
+    (book / "text.md").write_text("# Other\n")
+    assert not changed()
+    assert found[-1].pages != found[0].pages
+    (built.folders["run"] / RECORD).write_text("another run")
+    assert changed()
+    (book / "glossary_forms.yml").write_text("")
+    assert changed()
+    monkeypatch.setenv("LANG", "an other")
+    assert changed()
+    (book / "loop").symlink_to(book)
+    assert kept.read_state(book, built).others is None

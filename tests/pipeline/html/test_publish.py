@@ -1,0 +1,81 @@
+from pathlib import Path
+
+import pytest
+from tiny_book import LAB_FRONT, cell, make_book, notebook, published_marker, write_bundle
+
+from robo_genesis.core import files as core_files
+from robo_genesis.pipeline.html.draft import Draft
+from robo_genesis.pipeline.html.publish import add_bundles, publish
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.results import PageResult
+
+
+@pytest.fixture
+def book(tmp_path):
+    return make_book(tmp_path, lab=notebook(cell("1"), front=LAB_FRONT))
+
+
+@pytest.fixture
+def draft(tmp_path):
+    rendered = tmp_path / "rendered"
+    rendered.mkdir()
+    (rendered / "index.html").write_text("the new site")
+    return Draft(rendered, tmp_path / "staging").complete()
+
+
+def names(book: Path) -> set[str]:
+    return {path.name for path in book.iterdir() if path.name.startswith("_build")}
+
+
+def test_site_and_bundles_are_published_together_and_labs_apart_from_other_pages(tmp_path, draft):
+    lecture = notebook(cell("2"), front=LAB_FRONT.replace("page: lab", "page: lecture"))
+    book = make_book(tmp_path, lab=notebook(cell("1"), front=LAB_FRONT), lecture=lecture)
+    bundle = write_bundle(tmp_path / "outputs", "a")
+    published_marker(book)
+    results = [PageResult(page, "executed", 1.0, "a", bundle) for page in find_pages(book)]
+    add_bundles(draft, results)
+    site = publish(book, draft.folder)
+    assert site == book / "_build" / "html"
+    assert (site / "index.html").read_text() == "the new site"
+    kept = (book / "_build").glob("*/**/manifest.json")
+    assert sorted(path.parent.relative_to(book / "_build").as_posix() for path in kept) == [
+        "evidence/l04/cpu",
+        "pages/l04/lecture/cpu",
+    ]
+    assert (bundle / "manifest.json").is_file()
+    assert names(book) == {"_build"}
+
+
+def test_a_bundle_that_is_gone_fails(tmp_path, book, draft):
+    (page,) = find_pages(book)
+    gone = PageResult(page, "executed", 1.0, "a", tmp_path / "no bundle")
+    with pytest.raises(OSError, match="no bundle"):
+        add_bundles(draft, [gone])
+
+
+def test_a_failure_at_the_end_leaves_the_old_site(book, draft):
+    def fail(folder: Path) -> None:
+        assert (folder / "html/index.html").is_file()
+        raise OSError("no space")
+
+    marker = published_marker(book)
+    with pytest.raises(OSError, match="no space"):
+        publish(book, draft.folder, fail)
+    assert marker.read_text() == "the old site"
+    assert names(book) == {"_build"}
+
+
+def test_a_failing_second_rename_brings_the_old_site_back(book, draft, monkeypatch):
+    marker = published_marker(book)
+    rename = core_files.os.rename
+
+    def second_fails(source, target):
+        if Path(source).name == "_build.next":
+            raise KeyboardInterrupt
+        rename(source, target)
+
+    monkeypatch.setattr(core_files.os, "rename", second_fails)
+    with pytest.raises(KeyboardInterrupt):
+        publish(book, draft.folder)
+    assert marker.read_text() == "the old site"
+    assert names(book) == {"_build"}

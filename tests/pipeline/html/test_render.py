@@ -1,0 +1,111 @@
+from pathlib import Path
+
+import pytest
+from bs4 import BeautifulSoup
+from tiny_book import WRITE_BUNDLE, cell, make_book, notebook
+
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import RenderError, SphinxProcess
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.execute import execute_pages
+from robo_genesis.pipeline.pages.store import places
+
+CLAIMS = "status: amdgpu-verified\nbadge: cpu-verified\n"
+LAB = "robo_genesis: {lesson: l04, page: lab}\n"
+BADGES = "\n```{lesson-status} l04\n```\n\n{lesson-state}`l04`\n"
+TEXT = f"""\
+---
+{CLAIMS}---
+# Text
+
+```{{math}}
+:label: law
+\\tau = k_p q
+```
+
+See {{eq}}`law` and $x^2$ for the overshoot.
+{BADGES}"""
+
+
+def build(folder: Path, built: BuiltPages | None = None) -> Path:
+    sphinx = SphinxProcess(folder / "book", folder / "render.log")
+    return render(sphinx, folder / "staging", built or BuiltPages()).html
+
+
+@pytest.fixture(scope="module")
+def html(tmp_path_factory):
+    """A rendered book, with a page that got a tag after it was executed.
+
+    The lab's bundle is a manifest that says it was verified, and nothing more.
+    """
+    folder = tmp_path_factory.mktemp("render")
+    said = WRITE_BUNDLE.replace('"predicate": {', '"state": "verified", "predicate": {')
+    page, lab = cell("print('measured ' + '7')"), notebook(cell(said), front=CLAIMS + LAB)
+    book = make_book(folder, text=TEXT, page=notebook(page), lab=lab + BADGES)
+    pages = find_pages(book)
+    results = execute_pages(pages, places(pages, folder / "store"))
+    assert [result.status for result in results] == ["executed", "executed"]
+    text = (book / "page.md").read_text()
+    (book / "page.md").write_text(text.replace("cell}", "cell}\n:tags: [hide-input]"))
+    (folder / "staging").mkdir()
+    (folder / "staging" / "stale").touch()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("SITE_URL", raising=False)
+        html = build(folder, BuiltPages.of(results))
+    assert not (folder / "staging" / "stale").exists()
+    return html
+
+
+def parsed(page: Path) -> BeautifulSoup:
+    return BeautifulSoup(page.read_text(), "html.parser")
+
+
+def test_numbers_and_math_need_no_script_from_elsewhere(html):
+    text = parsed(html / "text.html")
+    assert len(text.select("article math")) == 2
+    assert text.select_one("#equation-law .eqno").get_text().startswith("(1)")
+    assert text.select_one('p a[href="#equation-law"]').get_text() == "(1)"
+    sources = [script["src"] for script in text.find_all("script", src=True)]
+    assert sources
+    assert not [src for src in sources if "//" in src or "mathjax" in src.lower()]
+    assert "thebe" not in str(text).lower()
+
+
+def test_metadata_come_from_the_page_and_outputs_from_the_store(html):
+    shown = (html / "page.html").read_text()
+    assert "tag_hide-input" in shown
+    assert "measured 7" in shown
+
+
+@pytest.mark.parametrize("name", ["text", "lab"])
+def test_no_front_matter_or_bundle_s_word_can_set_a_badge(html, name):
+    badges = [badge.get_text() for badge in parsed(html / f"{name}.html").select(".evidence-badge")]
+    assert badges == ["cpu-refused", "amdgpu-missing"] * 2
+
+
+def test_without_a_glossary_no_word_is_a_link_to_it(html):
+    assert "overshoot" in parsed(html / "text.html").article.get_text()
+    assert parsed(html / "text.html").select("a.term-link") == []
+
+
+def test_without_an_address_nothing_claims_one(html):
+    assert not (html / "sitemap.xml").exists()
+    claims = 'link[rel="canonical"], meta[property^="og:"]'
+    assert parsed(html / "page.html").select(claims) == []
+    lost = parsed(html / "404.html")
+    assert lost.select_one("form.lost")["action"] == "/search.html"
+    tags = lost.select("link[rel=stylesheet], script[src]")
+    addresses = [tag.get("href") or tag.get("src") for tag in tags]
+    assert len(addresses) > 5
+    others = {address for address in addresses if not address.startswith("/_static/")}
+    assert others <= {"/searchindex.js"}
+
+
+def test_sphinx_executes_nothing_and_names_the_page(tmp_path):
+    """A page that the execution stage has not seen would leave a file behind if it were run."""
+    trace, front = tmp_path / "was executed", "mystnb: {execution_mode: force}\n"
+    make_book(tmp_path, page=notebook(cell(f"open({str(trace)!r}, 'w')"), front=front))
+    with pytest.raises(RenderError, match=r"page\.md is not executed, and Sphinx executes nothing"):
+        build(tmp_path)
+    assert not trace.exists()

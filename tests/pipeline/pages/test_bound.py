@@ -1,0 +1,258 @@
+"""Measured outputs of an executed page follow from its bundle; every edit of them is refused."""
+
+import re
+import shutil
+from copy import deepcopy
+from pathlib import Path
+
+import pytest
+from lessons.body_runs import make_drop
+from lessons.lesson_bundles import recorded
+from nbformat.v4 import new_code_cell, new_notebook, new_output
+
+from robo_genesis.core import shown
+from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.lessons.l02 import spec
+from robo_genesis.pipeline.pages.book import Page
+from robo_genesis.pipeline.pages.bound import require_shown
+from robo_genesis.pipeline.pages.svg_difference import svg_difference
+
+TABLE, HEIGHT, POSTURE = (
+    f"robo_genesis.lessons.l02.{name}" for name in ("text.metric_table", "plots.height",
+                                                    "plots.posture")
+)  # fmt: skip
+SOURCES = (
+    "from robo_genesis.lessons import l02 as lesson\nfrom robo_genesis.lessons.l02 import plots",
+    "page.show(lesson.text.metric_table)\npage.show(plots.height)",
+    "page.show(plots.posture)",
+    "print('a number of no function')",
+    "page.finish(scene)",
+)
+SHOWN = ((), (TABLE, HEIGHT), (POSTURE,), (), (shown.CHECKS,))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, engine, frames) -> Path:
+    """The bundle of L02's lab."""
+    readings = {"model": spec.EXPECTED_MODEL, "body": {"mass": spec.BASELINE.mass}}
+    traces = {"baseline": make_drop(spec.BASELINE)}
+    outputs = tmp_path_factory.mktemp("shown")
+    return recorded(engine, outputs, "l02", "lab", traces, [spec.LINK], readings, frames)
+
+
+def page_of(*sources: str) -> Page:
+    notebook = new_notebook(cells=[new_code_cell(source) for source in sources])
+    return Page("lessons/lab", Path("lab.md"), notebook, "l02", "lab")
+
+
+@pytest.fixture(scope="module")
+def sound(folder):
+    """The page as it was executed."""
+    run = from_bundle(folder, bundle.read_manifest(folder), bundle.read_metrics(folder))
+    outputs = {
+        name: new_output(
+            "display_data", shown.mime_data(name, run, []), metadata=shown.metadata(name, [])
+        )
+        for cell in SHOWN
+        for name in cell
+    }
+    printed = new_output("stream", name="stdout", text="a line\n")
+    return new_notebook(
+        cells=[
+            new_code_cell(source, outputs=[printed, *(outputs[name] for name in names)])
+            for source, names in zip(SOURCES, SHOWN, strict=True)
+        ]
+    )
+
+
+@pytest.fixture
+def executed(sound):
+    """A copy, to spoil."""
+    return deepcopy(sound)
+
+
+def check(executed, folder, *sources: str) -> int:
+    manifest = bundle.read_manifest(folder)
+    return require_shown(page_of(*(sources or SOURCES)), executed, folder, manifest)
+
+
+def refusal(*given) -> str:
+    with pytest.raises(BundleRefused) as caught:
+        check(*given)
+    assert caught.value.code == "shown"
+    return str(caught.value)
+
+
+def test_a_sound_page_is_accepted_and_its_measured_outputs_are_counted(executed, folder):
+    assert check(executed, folder) == 4
+
+
+def output(executed, cell, number):
+    """The output of a cell by its number after the printed line."""
+    return executed.cells[cell].outputs[1 + number]
+
+
+def test_the_accepted_metrics_are_shown_and_not_metrics_computed_here(executed, folder, tmp_path):
+    """Another processor computes the last digit otherwise."""
+    copy = Path(shutil.copytree(folder, tmp_path / "l02" / "lab" / "cpu"))
+    path = copy / "metrics.json"
+    records = path.read_text()
+    accepted = records.replace("0.201104998588562", "0.25")
+    assert accepted != records
+    path.write_text(accepted)
+    table = output(executed, 1, 0)
+    assert "text.metric_table: the page shows another text/markdown" in refusal(executed, copy)
+    table["data"]["text/markdown"] = table["data"]["text/markdown"].replace("0.2011", "0.2500")
+    assert check(executed, copy) == 4
+
+
+def test_an_edited_digit_of_a_table_is_refused(executed, folder):
+    data = output(executed, 1, 0)["data"]
+    data["text/markdown"] = data["text/markdown"].replace("0.2011", "0.2012", 1)
+    message = refusal(executed, folder)
+    assert f"lessons/lab, code cell 2, {TABLE}: the page shows another text/markdown" in message
+    assert "0.2011" in message
+    assert "0.2012" in message
+    assert "execute the page again" in message
+
+
+def move(svg: str, by: float) -> str:
+    """Move one point of the longest line."""
+    path = max(re.findall(r'<path d="([^"]*)" clip-path', svg), key=len)
+    number = re.search(r"L (\d+\.\d+) ", path)
+    assert number
+    moved = path.replace(number[0], f"L {float(number[1]) + by:.6f} ", 1)
+    return svg.replace(path, moved, 1)
+
+
+@pytest.mark.parametrize(("by", "equal"), [(0.09, True), (0.2, False)])
+def test_a_point_may_move_by_less_than_a_tenth_of_a_pixel(executed, folder, by, equal):
+    data = output(executed, 1, 1)["data"]
+    data["image/svg+xml"] = move(data["image/svg+xml"], by)
+    if equal:
+        assert check(executed, folder) == 4
+    else:
+        assert f"{HEIGHT}: the page shows another image/svg+xml" in refusal(executed, folder)
+
+
+def other_glyph(svg: str) -> str:
+    """Exchange one digit of a tick's label for another one."""
+    found = re.findall(r'xlink:href="(#DejaVuSans-1\d)"', svg)
+    one, other = found[0], next(name for name in found if name != found[0])
+    return svg.replace(f'xlink:href="{one}"', f'xlink:href="{other}"', 1)
+
+
+def other_picture(svg: str) -> str:
+    """Change one letter in the middle of an embedded picture."""
+    start = svg.index("base64,") + 4000
+    letter = "A" if svg[start] != "A" else "B"
+    return svg[:start] + letter + svg[start + 1 :]
+
+
+@pytest.mark.parametrize(
+    ("cell", "number", "spoil"),
+    [
+        (1, 1, other_glyph),
+        (1, 1, lambda svg: svg.replace("stroke: #", "stroke: #1", 1)),
+        (1, 1, lambda svg: re.sub(r"scale\(0\.1", "scale(0.2", svg, count=1)),
+        (1, 1, lambda svg: svg.replace("</svg>", "<script>alert(1)</script></svg>")),
+        (1, 1, lambda svg: svg.replace("<svg ", '<svg onload="alert(1)" ', 1)),
+        (1, 1, lambda svg: svg.replace("<?xml", '<!DOCTYPE x [<!ENTITY a "b">]><?xml', 1)),
+        (1, 1, lambda svg: svg[:-20]),
+        (1, 1, lambda svg: ""),
+        (2, 0, other_picture),
+    ],
+)
+def test_another_drawing_is_refused(executed, folder, cell, number, spoil):
+    data = output(executed, cell, number)["data"]
+    spoiled = spoil(data["image/svg+xml"])
+    assert spoiled != data["image/svg+xml"]
+    data["image/svg+xml"] = spoiled
+    assert "the page shows another image/svg+xml than the bundle" in refusal(executed, folder)
+
+
+def test_names_that_follow_from_points_may_differ(sound):
+    svg = output(sound, 1, 1)["data"]["image/svg+xml"]
+    name = re.search(r'clipPath id="(\w+)"', svg)[1]
+    assert svg_difference(svg.replace(name, "another"), svg) is None
+    assert svg_difference(svg.replace(f'id="{name}"', 'id="another"'), svg)
+
+
+def without_metadata(executed):
+    output(executed, 1, 0).metadata.clear()
+
+
+def another_output(executed):
+    executed.cells[3].outputs.append(output(executed, 1, 0))
+
+
+def another_kind(executed):
+    output(executed, 1, 0)["data"]["text/html"] = "<b>0.5</b>"
+
+
+def another_function(executed):
+    output(executed, 1, 0).metadata["robo_genesis"]["function"] = "os.system"
+
+
+def other_arguments(executed):
+    output(executed, 1, 0).metadata["robo_genesis"]["arguments"] = ["G1"]
+
+
+def exchanged(executed):
+    outputs = executed.cells[1].outputs
+    outputs[1], outputs[2] = outputs[2], outputs[1]
+
+
+def as_result(executed):
+    output(executed, 1, 0).output_type = "execute_result"
+
+
+@pytest.mark.parametrize(
+    ("spoil", "message"),
+    [
+        (without_metadata, "code cell 2: its code shows 2 measured outputs, found are 1"),
+        (another_output, "code cell 4: its code shows 0 measured outputs, found are 1"),
+        (another_kind, "the output has ['text/html', 'text/markdown'], the bundle gives ['text"),
+        (another_function, "the output is of {'function': 'os.system'"),
+        (other_arguments, "'arguments': ['G1']"),
+        (exchanged, "the output is of {'function': 'robo_genesis.lessons.l02.plots.height'"),
+        (as_result, "code cell 2"),
+    ],
+)
+def test_another_output_is_refused(executed, folder, spoil, message):
+    spoil(executed)
+    assert message in refusal(executed, folder)
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("page.show(lesson.text.metric_table)", "its code shows 1 measured outputs, found are 2"),
+        ("for k in (1, 2):\n    page.show(plots.height)", "outside of loops and conditions"),
+        ("page.show(lesson.text.absent)\npage.show(plots.height)", "cannot be shown"),
+        ("page.show(os.system)\npage.show(plots.height)", "cannot be shown"),
+        ("page.show(plots.height, chosen)\npage.show(plots.height)", "that is not written out"),
+        ("page.show(plots.height, name='x')\npage.show(plots.height)", "that is not written out"),
+        ("page.show()\npage.show(plots.height)", "cannot be shown"),
+    ],
+)
+def test_a_call_that_the_build_cannot_repeat_is_refused(executed, folder, source, message):
+    sources = list(SOURCES)
+    sources[1] = source
+    assert message in refusal(executed, folder, *sources)
+
+
+def test_a_function_that_fails_on_the_bundle_is_refused(executed, folder):
+    sources = list(SOURCES)
+    sources[2] = "page.show(lesson.text.speed_sentence)"  # takes no experiment
+    name = "robo_genesis.lessons.l02.text.speed_sentence"
+    output(executed, 2, 0).metadata["robo_genesis"]["function"] = name
+    assert "it cannot be called on the bundle" in refusal(executed, folder, *sources)
+
+
+def test_a_page_that_shows_nothing_measured_is_not_read_from_its_bundle(tmp_path):
+    cells = [new_code_cell("1 / 0", outputs=[new_output("stream", text="x")])]
+    page = page_of("1 / 0")
+    assert require_shown(page, new_notebook(cells=cells), tmp_path, None) == 0

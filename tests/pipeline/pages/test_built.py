@@ -1,0 +1,32 @@
+"""The outputs of a page whose cells are not those of its last run."""
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_notebook
+
+from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, BuiltPages, executed_notebook
+from robo_genesis.pipeline.pages.folder import NOTEBOOK
+
+
+@pytest.mark.parametrize(
+    ("now", "counts"),
+    [
+        ("abc", [1, 2, 3]),
+        ("abxc", [1, 2, None, 3]),
+        ("bc", [2, 3]),
+        ("axc", [1, 2, 3]),
+        ("axyc", [1, None, None, 3]),
+        ("", []),
+    ],
+    ids=["the same", "added", "removed", "changed", "changed and added", "none"],
+)
+def test_a_cell_gets_the_outputs_of_the_cell_with_its_source(tmp_path, monkeypatch, now, counts):
+    ran = [new_code_cell(name, execution_count=k) for k, name in enumerate("abc", 1)]
+    nbformat.write(new_notebook(cells=ran), tmp_path / NOTEBOOK)
+    told = BuiltPages(folders={"page": tmp_path}).write(tmp_path / "told")
+    for name, value in (told | {LAST_OUTPUTS: "1"}).items():
+        monkeypatch.setenv(name, value)
+    page = new_notebook(cells=[new_code_cell(name) for name in now])
+    found = executed_notebook("page", page).cells
+    assert [cell.source for cell in found] == list(now)
+    assert [cell.execution_count for cell in found] == counts

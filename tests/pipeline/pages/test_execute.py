@@ -1,0 +1,369 @@
+import json
+import signal
+import sys
+import threading
+from multiprocessing.context import SpawnProcess
+from pathlib import Path
+from types import SimpleNamespace
+
+import nbformat
+import psutil
+import pytest
+from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raising
+
+from robo_genesis.core.project import (
+    ROOT,
+    engine_cache_environment,
+    engine_cache_folder,
+)
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.execute import execute_pages, longest_first
+from robo_genesis.pipeline.pages.progress import Lines
+from robo_genesis.pipeline.pages.results import failure_report
+from robo_genesis.pipeline.pages.store import last_record, places, stored_result
+
+CHECK = """\
+import sys
+print("early line", file=sys.stderr)
+for number in range(20):
+    print(f"\\x1b[31mengine line {number}\\x1b[0m", file=sys.stderr)
+class CheckFailed(Exception): pass"""
+
+# The kernel passes on what is written to its file descriptors; a moment lets it do so.
+LAST_WORDS = """\
+import os, time
+os.write(2, b"last words\\n")
+time.sleep(1)
+os._exit(3)"""
+BROKEN = {
+    "good": notebook(cell("1 + 1")),
+    "check": notebook(
+        cell(CHECK), cell("# proof\nraise CheckFailed('[one_factor] kp changed,\\nkv too')")
+    ),
+    "dead": notebook(cell(LAST_WORDS)),
+    "slow": notebook(cell("import time\ntime.sleep(60)"), front="execution: {timeout: 2}\n"),
+    "bundle": notebook(cell("5 + 1"), front=LAB_FRONT),
+    "kernel": notebook(cell("6 + 1")).replace("python3", "some-users-kernel"),
+    "twin": notebook(cell("1 + 1")),  # the code of `good`
+}
+
+
+def execute(folder: Path, **settings):
+    """Execute the book of a folder with its own store; return results by page."""
+    pages = find_pages(folder / "book")
+    results = execute_pages(pages, places(pages, folder / "store"), **settings)
+    return {result.page.docname: result for result in results}
+
+
+@pytest.fixture(scope="module")
+def broken(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("broken")
+    make_book(folder, **BROKEN)
+    return folder, execute(folder, jobs=2, environment={"TMPDIR": "/tmp"})
+
+
+def test_all_pages_are_tried_and_the_good_one_is_executed(broken):
+    results = broken[1]
+    assert list(results) == list(BROKEN)
+    assert {name for name in results if results[name].status == "executed"} == {"good", "twin"}
+    assert {result.status for result in results.values()} == {"executed", "failed"}
+
+
+def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
+    report = failure_report(list(broken[1].values()))
+    assert "5 of 7 pages failed." in report
+    place = report.index("check, code cell 2, line ")
+    part = report[place : report.index("\n\n", place)]
+    assert part.startswith(
+        "check, code cell 2, line 19: raise CheckFailed('[one_factor] kp changed,\\nkv too')\n"
+    )
+    assert "    CheckFailed: [one_factor] kp changed,\n    kv too\n" in part
+    assert "    | engine line 5\n" in part
+    assert part.endswith("    | engine line 19")
+    assert "engine line 4\n" not in part
+
+
+@pytest.mark.parametrize(
+    ("name", "error", "said", "cell"),
+    [
+        ("dead", "DeadKernelError", "Kernel died", 1),
+        ("slow", "CellTimeoutError", "2 seconds", 1),
+        ("bundle", "BundleMissing", "the run left no l04/lab/<backend>/manifest.json", None),
+        ("kernel", "NoSuchKernel", "some-users-kernel", None),
+    ],
+)
+def test_each_kind_of_failure_is_named(broken, name, error, said, cell):
+    result = broken[1][name]
+    assert (result.failure.error, result.failure.cell) == (error, cell)
+    assert said in result.failure.message
+    assert result.seconds < 20
+
+
+def test_a_dead_kernel_leaves_its_last_words_and_a_lost_bundle_its_run(broken):
+    assert any("last words" in line for line in broken[1]["dead"].failure.log)
+    assert broken[1]["bundle"].run_id in broken[1]["bundle"].failure.message
+
+
+def test_failed_pages_are_never_stored(broken):
+    stored = [path.parts[-3] for path in (broken[0] / "store").rglob("*.ipynb")]
+    assert sorted(stored) == ["good", "twin"]
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("lab")
+    expected = raising("raise ValueError('no way')", "ValueError: no")
+    make_book(folder, lab=notebook(cell(WRITE_BUNDLE), expected, front=LAB_FRONT))
+    assert execute(folder)["lab"].status == "executed"
+    return folder
+
+
+def test_a_second_run_executes_nothing_and_finds_the_same_run(lab):
+    first, second = execute(lab)["lab"], execute(lab)["lab"]
+    assert (first.status, second.status) == ("reused", "reused")
+    assert first.run_id == second.run_id
+    assert first.bundle == first.folder / "outputs/cpu"
+    assert first.folder.parent == lab / "store/lab"
+
+
+def test_a_page_that_is_not_to_be_reused_is_executed_and_replaces_the_stored_one(lab):
+    before, after = execute(lab)["lab"], execute(lab, reuse=False)["lab"]
+    assert after.status == "executed"
+    assert (after.run_id != before.run_id, after.folder) == (True, before.folder)
+    assert execute(lab)["lab"].run_id == after.run_id
+
+
+def test_a_failed_run_keeps_the_page_so_that_undoing_a_typo_executes_nothing(lab):
+    page, before = lab / "book/lab.md", execute(lab)["lab"].run_id
+    text = page.read_text()
+    page.write_text(text.replace("import json", "import jsn", 1))
+    try:
+        assert execute(lab)["lab"].failure.error == "ModuleNotFoundError"
+    finally:
+        page.write_text(text)
+    after = execute(lab)["lab"]
+    assert (after.status, after.run_id) == ("reused", before)
+
+
+def test_a_run_that_fails_with_the_same_code_keeps_the_page(tmp_path):
+    make_book(tmp_path, page=notebook(cell("import os\nassert 'FAIL' not in os.environ")))
+    before = execute(tmp_path)["page"].run_id
+    failed = execute(tmp_path, reuse=False, environment={"FAIL": "1"})["page"]
+    assert failed.failure.error == "AssertionError"
+    assert execute(tmp_path)["page"].run_id == before
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("# Page", "# Another title", None),
+        ("ValueError: no", "ValueError: yes", "expected was 'ValueError: yes'"),
+        (":tags: [raises-exception]\n:expects:", ":name:", "is not tagged raises-exception"),
+    ],
+)
+def test_an_edit_of_prose_or_metadata_is_checked_without_a_run(lab, old, new, said):
+    page = lab / "book/lab.md"
+    text = page.read_text()
+    assert old in text
+    page.write_text(text.replace(old, new))
+    try:
+        (now,) = find_pages(lab / "book")
+        result = stored_result(now, places([now], lab / "store")["lab"])
+    finally:
+        page.write_text(text)
+    assert result.status == ("failed" if said else "reused")
+    assert not said or said in result.failure.message
+
+
+MANIFEST, NOTEBOOK, RECORD = "outputs/cpu/manifest.json", "executed.ipynb", "page.json"
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        (MANIFEST, None),
+        (MANIFEST, '{"predicate": {"run_id": "of another run"}}'),
+        (NOTEBOOK, None),
+        (NOTEBOOK, '{"cells": ['),
+        (RECORD, None),
+        (RECORD, "{"),
+    ],
+)
+def test_a_page_that_changed_since_it_was_stored_is_executed_again_with_one_line(
+    lab, name, content
+):
+    before, said = execute(lab)["lab"], []
+    path = before.folder / name
+    path.unlink()
+    if content:
+        path.write_text(content)
+    result = execute(lab, report=Lines(lambda *words: said.append(words)))["lab"]
+    assert result.status == "executed"
+    assert result.run_id != before.run_id
+    assert said[0][1].startswith("changed since it was stored; executed again (")
+    assert execute(lab)["lab"].status == "reused"
+
+
+MEET_AND_SAVE = """\
+import atexit, os, pathlib, time
+def save():
+    time.sleep(6)
+    pathlib.Path(os.environ["QD_OFFLINE_CACHE_FILE_PATH"], "{mine}").write_text("compiled")
+atexit.register(save)
+pathlib.Path({place!r}, "{mine}").touch()
+while not pathlib.Path({place!r}, "{theirs}").exists(): time.sleep(0.05)"""
+
+
+def test_pages_run_at_the_same_time_and_save_what_they_compiled_even_where_they_fail(tmp_path):
+    """Each page waits for a file of the other: one after the other, both would time out.
+
+    They save in an exit handler, as the engine does; six seconds are more than Jupyter's usual
+    wait.
+    """
+    good = cell(MEET_AND_SAVE.format(mine="good", theirs="bad", place=str(tmp_path)))
+    bad = cell(MEET_AND_SAVE.format(mine="bad", theirs="good", place=str(tmp_path)))
+    make_book(tmp_path, good=notebook(good), bad=notebook(bad, cell("1 / 0")))
+    caches = engine_cache_environment(cache=tmp_path / "cache")
+    results = execute(tmp_path, jobs=2, timeout=20, environment=caches)
+    assert [result.status for result in results.values()] == ["executed", "failed"]
+    assert "ZeroDivisionError" in results["bad"].failure.error
+    folder = engine_cache_folder(cache=tmp_path / "cache") / "kernels"
+    assert sorted(path.name for path in folder.iterdir()) == ["bad", "good"]
+
+
+def test_a_page_that_measures_time_runs_when_no_other_page_does(tmp_path):
+    alone = LAB_FRONT.replace("}", ", alone: true}")
+    pause = cell("import time\ntime.sleep(1)")
+    make_book(
+        tmp_path, a=notebook(cell(WRITE_BUNDLE), front=alone), b=notebook(pause), c=notebook(pause)
+    )
+    said = []
+    results = execute(tmp_path, jobs=2, report=Lines(lambda *words: said.append(words)))
+    assert {result.status for result in results.values()} == {"executed"}
+    begun_or_ended = [(name, event.split()[0]) for name, event in said]
+    assert begun_or_ended[:2] == [("b", "started:"), ("c", "started:")]
+    assert begun_or_ended[-2:] == [("a", "started:"), ("a", "executed")]
+    assert len(begun_or_ended) == 6
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [Path.touch, lambda page: page.symlink_to("no folder/page")],
+    ids=["a file", "a link to nothing"],
+)
+def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path, spoil):
+    make_book(tmp_path, page=notebook(cell("1")))
+    (tmp_path / "store").mkdir()
+    spoil(tmp_path / "store" / "page")
+    said = []
+    with pytest.raises(OSError, match=str(tmp_path / "store" / "page")):
+        execute(tmp_path, report=Lines(lambda *words: said.append(words)))
+    assert said == []
+
+
+def test_what_cannot_be_stored_fails_its_page(tmp_path):
+    leaves = WRITE_BUNDLE + '\n(folder / "log.txt").symlink_to("/etc/hostname")'
+    make_book(tmp_path, lab=notebook(cell(leaves), front=LAB_FRONT), good=notebook(cell("1")))
+    results = execute(tmp_path)
+    assert results["lab"].failure.error == "NotStored"
+    assert "files: outputs/cpu/log.txt is a link or device" in results["lab"].failure.message
+    assert results["good"].status == "executed"
+
+
+def test_the_longest_page_starts_first_and_before_it_new_ones_with_many_cells_first(tmp_path):
+    cells = {"a": 1, "b": 1, "c": 1, "d": 9, "e": 2}
+    make_book(tmp_path, **{name: notebook(*[cell("1")] * n) for name, n in cells.items()})
+    last = {name: SimpleNamespace(seconds=s) for name, s in (("a", 2.0), ("c", 30.0), ("d", 2.0))}
+    found = longest_first(find_pages(tmp_path / "book"), {"b": None, "e": None} | last)
+    assert [page.docname for page in found] == ["e", "b", "c", "d", "a"]
+
+
+def test_pages_start_in_the_order_of_their_stored_durations(tmp_path):
+    make_book(tmp_path, **{name: notebook(cell(repr(name))) for name in "abc"})
+    first = execute(tmp_path)
+    for seconds, name in enumerate("abc"):
+        path = first[name].folder / "page.json"
+        path.write_text(json.dumps(json.loads(path.read_text()) | {"seconds": float(seconds)}))
+    pages, said = find_pages(tmp_path / "book"), []
+    assert [last_record(tmp_path / "store", page).seconds for page in pages] == [0, 1, 2]
+    execute(tmp_path, reuse=False, report=Lines(lambda *words: said.append(words)))
+    assert [name for name, event in said if event.startswith("started")] == ["c", "b", "a"]
+
+
+def test_kernels_are_clean(tmp_path, monkeypatch):
+    """A user's kernelspec, start-up file and search path do not reach the page."""
+    spec = tmp_path / "jupyter/kernels/python3"
+    spec.mkdir(parents=True)
+    (spec / "kernel.json").write_text('{"argv": ["/bin/false"], "display_name": "python3"}')
+    startup = tmp_path / "ipython/profile_default/startup"
+    startup.mkdir(parents=True)
+    (startup / "leak.py").write_text("leaked = 1")
+    monkeypatch.setenv("JUPYTER_PATH", str(tmp_path / "jupyter"))
+    monkeypatch.setenv("JUPYTER_DATA_DIR", str(tmp_path / "jupyter"))
+    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
+    monkeypatch.setenv("PYTHONSTARTUP", str(startup / "leak.py"))
+    code = """\
+import os, sys
+print(sys.executable, "leaked" in globals(), os.listdir("."), os.environ["PYTHONPATH"])
+e = os.environ
+print(e["PYTHONNOUSERSITE"], e["GIVEN"], len(e["ROBO_GENESIS_RUN_ID"]))"""
+    make_book(tmp_path, page=notebook(cell(code)))
+    assert execute(tmp_path, environment={"GIVEN": "yes"})["page"].status == "executed"
+    [executed] = (tmp_path / "store/page").glob("*/executed.ipynb")
+    [output] = nbformat.read(executed, as_version=4).cells[0].outputs
+    assert output.text == f"{sys.executable} False [] {ROOT}\n1 yes 32\n"
+
+
+def test_a_kernel_spares_the_engine_s_searches_before_the_first_cell(tmp_path):
+    code = 'import inspect; assert "<frozen importlib._bootstrap>" in inspect.modulesbyfile'
+    make_book(tmp_path, page=notebook(cell(code)))
+    assert execute(tmp_path)["page"].status == "executed"
+
+
+def test_a_kernel_learns_what_its_page_imports(tmp_path):
+    code = """\
+import os
+from robo_genesis.core import text
+names = os.environ["ROBO_GENESIS_PAGE_IMPORTS"].split()
+assert names == ["robo_genesis.core", "robo_genesis.core.text"], names"""
+    make_book(tmp_path, page=notebook(cell(code)))
+    assert execute(tmp_path)["page"].status == "executed"
+
+
+def test_a_killed_worker_is_a_failed_page(tmp_path):
+    """The kernel kills its parent, as the system does when memory runs out."""
+    code = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\nimport time; time.sleep(60)"
+    make_book(tmp_path, page=notebook(cell(code)), good=notebook(cell("1")))
+    results = execute(tmp_path)
+    assert results["page"].failure.error == "WorkerDied"
+    assert "ended in cell 1 with status -9" in results["page"].failure.message
+    assert results["good"].status == "executed"
+
+
+def test_a_long_silence_is_broken_by_what_runs(tmp_path):
+    """The page ends when the line that names it has been said."""
+    said = tmp_path / "said"
+    code = f"import pathlib, time\nwhile not pathlib.Path({str(said)!r}).exists(): time.sleep(0.05)"
+    make_book(tmp_path, page=notebook(cell(code)))
+
+    def hear(what, event):
+        if what.startswith("1 running: page: cell 1 of 1, "):
+            said.touch()
+
+    execute(tmp_path, timeout=30, report=Lines(hear, every=0.1))
+    assert said.exists()
+
+
+def test_ctrl_c_while_a_worker_starts_kills_it(tmp_path, monkeypatch):
+    start, started = SpawnProcess.start, []
+
+    def start_and_interrupt(process):
+        start(process)
+        started.append(process)
+        signal.pthread_kill(threading.get_ident(), signal.SIGINT)
+
+    monkeypatch.setattr(SpawnProcess, "start", start_and_interrupt)
+    make_book(tmp_path, page=notebook(cell("import time\ntime.sleep(60)")))
+    with pytest.raises(KeyboardInterrupt):
+        execute(tmp_path)
+    assert [psutil.pid_exists(process.pid) for process in started] == [False]

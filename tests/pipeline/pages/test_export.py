@@ -1,0 +1,74 @@
+"""`make execute` and `make pages`: one page at a time, and the list of pages."""
+
+import pytest
+from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, fails, make_book, notebook, start
+
+from robo_genesis.core.project import ProjectError
+from robo_genesis.pipeline.stages import Build, BuildError, export_one
+
+NAMES = ("ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND", "ROBO_GENESIS_COMMAND")
+CONTRACT = f"import os\nprint(*(os.environ[name] for name in {NAMES}))"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("pages")
+    make_book(
+        folder,
+        text="# Text\n",
+        broken=notebook(cell("1 / 0")),
+        contract=notebook(cell(CONTRACT)),
+        lab=notebook(cell(WRITE_BUNDLE), front=LAB_FRONT),
+    )
+    return folder
+
+
+def export(folder, name, to):
+    """Export a page; return the last lines, and the lines of progress."""
+    said: list[str] = []
+    build = Build(book=folder / "book", cache=folder / "cache", say=said.append)
+    return export_one(name, to, build), [line.split("] ")[1] for line in said]
+
+
+def test_one_page_is_executed_once_and_exported_under_both_of_its_names(folder):
+    last, said = export(folder, "lab", folder / "to")
+    assert last[0] == f"Executed page: {folder / 'to' / 'lab'}"
+    assert (folder / "to/lab/outputs/cpu/manifest.json").is_file()
+    assert said[-1] == "export   lab  executed"
+    assert not any("broken" in line for line in said)
+    _, said = export(folder, "l04/lab", folder / "again")
+    assert said[-1] == "export   lab  reused"
+    assert (folder / "again/lab/executed.ipynb").is_file()
+
+
+@pytest.mark.parametrize("name", ["", "None/None", "l04/lecture", "text"])
+def test_another_page_is_refused_and_the_valid_ones_are_listed(folder, name):
+    valid = rf"PAGE='{name}' is not valid\. Executed pages of this book: broken, contract, lab\."
+    with pytest.raises(BuildError, match=valid):
+        export(folder, name, folder / "to")
+
+
+def test_a_place_that_cannot_be_written_is_refused_before_the_run(folder, no_file):
+    with pytest.raises(ProjectError, match="is not a folder that you may write"):
+        export(folder, "broken", no_file)
+    with pytest.raises(BuildError, match="TO is not set"):
+        export(folder, "broken", None)
+
+
+def test_a_folder_with_other_content_is_refused_before_the_run(folder):
+    with pytest.raises(ProjectError, match=r"TO=.*/book holds .*, which is not an executed page"):
+        export(folder, "broken", folder / "book")
+
+
+def test_a_failed_page_is_status_1_its_report_and_no_export(folder, tmp_path):
+    report = fails("execute.py", folder, PAGE="broken", TO=str(tmp_path / "to"))
+    assert "broken, code cell 1, line 10: 1 / 0" in report
+    assert "FAILED: nothing was exported." in report
+    assert not (tmp_path / "to").exists()
+
+
+def test_a_page_has_the_contract_of_a_build_and_names_its_own_command(folder, tmp_path):
+    process = start("execute.py", folder, PAGE="contract", TO=str(tmp_path), RENDER="0")
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 0, err
+    assert r"0 cpu make execute\n" in (tmp_path / "contract/executed.ipynb").read_text()

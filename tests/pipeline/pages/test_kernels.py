@@ -1,0 +1,24 @@
+"""The variables of the user's environment that reach a kernel."""
+
+import pytest
+
+from robo_genesis.pipeline.pages.kernels import clean_environment
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        *((n, None) for n in ("PYTHONSTARTUP", "MATPLOTLIBRC", "PYTHONHOME", "JUPYTER_PATH")),
+        *((n, "x") for n in ("QD_ARCH", "GS_ENABLE_ZEROCOPY", "PATH", "LC_ALL", "HIP_PATH")),
+        ("MPLBACKEND", "module://matplotlib_inline.backend_inline"),
+        ("PYTHONPATH", "/checkout"),
+        ("PYTHONNOUSERSITE", "1"),
+        ("OWN", "1"),
+    ],
+)
+def test_a_kernel_gets_the_machine_s_variables_the_engine_s_switches_and_its_own(
+    tmp_path, monkeypatch, name, value
+):
+    monkeypatch.setenv(name, "x")
+    environment = clean_environment(tmp_path, tmp_path, "/checkout", {"OWN": "1"})
+    assert environment.get(name) == value

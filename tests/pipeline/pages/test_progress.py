@@ -1,0 +1,141 @@
+"""What is said of the pages that run: lines, and bars on a terminal."""
+
+import os
+import pty
+import re
+import subprocess
+import sys
+from io import StringIO
+from types import SimpleNamespace
+
+import pytest
+from rich.console import Console
+from tiny_book import cell, make_book, notebook, start
+
+from robo_genesis.core.project import ROOT
+from robo_genesis.pipeline.command import Progress
+from robo_genesis.pipeline.pages.progress import Bars, Lines, Underway
+
+LAST = SimpleNamespace(seconds=20.0, cell_seconds=[4.0, 6.0, 5.0])
+
+
+def underway(cell: int = 0, cell_begin: float = 0.0, **changed) -> Underway:
+    """Return a page of three cells that started at second 100."""
+    settings = {"name": "lab", "cells": 3, "last": LAST, "begin": 100.0} | changed
+    return Underway(cell=cell, cell_begin=cell_begin, **settings)
+
+
+@pytest.mark.parametrize(
+    ("page", "now", "said"),
+    [
+        (underway(), 102.0, "kernel starts, 2 s, ~18 s left"),
+        (underway(1, 105.0), 106.0, "cell 1 of 3, 6 s, ~14 s left"),
+        (underway(2, 110.0), 112.0, "cell 2 of 3, 12 s, ~9 s left"),
+        (underway(2, 110.0), 190.0, "cell 2 of 3, 90 s, ~5 s left"),
+        (underway(3, 110.0), 190.0, "cell 3 of 3, 90 s, ~0 s left"),
+        (underway(2, 110.0, cells=4), 112.0, "cell 2 of 4, 12 s, ~8 s left"),
+        (underway(2, 110.0, cells=4), 190.0, "cell 2 of 4, 90 s, ~0 s left"),
+        (underway(2, 110.0, last=None), 112.0, "cell 2 of 3, 12 s"),
+    ],
+)
+def test_the_rest_of_a_page_is_estimated_from_its_last_run(page, now, said):
+    assert page.state(now) == said
+
+
+def test_the_first_line_of_a_page_names_its_log_and_what_is_expected(tmp_path):
+    assert underway(last=None).started() == "started: 3 cells"
+    log = tmp_path / "lab.log"
+    assert underway(log=log).started() == f"started: 3 cells, about 20 s; its log: {log}"
+
+
+@pytest.mark.parametrize(("every", "lines"), [(0.0, 2), (1e6, 0)])
+def test_running_pages_are_reported_only_after_a_silence(every, lines):
+    said: list[str] = []
+    report = Lines(lambda what, event: said.append(what), every)
+    for _ in range(2):
+        report.show([underway(2)])
+    report.show([])
+    assert len(said) == lines
+    assert all(re.fullmatch(r"1 running: lab: cell 2 of 3, \d+ s, ~\d+ s left", s) for s in said)
+
+
+def test_bars_stand_below_whole_lines():
+    terminal = StringIO()
+    console = Console(file=terminal, force_terminal=True, width=60, _environ={})
+    long = "a/path/that/is/longer/than/the/terminal/is/wide/" * 2
+    bars = Bars(Progress(print).line, console)
+    with bars.drawn:
+        bars.show([underway(2)])
+        bars.say(long, "started")
+        bars.show([])
+    text = terminal.getvalue()
+    assert "cell 2 of 3" in text
+    assert f"{long}" in text
+
+
+SLOW = cell("import time\nprint('the engine speaks', flush=True)\ntime.sleep(2)")
+
+
+@pytest.mark.parametrize(
+    ("terminal", "settings", "drawn"),
+    [
+        (True, {"CI": ""}, True),
+        (True, {"CI": "true"}, False),
+        (True, {"CI": "", "TERM": "dumb"}, False),
+        (False, {"CI": ""}, False),
+    ],
+    ids=["terminal", "CI", "dumb terminal", "redirected"],
+)
+def test_bars_are_drawn_on_a_terminal_only(tmp_path, terminal, settings, drawn):
+    make_book(tmp_path, page=notebook(SLOW, cell("2")))
+    to, settings = str(tmp_path / "to"), {"PAGE": "page", "TERM": "xterm"} | settings
+    if terminal:
+        said = on_terminal("execute.py", tmp_path, TO=to, **settings)
+    else:
+        process = start("execute.py", tmp_path, TO=to, **settings)
+        said, _ = process.communicate(timeout=60)
+    log = tmp_path / "cache/logs/page.log"
+    assert f"page  started: 2 cells; its log: {log}" in said.replace("\r\n", "\n")
+    assert "page  executed in " in said
+    assert ("\x1b" in said, "cell 1 of 2" in said) == (drawn, drawn)
+    assert log.read_text() == "the engine speaks\n"
+
+
+def on_terminal(script: str, folder, **settings: str) -> str:
+    """Run a command whose standard output is a terminal; return what it shows."""
+    ours, theirs = pty.openpty()
+    arguments = ["--book", str(folder / "book"), "--cache", str(folder / "cache")]
+    process = subprocess.Popen(
+        [sys.executable, str(ROOT / "build_scripts" / script), *arguments],
+        env=os.environ | {"PYTHONPATH": str(ROOT), "COLUMNS": "200"} | settings,
+        stdout=theirs,
+    )
+    os.close(theirs)
+    shown = b""
+    while part := _read(ours):
+        shown += part
+    os.close(ours)
+    assert process.wait(timeout=60) == 0, shown
+    return shown.decode()
+
+
+def _read(terminal: int) -> bytes:
+    """Return what is written next, nothing after the other end was closed."""
+    try:
+        return os.read(terminal, 4096)
+    except OSError:
+        return b""
+
+
+def test_the_log_of_the_newest_run_is_kept_and_can_be_followed(tmp_path):
+    """The page reads its own log while it runs."""
+    log = tmp_path / "cache/logs/page.log"
+    log.parent.mkdir(parents=True)
+    log.write_text("of an older run")
+    code = f"import pathlib, time\nprint('first', flush=True)\nlog = pathlib.Path({str(log)!r})"
+    wait = "while log.read_text() != 'first\\n': time.sleep(0.05)"
+    make_book(tmp_path, page=notebook(cell(f"{code}\n{wait}")))
+    process = start("execute.py", tmp_path, "--timeout", "20", PAGE="page", TO=str(tmp_path / "to"))
+    said, report = process.communicate(timeout=60)
+    assert process.returncode == 0, report
+    assert f"its log: {log}" in said

@@ -1,0 +1,111 @@
+"""Checks of executed cells; whole pages are executed in test_execute."""
+
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_notebook, new_output
+from tiny_book import cell, make_book, notebook, raising
+
+from robo_genesis.pipeline.pages.book import Page, find_pages
+from robo_genesis.pipeline.pages.execute import execute_pages
+from robo_genesis.pipeline.pages.folder import stored_notebook
+from robo_genesis.pipeline.pages.results import at_cell, last_lines, unexpected_outcome
+from robo_genesis.pipeline.pages.store import places
+
+RAISES = {"tags": ["raises-exception"], "expects": "ValueError: no"}
+
+
+def picture(kind):
+    return new_output("display_data", data={kind: "<svg/>"})
+
+
+def raised(name, message):
+    return new_output("error", ename=name, evalue=message, traceback=[])
+
+
+@pytest.mark.parametrize(
+    ("metadata", "outputs", "said"),
+    [
+        ({"tags": ["figure"]}, [picture("text/plain")], "FigureMissing tagged figure, but shows"),
+        ({"tags": ["figure"]}, [picture("image/svg+xml")], None),
+        ({"tags": ["figure"]}, [picture("image/png")], None),
+        ({}, [], None),
+        ({}, [raised("KeyError", "kp")], "raised KeyError: kp, but is not tagged raises-exception"),
+        (RAISES, [raised("ValueError", "no way")], None),
+        (RAISES, [], "expected was 'ValueError: no', but the cell raised no exception."),
+        (RAISES, [raised("ValueError", "maybe")], "but the cell raised ValueError: maybe."),
+        (RAISES, [raised("KeyError", "no")], "but the cell raised KeyError: no."),
+        (
+            {"tags": ["raises-exception"]},
+            [raised("ValueError", "no")],
+            "it raised ValueError: no. Add the option `expects:",
+        ),
+        ({"expects": "ValueError: no"}, [], "without the tag raises-exception"),
+        ({"tags": ["skip-execution"]}, [], "skip-execution is not allowed"),
+    ],
+)
+def test_a_cell_has_its_figure_and_its_expected_exception_or_fails_its_page(
+    metadata, outputs, said
+):
+    book = new_notebook(cells=[new_code_cell("draw()", metadata=metadata, outputs=outputs)])
+    book.metadata.source_map = [3]
+    failure = unexpected_outcome(Page("page", Path("deleted.md"), book), book)
+    if said is None:
+        assert failure is None
+    else:
+        assert (failure.cell, failure.line, failure.source) == (1, 4, "draw()")
+        assert said.removeprefix("FigureMissing ") in failure.message
+        figure = said.startswith("FigureMissing")
+        assert failure.error == ("FigureMissing" if figure else "ExpectedException")
+
+
+HELPER = "def helper():\n    raise ValueError('in another cell')"
+FAILING = [  # the code of a cell, and how its failing line begins
+    ("two = 2\n# 1 / 0 in a comment\n1 / 0\nthree = 3", "1 / 0"),
+    ("print(\n    1,\n    1 / 0,\n)", "1 / 0,"),
+    ("def own():\n    raise ValueError('here')\n\nown()", "raise ValueError"),
+    ("one = 1\n\nhelper()", "helper()"),
+    ("import json\njson.loads('{')\none = 1", "json.loads"),
+    ("try:\n    1 / 0\nexcept ArithmeticError as e:\n    raise KeyError from e", "raise KeyError"),
+    ("one = 1\ntwo = = 2", "two = = 2"),
+    ("if True:\n    one = 1\n  two = 2", "two = 2"),
+    ("\n\none = 1\n1 / 0", "1 / 0"),  # IPython counts from the first line with text
+    ("one = 1\n%run no_such_file.py", "%run no"),
+    ("one = 1\nraise SystemExit(3)", "one = 1"),  # IPython gives no traceback
+]
+
+
+@pytest.fixture(scope="module")
+def failing(tmp_path_factory):
+    """The page whose cells fail, and the same as it was executed."""
+    folder = tmp_path_factory.mktemp("failing")
+    names = ["ZeroDivision", "ZeroDivision", "Value", "Value", "JSONDecode", "Key", "Syntax"]
+    expected = [f"{name}Error" for name in names] + ["IndentationError"]
+    expected += ["ZeroDivisionError", "Exception", "SystemExit"]
+    cells = [raising(code, name) for (code, _), name in zip(FAILING, expected, strict=True)]
+    [page] = find_pages(make_book(folder, page=notebook(cell(HELPER), *cells)))
+    [result] = execute_pages([page], places([page], folder / "store"))
+    return page, stored_notebook(result)
+
+
+@pytest.mark.parametrize("number", range(len(FAILING)))
+def test_a_failure_names_the_line_of_the_cell_that_failed(failing, number):
+    page, executed = failing
+    code = [n for n, part in enumerate(page.notebook.cells) if part.cell_type == "code"]
+    failure = at_cell(page, code[number + 1], "E", "message", executed.cells[number + 1])
+    assert failure.cell == number + 2
+    assert failure.source.startswith(FAILING[number][1])
+    assert page.path.read_text().splitlines()[failure.line - 1].strip() == failure.source
+
+
+def test_a_line_of_a_run_of_other_text_is_not_named(failing):
+    page, executed = failing
+    last = len(page.notebook.cells) - 1
+    ran = executed.cells[1].copy() | {"source": "1 / 0"}
+    assert at_cell(page, last, "E", "message", nbformat.from_dict(ran)).source == "one = 1"
+
+
+def test_last_lines_are_few_and_without_colours():
+    text = "".join(f"\x1b[31mline {n}\x1b[0m\n" for n in range(40))
+    assert last_lines(text) == tuple(f"line {n}" for n in range(25, 40))

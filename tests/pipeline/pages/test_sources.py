@@ -1,0 +1,358 @@
+"""Which changes of the package change the evidence keys and the fingerprints of which pages."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from tiny_book import LAB_FRONT, cell, make_book, notebook
+
+from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.lessons import LESSONS
+from robo_genesis.pipeline.pages import fingerprint, sources
+from robo_genesis.pipeline.pages.book import cell_sources, find_pages
+from robo_genesis.pipeline.pages.fingerprint import page_fingerprint
+from robo_genesis.pipeline.pages.sources import import_closure, measures, measuring_modules
+from robo_genesis.pipeline.pages.syntax import cell_digest, cell_digests, imports_of, syntax_digest
+
+PACKAGE = ROOT / "robo_genesis"
+PAGES = find_pages(BOOK)
+LECTURES = [page for page in PAGES if page.page == "lecture"]
+ALL, NONE = tuple(LESSONS), ()
+
+
+@pytest.fixture
+def root(tmp_path):
+    """A checkout with a package of five modules; `used` reaches `deep` by a relative import."""
+    package = tmp_path / "robo_genesis"
+    (package / "evidence").mkdir(parents=True)
+    texts = {
+        "__init__.py": "",
+        "used.py": "import numpy\nfrom robo_genesis.evidence import record\n",
+        "sphinx_ext.py": "import robo_genesis.used\n",
+        "evidence/__init__.py": "",
+        "evidence/record.py": "def f():\n    from .deep import g\n    from .. import lazy\n",
+        "evidence/deep.py": "",
+        "lazy.py": "",
+    }
+    for name, text in texts.items():
+        (package / name).write_text(text)
+    (tmp_path / "requirements.lock").write_text("numpy==2.0\n")
+    return tmp_path
+
+
+CODE = "%matplotlib inline\nfrom robo_genesis.used import thing"
+
+
+@pytest.fixture
+def page(root):
+    (found,) = find_pages(make_book(root, lab=notebook(cell(CODE), front=LAB_FRONT)))
+    return found
+
+
+def test_imports_are_followed_through_functions_and_relative_names(root, page):
+    assert sorted(import_closure(imports_of(cell_sources(page)), root)) == [
+        "robo_genesis",
+        "robo_genesis.evidence",
+        "robo_genesis.evidence.deep",
+        "robo_genesis.evidence.record",
+        "robo_genesis.lazy",
+        "robo_genesis.used",
+    ]
+
+
+@pytest.mark.parametrize("source", ["def (", "from . import used", "import numpy", "\0"])
+def test_a_cell_that_cannot_run_or_needs_no_module_imports_nothing(source):
+    assert imports_of([source]) == []
+
+
+@pytest.mark.parametrize(
+    ("file", "line", "counts"),
+    [
+        ("robo_genesis/used.py", "X = 1", True),
+        ("robo_genesis/evidence/deep.py", "X = 1", True),
+        ("robo_genesis/lazy.py", "X = 1", True),
+        ("robo_genesis/lazy.py", "# a comment", False),
+        ("robo_genesis/lazy.py", "X = (", True),  # no longer Python: its text counts
+        ("robo_genesis/evidence/data.json", "1", True),
+        ("robo_genesis/lessons/l04/data.csv", "1", True),
+        ("robo_genesis/lessons/l03/data.csv", "1", False),
+        ("requirements.lock", "# a comment", True),
+        ("robo_genesis/sphinx_ext.py", "X = 1", False),  # no page imports it
+    ],
+)
+def test_a_file_that_the_page_uses_counts(root, page, file, line, counts):
+    for lesson in ("l03", "l04"):
+        (root / "robo_genesis" / "lessons" / lesson).mkdir(parents=True)
+        (root / "robo_genesis" / "lessons" / lesson / "__init__.py").touch()
+    before = page_fingerprint(page, root, {})
+    assert len(before) == 20
+    with (root / file).open("a") as opened:
+        opened.write(f"{line}\n")
+    assert (page_fingerprint(page, root, {}) != before) == counts
+
+
+def test_the_environment_counts_if_it_changes_a_measurement(root, page):
+    before = page_fingerprint(page, root, {})
+    for name in ("ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND", "QD_FAST_MATH"):
+        assert page_fingerprint(page, root, {name: "0"}) != before
+    for name in ("HOME", "QD_OFFLINE_CACHE_FILE_PATH"):
+        assert page_fingerprint(page, root, {name: "/elsewhere"}) == before
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "value"),
+    [
+        (fingerprint, "_installed", ["mujoco==0.1"]),
+        (fingerprint.platform, "python_version", "3.99.0"),
+    ],
+)
+def test_another_version_of_python_or_a_package_counts(
+    root, page, monkeypatch, module, name, value
+):
+    before = page_fingerprint(page, root, {})
+    monkeypatch.setattr(module, name, lambda: value)
+    assert page_fingerprint(page, root, {}) != before
+
+
+@pytest.mark.parametrize(
+    ("code", "counts"),
+    [
+        (f"{CODE}  # a comment", False),
+        (CODE.replace("inline", "agg"), True),
+        (f"{CODE}\nthing", True),
+        (f"{CODE};", True),  # hides the output of the cell
+        (f"{CODE}\n'shown'", True),
+        (f"{CODE}\n1 +", True),
+    ],
+)
+def test_a_changed_cell_counts_and_a_comment_does_not(root, page, code, counts):
+    lab = notebook(cell(code), front=LAB_FRONT, title="Another title")
+    (changed,) = find_pages(make_book(root, lab=lab))
+    assert (page_fingerprint(changed, root, {}) != page_fingerprint(page, root, {})) == counts
+
+
+def test_a_page_that_begins_to_run_alone_is_executed_again(root, page):
+    assert page_fingerprint(replace(page, alone=True), root, {}) != page_fingerprint(page, root, {})
+
+
+def test_a_page_that_runs_alone_records_elapsed_times():
+    alone = [page for page in PAGES if page.alone]
+    assert alone
+    for page in alone:
+        groups = LESSONS[page.lesson].pages[page.page].readings(True).values()
+        assert any(group.kind == "performance" for group in groups), page.docname
+
+
+def keys(root, pages):
+    """Return fingerprint and modules of the evidence key of some pages of the course."""
+    fingerprints = {(p.lesson, p.page): page_fingerprint(p, root, {}) for p in pages}
+    modules = {
+        (p.lesson, p.page): measuring_modules(p.lesson, imports_of(cell_sources(p)), root)
+        for p in pages
+    }
+    return fingerprints, modules
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    """A copy of the package and the lock, to change and to restore, and its keys."""
+    root = tmp_path_factory.mktemp("checkout")
+    shutil.copytree(PACKAGE, root / "robo_genesis", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "requirements.lock", root)
+    return root, keys(root, PAGES)
+
+
+DOCSTRING, CONSTANT = ('"""', '"""Also: '), ("\n\n\n", "\n\nCHANGED = 1\n\n\n")
+CLAIM = ('"The record ', '"A record ')
+
+
+CHANGES = [
+    ("core/trace", DOCSTRING, NONE, NONE),
+    ("core/trace", ("\n\n\n", "\n\n# A comment.\n\n\n\n"), NONE, NONE),
+    ("core/trace", CONSTANT, ALL, ALL),
+    ("sim/session", CONSTANT, ALL, ALL),
+    ("core/project", CONSTANT, ALL, NONE),
+    ("core/plotting", CONSTANT, ALL, NONE),
+    ("evidence/recorder", CONSTANT, ALL, NONE),
+    ("pipeline/stages", CONSTANT, NONE, NONE),
+    ("site/glossary", CONSTANT, NONE, NONE),
+    ("lessons/l04/theory", CONSTANT, ("l04",), ("l04",)),
+    ("lessons/l04/spec", ('"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'), ("l04",), NONE),
+    ("lessons/l04/spec", DOCSTRING, NONE, NONE),
+    ("lessons/l04/study_spec", CONSTANT, ("l04",), NONE),
+    ("lessons/l04/__init__", ('Filmed("the Franka")', 'Filmed("the arm")'), ("l04",), NONE),
+    ("lessons/l02/plots", CONSTANT, ("l02",), NONE),
+    ("lessons/l04/theory_text", CONSTANT, ("l04",), NONE),
+    ("lessons/l02/mistakes", CONSTANT, ("l02",), NONE),
+    ("lessons/l02/text", CLAIM, ("l02",), NONE),
+    ("lessons/l02/text", DOCSTRING, NONE, NONE),
+    ("lessons/l04/claims_text", ('"The baseline ', '"A baseline '), ("l04",), NONE),
+    ("lessons/l02/checks", ('"""Named checks', '"""The checks'), NONE, NONE),
+    ("lessons/l02/metrics", ('"""Measure one', '"""Take one'), NONE, NONE),
+]
+CHANGES += [  # a lesson can be removed with the folder of its tests alone
+    (file, CONSTANT, ("l03",), ("l03",))
+    for file in ("sim/bodies/contacts", "lessons/l03/metrics", "lessons/l03/energy")
+    if "l03" in LESSONS
+]
+
+
+@pytest.mark.parametrize(("file", "change", "run_again", "stale"), CHANGES)
+def test_a_change_runs_the_pages_again_that_use_it_and_makes_stale_what_it_measured(
+    copy, file, change, run_again, stale
+):
+    root, before = copy
+    path = root / "robo_genesis" / f"{file}.py"
+    text = path.read_text("utf8")
+    assert change[0] in text
+    path.write_text(text.replace(*change, 1), "utf8")
+    try:
+        after = keys(root, LECTURES)
+    finally:
+        path.write_text(text, "utf8")
+    changed = [
+        {lesson for lesson, page in now if was[lesson, page] != now[lesson, page]}
+        for was, now in zip(before, after, strict=True)
+    ]
+    expected = [{*run_again}, {*stale}]
+    assert changed == expected
+
+
+def test_a_further_module_of_a_lesson_needs_no_list(copy):
+    root, (fingerprints, modules) = copy
+    path = root / "robo_genesis" / "lessons" / "l02" / "impact.py"
+    path.write_text("from robo_genesis.core.quantities import format_value\n")
+    try:
+        after = keys(root, PAGES)
+    finally:
+        path.unlink()
+    added = {"lessons.l02.impact", "core.quantities"}
+    for (lesson, page), of in after[1].items():
+        expected = added if lesson == "l02" else set()
+        assert of.keys() - modules[lesson, page].keys() == expected
+        assert (after[0][lesson, page] != fingerprints[lesson, page]) == bool(expected)
+
+
+@pytest.mark.parametrize("lesson", LESSONS)
+def test_a_lecture_uses_all_modules_that_its_lab_measures_with(copy, lesson):
+    """So that what a change does to a lesson is seen in its lecture."""
+    _, (_, modules) = copy
+    assert modules[lesson, "lab"].items() <= modules[lesson, "lecture"].items()
+
+
+def test_a_page_measures_with_modules_of_core_sim_and_its_lesson_alone(copy):
+    _, (_, modules) = copy
+    for (lesson, _), of in modules.items():
+        assert {name.partition(".")[0] for name in of} == {"core", "sim", "lessons"}
+        own = f"lessons.{lesson}."
+        assert all(name.startswith(own) for name in of if name.startswith("lessons."))
+        assert {"core.trace", "core.experiment", f"lessons.{lesson}.metrics"} <= of.keys()
+    assert "sim.mujoco_joints" in modules["l04", "lecture"]  # its `study` imports it
+    assert "sim.mujoco_joints" not in modules["l02", "lecture"]
+
+
+@pytest.mark.parametrize("lesson", LESSONS)
+def test_a_module_that_computes_uses_none_that_presents(lesson):
+    """Except the specification, whose values are parameters of the bundle or judge it."""
+    for name in measuring_modules(lesson, []):
+        file = PACKAGE.joinpath(*name.split(".")).with_suffix(".py")
+        names = imports_of([file.read_text("utf8")])
+        used = {each: path for each in names if (path := sources._module_file(ROOT, each))}
+        shown = {
+            each.rpartition(".")[2].rpartition("_")[2]
+            for each, path in used.items()
+            if path.name != "__init__.py" and not measures(each, path, Path.read_text)
+        }
+        assert shown <= {"spec", "project"}, name
+
+
+SAME = [
+    ("x = 1", "x = 1  # one\n\n\n"),
+    ("x = 'a'", 'x = "a"'),
+    ("x = 'a'", "x = u'a'"),
+    ("f(1, 2)", "f(\n    1,\n    2,\n)"),
+    ("x = 1", '"""About."""\nx = 1\n"""About x."""'),
+    ("def f():\n  return 1", "def f():\n  'About f.'\n  return 1"),
+    ("class A:\n  x = 1", "class A:\n  'About A.'\n  x = 1\n  'About x.'"),
+    ("x = f'a{y}b'", "x = f'a' f'{y}' 'b' ''"),
+    ("x = 0x10", "x = 16"),
+]
+OTHERS = [
+    ("x = 1", "x = 2"),
+    ("x = 1", "x = 1.0"),
+    ("x = 1", "x = True"),
+    ("x = '1'", "x = b'1'"),
+    ("x = None", "x = ..."),
+    ("x = [1, 2]", "x = (1, 2)"),
+    ("x = {**a, b: c}", "x = {a: b, **c}"),
+    ("x = f'{y}'", "x = f'{y!r}'"),
+    ("x = f'{y}'", "x = f'{y:.3f}'"),
+    ("x = f'a{y}'", "x = f'{y}a'"),
+    ("x = '\\N{EM SPACE}'", "x = ' '"),
+    ("def f(a, /): pass", "def f(a): pass"),
+    ("def f(*, a=None): pass", "def f(*, a): pass"),
+    ("if a:\n  b", "if a:\n  b\nelse:\n  c"),
+    ("def f(): pass", "async def f(): pass"),
+    ("x = (", "x = [("),
+]
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"), [(*p, True) for p in SAME] + [(*p, False) for p in OTHERS]
+)
+def test_what_a_module_does_counts_and_not_how_it_is_written(one, other, same):
+    assert (syntax_digest(one) == syntax_digest(other)) == same
+
+
+@pytest.mark.parametrize(
+    ("source", "digest"),
+    [
+        ('x = f"a{y!r:>{w}.{p}f}b" "c" f"{z}" ""', "329fb3f9bda1"),
+        ('x = f"{y:}" f"" f"plain"', "27aaf8ca32d7"),
+        ("x = f'{y = }' f\"{f'{z}'}\" rf'\\d{z:%H\\d}'", "501cf4f4d50e"),
+        ("x = f'{y:{\"a\"}}'", "63bb6ce022b1"),
+        ('x = f"{{}}{y}{{"', "420f7d040630"),
+        ('x = f"""\n{\n y\n:>3}\n"""', "f1eddcae91a7"),
+        (
+            "match x:\n"
+            '  case {"a": 1, **r}: pass\n'
+            "  case [1, *_] | (2 as q): pass\n"
+            "  case None | True: pass\n"
+            "  case C(a, b=1): pass",
+            "3aaa8b4af96c",
+        ),
+        ('def f(a, /, b=1, *c, d, e=2, **g) -> int:\n  "doc"\n  return a', "3262161a4139"),
+        (
+            "async def f():\n"
+            "  async with a as b, c: pass\n"
+            "  async for i in x: yield i\n"
+            "  return [i async for i in y]",
+            "5838418f207d",
+        ),
+        (
+            'try:\n  pass\nexcept* E as e:\n  "text"\nelse:\n  pass\nfinally:\n  "text"',
+            "e4d6fd8a65fa",
+        ),
+        ('d = {**a, 1: 2, "é😀\U0001fae8": 1e-400, 1j: b"x", ...: None}', "fb74db9895a8"),
+        (
+            'x: int\ny: "str" = u"u"\nx = 1; del x; global_ = lambda *, k=None: (yield)',
+            "610e481b8371",
+        ),
+        ('class A(B, metaclass=C):\n  """doc"""\n  a = 1\n  """attribute"""', "a9e1a88f7d92"),
+        ("with (open(a) as b, open(c)): pass", "f11dc920127e"),
+        ("x[1:2, ::3, *a] = (b := 3) if not -1 ** 2 else ~x @ y", "7040b6ccc8eb"),
+        ("@d\ndef f(x, *args: *Ts): pass", "e171e48a512b"),
+    ],
+    ids=map(str, range(16)),
+)
+def test_every_version_of_python_gives_the_same_digest(source, digest):
+    """The digests were computed with Python 3.11, 3.12 and 3.13."""
+    assert syntax_digest(source).startswith(digest)
+
+
+def test_output_that_a_cell_hides_or_shows_counts():
+    cells = ["x", "x;", "x; # quiet", "x  # loud", "'x'", "", "x ("]
+    digests = cell_digests(cells)
+    assert len(set(digests)) == 5
+    assert digests == [cell_digest(cell) for cell in cells]

@@ -1,0 +1,393 @@
+"""The store of executed pages: what is kept, exported, imported and refused."""
+
+import json
+import os
+import shutil
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbformat.v4 import new_notebook, new_output
+from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
+
+from robo_genesis.evidence.bundle import BundleRefused, sha256
+from robo_genesis.pipeline.pages import folder as page_folder
+from robo_genesis.pipeline.pages.book import Page, find_pages
+from robo_genesis.pipeline.pages.execute import execute_pages
+from robo_genesis.pipeline.pages.folder import PageRefused, StoreError, write_page
+from robo_genesis.pipeline.pages.results import PageResult
+from robo_genesis.pipeline.pages.store import (
+    export_page,
+    folders,
+    forget,
+    import_pages,
+    last_record,
+    places,
+    stored_result,
+)
+
+LAB = "lab"
+# Beside its bundle a page may leave files for its own figures.
+MORE = WRITE_BUNDLE + '\n(folder.parent / "shape.npz").write_bytes(b"shape")'
+
+
+@pytest.fixture(scope="module")
+def elsewhere(tmp_path_factory) -> Path:
+    """A book, executed once, with both of its pages exported."""
+    root = tmp_path_factory.mktemp("elsewhere")
+    lab = notebook(cell(MORE), cell("print('measured')"), front=LAB_FRONT)
+    book = make_book(root, text=notebook(cell("print('seen')")), **{LAB: lab})
+    pages = find_pages(book)
+    for result in execute_pages(pages, places(pages, root / "store")):
+        assert result.status == "executed", result.failure
+        export_page(result, root / "executed")
+    return root
+
+
+@pytest.fixture
+def here(elsewhere, tmp_path) -> Path:
+    """The same book on another machine, with the executed pages to spoil and no cache."""
+    for name in ("book", "executed"):
+        shutil.copytree(elsewhere / name, tmp_path / name)
+    return tmp_path
+
+
+def take(here: Path, verify=lambda folder, run_id: None):
+    pages = find_pages(here / "book")
+    return import_pages(here / "executed", pages, places(pages, here / "store"), verify)
+
+
+def stored(here: Path) -> dict[str, PageResult | None]:
+    pages = find_pages(here / "book")
+    into = places(pages, here / "store")
+    return {page.docname: stored_result(page, into[page.docname]) for page in pages}
+
+
+def lab(here: Path, name: str) -> Path:
+    return here / "executed" / LAB / name
+
+
+def record(**changes):
+    """Change entries of the lab's record."""
+
+    def spoil(here: Path) -> None:
+        path = lab(here, "page.json")
+        path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+
+    return spoil
+
+
+def seal(here: Path) -> None:
+    """Make the digests of the lab's record right again."""
+    place = lab(here, "")
+    names = {path.relative_to(place).as_posix(): path for path in place.rglob("*")}
+    files = {n: sha256(path) for n, path in names.items() if path.is_file() and n != "page.json"}
+    record(files=files)(here)
+
+
+def book(change):
+    """Change the lab's notebook, and its digest with it."""
+
+    def spoil(here: Path) -> None:
+        path = lab(here, "executed.ipynb")
+        executed = nbformat.read(path, as_version=4)
+        change(executed)
+        nbformat.write(executed, path)
+        seal(here)
+
+    return spoil
+
+
+def file(name: str, text: str):
+    """Write a file of the lab, and its digest with it."""
+
+    def spoil(here: Path) -> None:
+        lab(here, name).write_text(text)
+        seal(here)
+
+    return spoil
+
+
+def first_cell(**changes):
+    return book(lambda executed: executed.cells[0].update(changes))
+
+
+def metadata(**changes):
+    return book(lambda executed: executed.metadata.update(changes))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Return all files of a folder."""
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def test_a_page_is_one_folder_in_the_store_and_between_machines(elsewhere):
+    place = elsewhere / "executed" / LAB
+    (kept,) = (elsewhere / "store" / LAB).iterdir()
+    assert contents(kept) == contents(place)
+    record = json.loads((place / "page.json").read_text())
+    assert (record["docname"], record["lesson"], record["page"]) == (LAB, "l04", "lab")
+    assert record["fingerprint"] == kept.name
+    assert len(record["cell_seconds"]) == 2
+    assert set(record["files"]) == {"executed.ipynb", BUNDLE, SHAPE}
+    assert "measured" in (place / "executed.ipynb").read_text()
+
+
+def test_an_imported_page_needs_no_run_is_the_same_run_and_replaces_an_older_one(here):
+    take(here)
+    (place,) = (here / "store" / LAB).iterdir()
+    (place / BUNDLE).write_text("{}")
+    runs = {record.docname: record.run_id for record in take(here)}
+    results = stored(here)
+    assert [(name, result.status) for name, result in results.items()] == [
+        ("text", "reused"),
+        (LAB, "reused"),
+    ]
+    assert {name: result.run_id for name, result in results.items()} == runs
+    assert (place / SHAPE).read_bytes() == b"shape"
+
+
+def test_exporting_again_replaces_the_page_and_no_other_folder(here):
+    take(here)
+    result = stored(here)[LAB]
+    left_over = here / "executed" / LAB / "left over"
+    left_over.touch()
+    export_page(result, here / "executed")
+    assert not left_over.exists()
+    (here / "mine" / LAB).mkdir(parents=True)
+    with pytest.raises(StoreError, match="is not an executed page"):
+        export_page(result, here / "mine")
+    assert [path.name for path in (here / "mine").iterdir()] == [LAB]
+
+
+def test_a_bundle_that_is_refused_leaves_what_was_executed_here(here):
+    def refuse(folder: Path, run_id: str):
+        raise BundleRefused("stale", f"{folder.name} answers an older question")
+
+    before = take(here)
+    with pytest.raises(StoreError, match=r"lab: bundle: its bundle is refused: stale: cpu answers"):
+        take(here, verify=refuse)
+    assert {result.run_id for result in stored(here).values()} == {r.run_id for r in before}
+    shutil.rmtree(here / "store")
+    with pytest.raises(StoreError):
+        take(here, verify=refuse)
+    assert not (here / "store").exists()
+
+
+def test_pages_lie_at_any_depth_but_not_within_another_nor_hidden(here):
+    file("outputs/page.json", "its own")(here)
+    for left in (".left", f"{LAB}.next", f"{LAB}.old"):
+        shutil.copytree(here / "executed" / LAB, here / "executed" / left)
+    (here / "executed" / "z").mkdir()
+    (here / "executed" / LAB).rename(here / "executed" / "z" / "any name")
+    assert [record.docname for record in take(here)] == ["text", LAB]
+
+
+def remove(name: str):
+    return lambda here: lab(here, name).unlink()
+
+
+def edit_output(here):
+    path = lab(here, "executed.ipynb")
+    path.write_text(path.read_text().replace("measured", "invented"))
+
+
+def two(here):
+    shutil.copytree(lab(here, ""), here / "executed/again")
+
+
+def copy_plain(source: str, target: str) -> None:
+    """Copy a file, or make a pipe like it."""
+    if Path(source).is_fifo():
+        os.mkfifo(target)
+    else:
+        shutil.copy2(source, target, follow_symlinks=False)
+
+
+def link(here):
+    lab(here, SHAPE).unlink()
+    lab(here, SHAPE).symlink_to("/etc/hostname")
+
+
+RUN = "f" * 32
+ERROR = new_output("error", ename="ValueError", evalue="no", traceback=[])
+CODE = "its code cells are not those of"
+BUNDLE, SHAPE = "outputs/cpu/manifest.json", "outputs/shape.npz"
+OTHERS = json.dumps({"predicate": {"run_id": RUN}})
+NEW = "outputs/new"
+SPOILT = {
+    "another fingerprint": (record(fingerprint="1" * 20), "fingerprint", "is 11111"),
+    "an unknown page": (record(docname="gone"), "page", "its page is 'gone'. Pages of"),
+    "a path for a page": (record(docname="../lab"), "page", "its page is '../lab'"),
+    "another lesson": (
+        record(lesson="l02"),
+        "page",
+        "of lab (l02/lab), expected was lab (l04/lab)",
+    ),
+    "changed code": (record(code="0" * 64), "code", CODE),
+    "forged code": (first_cell(source="1"), "code", CODE),
+    "another kernel": (metadata(kernelspec={"name": "other", "display_name": ""}), "code", CODE),
+    "a run that is none": (record(run_id="../x"), "record", "page.json is not what"),
+    "a word too many": (record(signed=True), "record", "page.json is not what"),
+    "no JSON": (lambda h: lab(h, "page.json").write_text("{"), "record", "is not what `make"),
+    "the notebook of another run": (metadata(robo_genesis={"run_id": RUN}), "run", "of run ffff"),
+    "a notebook of no run": (metadata(robo_genesis="none"), "run", "executed.ipynb is of run None"),
+    "the bundle of another run": (file(BUNDLE, OTHERS), "bundle", "has no evidence bundle of run"),
+    "a cell that failed": (first_cell(outputs=[ERROR]), "outcome", "ExpectedException: "),
+    "no notebook": (remove("executed.ipynb"), "files", "absent are ['executed.ipynb']"),
+    "what is no notebook": (file("executed.ipynb", "[]"), "notebook", "ipynb is not a notebook"),
+    "no manifest": (remove(BUNDLE), "files", f"absent are ['{BUNDLE}']"),
+    "a changed file": (lambda h: lab(h, SHAPE).write_text("new"), "digest", f"['{SHAPE}'] changed"),
+    "an edited output": (edit_output, "digest", "['executed.ipynb'] changed since it was stored."),
+    "an unlisted file": (lambda h: lab(h, NEW).touch(), "files", f"not of this page ['{NEW}']"),
+    "a file of another page": (file("new", "new"), "files", "not of this page ['new']"),
+    "a path for a file": (record(files={"../../x": "0" * 64}), "files", "absent are ['../../x'"),
+    "a link": (link, "files", "shape.npz is a link or device"),
+    "a pipe": (lambda h: os.mkfifo(lab(h, "pipe")), "files", "pipe is a link or device"),
+    "two of one page": (two, "twice", "lab is in "),
+}
+
+
+@pytest.mark.parametrize(("spoil", "code", "said"), SPOILT.values(), ids=SPOILT)
+def test_a_page_that_does_not_hold_is_refused_and_nothing_is_imported(here, spoil, code, said):
+    spoil(here)
+    with pytest.raises(StoreError) as refused:
+        take(here)
+    first, *problems = str(refused.value).splitlines()
+    assert first == f"The executed pages in {here / 'executed'} are refused."
+    place, found, reason = problems[0].partition(f": {code}: ")
+    assert place.startswith(str(here / "executed"))
+    assert found
+    assert said in reason
+    assert not (here / "store").exists()
+
+
+def test_files_of_a_page_that_declares_none_are_refused(here):
+    (here / "executed/text/outputs").mkdir()
+    (here / "executed/text/outputs/new").touch()
+    with pytest.raises(StoreError, match=r"text: files: .*not of this page \['outputs/new'\]"):
+        take(here)
+
+
+# Only whoever edits the record as well makes these look like a stored page.
+OUTSIDE = {"an unknown page", "a path for a page", "two of one page", "a cell that failed"}
+
+
+@pytest.mark.parametrize(
+    ("spoil", "code"),
+    [(spoil, code) for name, (spoil, code, _) in SPOILT.items() if name not in OUTSIDE],
+    ids=[name for name in SPOILT if name not in OUTSIDE],
+)
+def test_a_stored_page_is_held_to_the_same_rules(here, spoil, code):
+    (page,) = (page for page in find_pages(here / "book") if page.docname == LAB)
+    spoil(here)
+    place = places([page], here / "store")[LAB]
+    shutil.copytree(lab(here, ""), place, symlinks=True, copy_function=copy_plain)
+    with pytest.raises(PageRefused) as refused:
+        stored_result(page, place)
+    assert refused.value.code == code
+
+
+def test_a_page_s_place_depends_on_its_code_and_not_on_its_prose(here):
+    before, path = places(find_pages(here / "book"), here / "store"), here / "book/text.md"
+    path.write_text(path.read_text().replace("A page.", "Another sentence."))
+    assert places(find_pages(here / "book"), here / "store") == before
+    path.write_text(path.read_text().replace("seen", "changed"))
+    after = places(find_pages(here / "book"), here / "store")
+    assert {name for name in before if before[name] != after[name]} == {"text"}
+
+
+def made(page: Page, place: Path, seconds: float = 1.0, run_id: str = "a" * 32) -> PageResult:
+    """Store a page that was never executed."""
+    metadata = page.notebook.metadata | {"robo_genesis": {"run_id": run_id}}
+    notebook = new_notebook(cells=page.notebook.cells, metadata=metadata)
+    write_page(
+        place, page, notebook, place, run_id=run_id, command=None, seconds=seconds, cell_seconds=[]
+    )
+    return PageResult(page, "executed", seconds, run_id, folder=place)
+
+
+@pytest.fixture
+def page(tmp_path) -> Page:
+    (page,) = find_pages(make_book(tmp_path, text=notebook(cell("1"))))
+    return page
+
+
+def test_the_newest_folders_of_a_page_are_kept_and_other_pages_go(page, tmp_path):
+    store = tmp_path / "store"
+    for age, name in enumerate("abcde"):
+        made(page, store / "text" / name, seconds=age)
+        os.utime(store / "text" / name, (1000 - age, 1000 - age))
+    for left in ("gone/fingerprint", "text/.a.next", "a" * 20 + "/notebooks"):
+        (store / left).mkdir(parents=True)
+    result = PageResult(page, "reused", 0.0, "", folder=store / "text" / "e")
+    forget(store, [result])
+    assert [path.name for path in store.iterdir()] == ["text"]
+    assert [path.name for path in folders(store, page)] == ["e", "a", "b"]
+    assert sorted(path.name for path in (store / "text").iterdir()) == ["a", "b", "e"]
+
+
+def test_the_last_duration_is_that_of_the_newest_folder_that_can_be_read(page, tmp_path):
+    assert last_record(tmp_path / "store", page) is None
+    made(page, tmp_path / "store/text/old", seconds=7)
+    os.utime(tmp_path / "store/text/old", (1000, 1000))
+    made(page, tmp_path / "store/text/new", seconds=3)
+    assert last_record(tmp_path / "store", page).seconds == 3
+    (tmp_path / "store/text/new/page.json").write_text("{")
+    assert last_record(tmp_path / "store", page) is None
+
+
+@pytest.mark.parametrize("broken", ["write", "rename"])
+def test_a_page_that_cannot_be_stored_leaves_the_older_one(page, tmp_path, monkeypatch, broken):
+    place = tmp_path / "store/text/fingerprint"
+    made(page, place)
+    before = contents(place)
+
+    def full(*given, **more):
+        raise OSError("No space left on device")
+
+    if broken == "write":
+        monkeypatch.setattr("robo_genesis.pipeline.pages.folder.Record.model_dump_json", full)
+    else:
+        monkeypatch.setattr("os.rename", full)
+    with pytest.raises(OSError, match="No space"):
+        made(page, place, run_id="b" * 32)
+    assert contents(place) == before
+    assert [path.name for path in place.parent.iterdir()] == ["fingerprint"]
+
+
+def test_a_folder_that_a_killed_build_had_moved_aside_is_found(page, tmp_path):
+    place = tmp_path / "store/text" / ("0" * 20)
+    made(page, place)
+    place.rename(place.with_name(f".{place.name}.old"))
+    result = stored_result(page, place)
+    assert (result.status, result.folder) == ("reused", place)
+
+
+def test_every_missing_page_is_named_with_the_command_that_makes_it(here):
+    shutil.rmtree(here / "executed")
+    with pytest.raises(StoreError, match=r"EXECUTED=.*executed is not a folder"):
+        take(here)
+    (here / "executed").mkdir()
+    with pytest.raises(StoreError) as refused:
+        take(here)
+    for name in ("text", LAB):
+        assert f"\n{name} is not among them." in str(refused.value)
+        assert f"make execute PAGE={name} TO=folder" in str(refused.value)
+
+
+def test_prose_may_change_after_the_export_and_code_may_not(here):
+    page = here / "book" / "text.md"
+    page.write_text(page.read_text().replace("A page.", "Another sentence."))
+    assert len(take(here)) == 2
+    page.write_text(page.read_text().replace("seen", "changed"))
+    with pytest.raises(StoreError, match=f"code cells are not those of {page}"):
+        take(here)
+
+
+@pytest.mark.parametrize(("name", "limit"), [("SIZE_LIMIT", 3), ("FILES_LIMIT", 1)])
+def test_too_much_is_refused_before_it_is_read(here, monkeypatch, name, limit):
+    monkeypatch.setattr(page_folder, name, limit)
+    with pytest.raises(StoreError, match="exceeds a limit: at most"):
+        take(here)

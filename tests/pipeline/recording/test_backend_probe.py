@@ -1,0 +1,300 @@
+"""The probe on machines that are folders: device files, /sys, /proc and a Torch of a few lines."""
+
+import ctypes.util
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.pipeline.recording import backend_probe
+from robo_genesis.pipeline.recording.backend_probe import probe
+from robo_genesis.pipeline.recording.probe_steps import Machine
+from robo_genesis.pipeline.recording.torch_probe import RUNTIME
+
+TORCH = """
+import json, os, pathlib, types
+told = json.loads(pathlib.Path(__file__).with_suffix(".json").read_text())
+__version__ = told["version"]
+version = types.SimpleNamespace(hip=told["hip"], cuda=told["cuda"])
+cuda = types.SimpleNamespace(
+    is_available=lambda: told["count"] > 0,
+    device_count=lambda: told["count"],
+    get_device_properties=lambda index: types.SimpleNamespace(
+        name="a card", gcnArchName="gfx942:sramecc+:xnack-"),
+    get_arch_list=lambda: told["codes"],
+)
+print("a warning of the driver\\n{another}\\n3")
+
+class arange(list):
+    def __init__(self, count, device):
+        assert device == "cuda"
+        exec(told["kernel"])
+        super().__init__(told["numbers"] or range(count))
+
+    def __mul__(self, other):
+        return arange_sum(sum(a * b for a, b in zip(self, other)))
+
+class arange_sum(int):
+    def sum(self):
+        return self
+"""
+TOLD = {
+    "version": "2.13.0+rocm7.1", "hip": "7.1.2", "cuda": None, "count": 1, "codes": ["gfx942"],
+    "kernel": "", "numbers": None,
+}  # fmt: skip
+CUDA = {"version": "2.13.0+cu130", "hip": None, "cuda": "13.0"}
+CPU = {"version": "2.13.0+cpu", "hip": None, "count": 0}
+OWN, OTHER = "/env/torch/lib/libamdhip64.so", "/opt/rocm/lib/libamdhip64.so.7.2"
+
+
+class Synthetic:
+    """A machine with one MI300X, on which all is well until a test changes it."""
+
+    def __init__(self, root: Path):
+        self.root = root
+        self.environ = {"PATH": "", "PYTHONPATH": str(root), "LD_LIBRARY_PATH": str(root / "lib")}
+        self.closed: tuple[str, ...] = ()
+        for path in ("dev/kfd", "dev/dri/renderD128", "opt/rocm/llvm/bin/ld.lld"):
+            self.write(path, "")
+        self.write("sys/module/amdgpu/version", "6.16\n")
+        for node, version in (("0", 0), ("1", 90402)):
+            text = f"simd_count 304\ngfx_target_version {version}\n"
+            self.write(f"sys/class/kfd/kfd/topology/nodes/{node}/properties", text)
+        self.loaded(OWN)
+        self.write("torch.py", TORCH)
+        self.told()
+        # Some library that the test's own process can open by the name of the runtime.
+        (root / "lib").mkdir()
+        (root / "lib" / RUNTIME).symlink_to(loadable())
+
+    def write(self, path: str, text: str) -> Path:
+        file = self.root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+        return file
+
+    def told(self, **values) -> None:
+        self.write("torch.json", json.dumps(TOLD | values))
+
+    def loaded(self, *files: str) -> None:
+        lines = [f"7f00-7f01 r-xp 00000000 08:01 {n} {file}\n" for n, file in enumerate(files)]
+        self.write("proc/self/maps", "".join(["7f00-7f01 rw-p 00000000 00:00 0 \n", *lines * 2]))
+
+    def probe(self, expected: str | None = "amdgpu") -> tuple[str, dict[str, str], dict[str, str]]:
+        """Return the backend that is found, and state and words by step."""
+        machine = Machine(self.root, self.environ, lambda path, mode: path.name not in self.closed)
+        backend, findings = probe(expected, machine)
+        states = {finding.step: finding.state for finding in findings}
+        return backend, states, {finding.step: finding.found for finding in findings}
+
+
+def loadable() -> Path:
+    """Return a library of the C runtime, as a file that this process has loaded."""
+    name = str(ctypes.util.find_library("m"))
+    maps = Path("/proc/self/maps").read_text().splitlines()
+    found = [line.split(maxsplit=5)[-1] for line in maps if line.endswith(f"/{name}")]
+    return Path(found[0])
+
+
+@pytest.fixture
+def machine(tmp_path):
+    return Synthetic(tmp_path)
+
+
+def test_an_amd_machine_is_fine(machine):
+    backend, states, found = machine.probe()
+    assert backend == "amdgpu"
+    assert {*states.values()} == {"ok"}
+    assert found == {
+        "devices": "may open kfd renderD128",
+        "driver": "amdgpu 6.16",
+        "card": "gfx942",
+        "linker": f"{machine.root}/opt/rocm/llvm/bin/ld.lld",
+        "visibility": "no variable hides a card",
+        "torch": "2.13.0+rocm7.1, built for HIP 7.1.2",
+        "device": "a card gfx942, device 0 of 1",
+        "device_code": "Torch has code for gfx942",
+        "hip_runtime": OWN,
+        "kernel": "a sum on the card is 140, as expected",
+    }
+
+
+def unversioned(machine):
+    (machine.root / "lib" / RUNTIME).unlink()
+
+
+def removed(*paths):
+    def change(machine):
+        for path in paths:
+            (machine.root / path).unlink()
+
+    return change
+
+
+def told(**values):
+    return lambda machine: machine.told(**values)
+
+
+def variables(**values):
+    return lambda machine: machine.environ.update(values)
+
+
+def closed(*names):
+    def change(machine):
+        machine.closed = names
+
+    return change
+
+
+def in_kernel(machine):
+    """The driver of the kernel itself, which names no version."""
+    (machine.root / "sys/module/amdgpu/version").unlink()
+
+
+def as_index(value):
+    names = ("ROCR_VISIBLE_DEVICES", "HIP_VISIBLE_DEVICES", "CUDA_VISIBLE_DEVICES")
+    return variables(**dict.fromkeys(names, value))
+
+
+def topology(version):
+    return lambda machine: machine.write(
+        "sys/class/kfd/kfd/topology/nodes/1/properties", f"gfx_target_version {version}\n"
+    )
+
+
+LLD = "opt/rocm/llvm/bin/ld.lld"
+
+
+@pytest.mark.parametrize(
+    ("change", "step", "state", "words"),
+    [
+        (removed("dev/kfd"), "devices", "broken", "/dev/kfd missing, expected both. Load the dri"),
+        (removed("dev/kfd", "dev/dri/renderD128"), "devices", "broken",
+         "/dev/kfd and /dev/dri/renderD* missing"),
+        (closed("kfd"), "devices", "broken", "You may open renderD128, expected kfd and a renderD"),
+        (closed("kfd", "renderD128"), "devices", "broken", "usermod -aG render,video"),
+        (in_kernel, "driver", "ok", "amdgpu of the kernel "),
+        (topology(0), "card", "broken", "names no card"),
+        (topology(90010), "card", "ok", "gfx90a"),
+        (topology(120001), "card", "ok", "gfx1201"),
+        (removed(LLD), "linker", "broken", "in llvm/bin of ROCM_PATH (unset) or /opt/rocm"),
+        (variables(ROCR_VISIBLE_DEVICES="1"), "visibility", "ok", "ROCR_VISIBLE_DEVICES=1"),
+        (variables(HIP_VISIBLE_DEVICES="1"), "visibility", "warning", "set it alone"),
+        (as_index("0"), "visibility", "warning", "set it alone"),
+        (variables(HIP_VISIBLE_DEVICES=""), "visibility", "broken", "is set and empty"),
+        (as_index("1"), "visibility", "broken", "in all three hides the card"),
+        (told(**CUDA), "torch", "broken",
+         "built for CUDA 13.0, expected a build for amdgpu"),
+        (told(count=0), "device", "broken", "Torch finds no device, expected one."),
+        (told(codes=["gfx1100"]), "device_code", "warning",
+         "for gfx1100, expected gfx942. Install Torch with it: torch[device-gfx942]"),
+        (told(codes=[], kernel="raise RuntimeError('invalid device function\\nmore')"),
+         "device_code", "broken", "code for no card, expected gfx942"),
+        (lambda m: m.loaded(OWN, OTHER), "hip_runtime", "warning",
+         f"2 are loaded: {OWN}, {OTHER}; expected Torch's. Link {RUNTIME} in a folder to {OWN}"),
+        (unversioned, "hip_runtime", "broken", "which the engine opens, cannot be loaded"),
+        (told(kernel="raise RuntimeError('HIP error: out of memory\\nmore')"), "kernel", "broken",
+         "an answer: RuntimeError: HIP error: out of memory. Repair that environment"),
+        (told(kernel="os.kill(os.getpid(), 11)"), "kernel", "broken", "killed by SIGSEGV"),
+        (told(numbers=[1, 2, 3]), "kernel", "broken", "is 14, expected 140"),
+    ],
+)  # fmt: skip
+def test_one_thing_that_is_wrong_is_named_with_the_fix(machine, change, step, state, words):
+    change(machine)
+    backend, states, found = machine.probe()
+    assert states[step] == state
+    assert words in found[step]
+    steps = [*states]
+    torch = ["torch", "device", "device_code", "hip_runtime", "kernel"]
+    later = torch[torch.index(step) + 1 :] if state == "broken" and step in torch else []
+    others = {name: "not run" if name in later else "ok" for name in steps if name != step}
+    assert states == {step: state} | others
+    assert backend == ("cpu" if "Torch finds no" in words else "cuda" if "for amd" in words else
+                       "amdgpu")  # fmt: skip
+
+
+def test_ld_lld_is_looked_for_where_the_compiler_looks(machine):
+    places = [machine.write(f"{folder}/{LLD[9:]}", "") for folder in ("mine", "opt/rocm-6.0.0")]
+    on_path = machine.write("bin/ld.lld", "")
+    on_path.chmod(0o755)
+    machine.environ |= {"ROCM_PATH": str(machine.root / "mine"), "PATH": str(on_path.parent)}
+    for place in (places[0], machine.root / LLD, places[1], on_path):
+        assert machine.probe()[2]["linker"] == str(place)
+        place.unlink()
+    assert machine.probe()[1]["linker"] == "broken"
+
+
+@pytest.mark.parametrize("expected", ["cuda", None])
+def test_a_cuda_machine_is_fine(machine, expected):
+    machine.told(**CUDA)
+    machine.write("sys/module/nvidia/version", "580.1\n")
+    assert machine.probe(expected) == (
+        "cuda",
+        dict.fromkeys(("driver", "torch", "device", "kernel"), "ok"),
+        {
+            "driver": "nvidia 580.1",
+            "torch": "2.13.0+cu130, built for CUDA 13.0",
+            "device": "a card, device 0 of 1",
+            "kernel": "a sum on the card is 140, as expected",
+        },
+    )
+
+
+def test_a_driver_that_sys_does_not_name_is_a_warning(machine):
+    machine.told(**CUDA)
+    _, states, found = machine.probe("cuda")
+    assert states == {"driver": "warning", "torch": "ok", "device": "ok", "kernel": "ok"}
+    assert "expected the driver loaded: modprobe nvidia" in found["driver"]
+
+
+@pytest.mark.parametrize(("given", "expected"), [({}, "amdgpu"), (CUDA, "cuda")])
+def test_without_a_name_the_build_of_torch_decides(machine, given, expected):
+    machine.told(**given)
+    assert machine.probe(None)[0] == expected
+
+
+@pytest.mark.parametrize("expected", ["amdgpu", "cuda", None])
+def test_a_torch_for_the_cpu_alone_is_named(machine, expected):
+    machine.told(**CPU)
+    backend, states, found = machine.probe(expected)
+    assert (backend, states["torch"]) == ("cpu", "broken")
+    wanted = f"built for the CPU alone, expected a build for {expected or 'amdgpu or cuda'}. Name"
+    assert wanted in found["torch"]
+    assert "BACKEND=cpu" in found["torch"]
+
+
+@pytest.mark.parametrize(
+    ("torch", "said"),
+    [
+        ("raise ImportError('libamdhip64.so')", "ImportError: libamdhip64.so"),
+        ("import os; os._exit(3)", "status 3"),
+        ("import os, sys; sys.stderr.write('a\\nb\\n'); sys.stderr.flush(); os._exit(1)", "r: b."),
+        ("import time; print('hangs', flush=True); time.sleep(60)", "no answer in 1 s"),
+    ],
+)
+def test_a_torch_that_does_not_answer_is_named_with_the_fix(machine, monkeypatch, torch, said):
+    monkeypatch.setattr(backend_probe, "PROBE_SECONDS", 1.0)
+    machine.write("torch.py", torch)
+    backend, states, found = machine.probe("amdgpu")
+    assert backend == "cpu"
+    assert [*states.values()] == ["ok"] * 5 + ["broken"] + ["not run"] * 4
+    assert f"Torch of {sys.executable} ended without an answer: " in found["torch"]
+    assert said in found["torch"]
+    assert "PYTHON=path" in found["torch"]
+
+
+def test_the_probe_loads_neither_engine_nor_course(machine):
+    modules = ["genesis", "quadrants", "robo_genesis", "numpy"]
+    kernel = f"import sys; assert not {{*sys.modules}} & set({modules}), 'loaded'"
+    machine.told(kernel=kernel)
+    assert machine.probe()[1]["kernel"] == "ok"
+
+
+def test_this_machine_is_looked_at_with_the_variables_of_a_kernel(monkeypatch):
+    monkeypatch.setenv("ROCM_PATH", "/opt/rocm-7.2.0")
+    monkeypatch.setenv("PYTORCH_NO_HIP_MEMORY_CACHING", "1")
+    machine = Machine()
+    assert machine.root == Path("/")
+    assert machine.environ["ROCM_PATH"] == "/opt/rocm-7.2.0"
+    assert "PYTORCH_NO_HIP_MEMORY_CACHING" not in machine.environ

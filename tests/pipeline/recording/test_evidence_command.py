@@ -1,0 +1,100 @@
+"""`make evidence`: exit status, what is printed, and the real lab on the CPU."""
+
+import shutil
+import signal
+import subprocess
+import sys
+
+import pytest
+from tiny_book import (
+    LAB_FRONT,
+    WRITE_BUNDLE,
+    cell,
+    fails,
+    make_book,
+    notebook,
+    old_bundle,
+    start,
+    wait_for,
+)
+
+from robo_genesis.core.project import BOOK, CACHE, ROOT
+from robo_genesis.evidence.bundle import evidence_key
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+
+
+def test_make_passes_the_settings(tmp_path):
+    (tmp_path / "build_scripts").mkdir()
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    stub = "import os\nprint([os.environ.get(name) for name in ('LESSON', 'BACKEND', 'TO')])\n"
+    (tmp_path / "build_scripts" / "evidence.py").write_text(stub)
+    settings = ["LESSON=l04", "BACKEND=amdgpu", "TO=a folder", f"PYTHON={sys.executable}"]
+    make = ["make", "-C", str(tmp_path), "evidence", *settings]
+    done = subprocess.run(make, capture_output=True, text=True, check=False, timeout=60)
+    assert "['l04', 'amdgpu', 'a folder']" in done.stdout.splitlines(), done.stderr
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({}, "lab, code cell 1, line "),
+        ({"RENDER": "0"}, "RENDER='0' is not valid for a recording, which always has camera fr"),
+    ],
+)
+def test_a_failure_is_status_1_a_report_and_the_old_bundle(tmp_path, settings, said):
+    old = old_bundle(tmp_path, "cpu")
+    make_book(tmp_path, lab=notebook(cell("1 / 0"), front=LAB_FRONT))
+    given = {"LESSON": "l04", "BACKEND": "cpu", "TO": str(tmp_path / "kept")} | settings
+    report = fails("evidence.py", tmp_path, **given)
+    assert said in report
+    assert settings or report.endswith("FAILED: nothing was recorded.\n")
+    assert old.read_text() == "old"
+
+
+def test_without_a_lesson_all_labs_run_and_the_last_lines_are_their_table(tmp_path):
+    old = old_bundle(tmp_path, "cpu")
+    other = notebook(cell("1 / 0"), front=LAB_FRONT.replace("l04", "l03"))
+    make_book(tmp_path, lab=notebook(cell("1 / 0"), front=LAB_FRONT), other=other)
+    process = start("evidence.py", tmp_path, BACKEND="cpu", TO=str(tmp_path / "kept"))
+    out, err = process.communicate(timeout=120)
+    assert (process.returncode, err) == (1, "")
+    head, *rows = out.splitlines()[-3:]
+    assert head.split()[:3] == ["lab", "backend", "device"]
+    assert [row.split()[:4] for row in rows] == [[f"l0{n}", "cpu", "–", "failed"] for n in (4, 3)]
+    assert old.read_text() == "old"
+
+
+def test_ctrl_c_leaves_the_old_bundle_and_no_part_of_a_new_one(tmp_path):
+    old, started = old_bundle(tmp_path, "cpu"), tmp_path / "started"
+    waits = f"{WRITE_BUNDLE}\npathlib.Path({str(started)!r}).write_text('1')\nimport time"
+    make_book(tmp_path, lab=notebook(cell(f"{waits}\ntime.sleep(60)"), front=LAB_FRONT))
+    given = {"LESSON": "l04", "BACKEND": "cpu", "TO": str(tmp_path / "kept")}
+    process = start("evidence.py", tmp_path, **given)
+    wait_for(process, started)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert err.endswith("Interrupted: nothing was recorded.\n")
+    assert [path.name for path in old.parents[1].iterdir()] == ["cpu"]
+    assert old.read_text() == "old"
+    assert not (tmp_path / "cache/recording").exists()
+
+
+@pytest.mark.engine
+def test_the_real_lab_recorded_on_the_cpu_is_accepted_evidence(tmp_path):
+    cache, kept = tmp_path / "cache", tmp_path / "kept"
+    (CACHE / "engine").mkdir(parents=True, exist_ok=True)
+    cache.mkdir()
+    (cache / "engine").symlink_to(CACHE / "engine")  # compiled kernels, no executed page
+    given = {"LESSON": "l02", "BACKEND": "cpu", "TO": str(kept)}
+    process = start("evidence.py", tmp_path, "--book", str(BOOK), **given)
+    out, err = process.communicate()
+    assert process.returncode == 0, err
+    place = kept / "l02" / "cpu"
+    facts = verify_bundle(place).predicate
+    assert [path.name for path in kept.iterdir()] == ["l02"]
+    assert facts.command == "make evidence"
+    assert facts.render.mode == "camera"
+    assert facts.evidence_key == evidence_key(facts.model_dump())
+    assert f"Recorded: {place}\nBackend: requested cpu, actual cpu, device " in out
+    assert f"Checks passed: {len(facts.checks)} of {len(facts.checks)}." in out

@@ -1,0 +1,127 @@
+"""`make evidence-rocm`: the command of the container, and what it says where none can start."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.core.project import ENGINE_PREFIXES, ROOT
+from robo_genesis.pipeline.recording import rocm_container
+from robo_genesis.pipeline.recording.rocm_container import ContainerError, Host, commands, record
+
+DOCKERFILE = (ROOT / rocm_container.DOCKERFILE).read_text()
+NULL = Path(os.devnull)
+
+
+def host(found: str = "docker", devices=(NULL,), **environment: str) -> Host:
+    given = {"LESSON": "l04"} | environment
+    return Host(Path("/a checkout"), {found: f"/usr/bin/{found}"}.get, given, devices)
+
+
+def options(command: list[str], name: str) -> list[str]:
+    return [after for word, after in pairwise(command) if word == name]
+
+
+def test_docker_gets_the_devices_their_groups_the_user_and_the_checkout():
+    build, run = commands(host(HIP_VISIBLE_DEVICES="0", SECRET="s", ROCM_PATH="/here"))
+    assert build == ["docker", "build", "--tag", run[-5], "--file", ".rocm/Dockerfile", "."]
+    assert run[-4:] == ["make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]
+    assert f"--device={NULL}" in run
+    assert options(run, "--group-add") == [str(NULL.stat().st_gid)]
+    assert options(run, "--user") == [f"{os.getuid()}:{os.getgid()}"]
+    assert options(run, "--security-opt") == ["seccomp=unconfined"]
+    assert options(run, "--volume") == ["/a checkout:/course"]
+    given = ["HOME=/tmp", "USER=course", "HIP_VISIBLE_DEVICES", "LESSON=l04"]
+    assert options(run, "--env") == given
+
+
+def test_podman_keeps_the_groups_of_the_user():
+    _, run = commands(host("podman"))
+    assert run[0] == "podman"
+    assert options(run, "--group-add") == ["keep-groups"]
+    assert options(run, "--userns") == ["keep-id"]
+    assert "--user" not in run
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (host("nerdctl"), r"PATH has neither docker nor podman\. Install one of them, or record w"),
+        (host(devices=(NULL, Path("/dev/no-gpu"))), r"/dev/no-gpu is missing here\. A recording "),
+    ],
+)
+def test_what_is_missing_is_named_with_the_remedy(given, said):
+    with pytest.raises(ContainerError, match=said):
+        commands(given)
+
+
+def test_the_same_switches_are_passed_as_by_a_recording_without_a_container():
+    """Except the place of ROCm: the image has its own."""
+    assert set(rocm_container.PASSED) == set(ENGINE_PREFIXES) - {"ROCM_"}
+
+
+def test_a_host_without_packages_gets_the_message(tmp_path):
+    """`-I -S` hides all packages, and an empty PATH docker and podman."""
+    script = ROOT / "build_scripts" / "evidence_rocm.py"
+    start = f"import sys, runpy; sys.path.insert(0, {str(ROOT)!r}); sys.argv[1:] = []; "
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-I",
+            "-S",
+            "-c",
+            f"{start} runpy.run_path({str(script)!r}, {{}}, '__main__')",
+        ],
+        env={"PATH": str(tmp_path), "LESSON": "l04"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert done.stderr.startswith("PATH has neither docker nor podman."), done.stderr
+    assert done.stderr.endswith("FAILED: nothing was recorded.\n")
+
+
+def test_a_failed_command_is_named_and_ends_the_recording(tmp_path, monkeypatch, capfd):
+    stub = tmp_path / "docker"
+    stub.write_text('#!/bin/sh\necho "$1"\nexit 7\n')
+    stub.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    given = Host(tmp_path, {"docker": str(stub)}.get, {"LESSON": "l04"}, (NULL,))
+    assert record(given) == 7
+    out, err = capfd.readouterr()
+    assert out == "build\n"
+    assert err.startswith("FAILED with status 7: docker build")
+
+
+def test_make_needs_no_environment_of_the_course(tmp_path):
+    (tmp_path / "build_scripts").mkdir()
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    stub = "import os\nprint(os.environ['LESSON'])\n"
+    (tmp_path / "build_scripts" / "evidence_rocm.py").write_text(stub)
+    words = ["evidence-rocm", "LESSON=l04", f"BASE_PYTHON={sys.executable}"]
+    done = subprocess.run(
+        ["make", "-C", str(tmp_path), *words], capture_output=True, text=True, check=False
+    )
+    assert "l04" in done.stdout.splitlines(), done.stderr
+    assert not (tmp_path / ".venv").exists()
+
+
+def test_the_image_keeps_the_torch_of_its_base():
+    assert re.search(r"^FROM rocm/pytorch:\S+@sha256:[0-9a-f]{64}$", DOCKERFILE, re.M)
+    assert "grep -v '^torch=='" in DOCKERFILE
+    assert "--no-deps" in DOCKERFILE
+    lock = (ROOT / "requirements.lock").read_text()
+    assert re.search(r"^torch==", lock, re.M)
+
+
+@pytest.mark.parametrize("given", [{"TO": "elsewhere"}, {"BACKEND": "cuda"}])
+def test_a_setting_that_the_container_does_not_have_is_refused_first(given):
+    with pytest.raises(ContainerError, match="is not valid here"):
+        commands(host("none", **given))
+    assert commands(host(BACKEND="amdgpu")) == commands(host())

@@ -1,0 +1,99 @@
+"""`make agree`: equal arrays pass; each difference is a line that names page and archive."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.core.project import ROOT
+from robo_genesis.pipeline.agreement import AgreementError, agree
+from robo_genesis.pipeline.pages.folder import RECORD, Record
+
+FILES = {"outputs/cpu/arrays/a.npz": b"a", "outputs/shape.npz": b"s", "outputs/cpu/log.txt": b"1"}
+
+
+def executed(folder: Path, docname: str, files: dict[str, bytes]) -> Path:
+    """Write a folder as `make execute` does, as far as its arrays are concerned."""
+    place = folder / docname.replace("/", "--")
+    place.mkdir(parents=True, exist_ok=True)
+    for name, content in files.items():
+        (place / name).parent.mkdir(parents=True, exist_ok=True)
+        (place / name).write_bytes(content)
+    record = Record(
+        docname=docname,
+        lesson=None,
+        page=None,
+        fingerprint="f",
+        code="0" * 64,
+        run_id="1" * 32,
+        command=None,
+        engine=None,
+        seconds=1.0,
+        cell_seconds=[],
+        files={},
+    )
+    (place / RECORD).write_text(record.model_dump_json())
+    return place
+
+
+@pytest.fixture
+def machines(tmp_path):
+    """Two machines with the same two pages; logs differ."""
+    folders = tmp_path / "first" / "artifact", tmp_path / "second"
+    for number, folder in enumerate(folders):
+        executed(folder, "lessons/lab", FILES | {"outputs/cpu/log.txt": bytes([number])})
+        executed(folder, "text", {})
+    return tmp_path / "first", tmp_path / "second"
+
+
+def test_equal_arrays_agree_at_any_depth_whatever_the_logs_contain(machines):
+    assert agree(*machines) == ["Equal: 2 archives of arrays on 2 pages."]
+
+
+@pytest.mark.parametrize(
+    ("files", "said"),
+    [
+        (FILES | {"outputs/shape.npz": b"t"}, r"lessons/lab: outputs/shape\.npz has the digests"),
+        ({"outputs/shape.npz": b"s"}, r"arrays/a\.npz has the digests [0-9a-f]{12} and none"),
+        (FILES | {"outputs/b.npz": b"b"}, r"outputs/b\.npz has the digests none and [0-9a-f]{12}"),
+    ],
+)
+def test_a_different_missing_or_further_archive_is_named(machines, files, said):
+    place = machines[1] / "lessons--lab"
+    for path in place.rglob("*.npz"):
+        path.unlink()
+    executed(machines[1], "lessons/lab", files)
+    with pytest.raises(AgreementError, match=said):
+        agree(*machines)
+
+
+def test_a_page_of_one_machine_alone_is_named_with_the_command(machines):
+    executed(machines[0], "more", {})
+    with pytest.raises(AgreementError, match=r"more is not in SECOND\. Execute it there: make"):
+        agree(*machines)
+
+
+def test_folders_without_arrays_prove_nothing(tmp_path):
+    for name in ("first", "second"):
+        executed(tmp_path / name, "text", {})
+    with pytest.raises(AgreementError, match="has no arrays"):
+        agree(tmp_path / "first", tmp_path / "second")
+
+
+def test_a_page_that_was_handed_over_twice_is_refused(machines):
+    executed(machines[1] / "again", "text", {})
+    with pytest.raises(AgreementError, match="has text twice"):
+        agree(*machines)
+
+
+def test_make_passes_both_folders_and_explains_a_missing_one(machines):
+    command = ["make", "-C", str(ROOT), "agree", f"PYTHON={sys.executable}", f"FIRST={machines[0]}"]
+    done = subprocess.run(
+        [*command, f"SECOND={machines[1]}"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert "Equal: 2 archives of arrays on 2 pages." in done.stdout.splitlines()
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert "SECOND='' is not a folder. Usage: make agree" in done.stderr
+    assert done.returncode

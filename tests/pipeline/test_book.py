@@ -1,0 +1,365 @@
+"""`make book` on tiny books: what it publishes, and what stops it with the old site in place."""
+
+import os
+import re
+import signal
+from pathlib import Path
+from types import SimpleNamespace
+
+import psutil
+import pytest
+from loading import ENGINE, JUPYTER, run_watched
+from tiny_book import (
+    LAB_FRONT,
+    WRITE_BUNDLE,
+    cell,
+    fails,
+    make_book,
+    notebook,
+    published_marker,
+    start,
+    wait_for,
+)
+
+from robo_genesis.core import project
+from robo_genesis.core.project import ProjectError
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.pipeline import up_to_date
+from robo_genesis.pipeline.bundles.of_build import require_contract
+from robo_genesis.pipeline.html import kept
+from robo_genesis.pipeline.pages.book import PageError
+from robo_genesis.pipeline.pages.folder import StoreError
+from robo_genesis.pipeline.pages.kernels import described, kill_with_descendants
+from robo_genesis.pipeline.stages import (
+    Build,
+    BuildError,
+    build_lock,
+    export_one,
+    run_build,
+)
+
+FACTS = SimpleNamespace(
+    lesson="l02",
+    page="lab",
+    engine=SimpleNamespace(version="1.2.3"),
+    backend=SimpleNamespace(requested="cpu", actual="cpu"),
+    render=SimpleNamespace(mode="camera", renderer="llvmpipe"),
+    checks=["one", "two", "three"],
+)
+LAB = notebook(cell(WRITE_BUNDLE), front=LAB_FRONT)
+FORGED = """\
+from IPython.display import display
+of = {"function": "robo_genesis.lessons.l04.text.metric_table", "arguments": []}
+display({"text/markdown": "7"}, metadata={"robo_genesis": of}, raw=True)"""
+FORGED_LAB = notebook(cell(WRITE_BUNDLE), cell(FORGED), front=LAB_FRONT)
+
+
+def accept(folder: Path, run_id: str) -> SimpleNamespace:
+    """Replace the verification of evidence, which needs the engine's records."""
+    assert (folder / "manifest.json").is_file()
+    assert run_id
+    return SimpleNamespace(predicate=FACTS)
+
+
+def refuse(folder: Path, run_id: str) -> SimpleNamespace:
+    raise BundleRefused("metrics", "metrics.json g1.rise_time is not what the arrays say.")
+
+
+def build(folder: Path, said: list[str] | None = None, **settings) -> list[str]:
+    settings = {"verify": accept, "say": (said if said is not None else []).append} | settings
+    return run_build(Build(book=folder / "book", cache=folder / "cache", **settings))
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory) -> SimpleNamespace:
+    """A book that was built twice; its home page was edited during the first build."""
+    folder = tmp_path_factory.mktemp("built")
+    book = make_book(folder, lab=LAB, lecture=notebook(cell("print('seen')")))
+    marker = published_marker(book)
+    old = [folder / "cache/pages" / page / name for page in ("lab", "gone") for name in "abc"]
+    for place in old:
+        place.mkdir(parents=True)
+    said: list[str] = []
+
+    def edit_meanwhile(line: str) -> None:
+        said.append(line)
+        if "] render " in line:
+            (book / "index.md").write_text("# Home\n\nEdited meanwhile.\n")
+
+    last = build(folder, say=edit_meanwhile)
+    assert marker.read_text() != "the old site"
+    recorded = (book / "_build" / up_to_date.RECORD).exists()
+    kept = [place.parent.name for place in old if place.exists()]
+    return SimpleNamespace(
+        folder=folder, said=said, last=last, recorded=recorded, kept=kept, again=build(folder)
+    )
+
+
+def test_a_build_publishes_site_and_evidence_and_says_with_what(built):
+    book = built.folder / "book"
+    assert (book / "_build/evidence/l04/cpu/manifest.json").is_file()
+    assert built.last == [
+        f"Site: {book / '_build/html/index.html'}",
+        f"Engine: genesis-world {built.last[1].split()[-1]}",
+        "Lesson l04: engine 1.2.3, backend requested cpu, actual cpu, render camera (llvmpipe)",
+        "Pages: 2 executed, 0 reused.",
+        "Checks passed: 3 on what was measured, 5 on the site.",
+    ]
+    stages = list(dict.fromkeys(line.split("] ")[1].split()[0] for line in built.said))
+    assert stages == ["execute", "render", "verify", "pack", "sums", "check", "publish"]
+    assert "Pages: 0 executed, 2 reused." in built.again
+
+
+def test_a_build_forgets_old_folders_and_pages_that_the_book_no_longer_has(built):
+    assert built.kept == ["lab", "lab"]
+
+
+def test_a_page_that_is_edited_while_its_build_runs_is_built_again(built):
+    assert not built.recorded
+    assert (built.folder / "book/_build" / up_to_date.RECORD).exists()
+
+
+def test_a_build_without_work_repeats_the_last_lines_and_loads_no_heavy_package(built):
+    arguments = ("--book", str(built.folder / "book"))
+    said, loaded = run_watched("book.py", *arguments, RENDER="1", RELEASE="0")
+    assert said.splitlines() == ["Nothing changed: the site is up to date.", *built.again]
+    assert not loaded & {*ENGINE, *JUPYTER, "numpy"}
+
+
+def test_a_release_executes_what_a_build_would_reuse_and_requires_evidence(built, monkeypatch):
+    monkeypatch.setattr("robo_genesis.pipeline.stages.unclean", lambda root: [])
+    reasons = ["l04 requires evidence"]
+    monkeypatch.setattr("robo_genesis.pipeline.stages.missing_for_release", lambda *given: reasons)
+    site, said = built.folder / "book/_build/html/index.html", []
+    before = site.stat()
+    with pytest.raises(BuildError, match=r"RELEASE=1 cannot be met\.\nl04 requires evidence"):
+        build(built.folder, said, release=True)
+    assert sum("  executed in " in line for line in said) == 2
+    assert site.stat() == before
+
+
+def test_pages_from_elsewhere_are_built_without_a_run(built, tmp_path):
+    there = Build(book=built.folder / "book", cache=built.folder / "cache", say=[].append)
+    for name in ("lab", "lecture"):
+        export_one(name, tmp_path / "executed", there)
+    make_book(tmp_path, lab=LAB, lecture=notebook(cell("print('seen')")))
+    said: list[str] = []
+    assert "Pages: 0 executed, 2 reused." in build(tmp_path, said, executed=tmp_path / "executed")
+    assert (tmp_path / "book/_build/evidence/l04/cpu/manifest.json").is_file()
+    assert any("import   lab  run " in line for line in said)
+
+
+@pytest.mark.parametrize(
+    ("page", "settings", "error", "said"),
+    [
+        (LAB, {"verify": refuse}, BuildError, "lab: the bundle .* is refused: metrics: metrics.js"),
+        (FORGED_LAB, {}, BuildError, "shown: lab, code cell 2: its code shows 0 measured outputs"),
+        ("# A\n\n<script src='https://example.org/a.js'></script>\n", {}, BuildError, "third p"),
+        (LAB, {"executed": Path()}, StoreError, "lab is not among them. Execute the page again"),
+        (LAB, {"release": True}, BuildError, r"RELEASE=1 cannot be met\.\n.* 1 changed file"),
+    ],
+    ids=["refused bundle", "refused output", "refused site", "missing page", "changed tree"],
+)
+def test_a_build_that_is_refused_leaves_the_old_site(
+    tmp_path, monkeypatch, page, settings, error, said
+):
+    (tmp_path / "empty").mkdir()
+    monkeypatch.chdir(tmp_path / "empty")
+    tree = "robo_genesis.pipeline.stages.unclean"
+    monkeypatch.setattr(tree, lambda root: ["The tree has 1 changed file"])
+    marker = published_marker(make_book(tmp_path, lab=page))
+    with pytest.raises(error, match=said):
+        build(tmp_path, **settings)
+    assert marker.read_text() == "the old site"
+
+
+def test_a_site_with_problems_is_rendered_from_nothing_the_next_time(tmp_path):
+    page = make_book(tmp_path, page="# A\n\nText.\n") / "page.md"
+    state = tmp_path / "cache" / project.KEPT / kept.STATE
+    build(tmp_path)
+    assert state.is_file()
+    page.write_text("# A\n\n<a href='nowhere.html'>lost</a>\n")
+    with pytest.raises(BuildError, match=r"'nowhere\.html' leads to no file"):
+        build(tmp_path)
+    assert not state.exists()
+
+
+def test_a_bundle_of_another_backend_is_refused():
+    contract = {"ROBO_GENESIS_BACKEND": "auto", "ROBO_GENESIS_RENDER": "1"}
+    said = r"backend: .* backend\.requested is 'cpu', expected 'auto'"
+    with pytest.raises(BundleRefused, match=said):
+        require_contract(FACTS, contract)
+
+
+@pytest.mark.parametrize(("page", "mode"), [("lab", "camera"), ("formula", "skip")])
+def test_a_page_must_render_exactly_if_it_declares_a_camera(page, mode):
+    contract = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "1"}
+    facts = SimpleNamespace(**vars(FACTS) | {"lesson": "l04", "page": page})
+    facts.render = SimpleNamespace(mode=mode)
+    require_contract(facts, contract)
+    facts.render = SimpleNamespace(mode={"camera": "skip", "skip": "camera"}[mode])
+    with pytest.raises(BundleRefused, match=rf"frames: .* expected '{mode}'"):
+        require_contract(facts, contract)
+
+
+def test_a_build_compares_its_bundles_with_its_own_contract(tmp_path, monkeypatch):
+    make_book(tmp_path, lab=LAB)
+    monkeypatch.setenv("ROBO_GENESIS_RENDER", "0")
+    with pytest.raises(BuildError, match=r"lab: .* render\.mode is 'camera', expected 'skip'"):
+        build(tmp_path)
+
+
+def test_a_broken_page_fails_with_status_1_a_report_and_the_old_site(tmp_path):
+    broken = cell("import sys\nprint('engine: last words', file=sys.stderr)\n1 / 0")
+    marker = published_marker(make_book(tmp_path, broken=notebook(broken), good=LAB))
+    report = fails("book.py", tmp_path, JOBS="2")
+    assert "1 of 2 pages failed." in report
+    assert "broken, code cell 1, line 12: 1 / 0" in report
+    log = tmp_path / "cache/logs/broken.log"
+    assert f"last lines of {log}:" in report
+    assert "ZeroDivisionError: division by zero" in report
+    assert "| engine: last words" in report
+    assert report.endswith("FAILED: nothing was published.\n")
+    assert marker.read_text() == "the old site"
+
+
+def test_a_build_repairs_what_a_kill_left_before_it_reads_a_page(tmp_path):
+    stale = tmp_path / "cache/engine/1-a/kernels/qdcache.lock"
+    stale.parent.mkdir(parents=True)
+    stale.touch()
+    book = make_book(tmp_path)
+    published_marker(book)
+    (book / "_build").rename(book / "_build.old")
+    (book / "_toc.yml").unlink()
+    with pytest.raises(PageError):
+        build(tmp_path)
+    assert not stale.exists()
+    assert (book / "_build/html/index.html").read_text() == "the old site"
+
+
+def test_a_cache_that_cannot_be_written_is_named(tmp_path, no_file):
+    make_book(tmp_path)
+    report = fails("book.py", tmp_path, "--cache", str(no_file))
+    assert f"Not a directory: '{no_file}" in report
+    assert "free space or write access" in report
+
+
+WAITS = """\
+import os, pathlib, signal, time
+{before}
+pathlib.Path({file!r}).write_text(str(os.getpid()))
+while True: time.sleep(0.1)"""
+DEAF = "signal.signal(signal.SIGINT, signal.SIG_IGN)"
+
+
+@pytest.mark.parametrize(
+    ("sent", "to", "status"),
+    [
+        (signal.SIGINT, os.killpg, 130),  # as a terminal sends Ctrl-C: to all of its processes
+        (signal.SIGINT, os.kill, 130),
+        (signal.SIGTERM, os.kill, 130),
+        (signal.SIGKILL, os.kill, -9),
+    ],
+)
+def test_an_end_by_signal_leaves_the_old_site_and_no_process(tmp_path, sent, to, status):
+    pids = {tmp_path / "one.pid": "", tmp_path / "two.pid": DEAF}
+    pages = (notebook(cell(WAITS.format(file=str(f), before=b))) for f, b in pids.items())
+    book = make_book(tmp_path, **dict(zip(("one", "two"), pages, strict=True)))
+    marker = published_marker(book)
+    process = start("book.py", tmp_path, own_group=True, JOBS="2")
+    wait_for(process, *pids)
+    below = {child.pid: child for child in psutil.Process(process.pid).children(recursive=True)}
+    kernels = [below[int(path.read_text())] for path in pids]
+    scratch = Path(kernels[0].cwd()).parent
+    assert scratch.name.startswith("robo-")
+    to(process.pid, sent)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == status
+    assert status < 0 or "Interrupted: nothing was published." in err
+    assert "Traceback" not in err
+    assert psutil.wait_procs(below.values(), timeout=15)[1] == []
+    assert not list((tmp_path / "cache/pages").rglob("*.ipynb"))
+    assert not scratch.exists()
+    assert marker.read_text() == "the old site"
+
+
+def test_sphinx_ends_with_a_killed_build_and_the_next_build_removes_what_it_left(tmp_path):
+    """The kernel kills with SIGKILL when memory is short. Sphinx waits in a pipe that is a page."""
+    text = "# Text\n\n```{literalinclude} pipe\n```\n"
+    book = make_book(tmp_path, text=text, page=notebook(cell("1")))
+    marker, pipe, cache = published_marker(book), book / "pipe", tmp_path / "cache"
+    os.mkfifo(pipe)
+    process = start("book.py", tmp_path)
+    wait_for(process, cache / "render/executed-pages.json")
+    (left,) = cache.glob("staging*")
+    below = psutil.Process(process.pid).children(recursive=True)
+    process.kill()
+    process.communicate()
+    try:
+        assert psutil.wait_procs(below, timeout=5)[1] == []
+        assert below
+    finally:
+        kill_with_descendants(child.pid for child in below)
+    assert marker.read_text() == "the old site"
+    pipe.unlink()
+    pipe.write_text("text")
+    build(tmp_path)
+    assert marker.read_text() != "the old site"
+    assert not left.exists()
+    assert not list(cache.glob("staging*"))
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"RENDER": "yes"}, "RENDER='yes' is not valid. Choices: 0, 1."),
+        ({"ROBO_GENESIS_BACKEND": "auto"}, "records accelerators. Unset it. Choices: cpu."),
+        ({"JOBS": "0"}, "JOBS='0' is not valid. Give the number"),
+        ({"RELEASE": "yes"}, "RELEASE='yes' is not valid. Choices: 0, 1."),
+        ({"RELEASE": "1", "RENDER": "0"}, "RENDER='0' is not valid with RELEASE=1"),
+        ({"RELEASE": "1"}, "is not valid with RELEASE=1, which builds the commit's book."),
+        ({"SITE_URL": "example.org/course"}, "SITE_URL='example.org/course' is not valid. Give an"),
+    ],
+)
+def test_invalid_settings_are_refused_before_any_page(tmp_path, settings, said):
+    make_book(tmp_path, page=notebook(cell("1")))
+    assert said in fails("book.py", tmp_path, **settings)
+    assert not (tmp_path / "cache" / "pages").exists()
+
+
+def test_another_installed_engine_stops_the_build_before_any_page(tmp_path, monkeypatch):
+    make_book(tmp_path, page=notebook(cell("1")))
+    monkeypatch.setattr("robo_genesis.core.project.installed_version", lambda name: "0.0.1")
+    said: list[str] = []
+    with pytest.raises(ProjectError, match=r"Installed is genesis-world 0\.0\.1, pinned"):
+        build(tmp_path, said)
+    assert said == []
+
+
+def test_a_second_build_at_the_same_time_is_refused_with_the_first_one_s_process(tmp_path):
+    """The first build waits in a pipe that is its table of contents."""
+    first = make_book(tmp_path)
+    (first / "_toc.yml").unlink()
+    os.mkfifo(first / "_toc.yml")
+    process = start("book.py", tmp_path)
+    try:
+        wait_for(process, tmp_path / "cache/engine/build.lock")
+        make_book(tmp_path / "second")
+        report = fails("book.py", tmp_path / "second", "--cache", str(tmp_path / "cache"))
+    finally:
+        process.kill()
+        process.communicate()
+    begin = rf"process {process.pid} since \d{{4}}-\d\d-\d\d \d\d:\d\d:\d\d: "
+    assert re.search(rf"^{begin}.*build_scripts/book\.py --book {first} ", report, re.MULTILINE)
+    assert f"stop it with Ctrl-C in its terminal or `kill {process.pid}`." in report
+
+
+def test_the_lock_of_builds_is_free_after_a_build(tmp_path):
+    for _ in range(2):
+        with build_lock(tmp_path):
+            pass
+
+
+@pytest.mark.parametrize("pid", ["unknown", "4194305"])  # more than Linux gives out
+def test_a_process_that_nothing_is_known_of_is_described_by_its_id(pid):
+    assert described(pid) == f"process {pid}"

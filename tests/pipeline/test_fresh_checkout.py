@@ -1,0 +1,196 @@
+"""A release is built from the commit alone, whatever checkout, git settings and caches hide."""
+
+import json
+import os
+import py_compile
+from pathlib import Path
+
+import pytest
+from tiny_book import commit, git
+
+from robo_genesis.core.git import unclean
+from robo_genesis.core.project import ProjectError
+from robo_genesis.pipeline.fresh_checkout import FOLDER, release
+
+SCRIPT = """\
+import json, os, sys
+from pathlib import Path
+import course
+here = Path.cwd()
+found = {
+    "code": course.VALUE,
+    "page": (here / "page.md").read_text(),
+    "files": sorted(p.relative_to(here).as_posix() for p in here.rglob("*")
+                    if p.is_file() and ".git" not in p.relative_to(here).parts),
+    "environment": dict(os.environ),
+    "arguments": sys.argv[1:],
+    "here": str(here),
+}
+Path(sys.argv[1], "found.json").write_text(json.dumps(found))
+sys.exit(int(os.environ.get("JOBS") or "0"))
+"""
+FILES = [".gitignore", "build_scripts/book.py", "course.py", "page.md"]
+
+
+@pytest.fixture
+def root(tmp_path) -> Path:
+    root = tmp_path / "a checkout"
+    (root / "build_scripts").mkdir(parents=True)
+    (root / "build_scripts" / "book.py").write_text(SCRIPT)
+    (root / "course.py").write_text("VALUE = 1\n")
+    (root / "page.md").write_text("committed\n")
+    (root / ".gitignore").write_text("/.cache\n__pycache__/\n")
+    commit(root)
+    return root
+
+
+def built(root: Path, status: int = 0) -> dict:
+    """Release a checkout and return what its build found."""
+    assert release([str(root.parent)], root / ".cache", root) == status
+    return json.loads((root.parent / "found.json").read_text())
+
+
+def hide(kind):
+    def spoil(root, monkeypatch):
+        git(root, "update-index", f"--{kind}", "page.md", "course.py")
+        (root / "page.md").write_text("changed\n")
+        (root / "course.py").write_text("VALUE = 2\n")
+
+    return spoil
+
+
+def ignored_elsewhere(root, monkeypatch):
+    (root / ".git" / "info" / "exclude").write_text("new.md\n")
+    (root / "new.md").write_text("new\n")
+
+
+def ignored_by_the_user(root, monkeypatch):
+    (root.parent / "ignore").write_text("new.md\n")
+    git(root, "config", "core.excludesFile", str(root.parent / "ignore"))
+    (root / "new.md").write_text("new\n")
+
+
+def stale_bytecode(root, monkeypatch):
+    other = root.parent / "other.py"
+    other.write_text("VALUE = 2\n")
+    cached = root / "__pycache__" / f"course.{os.sys.implementation.cache_tag}.pyc"
+    unchecked = py_compile.PycInvalidationMode.UNCHECKED_HASH
+    py_compile.compile(str(other), str(cached), invalidation_mode=unchecked)
+
+
+def other_repository(root, monkeypatch):
+    other = root.parent / "other"
+    other.mkdir()
+    (other / "page.md").write_text("other\n")
+    commit(other)
+    monkeypatch.setenv("GIT_DIR", str(other / ".git"))
+    monkeypatch.setenv("GIT_WORK_TREE", str(other))
+    monkeypatch.setenv("GIT_INDEX_FILE", str(other / ".git" / "index"))
+
+
+def replaced_object(root, monkeypatch):
+    (root / "page.md").write_text("changed\n")
+    blob = git(root, "hash-object", "-w", "page.md").strip()
+    git(root, "replace", git(root, "rev-parse", "HEAD:page.md").strip(), blob)
+    (root / "page.md").write_text("committed\n")
+    git(root, "update-index", "--assume-unchanged", "page.md")
+
+
+def configured_by_the_user(root, monkeypatch):
+    home = root.parent / "home"
+    (home / "hooks").mkdir(parents=True)
+    hook = home / "hooks" / "post-checkout"
+    hook.write_text("#!/bin/sh\necho hooked > page.md\n")
+    hook.chmod(0o755)
+    (home / "attributes").write_text("* filter=spoil\n")
+    (home / ".gitconfig").write_text(
+        f"[core]\nhooksPath = {home / 'hooks'}\nattributesFile = {home / 'attributes'}\n"
+        '[filter "spoil"]\nsmudge = sed s/committed/smudged/\nclean = sed s/smudged/committed/\n'
+    )
+    monkeypatch.setenv("HOME", str(home))
+
+
+def forged_caches(root, monkeypatch):
+    for name in ("npm", "derived", "pages"):
+        (root / ".cache" / name).mkdir(parents=True)
+        (root / ".cache" / name / "forged").touch()
+
+
+def left_by_a_failed_release(root, monkeypatch):
+    left = root / ".cache" / FOLDER / "checkout"
+    left.mkdir(parents=True)
+    (left / "left.md").touch()
+
+
+def other_python_path(root, monkeypatch):
+    other = root.parent / "path"
+    other.mkdir()
+    (other / "course.py").write_text("VALUE = 2\n")
+    monkeypatch.setenv("PYTHONPATH", str(other))
+    monkeypatch.setenv("PYTHONPYCACHEPREFIX", str(other))
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda root, monkeypatch: None,
+        hide("assume-unchanged"),
+        hide("skip-worktree"),
+        ignored_elsewhere,
+        ignored_by_the_user,
+        stale_bytecode,
+        other_repository,
+        replaced_object,
+        configured_by_the_user,
+        forged_caches,
+        left_by_a_failed_release,
+        other_python_path,
+    ],
+)
+def test_a_release_sees_the_files_of_its_commit_and_no_others(root, monkeypatch, spoil):
+    spoil(root, monkeypatch)
+    found = built(root)
+    assert (found["code"], found["page"], found["files"]) == (1, "committed\n", FILES)
+    assert not any(name.startswith("GIT_") for name in found["environment"])
+    assert not (root / ".cache" / FOLDER).exists()
+
+
+def test_a_release_reuses_what_the_engine_compiled_and_gets_only_listed_variables(
+    root, monkeypatch
+):
+    (root / ".cache" / "engine" / "kernels").mkdir(parents=True)
+    monkeypatch.setenv("SECRET", "a")
+    monkeypatch.setenv("SITE_URL", "https://example.org/")
+    monkeypatch.setenv("https_proxy", "http://proxy")
+    given = built(root)["environment"]
+    assert "SECRET" not in given
+    assert given["SITE_URL"] == "https://example.org/"
+    assert given["https_proxy"] == "http://proxy"
+    assert given["PYTHONPATH"].startswith(str(root / ".cache" / FOLDER))
+    assert given["PYTHONPYCACHEPREFIX"].startswith(str(root / ".cache" / FOLDER))
+    assert (root / ".cache" / "engine" / "kernels").is_dir()
+
+
+def test_pages_of_other_machines_are_named_by_their_whole_path(root, monkeypatch):
+    monkeypatch.chdir(root.parent)
+    release([str(root.parent)], root / ".cache", root, Path("executed"))
+    found = json.loads((root.parent / "found.json").read_text())
+    assert found["environment"]["EXECUTED"] == str(root.parent / "executed")
+
+
+def test_a_release_that_fails_leaves_its_checkout_for_the_report(root, monkeypatch):
+    monkeypatch.setenv("JOBS", "3")
+    found = built(root, status=3)
+    assert Path(found["here"]).is_dir()
+
+
+def test_a_changed_tree_is_refused(root):
+    (root / "page.md").write_text("changed\n")
+    with pytest.raises(ProjectError, match=r"RELEASE=1 cannot be met\.\n.* 1 changed"):
+        release([], root / ".cache", root)
+
+
+def test_another_repository_in_the_environment_is_not_asked(root, monkeypatch):
+    (root / "page.md").write_text("changed\n")
+    other_repository(root, monkeypatch)
+    assert "page.md" in unclean(root)[0]

@@ -1,0 +1,106 @@
+"""npm's packages come whole, by lock, or not at all."""
+
+import hashlib
+import json
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from robo_genesis.core.project import CACHE, ROOT, ProjectError
+from robo_genesis.pipeline import npm
+from robo_genesis.pipeline.html.scripts import VIEWER_SHA256
+from robo_genesis.site.replay.viewer import PARTS, viewer
+
+
+@pytest.fixture
+def checkout(tmp_path) -> Path:
+    root = tmp_path / "checkout"
+    root.mkdir()
+    for name in (*npm.LOCK, npm.SETTINGS):
+        shutil.copy(ROOT / name, root)
+    return root
+
+
+def test_the_locked_versions_are_installed():
+    folder = npm.packages(ROOT, CACHE)
+    lock = json.loads((ROOT / "package-lock.json").read_text("utf8"))["packages"]
+    found = {
+        name: json.loads((folder.parent / name / "package.json").read_text("utf8"))["version"]
+        for name in lock
+        if name and (folder.parent / name).is_dir()
+    }
+    assert len(found) > 3
+    assert found == {name: lock[name]["version"] for name in found}
+
+
+def test_each_lock_has_a_folder_of_its_own_and_is_fetched_once(checkout, tmp_path, monkeypatch):
+    calls = []
+    monkeypatch.setattr(npm, "_install", calls.append)
+    found = [npm.packages(checkout, tmp_path), npm.packages(checkout, tmp_path)]
+    for name in (*npm.LOCK, npm.SETTINGS):
+        (checkout / name).write_text("{}")
+        found.append(npm.packages(checkout, tmp_path))
+    assert len(set(found)) == len(calls) == 4
+
+
+def test_a_lock_that_does_not_fit_is_refused_and_leaves_nothing(checkout, tmp_path):
+    declared = json.loads((checkout / "package.json").read_text("utf8"))
+    declared["dependencies"]["left-out-of-the-lock"] = "1.0.0"
+    (checkout / "package.json").write_text(json.dumps(declared))
+    with pytest.raises(ProjectError, match="npm ci failed with status"):
+        npm.packages(checkout, tmp_path / "cache")
+    assert list((tmp_path / "cache" / "npm").iterdir()) == []
+
+
+def test_the_lock_names_no_registry():
+    assert "resolved" not in (ROOT / "package-lock.json").read_text("utf8")
+
+
+@pytest.fixture
+def fetched(checkout, monkeypatch):
+    """A lock whose packages are one file; `fetched.content` is what npm delivers."""
+    state = SimpleNamespace(content=b"locked", fetches=0)
+
+    def install(folder: Path) -> None:
+        state.fetches += 1
+        (folder / "node_modules" / "a").mkdir(parents=True)
+        (folder / "node_modules" / "a" / "a.js").write_bytes(state.content)
+
+    monkeypatch.setattr(npm, "_install", install)
+    monkeypatch.setattr(npm, "PUBLISHED", {"a/a.js": hashlib.sha256(b"locked").hexdigest()})
+    return state
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [lambda file: file.write_bytes(b"forged"), lambda file: file.unlink()],
+    ids=["forged", "removed"],
+)
+def test_a_published_file_that_was_changed_in_the_cache_is_fetched_anew(
+    checkout, tmp_path, fetched, capsys, spoil
+):
+    cache = tmp_path / "cache"
+    assert npm.published("a/a.js", checkout, cache) == b"locked"
+    assert capsys.readouterr().out == ""
+    spoil(npm.packages(checkout, cache) / "a" / "a.js")
+    assert npm.published("a/a.js", checkout, cache) == b"locked"
+    assert fetched.fetches == 2
+    (line,) = capsys.readouterr().out.splitlines()
+    assert line.endswith("a/a.js is not the locked file: fetching all packages anew")
+
+
+def test_a_fetched_file_without_its_digest_is_refused(checkout, tmp_path, fetched):
+    fetched.content = b"of another version"
+    with pytest.raises(ProjectError, match=r"a/a\.js has the digest .* write its digest into"):
+        npm.published("a/a.js", checkout, tmp_path / "cache")
+    assert fetched.fetches == 2
+
+
+def test_what_the_site_ships_of_npm_has_its_digest():
+    npm.require_published()
+    assert npm.locked("three")["license"] == "MIT"
+    script = hashlib.sha256(viewer()).hexdigest()
+    assert script == VIEWER_SHA256, "The published viewer changed: read it, write its digest there."
+    assert {f"{name}/LICENSE" for name in PARTS} < npm.PUBLISHED.keys()

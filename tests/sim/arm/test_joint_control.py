@@ -1,0 +1,219 @@
+"""Control cases are validated and never changed; a run records each state at its own time."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robo_genesis.lessons.l04.spec import BASELINE, CASES, G1, G2
+from robo_genesis.sim.arm.franka import JOINT_NAMES
+from robo_genesis.sim.arm.joint_control import (
+    CaseError,
+    ControlCase,
+    differences,
+    reset,
+    run_case,
+    validate,
+)
+
+ARRAYS = ("q_start", "q_target", "kp", "kv", "effort_limit")
+GAINS = ("kp", "kv", "effort_limit")
+N = len(JOINT_NAMES)
+
+
+def value(name, k, number):
+    """A change of one entry of one array of the baseline."""
+    values = np.array(getattr(BASELINE, name))
+    values[k] = number
+    return {name: values}
+
+
+def setter(name):
+    def keep(robot, *values, **options):
+        robot.calls.append(name)
+        *kept, _ = values  # without the DOFs
+        robot.kept[name] = kept[0] if len(kept) == 1 else tuple(kept)
+
+    return keep
+
+
+def counter(factor, shape=N):
+    return lambda robot, *dofs: np.full(shape, factor * robot.t)
+
+
+class FakeRobot:
+    """Robot and scene in one: it measures its steps, and keeps what is set, as the engine does."""
+
+    is_built, dt, substeps = True, 0.01, 2
+
+    def __init__(self):
+        self.calls, self.kept, self.t = [], {}, 0
+
+    def step(self):
+        self.calls.append("step")
+        self.t += 1
+
+    def reset(self):
+        self.calls.append("reset")
+        self.t = 0
+
+    set_dofs_kp, set_dofs_kv = setter("kp"), setter("kv")
+    set_dofs_force_range, set_dofs_position = setter("range"), setter("position")
+    control_dofs_position = setter("target")
+
+    def get_dofs_kp(self, dofs):
+        return self.kept["kp"]
+
+    def get_dofs_kv(self, dofs):
+        return self.kept["kv"]
+
+    def get_dofs_force_range(self, dofs):
+        return self.kept["range"]
+
+    def get_dofs_position(self, dofs):
+        return self.kept["position"] + self.t
+
+    get_dofs_velocity, get_dofs_control_force, get_dofs_force = map(counter, (1, 10, 100))
+    get_links_pos, get_links_quat = counter(1, (2, 3)), counter(1, (2, 4))
+
+
+@pytest.fixture
+def robot():
+    return FakeRobot()
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        *CASES.values(),
+        *(replace(BASELINE, **value(name, 0, 0.0)) for name in GAINS),
+        replace(BASELINE, **value("q_start", 0, 2.8973 + 5e-7)),  # within float32
+    ],
+)
+def test_a_valid_case_passes(joints, case):
+    validate(case, joints)
+
+
+REFUSED = [
+    *(
+        ({name: values}, f"{name} has shape {np.shape(values)}, expected (9,)")
+        for name in ARRAYS
+        for values in (np.ones(7), np.ones(10), np.ones((1, 9)), 1.0)
+    ),
+    *(
+        (value(name, 2, number), f"{name}[joint3] is {number}, expected a finite number")
+        for name in ARRAYS
+        for number in (np.nan, np.inf, -np.inf)
+    ),
+    *(
+        (value(name, k, number), f"{name}[{JOINT_NAMES[k]}] is {number:g} {ends}")
+        for name in ("q_start", "q_target")
+        for k, number, ends in (
+            (3, 0.0, "rad, outside its range [-3.0718, -0.0698]"),
+            (3, -3.1, "rad, outside its range [-3.0718, -0.0698]"),
+            (8, 0.05, "m, outside its range [0, 0.04]"),
+            (0, 2.8973 + 5e-6, "rad, outside its range"),
+        )
+    ),
+    *(
+        (value(name, 0, -1.0), f"{name}[joint1] is -1.0, expected zero or more")
+        for name in GAINS
+    ),
+    *(
+        (change, "must be positive")
+        for change in ({"steps": 0}, {"steps": -1}, {"dt": 0.0}, {"dt": np.nan}, {"substeps": 0})
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("change", "message"), REFUSED, ids=[message for _, message in REFUSED])
+def test_an_invalid_case_is_refused_with_entry_and_range(joints, change, message):
+    with pytest.raises(CaseError) as caught:
+        validate(replace(BASELINE, **change), joints)
+    assert message in str(caught.value)
+
+
+def test_a_position_outside_its_limits_is_not_clipped(robot, joints):
+    case = replace(BASELINE, **value("q_target", 3, 0.0))
+    with pytest.raises(CaseError, match="none is clipped"):
+        run_case(robot, robot, joints, case)
+    assert case.q_target[3] == 0.0
+    assert robot.calls == []
+
+
+@pytest.mark.parametrize("name", ARRAYS)
+def test_differences_name_field_and_joint(joints, name):
+    other = replace(BASELINE, **{name: getattr(BASELINE, name) + np.isin(np.arange(N), (0, 7))})
+    assert differences(BASELINE, other, joints) == [f"{name}[joint1]", f"{name}[finger_joint1]"]
+
+
+def test_differences_name_several_fields_at_once_and_no_equal_ones(joints):
+    other = replace(G2, kv=G2.kv + np.eye(N)[3], steps=3)
+    assert differences(G1, other, joints) == ["kp[joint4]", "kv[joint4]", "steps"]
+    assert differences(G1, replace(G1, kp=G1.kp.copy()), joints) == []
+
+
+def test_every_field_of_a_case_is_compared(joints):
+    other = ControlCase(*(np.full(N, -1.0) for _ in ARRAYS), steps=1, dt=1.0, substeps=1, seed=1)
+    named = {entry.split("[")[0] for entry in differences(BASELINE, other, joints)}
+    assert named == set(ControlCase.__dataclass_fields__)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "message"),
+    [
+        ("is_built", False, r"not built: call scene.build\(\)"),
+        ("dt", 0.02, "Restart and build"),
+        ("substeps", 20, "Restart and build"),
+    ],
+)
+def test_a_scene_that_is_not_built_for_the_case_is_refused(robot, joints, name, value, message):
+    setattr(robot, name, value)
+    with pytest.raises(CaseError, match=message):
+        run_case(robot, robot, joints, BASELINE)
+    assert robot.calls == []
+
+
+def test_reset_clears_first_assigns_the_start_last_and_leaves_the_case_alone(robot, joints):
+    reset(robot, robot, joints, BASELINE)
+    assert robot.calls == ["reset", "kp", "kv", "range", "position"]
+    assert robot.kept["range"][0].tolist() == (-BASELINE.effort_limit).tolist()
+    given = (robot.kept["position"], *robot.kept["range"], robot.kept["kp"], robot.kept["kv"])
+    own = [getattr(BASELINE, name) for name in ARRAYS]
+    assert not any(np.shares_memory(a, b) for a in given for b in own)
+
+
+@pytest.mark.parametrize(
+    ("getter", "found", "name"),
+    [
+        ("get_dofs_kp", np.ones(N), "kp"),
+        ("get_dofs_kv", np.ones(N), "kv"),
+        ("get_dofs_force_range", (-BASELINE.effort_limit, np.ones(N)), "effort_limit"),
+        ("get_dofs_force_range", (-np.ones(N), BASELINE.effort_limit), "-effort_limit"),
+        ("get_dofs_position", np.zeros(N), "q_start"),
+        ("get_dofs_velocity", np.ones(N), "velocity"),
+    ],
+)
+def test_what_reads_back_differently_is_named(robot, joints, getter, found, name):
+    setattr(robot, getter, lambda dofs: found)
+    with pytest.raises(CaseError, match=f"^{name} reads back"):
+        reset(robot, robot, joints, BASELINE)
+
+
+def test_the_target_is_commanded_before_every_step(robot, joints):
+    run_case(robot, robot, joints, replace(BASELINE, steps=3))
+    assert robot.calls[5:] == ["target", *["target", "step"] * 3]
+
+
+def test_a_run_records_each_state_and_each_step_at_its_time(robot, joints):
+    trace = run_case(robot, robot, joints, replace(BASELINE, steps=3))
+    assert trace.t.tolist() == [0, 0.01, 0.02, 0.03]
+    positions = trace.q[:, 0] - trace.q[0, 0]
+    for states in (positions, trace.link_pos[:, 0, 0], trace.link_quat[:, 0, 0]):
+        assert states.tolist() == [0, 1, 2, 3]
+    for factor, array in ((1, trace.qd), (10, trace.control_force), (100, trace.internal_force)):
+        assert array[:, 0].tolist() == [factor, 2 * factor, 3 * factor]
+    assert (trace.start_qd == 0).all()
+    assert (trace.start_control_force == 0).all()
+    assert trace.effort_limit.tolist() == BASELINE.effort_limit.tolist()
+    assert (trace.target == BASELINE.q_target).all()

@@ -1,0 +1,77 @@
+"""The checks of camera views: they pass in closed form, and each fails for its own fault."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from closed_views import FOV, MARKER, PLANE, SIZE, TRANSFORM, K, closed_view
+
+from robo_genesis.sim.camera import checks as camera_checks
+from robo_genesis.sim.camera import geometry as cameras
+from robo_genesis.sim.camera.views import View
+
+
+def problems(findings):
+    return [finding.label.split(".")[1] for finding in findings if not finding.passed]
+
+
+def test_checks_pass_for_a_view_in_closed_form():
+    view = closed_view()
+    findings = [
+        *camera_checks.camera_matrix("v", view, FOV),
+        *camera_checks.projection("v", view, MARKER),
+        *camera_checks.sphere_surface("v", view, MARKER),
+        *camera_checks.plane_surface("v", view, PLANE),
+    ]
+    assert problems(findings) == []
+
+
+def test_markers_can_be_compared():
+    assert replace(MARKER) != MARKER
+    assert MARKER in {MARKER}
+
+
+def test_checks_of_pictures_say_skip_without_them():
+    view = replace(closed_view(), rgb=None, depth=None, segmentation=None)
+    for check in (camera_checks.projection, camera_checks.sphere_surface):
+        (finding,) = check("v", view, MARKER)
+        assert (finding.passed, finding.found) == (True, "SKIP")
+    assert next(camera_checks.plane_surface("v", view, PLANE)).found == "SKIP"
+
+
+def along(view):
+    _, directions = cameras.rays(K, TRANSFORM, SIZE)
+    return replace(view, depth=view.depth * np.linalg.norm(directions, axis=-1))
+
+
+def moved(view):
+    return replace(view, transform=TRANSFORM + np.outer([1, 0, 0, 0], [0, 0, 0, 0.01]))
+
+
+SMALL = replace(MARKER, radius=0.04)
+SPOILED = {
+    "another number": (camera_checks.projection, closed_view(), replace(MARKER, number=7)),
+    "another radius": (camera_checks.sphere_surface, closed_view(), replace(MARKER, radius=0.11)),
+    "too few pixels": (camera_checks.projection, closed_view(SMALL), SMALL),
+    "moved pose": (camera_checks.projection, moved(closed_view()), MARKER),
+    "depth along the ray": (camera_checks.sphere_surface, along(closed_view()), MARKER),
+    "another height": (camera_checks.plane_surface, closed_view(), PLANE, 0.01),
+    "another field of view": (camera_checks.camera_matrix, closed_view(), 43.0),
+}
+
+
+@pytest.mark.parametrize("how", SPOILED)
+def test_a_check_fails_if_its_input_is_wrong(how):
+    check, *given = SPOILED[how]
+    assert problems(check("v", *given))
+
+
+def test_a_camera_on_a_link_is_at_the_pose_of_the_link_times_the_offset():
+    quat, offset = np.array([np.sqrt(0.5), 0, 0, np.sqrt(0.5)]), np.eye(4)
+    offset[:3, 3] = (0.1, 0, 0.05)
+    expected = np.array([[0, -1, 0, 0.5], [1, 0, 0, 0.1], [0, 0, 1, 0.35], [0, 0, 0, 1]])
+    view = View(K, expected, SIZE, (0.1, 20.0))
+    position = np.array([0.5, 0.0, 0.3])
+    assert not problems(camera_checks.mounted_camera("v", view, position, quat, offset))
+    stale = camera_checks.mounted_camera("v", view, position + 0.01, quat, offset)
+    assert problems(stale) == ["position_error_m"]

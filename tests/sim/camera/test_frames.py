@@ -1,0 +1,63 @@
+"""Frames are accepted only if they show something, and software renderers are known."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from robo_genesis.core.scene import FRAME_SHAPE
+from robo_genesis.sim.camera.frames import FrameError, Renderer, capture, require_frame
+
+
+@pytest.mark.parametrize(
+    ("name", "software"),
+    [
+        ("llvmpipe (LLVM 15.0.6, 256 bits)", True),
+        ("softpipe", True),
+        ("Mesa DRI swrast", True),
+        ("AMD Instinct MI300X", False),
+    ],
+)
+def test_software_renderers_are_known_by_name(name, software):
+    assert Renderer("vendor", name).software is software
+
+
+@pytest.fixture
+def picture(frames):
+    return frames["initial"]
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.float32])
+def test_a_usable_frame_passes(picture, dtype):
+    require_frame(picture.astype(dtype))
+
+
+NOT_FINITE = np.zeros(FRAME_SHAPE, np.float32)
+NOT_FINITE[3, 4, 1] = np.nan
+SKY = np.broadcast_to(np.array([10, 20, 31], np.uint8), FRAME_SHAPE)
+
+
+@pytest.mark.parametrize(
+    ("frame", "message"),
+    [
+        *(
+            (np.zeros(shape, np.uint8), r"expected \(540, 720, 3\)")
+            for shape in ((0,), FRAME_SHAPE[:2], (540, 720, 4), (720, 540, 3), (1, *FRAME_SHAPE))
+        ),
+        (None, r"shape \(\), expected"),
+        (NOT_FINITE, "not finite"),
+        (np.where(NOT_FINITE == 0, NOT_FINITE, np.inf), "not finite"),
+        (np.zeros(FRAME_SHAPE, np.uint8), r"empty picture: every pixel is \[0, 0, 0\]"),
+        (SKY, r"every pixel is \[10, 20, 31\]"),
+    ],
+)
+def test_a_frame_that_is_not_usable_is_refused(frame, message):
+    with pytest.raises(FrameError, match=message):
+        capture(SimpleNamespace(render=lambda: (frame, None, None, None)))
+
+
+def test_capture_returns_its_own_copy_of_the_colours(picture):
+    buffer = picture.copy()
+    frame = capture(SimpleNamespace(render=lambda: (buffer, None, None, None)))
+    buffer[:] = 0
+    assert (frame == picture).all()

@@ -1,0 +1,64 @@
+"""A view survives the way through frames and readings of a bundle."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from robo_genesis.core.scene import CAMERA_RES, FRAME_SHAPE
+from robo_genesis.evidence.picture_file import read_picture, write_picture
+from robo_genesis.sim.camera import geometry as cameras
+from robo_genesis.sim.camera import record as view_record
+from robo_genesis.sim.camera.views import View
+
+K = cameras.intrinsics(42.0, CAMERA_RES)
+
+
+@pytest.fixture
+def view():
+    rng = np.random.default_rng(0)
+    depth = rng.uniform(0.1, 20.0, FRAME_SHAPE[:2]).astype(np.float32)
+    rgb = rng.integers(0, 256, FRAME_SHAPE, np.uint8)
+    numbers = rng.integers(0, 17, FRAME_SHAPE[:2], np.int32)
+    return View(K, np.diag([1.0, -1, -1, 1]), CAMERA_RES, (0.1, 20.0), rgb, depth, numbers)
+
+
+def recorded(view, rendered=True):
+    frames = view_record.frames("world", view)
+    readings = {"view_world": view_record.numbers(view)}
+    return SimpleNamespace(frames=frames, readings=readings, rendered=rendered)
+
+
+def test_a_recorded_view_differs_in_the_rounding_of_its_depth_alone(view):
+    found = view_record.view_of(recorded(view), "world")
+    for name in ("intrinsics", "transform", "rgb", "segmentation"):
+        assert (getattr(found, name) == getattr(view, name)).all()
+    assert (found.size, found.limits) == (view.size, view.limits)
+    assert np.abs(found.depth - view.depth).max() <= view_record.DEPTH_UNIT
+
+
+def test_the_frames_of_a_view_are_accepted_by_a_bundle(tmp_path, view):
+    frames = view_record.frames("world", view)
+    assert tuple(frames) == view_record.frame_names("world")
+    for frame in frames.values():
+        write_picture(tmp_path / "frame.png", frame, "run")
+        assert (read_picture(tmp_path / "frame.png", CAMERA_RES)[1] == frame).all()
+
+
+def test_without_a_camera_a_view_has_its_matrix_and_its_pose(view):
+    blind = View(view.intrinsics, view.transform, view.size, view.limits)
+    run = recorded(blind, rendered=False)
+    assert run.frames == {}
+    assert (
+        run.readings["view_world"].keys() == view_record.groups("world")["view_world"].units.keys()
+    )
+    found = view_record.view_of(run, "world")
+    assert found.depth is None
+    assert (found.transform == view.transform).all()
+
+
+def test_a_depth_that_does_not_fit_is_refused(view):
+    far = View(K, view.transform, CAMERA_RES, (0.1, 500.0), view.rgb, view.depth * 20,
+               view.segmentation)  # fmt: skip
+    with pytest.raises(ValueError, match="Choose a nearer far limit"):
+        view_record.frames("world", far)

@@ -1,0 +1,114 @@
+"""A view is read freshly, and refused if its arrays do not fit the camera."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.camera import views as camera_views
+from robo_genesis.sim.camera.views import View, ViewError
+
+WIDTH, HEIGHT = 8, 5
+SCENE = SimpleNamespace(segmentation_idx_dict={0: -1, 1: (0, 0), 2: (3, 14)})
+
+
+class Camera:
+    """A camera with the readings of the engine, which counts its renders."""
+
+    res, near, far = (WIDTH, HEIGHT), 0.1, 20.0
+    intrinsics = np.array([[6.0, 0, 4], [0, 6, 2.5], [0, 0, 1]])
+
+    def __init__(self):
+        self.transform, self.rendered = np.eye(4, dtype=np.float32), []
+        self.extrinsics = np.linalg.inv(self.transform)  # not computed again
+        self.rgb = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
+
+    def render(self, rgb=True, depth=False, segmentation=False, force_render=False):
+        self.rendered.append((rgb, depth, segmentation, force_render))
+        return (
+            self.rgb if rgb else None,
+            np.ones((HEIGHT, WIDTH), np.float32) if depth else None,
+            np.full((HEIGHT, WIDTH), 2, np.int64) if segmentation else None,
+            None,
+        )
+
+
+@pytest.fixture
+def camera():
+    return Camera()
+
+
+def test_a_view_has_pictures_and_pose(camera):
+    view = camera_views.look(camera)
+    assert (view.rgb.shape, view.depth.shape) == ((HEIGHT, WIDTH, 3), (HEIGHT, WIDTH))
+    assert (view.segmentation.dtype, view.segmentation.max()) == (np.int32, 2)
+    assert (view.size, view.limits) == ((WIDTH, HEIGHT), (0.1, 20.0))
+    assert not view.depth.flags.writeable
+
+
+def test_depth_is_rendered_without_colours_and_all_pictures_are_new(camera):
+    camera_views.look(camera)
+    assert camera.rendered == [(False, True, True, True), (True, False, False, True)]
+
+
+def test_without_rendering_there_are_matrix_and_pose_but_no_pictures(camera):
+    view = camera_views.look(camera, render=False)
+    assert camera.rendered == []
+    assert (view.rgb, view.depth, view.segmentation) == (None, None, None)
+    assert (view.intrinsics == Camera.intrinsics).all()
+    assert (view.transform == np.eye(4)).all()
+
+
+def test_a_moved_camera_has_its_new_pose(camera):
+    camera.transform[0, 3] = 2.0  # `extrinsics` stays that of the first reading
+    found = camera_views.look(camera, render=False).transform
+    assert found[:3, 3].tolist() == [2.0, 0.0, 0.0]
+
+
+def test_a_link_has_one_number_in_the_segmentation():
+    link = SimpleNamespace(entity=SimpleNamespace(idx=3), idx=14)
+    assert camera_views.segment_number(SCENE, link) == 2
+    for keys in ({0: -1, 1: 0, 2: 3}, {0: -1, 1: (0, 0, 2)}):  # level entity, level geom
+        with pytest.raises(ViewError, match="Leave the scene's segmentation_level at 'link'"):
+            camera_views.segment_number(SimpleNamespace(segmentation_idx_dict=keys), link)
+
+
+def test_pictures_with_rows_and_columns_swapped_are_refused(camera):
+    camera.rgb = np.zeros((WIDTH, HEIGHT, 3), np.uint8)
+    with pytest.raises(ViewError, match=r"rgb has shape \(8, 5, 3\), expected \(5, 8, 3\)"):
+        camera_views.look(camera)
+
+
+@pytest.mark.parametrize("axes", [2 * np.eye(3), np.diag([1.0, 1.0, -1.0])])
+def test_axes_of_no_rigid_body_are_refused(axes):
+    transform = np.eye(4)
+    transform[:3, :3] = axes
+    with pytest.raises(ViewError, match="expected three orthogonal unit vectors"):
+        View(np.eye(3), transform, (WIDTH, HEIGHT), (0.1, 20.0))
+
+
+@pytest.mark.engine
+def test_a_camera_on_a_link_moves_there_with_a_new_picture_and_not_before(lab):
+    hand, before = lab.franka.get_link("hand"), lab.camera.transform.copy()
+    start = lab.franka.get_qpos()
+    moved = start.clone()
+    moved[1] += 0.3
+
+    def away():
+        return np.abs(lab.camera.transform[:3, 3] - to_numpy(hand.get_pos())).max() > 0.01
+
+    lab.camera.attach(hand, np.eye(4))
+    lab.camera.move_to_attach()
+    found = [away()]
+    lab.franka.set_qpos(moved)
+    for act in (lab.scene.step, lab.camera.render):
+        act()
+        found.append(away())
+    lab.franka.set_qpos(start)
+    for act in (lab.camera.render, lambda: camera_views.look(lab.camera)):
+        act()
+        found.append(away())
+    lab.camera.detach()
+    lab.camera.set_pose(transform=before)
+    assert found == [False, True, False, True, False]

@@ -1,0 +1,54 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from falling import falling
+
+from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.sim import laws as rules
+from robo_genesis.sim.laws import REPEATED, apart, refuse
+
+RUN = falling(1.0)
+TILTED = replace(RUN, link_quat=RUN.link_quat * np.float32(1.001))
+MOVED = replace(RUN, link_pos=RUN.link_pos + np.float32(3 * REPEATED))
+NEARLY = replace(RUN, link_pos=RUN.link_pos + np.float32(REPEATED / 3))
+
+
+def codes(breaches):
+    return [breach.code for breach in breaches]
+
+
+@pytest.mark.parametrize(
+    ("breaches", "found"),
+    [
+        (rules.times(RUN, 30, 0.01), []),
+        (rules.times(RUN, 29, 0.01), ["stamps"]),
+        (rules.times(RUN, 30, 0.0102), ["stamps"]),
+        (rules.unit_quaternions(RUN.link_quat), []),
+        (rules.unit_quaternions(TILTED.link_quat), ["pose"]),
+        (rules.unit_quaternions(0 * RUN.link_quat), ["pose"]),
+        (rules.computed_again(NEARLY, RUN), []),
+        (rules.computed_again(MOVED, RUN), ["second-engine"]),
+        (rules.computed_again(MOVED, RUN, {"link_pos": 4 * REPEATED}), []),
+        (rules.computed_again(NEARLY, RUN, {"link_pos": 1e-5}), ["second-engine"]),
+        (rules.computed_again(falling(1.0, steps=20), RUN), ["second-engine"] * 5),
+        (rules.copied(RUN, {"short": falling(1.0, steps=20), "moved": NEARLY}), []),
+        (rules.copied(RUN, {"same": falling(1.0)}), ["second-engine"]),
+        (apart("a", "x", np.array([1.0, np.nan]), np.zeros(()), 2.0), ["a"]),
+        (apart("a", "x", np.array([1.0, 2.0]), np.zeros(()), np.array([1.0, 2.0])), []),
+        (apart("a", "x", np.array([1.0, 2.1]), np.zeros(()), np.array([1.0, 2.0])), ["a"]),
+        (apart("a", "x", np.zeros((0, 3)), np.zeros(()), 0.0), []),
+    ],
+)
+def test_a_breach_has_the_code_of_its_rule(breaches, found):
+    assert codes(breaches) == found
+
+
+def test_the_refusal_names_the_entry_that_is_farthest_off():
+    rows = np.array([[0.0, 0.2], [0.5, 0.0]])
+    with pytest.raises(BundleRefused) as caught:
+        refuse("arrays/G1.npz", apart("law", "effort [N·m]", rows, np.zeros(()), 0.1))
+    assert str(caught.value) == (
+        "law: arrays/G1.npz: effort [N·m] at index [1, 0] is 0.5, expected '0.0 ± 0.1'. "
+        "Record the bundle again."
+    )
