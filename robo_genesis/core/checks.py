@@ -1,7 +1,7 @@
 """Named checks: the values that they find, and the error that names each check that failed.
 
-A check is a function that yields findings. Its name is that of the function; the claims of its
-lesson say what it requires. Each finding pairs a measured value with a judgement.
+A check is a function that yields findings. Its name is that of the function, and its docstring is
+its claim: what it requires. Each finding pairs a measured value with a judgement.
 """
 
 import math
@@ -18,6 +18,10 @@ Subject = TypeVar("Subject")
 Value = bool | int | float | str | None
 
 
+FAILED = "failed"
+"""The code of the refusal of a bundle in which a check fails."""
+
+
 class CheckFailed(AssertionError):  # noqa: N818 - read aloud: check failed
     """At least one named check did not pass."""
 
@@ -27,7 +31,8 @@ class Finding:
     """One value that a check found, and its judgement.
 
     `expected` describes the allowed values in a message. A finding that is not `recorded` is about
-    the configuration, or repeats metrics: a bundle has both elsewhere.
+    the configuration, repeats metrics, or judges arrays by a law: a bundle has these elsewhere.
+    `code` is that of the refusal of a bundle for which the finding does not pass.
     """
 
     label: str
@@ -35,6 +40,7 @@ class Finding:
     passed: bool
     expected: str
     recorded: bool = True
+    code: str = FAILED
 
     @property
     def problem(self) -> str:
@@ -47,13 +53,15 @@ class Check:
     """Outcome of one check.
 
     `detail` names the problems if it failed, else what the check requires. `found` has the recorded
-    values by label; neither `detail` nor the allowed values are in a bundle.
+    values by label; neither `detail` nor the allowed values are in a bundle. `code` is that of the
+    refusal if it failed.
     """
 
     name: str
     passed: bool
     detail: str
     found: Mapping[str, Value] = field(default_factory=dict)
+    code: str = FAILED
 
     def record(self) -> dict[str, Any]:
         """Return the outcome as JSON values for a bundle."""
@@ -156,18 +164,34 @@ def factors(
         yield equal(label, differ, sorted(fields), recorded=False)
 
 
+def claim_of(check: Callable[..., Any]) -> str:
+    """Return what a check requires: its docstring as one line.
+
+    Raises:
+        ValueError: it has none.
+    """
+    claim = " ".join((check.__doc__ or "").split())
+    if not claim:
+        raise ValueError(
+            f"The check {check.__name__} of {check.__module__} has no claim. Say in its docstring "
+            "what it requires."
+        )
+    return claim
+
+
 def conclude(
-    name: str, requirement: str, findings: Sequence[Finding], error: Exception | None = None
+    name: str, claim: str, findings: Sequence[Finding], error: Exception | None = None
 ) -> Check:
     """Return the outcome of a check from its findings; a check without any fails.
 
     Args:
         name: of the check.
-        requirement: what the check requires.
+        claim: what the check requires.
         findings: with different labels; the check fails otherwise.
         error: the exception that ended the check.
     """
-    problems = [finding.problem for finding in findings if not finding.passed]
+    broken = [finding for finding in findings if not finding.passed]
+    problems = [finding.problem for finding in broken]
     labels = [finding.label for finding in findings]
     if repeated := sorted({label for label in labels if labels.count(label) > 1}):
         problems.append(f"labels are repeated: {', '.join(repeated)}. Give each finding its own")
@@ -176,23 +200,21 @@ def conclude(
     elif not findings:
         problems.append("nothing was found")
     found = {finding.label: plain(finding.found) for finding in findings if finding.recorded}
-    return Check(name, not problems, "; ".join(problems) or requirement, found)
+    code = next((finding.code for finding in broken if finding.code != FAILED), FAILED)
+    return Check(name, not problems, "; ".join(problems) or claim, found, code)
 
 
 def evaluate(
-    named: Sequence[Callable[[Subject], Iterable[Finding]]],
-    run: Subject,
-    claims: Mapping[str, str],
+    named: Sequence[Callable[[Subject], Iterable[Finding]]], run: Subject
 ) -> tuple[Check, ...]:
     """Run checks on a subject.
 
     Args:
         named: the checks.
         run: what they check.
-        claims: what each check requires, by its name.
 
     Raises:
-        KeyError: a check has no claim.
+        ValueError: a check has no claim.
     """
     outcomes = []
     for check in named:
@@ -204,8 +226,7 @@ def evaluate(
         except (ValueError, LookupError, ArithmeticError) as error:
             # Arrays that do not fit together, or values beyond what floats can hold.
             failure = error
-        name = check.__name__
-        outcomes.append(conclude(name, claims[name], findings, failure))
+        outcomes.append(conclude(check.__name__, claim_of(check), findings, failure))
     return tuple(outcomes)
 
 

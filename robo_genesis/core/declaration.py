@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import Any, Protocol
 
 from robo_genesis.core.channels import View
+from robo_genesis.core.checks import claim_of
 from robo_genesis.core.experiment import MeasuringPage
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.orderings import Relation
@@ -117,26 +118,10 @@ class Lesson:
     marks: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Refuse claims that are not those of the checks.
-
-        Raises:
-            ValueError: a check has no claim, or a claim has no check; the message names them.
-        """
-        checks = {check.__name__ for page in self.pages.values() for check in page.checks}
-        claims = {name for page in self.pages.values() for name in page.claims}
-        for name, page in self.pages.items():
+        """Refuse checks without a claim; raises as `claim_of`."""
+        for page in self.pages.values():
             for check in page.checks:
-                if not page.claims.get(check.__name__, "").strip():
-                    raise ValueError(
-                        f"The check {check.__name__} of the page {name} has no claim. "
-                        "Say in CLAIMS what it requires."
-                    )
-        if claims - checks:
-            raise ValueError(
-                f"CLAIMS has {', '.join(sorted(claims - checks))}, but no page of the lesson has "
-                f"such a check. The checks are {', '.join(sorted(checks))}. Remove the claim, or "
-                "add the check to a page."
-            )
+                claim_of(check)
 
     def about_metrics(self, what: str) -> dict[str, Any]:
         """Return `unit`, `label` or `noun` of each of its metrics by name."""

@@ -1,7 +1,7 @@
 """The declaration of a page that measures, and the experiment that one run of it is."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
@@ -95,9 +95,7 @@ class MeasuringPage:
     | `readings` | the groups of values of the engine in a run with or without a camera |
     | `measure` | returns the metrics of a case from its trace |
     | `checks` | named checks in the order of their table |
-    | `claims` | by check of the lesson, what it requires |
     | `parameters` | returns every configured input as JSON values |
-    | `validate` | refuses arrays that no run can have |
     | `camera` | whether it has camera frames where the environment asks for them |
     | `frames` | the names of these frames |
 
@@ -110,11 +108,9 @@ class MeasuringPage:
     readings: Callable[[bool], Mapping[str, Readings]]
     measure: Callable[[Any, Any], CaseMetrics]
     checks: Sequence[Callable[["Experiment"], Iterable[Finding]]]
-    claims: Mapping[str, str]
     parameters: Callable[[], dict[str, Any]]
     links: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
-    validate: Callable[["Experiment"], None] = field(default=lambda run: None)
     camera: bool = True
     frames: tuple[str, ...] = ("initial", "final")
 
@@ -181,4 +177,4 @@ class Experiment:
 
     def outcomes(self) -> tuple[Check, ...]:
         """Return the outcomes of the named checks."""
-        return evaluate(self.page.checks, self, self.page.claims)
+        return evaluate(self.page.checks, self)

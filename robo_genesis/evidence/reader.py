@@ -23,15 +23,14 @@ def from_bundle(
     part of it: the experiment computes its own metrics and checks.
 
     Raises:
-        BundleRefused: `cases`, `labels`, `metrics`, `frames`, or as `read_run` and the page's
-            `validate`.
+        BundleRefused: `cases`, `labels`, `metrics`, `frames`, or as `read_run`.
     """
     predicate = manifest.predicate
     page, rendered = find_page(predicate.lesson, predicate.page), predicate.render.mode == "camera"
     arrays = bundle.read_arrays(folder)
     check_cases(folder, arrays, page)
     check_labels(arrays, page)
-    experiment = Experiment(
+    return Experiment(
         page=page,
         traces={name: trace_files.read_run(folder, arrays, name, page.kind) for name in page.runs},
         links=arrays.coords["link"],
@@ -40,8 +39,6 @@ def from_bundle(
         rendered=rendered,
         joints=trace_files.read_joints(arrays) if page.joints else None,
     )
-    page.validate(experiment)
-    return experiment
 
 
 def check_cases(folder: Path, arrays: Arrays, page: MeasuringPage) -> None:

@@ -12,17 +12,17 @@ from robo_genesis.sim import end_state
 
 
 def sample_times(run: Experiment) -> Iterator[Finding]:
-    """Require of each run one state at t = 0 and one after each outer step, at k · dt."""
+    """Each run has a state at t = 0 and one after each of its configured outer steps, at k · dt."""
     return checks.sample_times(run.cases, run.traces)
 
 
 def stamps(run: Experiment) -> Iterator[Finding]:
-    """Require what `sample_times` requires; lessons L01 to L06 publish this name."""
+    """Each run has a state at t = 0 and one after each of its configured outer steps, at k · dt."""
     return sample_times(run)
 
 
 def start(run: Experiment) -> Iterator[Finding]:
-    """Require each run of a body to begin at rest, at the height of its case."""
+    """Each run begins with the body at rest at the height of its case."""
     for name, case in run.cases.items():
         trace = run.traces[name]
         height = float(trace.link_pos[0, 0, 2])
@@ -32,7 +32,7 @@ def start(run: Experiment) -> Iterator[Finding]:
 
 
 def posture(run: Experiment) -> Iterator[Finding]:
-    """Require evidence of both ends of the baseline; a frame that is not declared fails it."""
+    """Two different camera frames, or a schematic whose links moved, show both ends of the run."""
     views = {*run.page.frames} - {"initial", "final"} if run.rendered else set()
     frames = {name: frame for name, frame in run.frames.items() if name not in views}
     return end_state.findings(run.rendered, frames, run.traces["baseline"].link_pos)

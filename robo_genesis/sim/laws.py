@@ -1,14 +1,17 @@
-"""Rules that the arrays of every run obey, whatever it shows: times, start, unit quaternions.
+"""Laws that the arrays of every run obey, whatever it shows: times, start, unit quaternions.
 
-A breach means that the arrays are not those of such a run; it does not judge the physics.
+A law yields nothing where it holds, and a finding where it is broken. Checks of the lessons use
+laws, so the page, the recorder and the verification judge arrays alike.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.refusals import AGAIN, BundleRefused, shown
+from robo_genesis.core.checks import Finding
+from robo_genesis.core.refusals import shown as quoted
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import TimeSeries
 
@@ -25,37 +28,35 @@ REPEATED = 1e-4
 largest value of an array. Two runs on one CPU are equal; other CPUs round float64 differently."""
 
 
-@dataclass(frozen=True, slots=True)
-class Breach:
-    """One thing in a run's arrays that no such run has; `code` is that of the refusal."""
+def broken(code: str, what: str, found: Any, expected: object) -> Finding:
+    """Return the finding of something in a run's arrays that no such run has."""
+    return Finding(
+        what,
+        found,
+        False,
+        expected if isinstance(expected, str) else quoted(expected),
+        recorded=False,
+        code=code,
+    )
 
-    code: str
-    what: str
-    found: object
-    expected: object
 
-
-def refuse(file: str, breaches: Iterable[Breach]) -> None:
-    """Refuse a run for the first breach.
+def kept(run: str, laws: Iterable[Finding]) -> Iterator[Finding]:
+    """Yield whether a run keeps its laws, and the first thing that breaks one.
 
     Args:
-        file: of the run's arrays.
-        breaches: what its rules found.
-
-    Raises:
-        BundleRefused: with the code of the breach.
+        run: its name.
+        laws: what its laws yield.
     """
-    for found in breaches:
-        raise BundleRefused(
-            found.code,
-            f"{file}: {found.what} is {shown(found.found)}, expected {shown(found.expected)}. "
-            f"{AGAIN}",
-        )
+    wrong = next(iter(laws), None)
+    if wrong is None:
+        yield Finding(f"{run} keeps its laws", True, True, "true", recorded=False)
+    else:
+        yield replace(wrong, label=f"{run}: {wrong.label}")
 
 
 def apart(
     code: str, what: str, found: FloatArray, expected: FloatArray, tolerance: float | FloatArray
-) -> Iterator[Breach]:
+) -> Iterator[Finding]:
     """Yield the entry that is farthest beyond the tolerance of its expected value, if any is.
 
     Args:
@@ -70,18 +71,18 @@ def apart(
         expected, room = (np.broadcast_to(of, found.shape) for of in (expected, tolerance))
         at = tuple(int(k) for k in np.unravel_index(int(beyond.argmax()), beyond.shape))
         where = f"{what} at index {list(at)}" if at else what
-        yield Breach(code, where, float(found[at]), f"{float(expected[at])!r} ± {room[at]:g}")
+        yield broken(code, where, float(found[at]), f"{float(expected[at])!r} ± {room[at]:g}")
 
 
-def times(trace: TimeSeries, steps: int, dt: float) -> Iterator[Breach]:
+def times(trace: TimeSeries, steps: int, dt: float) -> Iterator[Finding]:
     """Yield a number of steps [1] or a time step [s] that is not that of the case."""
     if trace.steps != steps:
-        yield Breach("stamps", "number of steps", trace.steps, steps)
+        yield broken("stamps", "number of steps", trace.steps, steps)
     elif (np.abs(trace.t - np.arange(steps + 1) * dt) > TIME).any():
-        yield Breach("stamps", "dt of the stamps [s]", trace.dt, dt)
+        yield broken("stamps", "dt of the stamps [s]", trace.dt, dt)
 
 
-def unit_quaternions(quat: FloatArray) -> Iterator[Breach]:
+def unit_quaternions(quat: FloatArray) -> Iterator[Finding]:
     """Yield the quaternion, of an array (…, 4), whose norm is farthest from 1."""
     norm = np.sqrt(np.einsum("...i,...i", quat, quat, dtype=np.float64))
     yield from apart("pose", "norm of link_quat", norm, np.ones(()), UNIT)
@@ -89,7 +90,7 @@ def unit_quaternions(quat: FloatArray) -> Iterator[Breach]:
 
 def computed_again(
     trace: TimeSeries, again: TimeSeries, shares: Mapping[str, float] | None = None
-) -> Iterator[Breach]:
+) -> Iterator[Finding]:
     """Yield an array that differs from that of the same run, computed by the verification.
 
     Args:
@@ -100,7 +101,7 @@ def computed_again(
     for field in fields(trace):
         found, expected = getattr(trace, field.name), getattr(again, field.name)
         if found.shape != expected.shape:
-            yield Breach("second-engine", f"shape of {field.name}", found.shape, expected.shape)
+            yield broken("second-engine", f"shape of {field.name}", found.shape, expected.shape)
             continue
         share = (shares or {}).get(field.name, REPEATED)
         room = share * max(1.0, float(np.abs(expected).max(initial=0.0)))
@@ -108,11 +109,11 @@ def computed_again(
         yield from apart("second-engine", field.name, found, expected, room)
 
 
-def copied(trace: TimeSeries, others: Mapping[str, TimeSeries]) -> Iterator[Breach]:
+def copied(trace: TimeSeries, others: Mapping[str, TimeSeries]) -> Iterator[Finding]:
     """Yield the first run of another engine whose arrays of motion are the same to the last bit."""
     of_motion = ("q", "qd", "link_pos", "link_quat", "link_vel", "link_ang")
     motion = [field.name for field in fields(trace) if field.name in of_motion]
     for label, other in others.items():
         if all(np.array_equal(getattr(trace, name), getattr(other, name)) for name in motion):
             what = f"run with the same motion as {label}, to the last bit,"
-            yield Breach("second-engine", what, "of another engine", "different")
+            yield broken("second-engine", what, "of another engine", "different")

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from falling import falling
 
-from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.sim import laws as rules
-from robo_genesis.sim.laws import REPEATED, apart, refuse
+from robo_genesis.sim.laws import REPEATED, apart, kept
 
 RUN = falling(1.0)
 TILTED = replace(RUN, link_quat=RUN.link_quat * np.float32(1.001))
@@ -44,11 +43,10 @@ def test_a_breach_has_the_code_of_its_rule(breaches, found):
     assert codes(breaches) == found
 
 
-def test_the_refusal_names_the_entry_that_is_farthest_off():
+def test_a_check_names_the_first_law_that_a_run_breaks_and_the_entry_farthest_off():
     rows = np.array([[0.0, 0.2], [0.5, 0.0]])
-    with pytest.raises(BundleRefused) as caught:
-        refuse("arrays/G1.npz", apart("law", "effort [N·m]", rows, np.zeros(()), 0.1))
-    assert str(caught.value) == (
-        "law: arrays/G1.npz: effort [N·m] at index [1, 0] is 0.5, expected '0.0 ± 0.1'. "
-        "Record the bundle again."
-    )
+    (wrong,) = kept("G1", apart("law", "effort [N·m]", rows, np.zeros(()), 0.1))
+    assert wrong.problem == "G1: effort [N·m] at index [1, 0] is 0.5, expected 0.0 ± 0.1"
+    assert (wrong.code, wrong.passed, wrong.recorded) == ("law", False, False)
+    (right,) = kept("G1", apart("law", "effort [N·m]", rows, np.zeros(()), 0.5))
+    assert right.passed

@@ -8,7 +8,6 @@ from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_o
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l01 import checks, exercises, machine, mistakes, spec, text
 from robo_genesis.lessons.l01.metrics import FallMetrics, fall_metrics
-from robo_genesis.sim.bodies.falling import require_falls
 from robo_genesis.sim.bodies.rigid_bodies import read_model, run_drop
 from robo_genesis.sim.visual_shape import floor, read_shape
 
@@ -35,15 +34,12 @@ LAB = MeasuringPage(
     readings=readings,
     measure=fall_metrics,
     checks=checks.CHECKS,
-    claims={name: claim for name, claim in text.CLAIMS.items() if name != "doctor"},
     parameters=spec.parameters,
-    validate=require_falls,
 )
 LECTURE = replace(
     LAB,
     readings=lambda rendered: readings(rendered) | machine.readings(),
     checks=(*checks.CHECKS, checks.doctor),
-    claims=text.CLAIMS,
     parameters=spec.lecture_parameters,
 )
 

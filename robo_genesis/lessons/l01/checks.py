@@ -5,21 +5,25 @@ from collections.abc import Iterator
 from robo_genesis.core.checks import Finding, at_most, equal, model_counts
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l01 import machine, spec
+from robo_genesis.sim.bodies.falling import free_fall
 from robo_genesis.sim.common_checks import posture, stamps, start
 
 
 def structure(run: Experiment) -> Iterator[Finding]:
+    """Two entities; the sphere is a link with one geom and one joint, 6 DOFs and 7 qpos."""
     return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
 def computed_height(run: Experiment) -> Iterator[Finding]:
+    """At every sample the height is the one computed beforehand, to within float32."""
     error = run.metrics["baseline"].formula_error
     yield at_most("baseline.formula_error_m", error, spec.FORMULA_TOLERANCE)
 
 
 def doctor(run: Experiment) -> Iterator[Finding]:
+    """Every step of the doctor passes in a process of its own."""
     for step in machine.STEPS:
         yield equal(step, run.readings[machine.DOCTOR][step], 1)
 
 
-CHECKS = (structure, start, stamps, computed_height, posture)
+CHECKS = (structure, start, stamps, computed_height, free_fall, posture)

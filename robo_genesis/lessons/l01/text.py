@@ -100,19 +100,3 @@ def conclusion(run: Experiment) -> str:
             else "That is more than rounding explains. Check version, gravity and step."
         )
     )
-
-
-CLAIMS: dict[str, str] = {
-    "structure": (
-        "The scene has two entities; the sphere is one link, one geom, one joint, 6 DOFs and 7 "
-        "qpos."
-    ),
-    "start": "The run begins with the sphere at rest at its height.",
-    "stamps": "The record has a state at t = 0 and one after each outer step, at k · dt.",
-    "computed_height": (
-        "At every sample the height is the one computed beforehand, to within float32."
-    ),
-    "posture": "The evidence of both ends is complete and shows the sphere in two places.",
-    "doctor": "Every step of the doctor passes in a process of its own.",
-}
-"""What each named check of the pages requires, shown where it passed."""

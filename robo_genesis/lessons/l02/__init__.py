@@ -17,7 +17,6 @@ from robo_genesis.lessons.l02 import (
     trials,
 )
 from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
-from robo_genesis.sim.bodies.falling import require_falls
 from robo_genesis.sim.bodies.falls import fallen
 from robo_genesis.sim.bodies.rigid_bodies import read_model, run_drop
 from robo_genesis.sim.visual_shape import floor, read_shape
@@ -51,9 +50,7 @@ LAB = MeasuringPage(
     readings=readings,
     measure=drop_metrics,
     checks=checks.CHECKS,
-    claims=text.CLAIMS,
     parameters=spec.parameters,
-    validate=require_falls,
 )
 LECTURE = replace(
     LAB,

@@ -7,19 +7,23 @@ import numpy as np
 from robo_genesis.core.checks import Finding, above, at_most, equal, masses, model_counts
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l02 import spec
+from robo_genesis.sim.bodies.falling import free_fall
 from robo_genesis.sim.bodies.falls import fallen
 from robo_genesis.sim.common_checks import posture, stamps, start
 
 
 def structure(run: Experiment) -> Iterator[Finding]:
+    """The scene has two entities; the box is one link, one geom, one joint, 6 DOFs and 7 qpos."""
     return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
 def mass(run: Experiment) -> Iterator[Finding]:
+    """The engine's mass is density times volume."""
     return masses({"box": run.readings["body"]["mass"]}, {"box": spec.BASELINE.mass})
 
 
 def falls(run: Experiment) -> Iterator[Finding]:
+    """The box is lower after every step than before it, and faster."""
     for name, trace in run.traces.items():
         lower, faster = np.diff(fallen(trace)) > 0, np.diff(-trace.link_vel[:, 0, 2]) > 0
         yield equal(f"{name}.steps_not_lower", int((~lower).sum()), 0)
@@ -27,17 +31,20 @@ def falls(run: Experiment) -> Iterator[Finding]:
 
 
 def clear_of_ground(run: Experiment) -> Iterator[Finding]:
+    """The box's underside stays above the ground: the run measures the fall, not a contact."""
     for name, case in run.cases.items():
         lowest = float(run.traces[name].link_pos[:, 0, 2].min()) - case.size / 2
         yield above(f"{name}.clearance_m", lowest, 0)
 
 
 def stepped_formula(run: Experiment) -> Iterator[Finding]:
+    """At every sample the box has fallen g h² n (n + 1) / 2, to within float32."""
     for name, of in run.metrics.items():
         yield at_most(f"{name}.formula_error_m", of.formula_error, spec.FORMULA_TOLERANCE)
 
 
 def speed(run: Experiment) -> Iterator[Finding]:
+    """At every sample the velocity is g t, downwards: one outer step is dt long."""
     for name, case in run.cases.items():
         trace = run.traces[name]
         error = float(np.abs(-trace.link_vel[:, 0, 2] - case.gravity * trace.t).max())
@@ -46,6 +53,7 @@ def speed(run: Experiment) -> Iterator[Finding]:
 
 
 def straight_down(run: Experiment) -> Iterator[Finding]:
+    """The box moves vertically and keeps its orientation."""
     for name, of in run.metrics.items():
         quat = run.traces[name].link_quat[:, 0].astype(np.float64)
         length_error = np.abs(np.linalg.norm(quat, axis=1) - 1).max()
@@ -57,5 +65,5 @@ def straight_down(run: Experiment) -> Iterator[Finding]:
 
 CHECKS = (
     structure, mass, start, stamps, falls, clear_of_ground, stepped_formula, speed, straight_down,
-    posture,
+    free_fall, posture,
 )  # fmt: skip

@@ -46,11 +46,13 @@ def step_study(metrics: Mapping[str, DropMetrics], cases: Mapping[str, Drop]) ->
 
 
 def one_factor(run: Experiment) -> Iterator[Finding]:
+    """The cases differ in their substeps alone."""
     first, *others = step_study(run.metrics, run.cases).names
     return factors(run.cases, {(first, name): ["substeps"] for name in others})
 
 
 def shrinks(run: Experiment) -> Iterator[Finding]:
+    """The gap to continuous free fall is smaller with every smaller solver step."""
     study = step_study(run.metrics, run.cases)
     for (_, larger), (name, gap) in itertools.pairwise(zip(study.names, study.gaps, strict=True)):
         expected = f"between 0 and {larger:g}"
@@ -58,6 +60,7 @@ def shrinks(run: Experiment) -> Iterator[Finding]:
 
 
 def first_order(run: Experiment) -> Iterator[Finding]:
+    """The gap is g h t / 2, so half the solver step leaves half of it."""
     study = step_study(run.metrics, run.cases)
     for name, gap, expected in zip(study.names, study.gaps, study.expected, strict=True):
         yield within(f"{name}.gap_m", gap, expected, spec.FIRST_ORDER_SHARE * expected)

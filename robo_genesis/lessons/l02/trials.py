@@ -65,7 +65,9 @@ def shape_rows(entities: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def two_geometries(run: Experiment) -> Iterator[Finding]:
-    """Check the counts of geometry; a named check of the lecture."""
+    """The box collides with what is drawn; the duck collides with fewer triangles than are drawn,
+    the tray with several pieces for one drawn mesh.
+    """
     found = run.readings[SHAPES]
     yield equal("box_felt", found["box_felt"], found["box_seen"])
     yield below("duck_felt", found["duck_felt"], found["duck_seen"])
@@ -74,7 +76,9 @@ def two_geometries(run: Experiment) -> Iterator[Finding]:
 
 
 def invisible_lid(run: Experiment) -> Iterator[Finding]:
-    """Check where both balls are; a named check of the lecture."""
+    """A ball rests on the floor of a tray of several collision pieces, and on the rim of a tray
+    with a single one.
+    """
     found = run.readings[TRAYS]
     yield within("ball_in_pieces_m", found[PIECES], spec.BALL, spec.RESTING)
     yield within("ball_on_the_hull_m", found[HULL], spec.RIM + spec.BALL, spec.RESTING)
@@ -93,7 +97,9 @@ def expected_falls() -> dict[str, float]:
 
 
 def further_falls(run: Experiment) -> Iterator[Finding]:
-    """Check the distances fallen after `build`; a named check of the lecture."""
+    """After build, another height, speed, mass and gravity are accepted, and the stepped formula
+    holds with each.
+    """
     for name, expected in expected_falls().items():
         yield within(f"{name}_m", run.readings[FURTHER][name], expected, spec.FURTHER_TOLERANCE)
 

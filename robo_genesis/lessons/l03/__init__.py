@@ -17,10 +17,8 @@ from robo_genesis.core.experiment import (
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import (
     checks,
-    claims_text,
     exercises,
     mistakes,
-    plausibility,
     spec,
     study,
     study_contact,
@@ -84,9 +82,7 @@ LAB = MeasuringPage(
     readings=readings(spec.CASES),
     measure=case_metrics,
     checks=checks.CHECKS,
-    claims=claims_text.CLAIMS,
     parameters=spec.parameters,
-    validate=plausibility.require_possible_runs,
 )
 
 

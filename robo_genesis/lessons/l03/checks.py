@@ -18,6 +18,7 @@ from robo_genesis.core.checks import (
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l03 import friction, spec
 from robo_genesis.lessons.l03.energy import kept_at_bounces
+from robo_genesis.lessons.l03.laws import laws_of_motion
 from robo_genesis.lessons.l03.metrics import BounceMetrics, LandingMetrics, SlideMetrics
 from robo_genesis.sim.bodies.contacts import SETTINGS, TOP
 from robo_genesis.sim.common_checks import posture, stamps
@@ -39,14 +40,17 @@ def bounces(run: Experiment) -> dict[str, BounceMetrics]:
 
 
 def structure(run: Experiment) -> Iterator[Finding]:
+    """The scene has two entities; the cube is one link, one geom, one joint, 6 DOFs and 7 qpos."""
     return model_counts(run.readings["model"], spec.EXPECTED_MODEL)
 
 
 def mass(run: Experiment) -> Iterator[Finding]:
+    """The engine's masses are density times volume."""
     return masses(run.readings["mass"], {case.shape: case.mass for case in run.cases.values()})
 
 
 def settings(run: Experiment) -> Iterator[Finding]:
+    """Frictions and substeps read back from the scenes are those of the cases."""
     for name in SETTINGS:
         read = run.readings.get(name, {})
         for case, value in read.items():
@@ -55,6 +59,7 @@ def settings(run: Experiment) -> Iterator[Finding]:
 
 
 def start(run: Experiment) -> Iterator[Finding]:
+    """Each run begins at the position of its case, a pushed cube with the speed of its case."""
     for name, case in run.cases.items():
         trace = run.traces[name]
         distance = np.abs(trace.link_pos[0, 0] - np.array(case.start)).max()
@@ -65,6 +70,7 @@ def start(run: Experiment) -> Iterator[Finding]:
 
 
 def one_factor(run: Experiment) -> Iterator[Finding]:
+    """Compared cases differ in the declared factors and in nothing else."""
     allowed = {
         **{pair: {"substeps"} for pair in spec.FINER},
         spec.EQUAL_STEP: {"dt", "substeps"},
@@ -77,6 +83,7 @@ def one_factor(run: Experiment) -> Iterator[Finding]:
 
 
 def lands(run: Experiment) -> Iterator[Finding]:
+    """Each dropped cube touches the surface, and its centre stays above the upper face."""
     for name, found in landings(run).items():
         trace = run.traces[name]
         yield above(f"{name}.touchdown_s", found.touchdown, 0)
@@ -85,6 +92,7 @@ def lands(run: Experiment) -> Iterator[Finding]:
 
 
 def reported_late(run: Experiment) -> Iterator[Finding]:
+    """With one substep, a reported depth belongs to the state before: it is one step old."""
     for name in landings(run):
         case, trace = run.cases[name], run.traces[name]
         if case.substeps == 1:
@@ -94,6 +102,7 @@ def reported_late(run: Experiment) -> Iterator[Finding]:
 
 
 def equal_step_equal_states(run: Experiment) -> Iterator[Finding]:
+    """Runs with equal solver steps and different outer steps share states at shared times."""
     for pair in combinations(landings(run), 2):
         short, long = sorted(pair, key=lambda name: run.cases[name].dt)
         if run.cases[short].h != run.cases[long].h or run.cases[short].dt == run.cases[long].dt:
@@ -106,17 +115,20 @@ def equal_step_equal_states(run: Experiment) -> Iterator[Finding]:
 
 
 def settles(run: Experiment) -> Iterator[Finding]:
+    """Each dropped cube settles at its resting height within the window."""
     for name, found in landings(run).items():
         yield above(f"{name}.resting_time_s", found.resting_time, 0)
 
 
 def stops(run: Experiment) -> Iterator[Finding]:
+    """Each pushed cube stops within the window by the declared rule."""
     for name, found in slides(run).items():
         stopped = found.stop_distance is not None
         yield Finding(f"{name}.stop_distance_m", found.stop_distance, stopped, "a distance")
 
 
 def friction_orders(run: Experiment) -> Iterator[Finding]:
+    """With less friction a cube travels farther; the smaller coefficient changes nothing."""
     far = {name: found.stop_distance or np.nan for name, found in slides(run).items()}
     for near, farther in (("high_on_050", "low_on_050"), ("low_on_050", "low_on_030")):
         yield above(f"{farther}.farther_than_{near}_m", far[farther] - far[near], 0)
@@ -125,6 +137,7 @@ def friction_orders(run: Experiment) -> Iterator[Finding]:
 
 
 def near_coulomb(run: Experiment) -> Iterator[Finding]:
+    """Each stopping distance is within 20 % of v² / (2 μ g) with the larger coefficient."""
     for name, found in slides(run).items():
         case = run.cases[name]
         mu = friction.pair_friction(case)
@@ -134,12 +147,14 @@ def near_coulomb(run: Experiment) -> Iterator[Finding]:
 
 
 def level_in_flight(run: Experiment) -> Iterator[Finding]:
+    """In the air, the energy that semi-implicit Euler conserves is constant to within float32."""
     for name, found in bounces(run).items():
         allowed = spec.LEVEL_SHARE * found.start_energy
         yield at_most(f"{name}.flight_drift_J", found.flight_drift, allowed)
 
 
 def energy_converges(run: Experiment) -> Iterator[Finding]:
+    """The finest step keeps at the bounce the energy of a linear spring; a coarse one does not."""
     finest, *coarser = sorted(bounces(run), key=lambda name: run.cases[name].h)
     spring = run.cases[finest].spring or (np.nan, np.nan)
     expected = 100 * kept_at_bounces(spring[1])
@@ -155,8 +170,8 @@ def energy_converges(run: Experiment) -> Iterator[Finding]:
 CHECKS = (
     structure, mass, settings, stamps, start, one_factor, lands, reported_late,
     equal_step_equal_states, settles, stops, friction_orders, near_coulomb, level_in_flight,
-    energy_converges, posture,
+    energy_converges, laws_of_motion, posture,
 )  # fmt: skip
 
-OF_ALL_PAGES = (structure, mass, settings, stamps, start)
+OF_ALL_PAGES = (structure, mass, settings, stamps, start, laws_of_motion)
 """The checks that the runs of every page must pass."""

@@ -9,6 +9,9 @@ from robo_genesis.lessons.l03.metrics import CLEAR
 
 
 def release_speed(run: Experiment) -> Iterator[Finding]:
+    """With fine steps and time constants of 10, 5 and 2 ms, a contact releases a cube at e⁻² of its
+    impact speed, within 10 %.
+    """
     for scene, cases in study_spec.RELEASE_CASES.items():
         for found, (name, case) in zip(
             study.landings_of(run.metrics, scene), cases.items(), strict=True
@@ -19,6 +22,9 @@ def release_speed(run: Experiment) -> Iterator[Finding]:
 
 
 def stiff_contacts_rebound(run: Experiment) -> Iterator[Finding]:
+    """With 10 ms no cube rebounds; with 5 ms and 2 ms each rebounds as from a linear contact,
+    within 25 %.
+    """
     for scene, cases in study_spec.RELEASE_CASES.items():
         for found, (name, case) in zip(
             study.landings_of(run.metrics, scene), cases.items(), strict=True

@@ -21,13 +21,11 @@ from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import (
     backend_mistake,
     checks,
-    claims_text,
     engine_comparison,
     exercises,
     explorer,
     lecture_text,
     mistakes,
-    plausibility,
     spec,
     study,
     study_checks,
@@ -77,9 +75,7 @@ LAB = MeasuringPage(
     readings=readings,
     measure=study.measure,
     checks=checks.CHECKS,
-    claims=claims_text.CLAIMS,
     parameters=spec.parameters,
-    validate=plausibility.require_possible_runs,
 )
 MISTAKES = replace(LAB, checks=checks.WITHOUT_CAMERA, camera=False)
 

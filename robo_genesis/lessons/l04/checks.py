@@ -9,6 +9,7 @@ from robo_genesis.core.check_spec import LIMIT_TOLERANCE, READ_BACK
 from robo_genesis.core.checks import Finding, at_most, below, equal, model_counts
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l04 import spec
+from robo_genesis.lessons.l04.laws import laws_of_motion
 from robo_genesis.lessons.l04.metrics import (
     RISE_FRACTION,
     SATURATION_THRESHOLD,
@@ -18,10 +19,12 @@ from robo_genesis.sim import common_checks
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import differences
 from robo_genesis.sim.arm.joints import EFFORT_UNIT, POSITION_UNIT
+from robo_genesis.sim.arm.laws import LAW
 from robo_genesis.sim.common_checks import posture
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:
+    """Seven arm joints and two finger joints are found by name, each with its own DOF."""
     model = run.readings["model"]
     yield from model_counts(model, spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
@@ -34,6 +37,7 @@ def mapping(run: Experiment) -> Iterator[Finding]:
 
 
 def configuration(run: Experiment) -> Iterator[Finding]:
+    """Start, target, gains and limits have one finite value per joint; joint types have units."""
     given = {
         f"{case}.{name}": (getattr(values, name), False)
         for case, values in spec.CASES.items()
@@ -48,6 +52,7 @@ def configuration(run: Experiment) -> Iterator[Finding]:
 
 
 def target_limits(run: Experiment) -> Iterator[Finding]:
+    """Every start and target lies within the model's limits."""
     for case, name in product(spec.CASES, ("q_start", "q_target")):
         q = getattr(spec.CASES[case], name)
         beyond = np.maximum(run.joints.lower - q, q - run.joints.upper)
@@ -56,11 +61,15 @@ def target_limits(run: Experiment) -> Iterator[Finding]:
 
 
 def baseline_approaches(run: Experiment) -> Iterator[Finding]:
+    """The baseline ends nearer to its target than it starts."""
     m = run.metrics["baseline"]
     yield below("baseline.final_error_rad", m.final_error, m.initial_error)
 
 
 def stamps(run: Experiment) -> Iterator[Finding]:
+    """Each run has its configured steps and states at times k · dt from zero. Each of the four
+    cases commands its own target.
+    """
     yield from common_checks.stamps(run)
     for name, case in spec.CASES.items():
         other = int((run.traces[name].target != case.q_target).any(axis=1).sum())
@@ -68,6 +77,7 @@ def stamps(run: Experiment) -> Iterator[Finding]:
 
 
 def same_start(run: Experiment) -> Iterator[Finding]:
+    """The compared cases start in the same state, at rest."""
     first = run.traces["G1"]
     for name in ("G1", "G2", "G3"):
         trace = run.traces[name]
@@ -80,12 +90,14 @@ def same_start(run: Experiment) -> Iterator[Finding]:
 
 
 def one_factor(run: Experiment) -> Iterator[Finding]:
+    """G1 and G2 differ in the stepped joint's KP alone, G2 and G3 in its KV alone."""
     for (one, other), expected in spec.ONE_FACTOR.items():
         found = differences(spec.CASES[one], spec.CASES[other], run.joints)
         yield equal(f"difference of {one} and {other}", found, expected, recorded=False)
 
 
 def not_observed(run: Experiment) -> Iterator[Finding]:
+    """A time is given exactly where the samples reach it, and `not observed` where they do not."""
     for name in spec.CASES:
         trace, m = run.traces[name], run.metrics[name]
         q = trace.q[:, spec.ENTRY].astype(np.float64)
@@ -102,15 +114,17 @@ def not_observed(run: Experiment) -> Iterator[Finding]:
 
 
 def control_law(run: Experiment) -> Iterator[Finding]:
+    """Each control force is clip(KP (q_target − q) − KV q̇) with the gains of its own case."""
     for name, c in spec.CASES.items():
         trace = run.traces[name]
         limit = trace.effort_limit
         law = np.clip(c.kp * (c.q_target - trace.q[1:]) - c.kv * trace.qd, -limit, limit)  # (n, d)
         apart = float(np.abs(law - trace.control_force).max())
-        yield at_most(f"{name}.distance_to_control_law", apart, spec.CONTROL_LAW_TOLERANCE)
+        yield at_most(f"{name}.distance_to_control_law", apart, LAW)
 
 
 def measurements(run: Experiment) -> Iterator[Finding]:
+    """Position, velocity and forces are finite, and no control force exceeds its limit."""
     for name in spec.CASES:
         trace = run.traces[name]
         # A trace refuses values that are not finite when it is made; its arrays may change later.
@@ -122,6 +136,7 @@ def measurements(run: Experiment) -> Iterator[Finding]:
 
 
 def saturation(run: Experiment) -> Iterator[Finding]:
+    """The limit reads back as it was set, and saturated samples are counted against it."""
     for name, case in spec.CASES.items():
         trace, m = run.traces[name], run.metrics[name]
         share = np.abs(trace.effort_limit - case.effort_limit) / np.abs(case.effort_limit)
@@ -134,6 +149,6 @@ def saturation(run: Experiment) -> Iterator[Finding]:
 
 CHECKS = (
     mapping, configuration, target_limits, baseline_approaches, stamps, same_start, one_factor,
-    control_law, not_observed, measurements, saturation, posture,
+    control_law, not_observed, measurements, saturation, laws_of_motion, posture,
 )  # fmt: skip
 WITHOUT_CAMERA = tuple(check for check in CHECKS if check is not posture)

@@ -15,10 +15,11 @@ from robo_genesis.core.exercises import as_test, compared, same_array
 from robo_genesis.core.mistakes import refused
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import CONTROL_LAW_TOLERANCE, ENTRY
+from robo_genesis.lessons.l04.spec import ENTRY
 from robo_genesis.lessons.l04.theory import IdealJoint, stepped_joint
 from robo_genesis.sim.arm.joint_control import ControlCase
 from robo_genesis.sim.arm.joints import JointMap
+from robo_genesis.sim.arm.laws import LAW
 
 MEASURES = False
 
@@ -112,7 +113,7 @@ def pd_law(
         gains = float(case.kp[k]), float(case.kv[k])
         found = [law(e, v, *gains, limit) for e, v in zip(error, trace.qd[:, k], strict=True)]
         apart = np.abs(np.array(found, dtype=float) - trace.control_force[:, k]).max()
-        yield at_most(f"run_{number}.distance_to_control_force", apart, CONTROL_LAW_TOLERANCE)
+        yield at_most(f"run_{number}.distance_to_control_force", apart, LAW)
     yield equal("demand_of_1000_with_limit_87", float(law(1.0, 0.0, 1e3, 0.0, 87.0)), 87.0)
     yield equal("demand_of_-1000_with_limit_87", float(law(-1.0, 0.0, 1e3, 0.0, 87.0)), -87.0)
 

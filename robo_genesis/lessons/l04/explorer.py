@@ -15,7 +15,6 @@ from robo_genesis.core.checks import evaluate
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l04.claims_text import CLAIMS
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, RESOLUTION, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_checks import GRID_CHECKS
@@ -140,7 +139,7 @@ def cell_labels(numbers: Sequence[str]) -> list[str]:
 
 def checks(run: Experiment) -> str:
     """Return the table of the checks of the grid."""
-    return tables.check_table(evaluate(GRID_CHECKS, run, CLAIMS))
+    return tables.check_table(evaluate(GRID_CHECKS, run))
 
 
 def table(run: Experiment) -> str:

@@ -105,9 +105,6 @@ TOLERANCES = {
 or backends. A time on the grid of samples must not move at all; counts are exact."""
 
 
-CONTROL_LAW_TOLERANCE = 1e-2
-"""Tolerance for float32 in KP times a position error [N·m or N]."""
-
 LIMIT_EXCESS = 1e-3
 """Tolerance of a control force above its limit [N·m or N]."""
 

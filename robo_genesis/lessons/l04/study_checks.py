@@ -24,6 +24,7 @@ from robo_genesis.sim.arm.joint_control import differences
 
 
 def study_factors(run: Experiment) -> Iterator[Finding]:
+    """Each study case differs from its compared case in one factor: target, substeps or window."""
     factors = {
         f"q_target[{spec.STEPPED_JOINT}]": study_spec.STEP_CASES,
         "substeps": study_spec.SUBSTEP_CASES,
@@ -39,6 +40,7 @@ def study_factors(run: Experiment) -> Iterator[Finding]:
 
 
 def same_model(run: Experiment) -> Iterator[Finding]:
+    """Both engines give the same inertia and gravity effort for the stepped joint at the start."""
     of = run.readings[study.GROUP]
     for name in ("inertia", "gravity_at_start"):
         first, second = of[f"{name}_Genesis"], of[f"{name}_MuJoCo"]
@@ -47,6 +49,7 @@ def same_model(run: Experiment) -> Iterator[Finding]:
 
 
 def small_step_unsaturated(run: Experiment) -> Iterator[Finding]:
+    """No effort of the small steps and of the hold runs reaches the saturation threshold."""
     for name in study_spec.STEP_CASES:
         trace = run.traces[name]
         start = trace.start_control_force[spec.ENTRY]
@@ -56,6 +59,9 @@ def small_step_unsaturated(run: Experiment) -> Iterator[Finding]:
 
 
 def theory_small_step(run: Experiment) -> Iterator[Finding]:
+    """The overshoot of each small step agrees with the formula within the declared margin, and its
+    curve is closer to the formula than that of the large step.
+    """
     for case in study_spec.SMALL_STEPPED:
         ideal = study.ideal(run, case)
         small, large = study.share(run, case, "small"), study.share(run, case)
@@ -67,6 +73,9 @@ def theory_small_step(run: Experiment) -> Iterator[Finding]:
 
 
 def stepped_model(run: Experiment) -> Iterator[Finding]:
+    """The overshoots of a one-joint model with the solver step agree with Genesis within the
+    declared margins.
+    """
     for case in study_spec.SMALL_STEPPED:
         found = overshoot_share(study.share(run, case, "small"))
         share = study.stepped_overshoot(run, case, study_spec.SMALL_STEP) / study_spec.SMALL_STEP
@@ -79,6 +88,7 @@ def stepped_model(run: Experiment) -> Iterator[Finding]:
 
 
 def gravity_support(run: Experiment) -> Iterator[Finding]:
+    """Where a case ends nearly at rest, KP × final error agrees with the gravity effort."""
     at_rest = []
     for case, m in ((case, run.metrics[case]) for case in spec.CASES):
         support = float(spec.CASES[case].kp[spec.ENTRY]) * m.final_error
@@ -95,6 +105,7 @@ def gravity_support(run: Experiment) -> Iterator[Finding]:
 
 
 def convergence(run: Experiment) -> Iterator[Finding]:
+    """G2's overshoot in Genesis falls with each refinement of the solver's step."""
     overshoot = study.overshoot_by_substeps(run, "Genesis")
     for coarse, fine in pairwise(overshoot):
         fall = overshoot[coarse] - overshoot[fine]
@@ -102,6 +113,7 @@ def convergence(run: Experiment) -> Iterator[Finding]:
 
 
 def one_limit(run: Experiment) -> Iterator[Finding]:
+    """With a finer solver step, stable runs of both engines approach the same overshoot of G2."""
     declared, finest = (
         study.spread(run, n) for n in (spec.G2.substeps, max(study_spec.SUBSTEPS_STUDIED))
     )
@@ -110,6 +122,7 @@ def one_limit(run: Experiment) -> Iterator[Finding]:
 
 
 def second_engine_order(run: Experiment) -> Iterator[Finding]:
+    """Every ordering that the lesson claims holds in Genesis and in the stable runs of MuJoCo."""
     stable = [engine for engine in study.ENGINES if not study.unstable(run, engine)]
     yield noted("stable", stable)
     for engine, relation in product(stable, spec.RELATIONS):
@@ -120,6 +133,7 @@ def second_engine_order(run: Experiment) -> Iterator[Finding]:
 
 
 def implicit_term(run: Experiment) -> Iterator[Finding]:
+    """A commanded position adds h (d + KV) to the joint's entry in the engine's mass matrix."""
     inertia = run.readings[study.GROUP]["inertia_Genesis"]
     for kv in study.COMPARED_KV:
         label = f"mass_KV_{kv:g}_less_term"
@@ -128,11 +142,13 @@ def implicit_term(run: Experiment) -> Iterator[Finding]:
 
 
 def same_beginning(run: Experiment) -> Iterator[Finding]:
+    """The longer run of G2 begins with exactly the samples of G2."""
     short, long = run.traces["G2"], run.traces[study_spec.LONGER]
     yield equal("same_samples", study.same_beginning(short, long), True, recorded=False)
 
 
 def grid_matches_cases(run: Experiment) -> Iterator[Finding]:
+    """G1, G2 and G3 give the same results in the batch as alone, within the declared margins."""
     for name, point in study_spec.CASE_POINTS.items():
         alone, among = run.traces[name], run.traces[point.name]
         pairs: list[tuple[str, Any, Any, str]] = [
@@ -157,6 +173,9 @@ def grid_matches_cases(run: Experiment) -> Iterator[Finding]:
 
 
 def grid_within_gains(run: Experiment) -> Iterator[Finding]:
+    """Every run of the grid stays within the compared cases' gains and step, and varies nothing
+    else.
+    """
     varied = {f"{field}[{spec.STEPPED_JOINT}]" for field in ("kp", "kv", "q_target")}
     for name in study_spec.GRID_CASES:
         case = run.cases[name]

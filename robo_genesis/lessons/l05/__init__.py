@@ -12,10 +12,8 @@ from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import (
     checks,
-    claims_text,
     exercises,
     mistakes,
-    plausibility,
     restarts,
     solutions_text,
     spec,
@@ -60,9 +58,7 @@ MOTION = MeasuringPage(
     readings=lambda rendered: MODEL | study.READINGS,
     measure=reach_metrics,
     checks=checks.WITHOUT_CAMERA,
-    claims=claims_text.CLAIMS,
     parameters=spec.parameters,
-    validate=plausibility.require_possible_runs,
     camera=False,
 )
 LAB = replace(

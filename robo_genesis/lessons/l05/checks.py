@@ -8,6 +8,7 @@ from robo_genesis.core.checks import Finding, above, at_most, below, equal, mode
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l05 import restarts, spec, study
+from robo_genesis.lessons.l05.laws import laws_of_motion
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.kinematics import ARM, CHAIN, HAND, Pose, measured_hand
@@ -22,6 +23,7 @@ OF_CHAIN = slice(HAND - ARM, HAND + 1)
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:
+    """The engine has the joints, limits and links that our forward kinematics uses."""
     yield from model_counts(run.readings["model"], spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
     chain = tuple(name for name, *_ in CHAIN)
@@ -32,6 +34,9 @@ def mapping(run: Experiment) -> Iterator[Finding]:
 
 
 def acceptance(run: Experiment) -> Iterator[Finding]:
+    """The residual of the commanded answer is within both tolerances, as the engine reports it and
+    by forward kinematics of the command.
+    """
     found, limits = run.readings[study.GROUP], spec.IK.tolerances
     yield at_most("residual_m", found["residual_m"], limits[0])
     yield at_most("residual_rad", found["residual_rad"], limits[1])
@@ -44,10 +49,16 @@ def acceptance(run: Experiment) -> Iterator[Finding]:
 
 
 def forward_kinematics(run: Experiment) -> Iterator[Finding]:
+    """In every state of the three reaches, our forward kinematics gives the engine's link poses
+    within 5 µm and 5 µrad.
+    """
     return same_links(run, kinematics.link_poses)
 
 
 def second_engine(run: Experiment) -> Iterator[Finding]:
+    """MuJoCo gives the same link poses in every state of the three reaches, within 5 µm and 5 µrad,
+    and the same Jacobian at the start, within 5 · 10⁻⁶.
+    """
     links = run.links[OF_CHAIN]
     yield from same_links(run, lambda q: mujoco_kinematics.link_poses(q, links))
     found = run.readings[study.GROUP]["jacobian_difference"]
@@ -70,6 +81,7 @@ def same_links(run: Experiment, poses: Callable[[FloatArray], Pose]) -> Iterator
 
 
 def arrived(run: Experiment) -> Iterator[Finding]:
+    """Each run ends nearer to its target than it starts, and within 2 cm and 0.05 rad."""
     for name in spec.CASES:
         m = run.metrics[name]
         yield below(f"{name}.final_distance_m", m.final_distance, m.start_distance)
@@ -78,24 +90,30 @@ def arrived(run: Experiment) -> Iterator[Finding]:
 
 
 def sag_explains(run: Experiment) -> Iterator[Finding]:
+    """Gravity, KP and the Jacobian explain the displacement from the command's pose to the last
+    pose, except for at most 2 % of it.
+    """
     for name, case in spec.CASES.items():
         *_, share = study.sag_lengths(run.traces[name], case.kp)
         yield at_most(f"{name}.unexplained_share", share, spec.SAG_SHARE)
 
 
 def repeatable(run: Experiment) -> Iterator[Finding]:
+    """From the common start, without restarts, equal questions get equal answers."""
     yield equal("entries_that_differ", run.readings[study.REPEAT_GROUP]["entries_that_differ"], 0)
     first, second = (run.traces[name].target[0] for name in ("baseline", "kp_doubled"))
     yield equal("entries_that_differ_between_runs", int((first != second).sum()), 0)
 
 
 def restarts_repeat(run: Experiment) -> Iterator[Finding]:
+    """Answers repeat after a new `gs.init`; from this start, they need restarts."""
     for name in restarts.COMPARED[:2]:
         yield equal(name, run.readings[restarts.GROUP][name], 0)
     yield equal("accepted_without_restarts", bool(study.many_answers(run)["accepted"][0]), False)
 
 
 def unreachable_refused(run: Experiment) -> Iterator[Finding]:
+    """Beyond reach, the answer is finite, and refused for its residual."""
     found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
     yield equal("not_finite", int((~np.isfinite(run.traces["unreachable"].q[1:])).sum()), 0)
     yield above("residual_m", float(found["position"][0]), spec.IK.position_tolerance)
@@ -103,6 +121,7 @@ def unreachable_refused(run: Experiment) -> Iterator[Finding]:
 
 
 def nearest_is_nearer(run: Experiment) -> Iterator[Finding]:
+    """Another posture is nearer than the answer, where 0.5 m counts as 1 rad."""
     found = study.answers(run.traces["unreachable"], spec.UNREACHABLE)
     of_engine = study.weighted(found["position"], found["rotation"])
     of_nearest = study.weighted(*kinematics.distances(study.nearest()[1]))
@@ -115,18 +134,22 @@ def marker(run: Experiment) -> Marker:
 
 
 def camera_matrix(run: Experiment) -> Iterator[Finding]:
+    """The engine's camera matrix is that of the vertical field of view."""
     return camera_checks.camera_matrix(spec.VIEWED, view_of(run, spec.VIEWED), spec.FOV)
 
 
 def projection(run: Experiment) -> Iterator[Finding]:
+    """The centroid of the marker is within 0.15 pixels of the silhouette's centre."""
     return camera_checks.projection(spec.VIEWED, view_of(run, spec.VIEWED), marker(run))
 
 
 def sphere_surface(run: Experiment) -> Iterator[Finding]:
+    """Each pixel of the marker, back-projected, is within 0.6 % of the radius of its surface."""
     return camera_checks.sphere_surface(spec.VIEWED, view_of(run, spec.VIEWED), marker(run))
 
 
 def plane_surface(run: Experiment) -> Iterator[Finding]:
+    """Each ground pixel within 3 m, back-projected, is within 0.1 mm of height 0."""
     number = int(run.readings[SEGMENTS]["plane"])
     yield from camera_checks.plane_surface(spec.VIEWED, view_of(run, spec.VIEWED), number)
     if "view_hand" in run.readings:  # the camera on the hand has a page of its own
@@ -134,18 +157,19 @@ def plane_surface(run: Experiment) -> Iterator[Finding]:
 
 
 def mounted_camera(run: Experiment) -> Iterator[Finding]:
+    """The camera on the hand is at the pose of the hand times the offset."""
     hand, offset = measured_hand(run.traces["baseline"], -1), np.array(spec.ON_HAND)
     return camera_checks.mounted_camera("hand", view_of(run, "hand"), *hand, offset)
 
 
 WITHOUT_CAMERA = (
     mapping, stamps, acceptance, forward_kinematics, second_engine, arrived, sag_explains,
-    repeatable,
+    repeatable, laws_of_motion,
 )  # fmt: skip
 """Checks of every page that has the runs of the lab."""
 
 VIEW = (camera_matrix, projection, sphere_surface, plane_surface)
 CHECKS = (*WITHOUT_CAMERA, posture, *VIEW)
-CAMERAS = (*VIEW, mounted_camera)
+CAMERAS = (*VIEW, mounted_camera, laws_of_motion)
 SOLUTIONS = (restarts_repeat, unreachable_refused, nearest_is_nearer)
 """Checks of the page about many solutions."""

@@ -8,6 +8,7 @@ from robo_genesis.core.check_spec import MASS_SHARE
 from robo_genesis.core.checks import Finding, above, at_most, equal, model_counts, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study, throughput
+from robo_genesis.lessons.l06.laws import laws_of_motion
 from robo_genesis.sim import end_state
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
@@ -17,11 +18,15 @@ from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 
 def mapping(run: Experiment) -> Iterator[Finding]:
+    """The engine has the expected links, joints and DOFs."""
     yield from model_counts(run.readings["model"], spec.EXPECTED_MODEL)
     yield equal("joint_names", run.joints.names, JOINT_NAMES)
 
 
 def acceptance_per_row(run: Experiment) -> Iterator[Finding]:
+    """By forward kinematics, each command of the runs with metrics is within both tolerances and 5
+    µm and 5 µrad of rounding. The rule refuses the target beyond reach, and no other.
+    """
     most, angle_most = spec.IK.tolerances
     for name, world in spec.CASES.items():
         for number, position in enumerate(world.positions):
@@ -40,6 +45,7 @@ def acceptance_per_row(run: Experiment) -> Iterator[Finding]:
 
 
 def arrived(run: Experiment) -> Iterator[Finding]:
+    """Each hand is within 2 cm of its first and last target, and ends within 0.05 rad."""
     for name in spec.CASES:
         m = run.metrics[name]
         yield at_most(f"{name}.first_distance_m", m.first_distance, spec.REACHED[0])
@@ -48,6 +54,9 @@ def arrived(run: Experiment) -> Iterator[Finding]:
 
 
 def row_equals_alone(run: Experiment) -> Iterator[Finding]:
+    """Each row of the batch and the same run alone have the same command to the last bit, and
+    positions, velocities and control forces within the declared bounds.
+    """
     for k in spec.ENVS:
         row, alone = run.traces[f"env_{k}"], run.traces[f"alone_{k}"]
         differ = int((row.target != alone.target).sum())
@@ -64,10 +73,15 @@ def same_to_the_last_bit(run: Experiment, claim: str) -> Iterator[Finding]:
 
 
 def permuted_rows(run: Experiment) -> Iterator[Finding]:
+    """With the worlds in another order, each gives the same arrays to the last bit."""
     yield from same_to_the_last_bit(run, "permuted")
 
 
 def untouched_keep_their_state(run: Experiment) -> Iterator[Finding]:
+    """Environments that are not named keep their hand in place while others get a second command.
+    While others are reset and commanded in mid-motion, they give the same arrays to the last
+    bit.
+    """
     yield from same_to_the_last_bit(run, "beside")
     for name, world in spec.WORLDS.items():
         moved = run.metrics[name].moved_later
@@ -78,10 +92,15 @@ def untouched_keep_their_state(run: Experiment) -> Iterator[Finding]:
 
 
 def partial_reset(run: Experiment) -> Iterator[Finding]:
+    """After a reset in mid-motion, an environment repeats its first run to the last bit."""
     yield from same_to_the_last_bit(run, "again")
 
 
 def own_gains_and_mass(run: Experiment) -> Iterator[Finding]:
+    """The row without changes equals its run beside equal neighbours to the last bit. Each hand has
+    its own mass. At rest each torque equals the gravity torque of the arm with its load, and KP
+    times the position error, within 0.05 N·m.
+    """
     yield from same_to_the_last_bit(run, "plain")
     for name, world in spec.VARIANTS.items():
         trace, mass = run.traces[name], spec.HAND_MASS + world.load
@@ -96,16 +115,20 @@ def own_gains_and_mass(run: Experiment) -> Iterator[Finding]:
 
 
 def posture(run: Experiment) -> Iterator[Finding]:
+    """Two different camera frames, or a schematic whose links moved, show the end state."""
     return end_state.findings(run.rendered, run.frames, run.traces["env_0"].link_pos)
 
 
 def equal_work(run: Experiment) -> Iterator[Finding]:
+    """In each timed batch of robots, all arms end near the commanded angles, and all environments
+    in the same state to the last bit. No time is judged.
+    """
     for size, differ in run.readings[throughput.EQUAL].items():
         yield equal(f"{size}_environments.that_missed_the_motion_or_differ", differ, 0)
 
 
 WITHOUT_CAMERA = (
     mapping, stamps, acceptance_per_row, arrived, row_equals_alone, permuted_rows,
-    untouched_keep_their_state, partial_reset, own_gains_and_mass,
+    untouched_keep_their_state, partial_reset, own_gains_and_mass, laws_of_motion,
 )  # fmt: skip
 CHECKS = (*WITHOUT_CAMERA, posture)

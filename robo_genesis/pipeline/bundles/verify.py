@@ -7,7 +7,7 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.core.checks import Check, Value
+from robo_genesis.core.checks import FAILED, Check, Value
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, shown
@@ -83,8 +83,10 @@ def _recompute(folder: Path, manifest: Manifest) -> bytes:
     """
     metrics = bundle.read_metrics(folder)
     experiment = from_bundle(folder, manifest, metrics)
+    outcomes = experiment.outcomes()
+    check_laws(outcomes)
     check_metrics(metrics, experiment)
-    check_outcomes(manifest, experiment.outcomes())
+    check_outcomes(manifest, outcomes)
     return b"accepted"
 
 
@@ -93,6 +95,17 @@ def _code() -> bytes:
     """Return the whole code of the course."""
     files = sorted((project.ROOT / "robo_genesis").rglob("*.py"))
     return b"\0".join(path.read_bytes() for path in files)
+
+
+def check_laws(outcomes: Sequence[Check]) -> None:
+    """Require arrays that a run can have; then their metrics are worth a comparison.
+
+    Raises:
+        BundleRefused: with the code of the law that is broken.
+    """
+    for check in outcomes:
+        if check.code != FAILED:
+            raise BundleRefused(check.code, f"arrays: [{check.name}] {check.detail}. {AGAIN}")
 
 
 def check_metrics(recorded: Mapping[str, Mapping[str, Metric]], experiment: Experiment) -> None:
@@ -134,7 +147,7 @@ def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:
     failed = [f"[{check.name}] {check.detail}" for check in outcomes if not check.passed]
     if failed:
         raise BundleRefused(
-            "failed",
+            FAILED,
             f"{file}: failed checks {' '.join(failed)}, expected none. Correct the lesson or "
             "report the cause to the engine's developers, then record the bundle again.",
         )

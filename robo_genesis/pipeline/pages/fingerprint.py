@@ -15,7 +15,13 @@ from robo_genesis.core.project import (
 )
 from robo_genesis.pipeline.pages.book import Page, cell_sources
 from robo_genesis.pipeline.pages.sources import Tree, import_closure, lesson_modules
-from robo_genesis.pipeline.pages.syntax import cell_digests, imports_of, sha256_of, syntax_digest
+from robo_genesis.pipeline.pages.syntax import (
+    cell_digests,
+    claims_in,
+    imports_of,
+    sha256_of,
+    syntax_digest,
+)
 
 
 def page_fingerprint(
@@ -28,8 +34,8 @@ def page_fingerprint(
 
     It covers the lock, all installed versions, the version of Python, the environment contract,
     whether the page is executed alone, the syntax of the page's cells, of the modules that they
-    import and of the modules of its lesson, and the data files of the package, except those of
-    other lessons.
+    import and of the modules of its lesson, the claims of checks in them, and the data files of the
+    package, except those of other lessons.
 
     Args:
         page: an executed page.
@@ -50,6 +56,7 @@ def page_fingerprint(
         "environment": environment_contract(environment),
         "cells": cell_digests(cells),
         "modules": {name: syntax_digest(tree.text(path)) for name, path in modules.items()},
+        "claims": {name: claims_in(tree.text(path)) for name, path in modules.items()},
         "data": tree.data_for(page.lesson),
         "alone": page.alone,
     }

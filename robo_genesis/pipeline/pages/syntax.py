@@ -122,6 +122,20 @@ def sha256_of(value: Any) -> str:
 
 
 @lru_cache(maxsize=1024)
+def claims_in(source: str) -> dict[str, str]:
+    """Return the claims of the checks in a module: docstrings, by name, of what yields findings."""
+    if "Iterator[Finding]" not in source:
+        return {}
+    return {
+        node.name: ast.get_docstring(node) or ""
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.FunctionDef)
+        and node.returns
+        and ast.unparse(node.returns) == "Iterator[Finding]"
+    }
+
+
+@lru_cache(maxsize=1024)
 def imported_names(source: str, package: str = "") -> tuple[str, ...]:
     """Return the dotted names below the course package that a source imports anywhere.
 

@@ -22,11 +22,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from robo_genesis.core.checks import Finding
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.franka import per_joint
 from robo_genesis.sim.arm.joint_control import LIMIT_TOLERANCE, ControlCase
-from robo_genesis.sim.laws import Breach, apart, times, unit_quaternions
+from robo_genesis.sim.laws import apart, broken, times, unit_quaternions
 
 MEASURES = False
 
@@ -51,7 +52,7 @@ NEXT = 2e-6, 6e-4
 
 def driven_run(
     trace: Trace, case: ControlCase, links: Sequence[str], net_force: FloatArray = NET_FORCE
-) -> Iterator[Breach]:
+) -> Iterator[Finding]:
     """Yield what no run of `joint_control.run_case` has.
 
     Args:
@@ -64,7 +65,7 @@ def driven_run(
     yield from dynamics(trace, case, net_force)
 
 
-def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Finding]:
     """Yield what no run with a commanded target has, whatever engine steps; arguments as before."""
     yield from times(trace, case.steps, case.dt)
     yield from start_and_limits(trace, case)
@@ -77,14 +78,14 @@ def commanded(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator
     yield from poses(trace, links)
 
 
-def assigned_path(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+def assigned_path(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Finding]:
     """Yield what no run of `joint_control.assign_path` has; the arguments are as before."""
     yield from assigned_postures(trace, case, links)
     path = np.linspace(case.q_start, case.q_target, case.steps + 1)[1:]
     yield from apart("start", "target [rad or m]", trace.target, path, 0.0)
 
 
-def assigned_postures(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Breach]:
+def assigned_postures(trace: Trace, case: ControlCase, links: Sequence[str]) -> Iterator[Finding]:
     """Yield what no run of `joint_control.assign_postures` has; the arguments are as before."""
     yield from times(trace, case.steps, case.dt)
     yield from start_and_limits(trace, case)
@@ -93,7 +94,7 @@ def assigned_postures(trace: Trace, case: ControlCase, links: Sequence[str]) -> 
     yield from poses(trace, links)
 
 
-def never_stepped(trace: Trace) -> Iterator[Breach]:
+def never_stepped(trace: Trace) -> Iterator[Finding]:
     """Yield velocities and forces that no assigned states have."""
     zero = np.zeros(())
     yield from apart("motion", "qd [rad/s or m/s]", trace.qd, zero, 0.0)
@@ -103,7 +104,7 @@ def never_stepped(trace: Trace) -> Iterator[Breach]:
     yield from apart("motion", "internal_force [N·m or N]", trace.internal_force, first, 0.0)
 
 
-def start_and_limits(trace: Trace, case: ControlCase) -> Iterator[Breach]:
+def start_and_limits(trace: Trace, case: ControlCase) -> Iterator[Finding]:
     """Yield a start that is not the case's, or not at rest, and an effort limit of another case."""
     yield from apart("start", "start of q [rad or m]", trace.q[0], case.q_start, LIMIT_TOLERANCE)
     yield from apart("start", "start_qd [rad/s or m/s]", trace.start_qd, np.zeros(()), 0.0)
@@ -118,14 +119,14 @@ def control_law(case: ControlCase, q: FloatArray, qd: FloatArray) -> FloatArray:
     return np.asarray(np.clip(effort, -case.effort_limit, case.effort_limit))
 
 
-def poses(trace: Trace, links: Sequence[str]) -> Iterator[Breach]:
+def poses(trace: Trace, links: Sequence[str]) -> Iterator[Finding]:
     """Yield a link that is not where the positions of the joints put it."""
     from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
     yield from unit_quaternions(trace.link_quat)
     unknown = sorted(set(links) - mujoco_kinematics.link_names())
     if unknown:
-        yield Breach("pose", "list of links that the model does not have", unknown, [])
+        yield broken("pose", "list of links that the model does not have", unknown, [])
         return
     position, orientation = mujoco_kinematics.link_poses(trace.q, links)
     yield from apart("pose", "link_pos [m]", trace.link_pos, position, POSE)
@@ -134,7 +135,7 @@ def poses(trace: Trace, links: Sequence[str]) -> Iterator[Breach]:
 
 def dynamics(
     trace: Trace, case: ControlCase, net_force: FloatArray = NET_FORCE
-) -> Iterator[Breach]:
+) -> Iterator[Finding]:
     """Yield an internal force that is not the net force, and motion that the samples do not have.
 
     `net_force` (d,) are the tolerances of the first [N·m or N].
@@ -196,7 +197,7 @@ def last_step(
 
 def driven_in_mujoco(
     trace: Trace, case: ControlCase, links: Sequence[str], timestep: float, integrator: str
-) -> Iterator[Breach]:
+) -> Iterator[Finding]:
     """Yield what no run of `mujoco_joints.run_case` has; the arguments are as there.
 
     Each state follows from the state before it. A whole run is not comparable on another CPU where

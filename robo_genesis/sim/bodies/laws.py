@@ -29,11 +29,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from robo_genesis.core.checks import Finding
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase
 from robo_genesis.sim.bodies.continuation import NEXT, continued, cross
-from robo_genesis.sim.laws import Breach, apart, times, unit_quaternions
+from robo_genesis.sim.laws import apart, broken, times, unit_quaternions
 
 MEASURES = False
 
@@ -84,7 +85,7 @@ UNITS = {"link_pos": "m", "link_quat": "1", "link_vel": "m/s", "link_ang": "rad/
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
 
 
-def body_on_surface(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+def body_on_surface(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield what no run of `contacts.run_world` has."""
     yield from times(trace, case.steps, case.dt)
     yield from unit_quaternions(trace.link_quat)
@@ -99,7 +100,7 @@ def body_on_surface(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
         yield from next_states(trace, case)
 
 
-def bounded(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+def bounded(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield a speed that gravity and push cannot give, or a place that it does not lead to."""
     fastest = case.speed + case.gravity * (case.duration + 1)
     zero, about = np.zeros(()), np.array(case.start)
@@ -113,7 +114,7 @@ def bounded(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
     yield from apart("motion", "link_pos [m]", trace.link_pos[:, 0], about, far)
 
 
-def sliding(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+def sliding(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield a state of a cube that does not slide along x by Coulomb's law on its four corners."""
     velocity, position = (a[:, 0].astype(np.float64) for a in (trace.link_vel, trace.link_pos))
     lost = max(case.friction, case.surface_friction) * case.gravity * case.dt
@@ -128,7 +129,7 @@ def sliding(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
     yield from apart("motion", "link_quat", trace.link_quat[:, 0], upright, UPRIGHT)
 
 
-def start(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+def start(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield a start that is not the case's."""
     room = SETTLED if case.settle else PLACE
     place, speed = np.array(case.start), np.array([case.speed, 0, 0])
@@ -140,7 +141,7 @@ def start(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
     yield from apart("start", "start of link_ang [rad/s]", trace.link_ang[0, 0], zero, room)
 
 
-def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield contacts that are not those of the body's shape before the last solver step.
 
     A cube on an edge has up to three: one processor reports a third one in 1 of 401 samples of a
@@ -165,7 +166,7 @@ def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Breach
     count = trace.contacts[:, 0]
     for k in np.flatnonzero((count < fewest) | (count > perhaps))[:1]:
         what = f"number of contacts at index {k}"
-        yield Breach("contact", what, int(count[k]), sorted({int(fewest[k]), int(perhaps[k])}))
+        yield broken("contact", what, int(count[k]), sorted({int(fewest[k]), int(perhaps[k])}))
 
 
 def depths_before_last_step(trace: BodyTrace, case: ContactCase) -> FloatArray:
@@ -193,7 +194,7 @@ def on_edge(depths: FloatArray, size: float) -> np.ndarray:
     return (deepest > -TWIST * size) & (deepest - highest > tilt)
 
 
-def never_still(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+def never_still(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield a cube whose angular velocity stays zero to the last bit while it touches the surface.
 
     The forces at its corners cancel only up to rounding. In the runs, no component is zero in any
@@ -202,10 +203,10 @@ def never_still(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
     touched = trace.link_ang[trace.contacts[:, 0] > 0, 0]
     if case.shape == "cube" and len(touched) >= TOUCHED and not touched.any():
         what = "largest link_ang of a cube in contact [rad/s]"
-        yield Breach("motion", what, 0.0, "the rounding of the forces at its corners")
+        yield broken("motion", what, 0.0, "the rounding of the forces at its corners")
 
 
-def turned(trace: BodyTrace, case: ContactCase) -> Iterator[Breach]:
+def turned(trace: BodyTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield an orientation that does not integrate the angular velocity, with one solver step."""
     if case.substeps > 1:
         return
@@ -218,10 +219,10 @@ def turned(trace: BodyTrace, case: ContactCase) -> Iterator[Breach]:
     room = np.where(moved, TURN * angle + RESOLVED * np.abs(old).max(axis=1) + 1e-12, NO_TURN)
     for k in np.flatnonzero(error > room)[:1]:
         what = f"rotation to index {k + 1} against link_ang [rad]"
-        yield Breach("motion", what, float(error[k]), f"0 ± {room[k]:g}")
+        yield broken("motion", what, float(error[k]), f"0 ± {room[k]:g}")
 
 
-def next_states(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
+def next_states(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield a state that does not follow from the state before it."""
     expected = continued(trace, case)
     errors = {name: np.abs(getattr(trace, name)[1:, 0] - of) for name, of in expected.items()}
@@ -231,17 +232,17 @@ def next_states(trace: ContactTrace, case: ContactCase) -> Iterator[Breach]:
     excused = wrong & (edge[1:] | edge[:-1])  # of both substeps
     share = float(excused.mean())
     if share > ON_EDGE:
-        yield Breach("motion", "share of steps of another motion", share, f"up to {ON_EDGE}")
+        yield broken("motion", "share of steps of another motion", share, f"up to {ON_EDGE}")
     yield from impulses(trace, case, excused)
     for k in np.flatnonzero(wrong & ~excused)[:1]:
         name = next(name for name, of in beyond.items() if of[k])
         axis = int(errors[name][k].argmax())
         found, follows = float(getattr(trace, name)[k + 1, 0, axis]), float(expected[name][k, axis])
         what = f"{name} at index {[int(k) + 1, 0, axis]} [{UNITS[name]}]"
-        yield Breach("motion", what, found, f"{follows!r} ± {NEXT[name]:g}")
+        yield broken("motion", what, found, f"{follows!r} ± {NEXT[name]:g}")
 
 
-def impulses(trace: ContactTrace, case: ContactCase, steps: np.ndarray) -> Iterator[Breach]:
+def impulses(trace: ContactTrace, case: ContactCase, steps: np.ndarray) -> Iterator[Finding]:
     """Yield an impulse of some steps that no contacts of the cube with the surface give.
 
     It is upward and in the friction cone, and it acts at points of the cube.

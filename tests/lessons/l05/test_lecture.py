@@ -12,7 +12,6 @@ from lessons.lesson_bundles import in_archive, in_json, metric, refused
 from robo_genesis.core.checks import evaluate
 from robo_genesis.core.scene import CAMERA_RES, FRAME_SHAPE
 from robo_genesis.lessons.l05 import LAB, checks, plots, spec, text
-from robo_genesis.lessons.l05.claims_text import CLAIMS
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.sim.camera import record as view_record
 from robo_genesis.sim.camera.checks import Marker
@@ -56,16 +55,16 @@ def test_the_ground_is_judged_in_each_view_of_the_page(run):
     frames = {**run.frames, **view_record.frames("hand", view)}
     readings = {**run.readings, "view_hand": view_record.numbers(view)}
     both = replace(run, readings=readings, frames=frames)
-    (ground,) = evaluate([checks.plane_surface], both, CLAIMS)
+    (ground,) = evaluate([checks.plane_surface], both)
     assert ground.passed
     assert {label.split(".")[0] for label in ground.found} == {"world", "hand"}
     for name in ("world", "hand"):  # a camera that is 1 cm too high
         height = readings[f"view_{name}"]["transform_23"] + 0.01
         raised = with_reading(both, f"view_{name}", "transform_23", height)
-        (ground,) = evaluate([checks.plane_surface], raised, CLAIMS)
+        (ground,) = evaluate([checks.plane_surface], raised)
         assert f"{name}.largest_m is 0.01" in ground.detail
     without = {key: of for key, of in readings.items() if key != "view_world"}
-    (ground,) = evaluate([checks.plane_surface], replace(both, readings=without), CLAIMS)
+    (ground,) = evaluate([checks.plane_surface], replace(both, readings=without))
     assert not ground.passed
 
 

@@ -29,7 +29,7 @@ def codes():
         for call in ast.walk(tree)
         if isinstance(call, ast.Call)
         and isinstance(call.func, ast.Name)
-        and call.func.id in ("BundleRefused", "expect", "Breach", "apart")
+        and call.func.id in ("BundleRefused", "expect", "broken", "apart")
         and isinstance(call.args[0], ast.Constant)
     }
 
@@ -144,7 +144,7 @@ print(status.state, status.reason)
 """
 LAB = "book/lessons/l04-joint-control/lab.md"
 SPEC, METRICS, CLAIMS = (
-    f"robo_genesis/lessons/l04/{name}.py" for name in ("spec", "metrics", "claims_text")
+    f"robo_genesis/lessons/l04/{name}.py" for name in ("spec", "metrics", "checks")
 )
 STALE = "stale stale: manifest.json: {} is "
 

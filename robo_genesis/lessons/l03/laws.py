@@ -1,13 +1,14 @@
-"""What arrays of landings, slides and bounces cannot be, whatever metrics and checks they give."""
+"""What runs of landings, slides and bounces have in common by the laws of motion."""
 
 from collections.abc import Iterator, Mapping
 
+from robo_genesis.core.checks import Finding
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import study_spec
 from robo_genesis.sim.bodies.contacts import ContactCase
 from robo_genesis.sim.bodies.laws import body_on_surface, never_still, reported_contacts
-from robo_genesis.sim.laws import Breach, computed_again, copied, refuse, times
+from robo_genesis.sim.laws import computed_again, copied, kept, times
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 MEASURES = False
@@ -24,20 +25,16 @@ AGAIN_BY_DEFAULTS = dict.fromkeys(MOTION, 2e-5) | {"link_ang": 4e-3}
 4e-4."""
 
 
-def require_possible_runs(run: Experiment) -> None:
-    """Require of each run in Genesis the laws of motion; compute each run in MuJoCo again.
-
-    Raises:
-        BundleRefused: `stamps`, `pose`, `start`, `contact`, `motion` or `second-engine`.
-    """
+def laws_of_motion(run: Experiment) -> Iterator[Finding]:
+    """At each sample a body moves and touches as the contact model makes it; MuJoCo runs repeat."""
     by_genesis = {name: of for name, of in run.traces.items() if name not in BY_MUJOCO}
     for name, case in run.cases.items():
         trace = run.traces[name]
         if name in BY_MUJOCO:
-            breaches = in_mujoco(trace, case, name == study_spec.OWN_DEFAULTS, by_genesis)
+            broken = in_mujoco(trace, case, name == study_spec.OWN_DEFAULTS, by_genesis)
         else:
-            breaches = body_on_surface(trace, case)
-        refuse(f"arrays/{name}.npz", breaches)
+            broken = body_on_surface(trace, case)
+        yield from kept(name, broken)
 
 
 def in_mujoco(
@@ -45,7 +42,7 @@ def in_mujoco(
     case: ContactCase,
     own_defaults: bool,
     by_genesis: Mapping[str, ContactTrace],
-) -> Iterator[Breach]:
+) -> Iterator[Finding]:
     """Yield what a run in MuJoCo does not have; the arguments as of `mujoco_contacts.run_case`."""
     yield from times(trace, case.steps, case.dt)
     yield from copied(trace, by_genesis)
