@@ -30,14 +30,8 @@ largest value of an array. Two runs on one CPU are equal; other CPUs round float
 
 def broken(code: str, what: str, found: Any, expected: object) -> Finding:
     """Return the finding of something in a run's arrays that no such run has."""
-    return Finding(
-        what,
-        found,
-        False,
-        expected if isinstance(expected, str) else quoted(expected),
-        recorded=False,
-        code=code,
-    )
+    allowed = expected if isinstance(expected, str) else quoted(expected)
+    return Finding(what, found, False, allowed, recorded=False, code=code)
 
 
 def kept(run: str, laws: Iterable[Finding]) -> Iterator[Finding]:

@@ -74,11 +74,11 @@ def test_a_value_becomes_one_that_json_can_hold(value, expected):
 
 def test_an_outcome_is_recorded_without_words_and_without_allowed_values():
     def near(limit):
+        """The distance is small."""
         yield at_most("distance_m", np.float32(0.5), limit)
         yield equal("difference of two cases", ["kp"], ["kp"], recorded=False)
 
-    claims = {"near": "The distance is small."}
-    (strict,), (loose,) = (evaluate([near], limit, claims) for limit in (0.1, 1.0))
+    (strict,), (loose,) = (evaluate([near], limit) for limit in (0.1, 1.0))
     assert (strict.passed, loose.passed) == (False, True)
     assert strict.detail == "distance_m is 0.5, expected at most 0.1"
     assert loose.detail == "The distance is small."
@@ -89,10 +89,11 @@ def test_an_outcome_is_recorded_without_words_and_without_allowed_values():
 
 def test_a_check_that_breaks_off_fails_and_keeps_what_it_found():
     def broken(subject):
+        """There is a second one."""
         yield noted("first", 1)
         yield noted("second", subject["second"])
 
-    (outcome,) = evaluate([broken], {}, {"broken": "There is a second one."})
+    (outcome,) = evaluate([broken], {})
     assert not outcome.passed
     assert outcome.found == {"first": 1}
     assert outcome.detail == "cannot be evaluated: KeyError('second')"
