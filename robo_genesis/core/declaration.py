@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
+from importlib.util import find_spec
 from typing import Any, Protocol
 
 from robo_genesis.core.channels import View
@@ -128,19 +129,24 @@ class Lesson:
         return {name: v for of in self.metrics.values() for name, v in of.about(what).items()}
 
 
-def on_demand(package: str, *modules: str) -> Callable[[str], Any]:
-    """Return the `__getattr__` of a lesson that imports some of its modules when a page uses them.
+def on_demand(package: str, **offered: str) -> Callable[[str], Any]:
+    """Return the `__getattr__` of a lesson: what a page uses is imported when it is used.
 
-    It is meant for plots: Matplotlib takes longer to import than a verification.
+    A module of the lesson's folder needs no argument. The readers of import statements know the
+    arguments as well, so each is written out.
 
     Args:
         package: the `__name__` of the lesson.
-        modules: names of modules in its folder.
+        offered: by name, the module that has it, or that it is: `run` of the lesson's folder, or a
+            module of another sub-package by its whole name.
     """
 
     def imported(name: str) -> Any:
-        if name in modules:
-            return import_module(f"{package}.{name}")
-        raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        place = offered.get(name, name)
+        module = place if "." in place else f"{package}.{place}"
+        if name[:1] == "_" or (name not in offered and not find_spec(module)):
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        found = import_module(module)
+        return getattr(found, name, found)
 
     return imported

@@ -11,6 +11,25 @@ SCALED = {"m": "mm", "s": "ms", "rad": "mrad", "m/s": "mm/s", "rad/s": "mrad/s",
 """The thousandth of a unit, in which small values are easier to read."""
 
 
+MICRO = {"m": "µm", "s": "µs", "rad": "µrad", "1": "%"}
+"""A smaller unit still, and the hundredth of a share."""
+
+SCALES = dict.fromkeys(SCALED.values(), 1e3) | dict.fromkeys(MICRO.values(), 1e6) | {"%": 100.0}
+"""By unit of a text, the factor from the unit in which a value is kept."""
+
+
+def scaled_value(value: float, unit: str) -> str:
+    """Return a value in another unit with three significant digits: `4.47 mm`, `1.2 %`.
+
+    Raises:
+        LookupError: the unit is not one of `SCALES` and `DIGITS`; the message lists them.
+    """
+    if unit not in SCALES | DIGITS:
+        raise LookupError(f"No text has the unit {unit!r}. Valid: {', '.join(SCALES | DIGITS)}.")
+    text = f"{SCALES.get(unit, 1.0) * value:#.3g}".removesuffix(".")
+    return f"{text if 'e' not in text else f'{float(text):.0f}'} {unit}"
+
+
 def format_value(value: float | None, unit: str) -> str:
     """Return a metric as text for readers: `0.0447 rad`, `19 samples`, `not observed`."""
     if value is None:

@@ -21,7 +21,7 @@ IMPORTING = {"__import__", "eval", "exec", "exec_module", "import_module", "run_
 MADE_NAMES = {
     "pipeline/html/sphinx_process.py": "importlib.import_module(extension)",
     "core/shown.py": "import_module(place)",
-    "core/declaration.py": "import_module(f'{package}.{name}')",
+    "core/declaration.py": "import_module(module)",
     "lessons/__init__.py": "import_module(f'{__name__}.{name}')",
 }
 """Where the package imports by a name made at run time: extensions of Sphinx, the module of a shown

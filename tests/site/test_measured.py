@@ -1,5 +1,6 @@
 """Numbers that pages insert come from the bundle, and an unknown one stops the build."""
 
+import re
 from types import SimpleNamespace
 
 import pytest
@@ -25,6 +26,14 @@ def test_a_metric_comes_with_unit_and_origin(outputs, experiment):
 )
 def test_counts_and_the_engine_version_are_plain(outputs, name, text):
     assert insert("l04/lab", name)[0] == text
+
+
+def test_a_value_that_a_check_found_is_inserted_in_a_unit(outputs):
+    text, origin = insert("l04/lab", "control_law:G1.distance_to_control_law N·m")
+    assert re.fullmatch(r"\S+ N·m", text)
+    assert origin.endswith("found by the check control_law")
+    with pytest.raises(LookupError, match=r"no finding 'control_law:x'. Known: .*control_law:G1"):
+        insert("l04/lab", "control_law:x")
 
 
 @pytest.mark.parametrize("name", ["G2.overshot", "G9.overshoot", "overshoot"])

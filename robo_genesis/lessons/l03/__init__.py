@@ -1,139 +1,22 @@
 """L03: rigid-body physics and stable simulation."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from robo_genesis.core.declaration import on_demand
 
-from robo_genesis.core.checks import Finding
-from robo_genesis.core.declaration import Filmed, Lesson, Moving, on_demand
-from robo_genesis.core.experiment import (
-    Experiment,
-    MeasuringPage,
-    Readings,
-    Run,
-    counts,
-    runs_of,
-)
-from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import (
-    checks,
-    exercises,
-    mistakes,
-    spec,
-    study,
-    study_contact,
-    study_energy,
-    study_spec,
-    study_tables,
-    study_text,
-    tables,
-    text,
-)
-from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
-from robo_genesis.sim.bodies.contacts import (
-    SETTINGS,
-    SURFACE_SIZE,
-    TOP,
-    ContactCase,
-    build_world,
-    record_world,
-    time_constant,
-)
-from robo_genesis.sim.bodies.rigid_bodies import read_model
-from robo_genesis.sim.mujoco import contacts as mujoco_contacts
-from robo_genesis.sim.visual_shape import read_shape, slab
-
-if TYPE_CHECKING:
-    from robo_genesis.lessons.l03 import plots, study_plots
-
-__all__ = [
-    "CONTACT", "ENERGY", "LAB", "LECTURE", "LESSON", "MISTAKES", "SURFACE_SIZE", "TOP",
-    "build_world", "exercises", "mistakes", "mujoco_contacts", "plots", "read_model", "read_shape",
-    "record_world", "slab", "spec", "study", "study_plots", "study_spec", "study_tables",
-    "study_text", "tables", "text", "time_constant",
-]  # fmt: skip
-
-__getattr__ = on_demand(__name__, "plots", "study_plots")
-
-
-def readings(
-    cases: Mapping[str, ContactCase], scenes: Collection[str] = ()
-) -> Callable[[bool], dict[str, Readings]]:
-    """Return a function for the engine's values of a page.
-
-    They are the counts of the cube's scene, the masses, the settings of the cases, and the time
-    constants of some scenes.
-    """
-    shapes = dict.fromkeys(case.shape for case in cases.values())
-    found = {
-        "model": counts(spec.EXPECTED_MODEL),
-        "mass": Readings(dict.fromkeys(shapes, "kg")),
-        **{name: Readings(dict.fromkeys(cases, "1")) for name in SETTINGS},
-    }
-    if scenes:
-        found[study.GROUP] = Readings(dict.fromkeys(scenes, "s"))
-    return lambda rendered: found
-
-
-LAB = MeasuringPage(
-    runs=runs_of(spec.CASES),
-    kind=ContactTrace,
-    links=(spec.LINK,),
-    readings=readings(spec.CASES),
-    measure=case_metrics,
-    checks=checks.CHECKS,
-    parameters=spec.parameters,
-)
-
-
-def further(
-    name: str,
-    cases: Mapping[str, ContactCase],
-    own: Sequence[Callable[[Experiment], Iterable[Finding]]],
-    scenes: Collection[str] = (),
-) -> MeasuringPage:
-    """Return a page without a camera, with runs and checks of its own."""
-    return replace(
-        LAB,
-        runs=runs_of(cases),
-        readings=readings(cases, scenes),
-        checks=(*checks.OF_ALL_PAGES, *own),
-        parameters=lambda: spec.parameters() | study_spec.parameters(name),
-        camera=False,
-    )
-
-
-LECTURE = further(
-    "lecture",
-    study_spec.OF_LECTURE,
-    study.CHECKS,
-    study_spec.STEP_CASES.keys() | study_spec.STIFF_CASES.keys(),
-)
-LECTURE = replace(LECTURE, checks=(*LECTURE.checks, checks.posture), camera=True)
-CONTACT = further("contact", study_spec.OF_CONTACT, study_contact.CHECKS)
-IN_MUJOCO = {
-    name: Run(case, note="run in MuJoCo, not in Genesis")
-    for name, case in study_spec.IN_MUJOCO.items()
-}
-CONTACT = replace(CONTACT, runs={**CONTACT.runs, **IN_MUJOCO})
-ENERGY = further(
-    "energy", study_spec.OF_ENERGY, study_energy.CHECKS, study_spec.RELEASE_CASES.keys()
-)
-MISTAKES = further("mistakes", study_spec.OF_MISTAKES, ())
-
-LESSON = Lesson(
-    spec=spec,
-    metrics={name: metrics_class(case) for name, case in spec.CASES.items()},
-    pages={
-        "lab": LAB,
-        "lecture": LECTURE,
-        "mistakes": MISTAKES,
-        "contact": CONTACT,
-        "energy": ENERGY,
-    },
-    filmed=Filmed("the cube"),
-    compared=Moving(tuple(study_spec.DROPPED), link=spec.LINK, thing="cube", until=0.5),
-    further={
-        "slides": Moving(tuple(study_spec.HOPPED), link=spec.LINK, thing="cube", axes=("x", "z"))
-    },
+__getattr__ = on_demand(
+    __name__,
+    CONTACT="pages",
+    ENERGY="pages",
+    LAB="pages",
+    LECTURE="pages",
+    LESSON="pages",
+    MISTAKES="pages",
+    SURFACE_SIZE="robo_genesis.sim.bodies.contacts",
+    TOP="robo_genesis.sim.bodies.contacts",
+    build_world="robo_genesis.sim.bodies.contacts",
+    record_world="robo_genesis.sim.bodies.contacts",
+    time_constant="robo_genesis.sim.bodies.contacts",
+    read_model="robo_genesis.sim.bodies.rigid_bodies",
+    mujoco_contacts="robo_genesis.sim.mujoco.contacts",
+    read_shape="robo_genesis.sim.visual_shape",
+    slab="robo_genesis.sim.visual_shape",
 )

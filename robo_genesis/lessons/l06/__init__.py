@@ -1,116 +1,18 @@
 """L06: many worlds at once."""
 
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from robo_genesis.core.declaration import on_demand
 
-import numpy as np
-
-from robo_genesis.core.channels import View
-from robo_genesis.core.declaration import Compared, Filmed, Lesson, on_demand
-from robo_genesis.core.experiment import MeasuringPage, Run, counts, runs_of
-from robo_genesis.core.palette import MARKS
-from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l06 import (
-    checks,
-    exercises,
-    mistakes,
-    spec,
-    study,
-    text,
-    throughput,
-    throughput_exercises,
-    throughput_text,
-)
-from robo_genesis.lessons.l06.metrics import WorldMetrics, world_metrics
-from robo_genesis.sim.arm.batch import set_link_mass
-from robo_genesis.sim.arm.franka import CREDIT, FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.arm.joint_control import describe
-from robo_genesis.sim.arm.joints import resolve_joints
-from robo_genesis.sim.visual_shape import Part, ball, read_shape
-
-if TYPE_CHECKING:
-    from robo_genesis.lessons.l06 import plots, throughput_plots
-
-__all__ = [
-    "FRANKA_MJCF", "LAB", "LECTURE", "LESSON", "MISTAKES", "THROUGHPUT", "describe", "exercises",
-    "mistakes", "plots", "read_shape", "resolve_joints", "set_link_mass", "spec", "study",
-    "target_parts", "text", "throughput", "throughput_exercises", "throughput_plots",
-    "throughput_text",
-]  # fmt: skip
-
-__getattr__ = on_demand(__name__, "plots", "throughput_plots")
-
-
-def target_parts() -> list[Part]:
-    """Return a sphere at each target for the replay, in the colour of its environment."""
-    parts = []
-    for (x, y), (name, world) in zip(spec.PLACES, spec.WORLDS.items(), strict=True):
-        red, green, blue = bytes.fromhex(MARKS[spec.CASE_MARKS[name]].light[1:])
-        centres = world.positions + np.array([x, y, 0])
-        parts += [ball(centre, spec.MARKER_RADIUS, (red, green, blue)) for centre in centres]
-    return parts
-
-
-COPY_NOTE = "repeats another run of this page, and has no metrics of its own"
-
-LECTURE = MeasuringPage(
-    runs={
-        **runs_of(spec.CASES),
-        **{name: Run(world, False, COPY_NOTE) for name, world in spec.COPIES.items()},
-    },
-    kind=Trace,
-    joints=JOINT_NAMES,
-    readings=study.readings,
-    measure=world_metrics,
-    checks=checks.CHECKS,
-    parameters=spec.parameters,
-)
-LAB = replace(
-    LECTURE,
-    readings=lambda rendered: study.readings(rendered) | throughput.PROTOCOL.readings(),
-    checks=(*checks.CHECKS, checks.equal_work),
-    parameters=lambda: spec.parameters() | throughput.PROTOCOL.parameters(),
-)
-MISTAKES = replace(
-    LECTURE,
-    runs={},
-    readings=lambda rendered: {"model": counts(spec.EXPECTED_MODEL)},
-    checks=(checks.mapping,),
-    camera=False,
-)
-THROUGHPUT = replace(
-    MISTAKES,
-    readings=lambda rendered: {"model": counts(spec.EXPECTED_MODEL)} | throughput.DEEPER.readings(),
-    checks=(checks.mapping, checks.equal_work),
-    parameters=lambda: spec.parameters() | throughput.DEEPER.parameters(),
-)
-"""The page that explains why the curve of throughput bends."""
-
-LESSON = Lesson(
-    spec=spec,
-    metrics=dict.fromkeys(spec.CASES, WorldMetrics),
-    pages={
-        "lab": LAB,
-        "lecture": LECTURE,
-        "mistakes": MISTAKES,
-        "throughput": THROUGHPUT,
-    },
-    filmed=Filmed("the robots of all environments", "the batch"),
-    marks=spec.CASE_MARKS,
-    compared=Compared(
-        tuple(spec.WORLDS),
-        joint="joint1",
-        band=0.01,
-        places=spec.PLACES,
-        view=View(
-            thing="robots",
-            alt="Four robots in 3D, in the postures of the sample that is shown. Spheres in the "
-            "colours of the runs are at the targets of the hands.",
-            credit=CREDIT,
-        ),
-        alt="Position of joint1 over time in four environments.",
-        caption="Position of joint1 in four environments, from get_dofs_position.",
-        quality="The hand ends {final_distance} from its last target; after 1.8 s it moved "
-        "{moved_later}.",
-    ),
+__getattr__ = on_demand(
+    __name__,
+    LAB="pages",
+    LECTURE="pages",
+    LESSON="pages",
+    MISTAKES="pages",
+    THROUGHPUT="pages",
+    target_parts="pages",
+    set_link_mass="robo_genesis.sim.arm.batch",
+    FRANKA_MJCF="robo_genesis.sim.arm.franka",
+    describe="robo_genesis.sim.arm.joint_control",
+    resolve_joints="robo_genesis.sim.arm.joints",
+    read_shape="robo_genesis.sim.visual_shape",
 )

@@ -106,6 +106,12 @@ def page_record(docname: str) -> Record:
     return read_record(built_pages().folders[docname])
 
 
+def measuring_page(docname: str) -> str:
+    """Return the lesson and page of an executed page: `l04/lab`, or a name without a bundle."""
+    pages, folder = built_pages(), built_pages().folders.get(docname)
+    return next((n for n, left in pages.outputs.items() if folder in left.parents), docname)
+
+
 def page_outputs(lesson_page: str) -> Path:
     """Return the folder of what a page's run left, with the bundle in `<backend>/`.
 

@@ -10,9 +10,11 @@ from typing import Literal
 
 from nbformat import NotebookNode
 
+from robo_genesis.core.checks import CheckFailed
 from robo_genesis.core.project import OUTPUTS_DIR, RUN_ID
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page
+from robo_genesis.pipeline.pages.guards import contradicted
 
 LOG_LINES = 15
 Status = Literal["executed", "reused", "failed"]
@@ -146,6 +148,8 @@ def at_cell(
     lines = cells[index].source.splitlines() or [""]
     same = ran and ran.source == cells[index].source  # no comment was added after the run
     failing = min(_failing_line(ran), len(lines)) if same else 1
+    if error == CheckFailed.__name__:
+        message += contradicted(page.path, message)
     return Failure(
         error,
         message,

@@ -5,7 +5,8 @@ Roles and a directive, as pages write them:
 | in a page | shows |
 |---|---|
 | {measured}`l04/lab G2.overshoot` | a metric, written with its unit |
-| {measured}`l04/lab G2.overshoot mrad` | the same in the thousandth of its unit |
+| {measured}`l04/lab G2.overshoot mrad` | the same in another unit, with three digits |
+| {measured}`l05/lab sag_explains:baseline.unexplained_share %` | a value that a check found |
 | {measured}`l04/lab engine` | the engine version that the page ran on |
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
@@ -16,7 +17,7 @@ Roles and a directive, as pages write them:
 
 import importlib.metadata
 import pickle
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from hashlib import sha256
@@ -29,8 +30,9 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 from robo_genesis.core import project
+from robo_genesis.core.checks import shown as quoted
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.quantities import SCALED, format_value
+from robo_genesis.core.quantities import MICRO, SCALED, format_value, scaled_value
 from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,
@@ -57,8 +59,8 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
 
     Args:
         lesson_page: `l04/lab`.
-        name: `group.metric` of its metrics.json, or `engine`. After a space it may have the
-            thousandth of the metric's unit; then the value has three digits.
+        name: `group.metric` of its metrics.json, `check:label` of what a check found, or `engine`.
+            After a space it may have a unit such as mm or %; then the value has three digits.
 
     Raises:
         LookupError: the page has no metric of this name, and the message lists its metrics; or the
@@ -72,23 +74,41 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
     if name == "engine":
         return predicate.engine.version, origin
     name, _, unit = name.partition(" ")
+    if ":" in name:
+        check, _, label = name.partition(":")
+        findings = {c.name: c.found for c in predicate.checks}
+        value = _chosen(lesson_page, check, label, findings, ":")
+        text = scaled_value(float(value), unit) if unit else quoted(value)
+        return text, f"{origin}, found by the check {check}"
     group, _, metric = name.partition(".")
-    records = bundle.read_metrics(folder)
-    if metric not in records.get(group, {}):
-        known = ", ".join(f"{g}.{m}" for g, items in records.items() for m in items)
-        raise LookupError(f"{lesson_page} has no metric {name!r}. Known: {known}.")
-    record = records[group][metric]
+    record = _chosen(lesson_page, group, metric, bundle.read_metrics(folder), ".")
     value, given = record.value, record.unit
     if not unit:
         text = str(value) if group == "model" else format_value(value, given)
-    elif value is None or SCALED.get(given) != unit:
+    elif value is None or unit not in (SCALED.get(given), MICRO.get(given), given):
         raise LookupError(
             f"{lesson_page} has {name} = {value} in {given}, which cannot be shown in {unit!r}. "
             f"Valid is {SCALED.get(given, 'no other unit')}, for a value that was measured."
         )
     else:
-        text = f"{1000 * value:.3g} {unit}"
+        text = scaled_value(value, unit)
     return text, f"{origin}, from {', '.join(record.source)}"
+
+
+def _chosen(
+    page: str, group: str, name: str, all_: Mapping[str, Mapping[str, Any]], by: str
+) -> Any:
+    """Return a value by group and name.
+
+    Raises:
+        LookupError: the page has no such value; the message lists those that it has.
+    """
+    if name not in all_.get(group, {}):
+        known = ", ".join(f"{g}{by}{n}" for g, of in all_.items() for n in of)
+        kind = "metric" if by == "." else "finding"
+        asked = f"{group}{by}{name}" if name else group
+        raise LookupError(f"{page} has no {kind} {asked!r}. Known: {known}.")
+    return all_[group][name]
 
 
 class measured_value(nodes.inline):  # noqa: N801 - docutils names nodes in lower case

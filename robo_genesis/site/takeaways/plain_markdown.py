@@ -126,6 +126,8 @@ def _role(name: str, text: str, writer: Writer) -> str:
     titled = TITLED.fullmatch(text)
     if name == "measured":
         return writer.measured(text)
+    if name == "guard":
+        return ""
     if name == "engine-source":
         return f"`genesis/{text}`"
     return titled[1] if titled else UNTITLED.get(name, text)

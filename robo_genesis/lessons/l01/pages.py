@@ -1,0 +1,41 @@
+"""The measuring pages of L01, and its declaration."""
+
+from dataclasses import replace
+
+from robo_genesis.core.declaration import Filmed, Lesson, Moving
+from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
+from robo_genesis.core.trace import BodyTrace
+from robo_genesis.lessons.l01 import checks, machine, spec
+from robo_genesis.lessons.l01.metrics import FallMetrics, fall_metrics
+
+MEASURES = False
+
+
+def readings(rendered: bool) -> dict[str, Readings]:
+    """Return the engine's counts of the scene."""
+    return {"model": counts(spec.EXPECTED_MODEL)}
+
+
+LAB = MeasuringPage(
+    runs=runs_of(spec.CASES),
+    kind=BodyTrace,
+    links=(spec.LINK,),
+    readings=readings,
+    measure=fall_metrics,
+    checks=checks.CHECKS,
+    parameters=spec.parameters,
+)
+LECTURE = replace(
+    LAB,
+    readings=lambda rendered: readings(rendered) | machine.readings(),
+    checks=(*checks.CHECKS, checks.doctor),
+    parameters=spec.lecture_parameters,
+)
+
+LESSON = Lesson(
+    spec=spec,
+    metrics=dict.fromkeys(spec.CASES, FallMetrics),
+    pages={"lab": LAB, "lecture": LECTURE},
+    filmed=Filmed("the sphere"),
+    compared=Moving(tuple(spec.CASES), link=spec.LINK, thing="sphere"),
+)

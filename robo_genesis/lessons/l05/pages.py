@@ -1,0 +1,102 @@
+"""The measuring pages of L05, and its declaration."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from robo_genesis.core.channels import View
+from robo_genesis.core.declaration import Compared, Filmed, Lesson
+from robo_genesis.core.experiment import MeasuringPage, Run, case_inputs, counts, runs_of
+from robo_genesis.core.trace import Trace
+from robo_genesis.lessons.l05 import (
+    checks,
+    restarts,
+    spec,
+    study,
+)
+from robo_genesis.lessons.l05.metrics import ReachMetrics, reach_metrics
+from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
+from robo_genesis.sim.camera import record as view_record
+from robo_genesis.sim.visual_shape import WORLD, Part, read_shape
+
+MEASURES = False
+
+
+def target_part(marker: Any) -> list[Part]:
+    """Return the shape of a fixed sphere at the lesson's target, for the replay."""
+    parts = read_shape(marker)
+    return [replace(p, link=WORLD, vertices=p.vertices + np.float32(spec.TARGET)) for p in parts]
+
+
+MODEL = {"model": counts(spec.EXPECTED_MODEL)}
+SEEN = {view_record.SEGMENTS: counts(spec.SEGMENTS)}
+
+MOTION = MeasuringPage(
+    runs=runs_of(spec.CASES),
+    kind=Trace,
+    joints=JOINT_NAMES,
+    readings=lambda rendered: MODEL | study.READINGS,
+    measure=reach_metrics,
+    checks=checks.WITHOUT_CAMERA,
+    parameters=spec.parameters,
+    camera=False,
+)
+LAB = replace(
+    MOTION,
+    readings=lambda rendered: MODEL | study.READINGS | SEEN | view_record.groups(spec.VIEWED),
+    checks=checks.CHECKS,
+    camera=True,
+    frames=("initial", "final", *view_record.frame_names(spec.VIEWED)),
+)
+
+ANSWERS_NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal"
+ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()}
+SOLUTIONS = replace(
+    MOTION,
+    runs={**MOTION.runs, **ANSWERS},
+    readings=lambda rendered: MODEL | study.READINGS | restarts.READINGS,
+    checks=(*checks.WITHOUT_CAMERA, *checks.SOLUTIONS),
+    parameters=lambda: spec.parameters() | {"questions": case_inputs(spec.QUESTIONS)},
+)
+"""The page about many solutions, the map of targets and the target beyond reach."""
+
+CAMERAS = replace(
+    MOTION,
+    runs=runs_of({"baseline": spec.BASELINE}),
+    readings=lambda rendered: MODEL | SEEN | view_record.groups(*spec.VIEWS),
+    checks=checks.CAMERAS,
+    parameters=spec.view_parameters,
+    camera=True,
+    frames=view_record.frame_names(*spec.VIEWS),
+)
+"""The page about cameras; each view has colours, depth and segmentation."""
+
+LESSON = Lesson(
+    spec=spec,
+    metrics=dict.fromkeys(spec.CASES, ReachMetrics),
+    pages={
+        "lab": LAB,
+        "lecture": LAB,
+        "mistakes": replace(MOTION, camera=True, frames=()),
+        "solutions": SOLUTIONS,
+        "cameras": CAMERAS,
+    },
+    filmed=Filmed("the Franka"),
+    marks=spec.CASE_MARKS,
+    compared=Compared(
+        tuple(spec.CASES),
+        joint="joint4",
+        band=0.01,
+        until=0.6,
+        view=View(
+            thing="robot",
+            alt="The robot in the posture of the sample; a sphere marks the target of the hand.",
+            credit=CREDIT,
+        ),
+        alt="Position of joint4 over time in three runs, and its command.",
+        caption="Position of joint4 in three runs, from get_dofs_position.",
+        quality="The hand starts {start_distance} from its target and ends {final_distance} and "
+        "{final_angle} from it.",
+    ),
+)

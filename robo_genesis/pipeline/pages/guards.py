@@ -1,0 +1,50 @@
+"""Sentences of a page that name the check that guards them.
+
+A sentence that claims an order or a bound ends with the role `{guard}` and the name of a check of
+its page, or of `lesson/page check`. If the check fails, the sentence must be written again.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+GUARD = re.compile(r"\s*\{guard\}`([^`]+)`")
+START = re.compile(r"(?<=[.!?])\s+(?=\S)|\n\s*(?:[-*]|\d+\.|\|)\s|\n\s*\n|\|")
+
+
+@dataclass(frozen=True, slots=True)
+class Guarded:
+    """A sentence, its line in the file, and the checks that guard it."""
+
+    line: int
+    sentence: str
+    check: str
+
+
+def guarded_sentences(text: str) -> Iterator[Guarded]:
+    """Yield each guarded sentence of a page's Markdown; one with two guards twice."""
+    sentence = ""
+    last = 0
+    for match in GUARD.finditer(text):
+        before = text[last : match.start()]
+        if before.strip():
+            sentence = " ".join(START.split(before.rstrip())[-1].split())
+        last = match.end()
+        yield Guarded(text.count("\n", 0, match.start()) + 1, sentence, match[1])
+
+
+def contradicted(file: Path, message: str) -> str:
+    """Return which sentences of a page a message of failed checks contradicts, as a message.
+
+    Args:
+        file: the source of the page.
+        message: it has the names of failed checks in brackets.
+    """
+    failed = set(re.findall(r"\[(\w+)\]", message))
+    said = [
+        f"{file.name}, line {found.line}, says “{found.sentence}” ({found.check})"
+        for found in guarded_sentences(file.read_text("utf8"))
+        if found.check.split()[-1] in failed
+    ]
+    return f" Write again what the runs contradict: {'; '.join(said)}." if said else ""
