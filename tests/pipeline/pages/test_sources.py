@@ -180,7 +180,7 @@ CHANGES = [
     ("lessons/l04/spec", ('"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'), ("l04",), NONE),
     ("lessons/l04/spec", DOCSTRING, NONE, NONE),
     ("lessons/l04/study_spec", CONSTANT, ("l04",), NONE),
-    ("lessons/l04/__init__", ('Filmed("the Franka")', 'Filmed("the arm")'), ("l04",), NONE),
+    ("lessons/l04/pages", ('Filmed("the Franka")', 'Filmed("the arm")'), ("l04",), NONE),
     ("lessons/l02/plots", CONSTANT, ("l02",), NONE),
     ("lessons/l04/theory_text", CONSTANT, ("l04",), NONE),
     ("lessons/l02/mistakes", CONSTANT, ("l02",), NONE),
