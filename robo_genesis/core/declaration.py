@@ -147,6 +147,6 @@ def on_demand(package: str, **offered: str) -> Callable[[str], Any]:
         if name[:1] == "_" or (name not in offered and not find_spec(module)):
             raise AttributeError(f"module {package!r} has no attribute {name!r}")
         found = import_module(module)
-        return getattr(found, name, found)
+        return getattr(found, name, found) if name in offered else found
 
     return imported

@@ -75,3 +75,13 @@ def test_a_lookup_error_lists_the_choices():
 def test_cases_are_written_as_words():
     assert registry.Moving(("A", "B", "C"), link="box", thing="box").names == "A, B and C"
     assert registry.Moving(("A",), link="box", thing="box").names == "A"
+
+
+def test_a_lesson_gives_its_modules_and_what_it_offers_when_they_are_used():
+    from robo_genesis.lessons import l03, l05
+
+    assert l03.tables.__name__ == "robo_genesis.lessons.l03.tables"  # which has a name `tables`
+    assert l05.kinematics.__name__ == "robo_genesis.sim.arm.kinematics"
+    assert l05.ask.__module__ == "robo_genesis.lessons.l05.run"
+    with pytest.raises(AttributeError, match=r"l05' has no attribute 'kinematix'"):
+        _ = l05.kinematix
