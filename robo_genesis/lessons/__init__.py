@@ -10,7 +10,7 @@ from robo_genesis.core.experiment import MeasuringPage
 
 
 class _Lessons(Mapping[str, Lesson]):
-    """The lessons by name, in the order of the course; each is imported when it is asked for."""
+    """The lessons by name, in the order of the course; each is imported at its first use."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self.found: dict[str, Lesson | None] = dict.fromkeys(names)
