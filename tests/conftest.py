@@ -72,7 +72,7 @@ def kind(path: Path) -> str:
         return BROWSER
     if "mark.engine" in text:
         return ENGINE
-    return BUILDS if path.parent.name in ("build", "maintain") else SMALL
+    return BUILDS if {"pipeline", "maintain"} & {*path.parts} else SMALL
 
 
 def uses_engine(item: pytest.Item) -> bool:

@@ -12,8 +12,8 @@ from robo_genesis.core.project import ProjectError
 
 TEMPLATE = Path(__file__).with_name("template")
 SUFFIX = ".tmpl"
-TITLE = "A box lands"
-OUTCOME = "measure how a box lands"
+TITLE = "A robot turns one joint"
+OUTCOME = "measure how a joint turns"
 NAME = re.compile(r"l\d\d")
 CHAPTER = re.compile(r"  - file: (\S+)\s*")
 ENTRY = re.compile(r"- id: (\S+)\s*")
@@ -109,7 +109,8 @@ def with_chapter(toc: str, lesson: str) -> str:
     later = [k for name, k in lessons.items() if name > f"lessons/{lesson}"]
     at = min(later) if later else _end(chapters, max(lessons.values()), lines)
     folder = f"lessons/{lesson}-new-lesson"
-    lines[at:at] = [f"  - file: {folder}/lecture", "    sections:", f"      - file: {folder}/lab"]
+    pages = [f"      - file: {folder}/{page}" for page in ("lab", "mistakes")]
+    lines[at:at] = [f"  - file: {folder}/lecture", "    sections:", *pages]
     return "\n".join(lines) + "\n"
 
 
