@@ -108,7 +108,8 @@ def test_a_new_lesson_is_on_the_site_at_once(tmp_path, build_output):
     assert card.select_one("p.time").get_text().startswith("Lecture: ")
     lecture = parsed(site, "lessons/l99-new-lesson/lecture")
     assert lecture.select_one(".evidence-badge").get_text() == "cpu-verified"
-    assert lecture.select_one(".replay") and lecture.select_one(".measured")
+    assert lecture.select_one(".replay")
+    assert lecture.select_one(".measured")
     for page in ("lecture", "lab", "mistakes"):
         assert "L99 CHECK: PASSED" in parsed(site, f"lessons/l99-new-lesson/{page}").get_text()
         assert f"lessons/l99-new-lesson/{page}" in (site / "searchindex.js").read_text()
