@@ -13,7 +13,7 @@ from robo_genesis.core.project import CACHE
 from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import compare
-from robo_genesis.evidence.findings import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE
+from robo_genesis.evidence.rows import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE
 
 STATUS = {DIFFERS: 1, INCONCLUSIVE: 1, NOT_COMPARABLE: 2}
 
@@ -45,7 +45,7 @@ def main() -> int:
     runs = [predicate.run_id[:8] for predicate in (comparison.old, comparison.new)]
     folder = Path(args.report or CACHE / "reports" / "-".join(["compare", *runs]))
     try:
-        written = report.write(folder, report.markdown(comparison), report.html(comparison))
+        written = report.document(comparison).write(folder)
     except OSError as error:
         return refused(f"REPORT={folder} cannot be written: {error}. Give another folder.")
     print(report.summary(comparison))

@@ -18,7 +18,7 @@ from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison, compare
-from robo_genesis.evidence.findings import EQUAL, INCONCLUSIVE, NOT_COMPARABLE, WITHIN
+from robo_genesis.evidence.rows import EQUAL, INCONCLUSIVE, NOT_COMPARABLE, WITHIN
 
 LARGEST = 500_000_000
 """Most bytes that an archive may hold; a bundle has a few hundred thousand."""

@@ -1,13 +1,73 @@
-"""One metric of two cases: its order, a sentence about it, and the outcome of a prediction."""
+"""How values are compared: orders of two cases, tolerances, and differences of nested values."""
 
-from collections.abc import Mapping
+import math
+import operator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.orderings import HELD_BY, order
-from robo_genesis.core.quantities import format_value
+from robo_genesis.core.quantities import six_digits
 
-MEASURES = False
+HELD, WITHIN_MARGIN, BROKEN = "held", "within the margin", "broken"
+
+SAME_FLOAT = 1e-9
+"""Relative tolerance of a recorded value against the one that is computed again."""
+
+ROUNDING = 1e-12
+"""Tolerance of such a value near zero, in its own unit."""
+
+Relation = tuple[tuple[str, str], str, str, float]
+"""A claimed ordering: (first case, second case), metric, order, margin."""
+
+
+class Value(NamedTuple):
+    """One metric of one case; `value` is None if it was not observed."""
+
+    value: float | None
+    unit: str
+
+
+HELD_BY = {
+    "no later": ("lower", "equal"),
+    "later": ("higher",),
+    "higher": ("higher",),
+    "lower": ("lower",),
+}
+"""The orders that confirm each claim."""
+
+
+def order(a: float | None, b: float | None, resolution: float) -> str | None:
+    """Return the order of `b` relative to `a`: lower, equal or higher; None if none was observed.
+
+    A time that the window did not reach is later than any time within it.
+    """
+    if a is None or b is None:
+        return None if a is b else "higher" if b is None else "lower"
+    if abs(b - a) <= resolution:
+        return "equal"
+    return "higher" if b > a else "lower"
+
+
+def outcome(numbers: Mapping[str, Any], relation: Relation) -> tuple[str, str]:
+    """Return whether one run confirms an ordering, and the two values as text.
+
+    `numbers` has metrics with `value` and `unit` by `case.name`. A difference within the margin
+    confirms nothing, unless the claim is "no later" and the second value is not later at all.
+    """
+    (first, second), metric, claim, margin = relation
+    a, b = (numbers.get(f"{case}.{metric}") for case in (first, second))
+    if a is None or b is None:
+        return WITHIN_MARGIN, f"{first} or {second} is missing"
+    text = f"{first} {six_digits(a.value, a.unit)}, {second} {six_digits(b.value, b.unit)}"
+    resolved, exact = (order(a.value, b.value, room) for room in (margin, 0))
+    if claim == "no later" and exact in HELD_BY[claim]:
+        return HELD, text
+    if resolved in (None, "equal"):
+        return WITHIN_MARGIN, text
+    return (HELD if resolved in HELD_BY[claim] else BROKEN), text
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,34 +115,33 @@ def compare_values(
     return Comparison(label, unit, a, b, found, margin)
 
 
-def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
-    """Return a sentence that compares one metric of two cases."""
-    label, unit = comparison.label, comparison.unit
-    first, second = (format_value(v, unit) for v in (comparison.first, comparison.second))
-    values = f"{names[0]} {first}, {names[1]} {second}"
-    if comparison.order is None:
-        return f"The {label} was not observed in either case, so this window cannot rank them."
-    if None in (comparison.first, comparison.second):
-        seen, unseen = names if comparison.second is None else names[::-1]
-        return (
-            f"The {label} was observed for {seen} alone ({values}); within this window "
-            f"{unseen} is the slower one, by how much is unknown."
-        )
-    if comparison.order == "equal" and comparison.margin and first != second:
-        margin = f"{comparison.margin:g} {'samples' if unit == '1' else unit}"
-        return f"The {label} is too close to call: {values}, within the margin of {margin}."
-    verb = {"lower": "goes down", "higher": "goes up", "equal": "does not change measurably"}
-    return f"The {label} {verb[comparison.order]} ({values})."
+def allowed(a: Any, b: Any, atol: Any, rtol: Any) -> Any:
+    """Return atol + rtol · the larger magnitude, the allowed difference of numbers or arrays."""
+    return atol + rtol * np.maximum(np.abs(a), np.abs(b))
 
 
-def prediction_sentence(
-    names: tuple[str, str], comparison: Comparison, predicted: str, advice: str
-) -> str:
-    """Return the outcome of a prediction; `advice` follows one that did not hold."""
-    label = comparison.label
-    claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
-    if comparison.order is None:
-        return f"{claim}. Cannot be judged: not observed in either case."
-    if comparison.order in HELD_BY[predicted]:
-        return f"{claim}. Held in this run."
-    return f"{claim}. **Did not hold**: measured {comparison.order}. {advice}"
+def agree(recorded: Any, computed: Any) -> bool:
+    """Return whether two values are equal; floats may differ by rounding on another CPU."""
+    if isinstance(recorded, float) and isinstance(computed, float):
+        return math.isclose(recorded, computed, rel_tol=SAME_FLOAT, abs_tol=ROUNDING)
+    return type(recorded) is type(computed) and bool(recorded == computed)
+
+
+def differences(
+    found: Any, expected: Any, same: Callable[[Any, Any], bool] = operator.eq, path: str = ""
+) -> Iterator[tuple[str, Any, Any]]:
+    """Yield (path, found, expected) where two JSON values differ; `absent` is a missing entry.
+
+    Args:
+        found: of objects, each entry is compared; everything else as a whole.
+        expected: likewise.
+        same: compares two values that are not both objects.
+        path: of the two values in a larger one.
+    """
+    if isinstance(found, dict) and isinstance(expected, dict):
+        for name in sorted(found.keys() | expected.keys()):
+            inner = f"{path}.{name}" if path else name
+            here, there = found.get(name, "absent"), expected.get(name, "absent")
+            yield from differences(here, there, same, inner)
+    elif not same(found, expected):
+        yield path, found, expected

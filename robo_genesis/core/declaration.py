@@ -8,9 +8,9 @@ from typing import Any, Protocol
 
 from robo_genesis.core.channels import View
 from robo_genesis.core.checks import claim_of
+from robo_genesis.core.comparison import Relation
 from robo_genesis.core.experiment import MeasuringPage
 from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.orderings import Relation
 from robo_genesis.core.text import listed
 
 MEASURES = False

@@ -4,22 +4,23 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from robo_genesis.core.comparison import differences
 from robo_genesis.core.refusals import BundleRefused, shown
-from robo_genesis.evidence import bundle, bundle_files, findings
+from robo_genesis.evidence import bundle, bundle_files, rows
 from robo_genesis.evidence.bundle import Predicate
-from robo_genesis.evidence.findings import (
+from robo_genesis.evidence.rows import (
     NOT_COMPARABLE,
     SEVERITY,
     SHOWN,
     PageSpecification,
     Section,
     Side,
-    section,
     worst,
 )
-from robo_genesis.evidence.strict_json import differences
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_lesson, find_page
+
+NO_PERFORMANCE = "No performance is recorded yet."
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ class BundleComparison:
         """The verdict: equal, within tolerance, inconclusive, differs or not comparable."""
         if self.obstacles:
             return NOT_COMPARABLE
-        return worst([f.state for s in self.sections for f in s.findings if f.state != SHOWN])
+        return worst([f.state for s in self.sections for f in s.rows if f.state != SHOWN])
 
 
 def specification(lesson: str, page: str) -> PageSpecification:
@@ -99,19 +100,14 @@ def compare(old: Path, new: Path) -> BundleComparison:
 
 
 def _sections(old: Side, new: Side, spec: PageSpecification) -> tuple[Section, ...]:
-    def of_class(title: str, kind: str, empty: str) -> Section:
-        tolerances = spec.tolerances if kind == "value" else {}
-        return section(title, findings.values(old, new, kind, tolerances), empty)
-
-    claims = findings.relations(old, new, spec)
     every = (
-        section("Coverage", findings.coverage(old, new, spec)),
-        section("Invariants", findings.invariants(old, new)),
-        section("Relations", claims, "The lesson claims no ordering."),
-        of_class("Exact counts", "exact", "There are no counts."),
-        of_class("Values", "value", "There are no values."),
-        section("Arrays", findings.arrays(old, new, spec.tolerances), "There are no arrays."),
-        of_class("Performance", "performance", "No performance is recorded yet."),
+        rows.section("Coverage", rows.coverage(old, new, spec)),
+        rows.section("Invariants", rows.invariants(old, new)),
+        rows.section("Relations", rows.relations(old, new, spec), "The lesson claims no ordering."),
+        rows.section("Exact counts", rows.values(old, new, spec, "exact"), "There are no counts."),
+        rows.section("Values", rows.values(old, new, spec, "value"), "There are no values."),
+        rows.section("Arrays", rows.arrays(old, new, spec), "There are no arrays."),
+        rows.section("Performance", rows.values(old, new, spec, "performance"), NO_PERFORMANCE),
     )
     return tuple(sorted(every, key=lambda s: -SEVERITY.index(s.state)))
 
@@ -150,7 +146,7 @@ def _obstacles(old: Predicate, new: Predicate) -> Iterator[str]:
     for what, was, now in required:
         if was != now:
             yield f"The {what} differs: {was!r} and {now!r}."
-    for path, was, now in differences(old.parameters, new.parameters, "parameters"):
+    for path, was, now in differences(old.parameters, new.parameters, path="parameters"):
         yield f"{path} differs: {shown(was)} and {shown(now)}."
     for word, side in (("old", old), ("new", new)):
         if side.backend.actual != side.backend.actual_at_end:
@@ -161,9 +157,7 @@ def _obstacles(old: Predicate, new: Predicate) -> Iterator[str]:
 def _notes(old: Predicate, new: Predicate) -> Iterator[str]:
     if old.run_id == new.run_id:
         yield "Both have the same run id. One is a copy of the other, or was edited."
-    modules = old.source.modules, new.source.modules
-    names = sorted(modules[0].keys() | modules[1].keys())
-    changed = [name for name in names if modules[0].get(name) != modules[1].get(name)]
+    changed = [name for name, *_ in differences(old.source.modules, new.source.modules)]
     changed += ["the page's cells"] if old.source.page != new.source.page else []
     if changed:
         yield f"The code differs and may be the cause: {', '.join(changed)}."

@@ -8,7 +8,7 @@ import numpy as np
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence.compare import read_side
-from robo_genesis.evidence.findings import Side
+from robo_genesis.evidence.rows import Side
 from robo_genesis.evidence.trace_files import fields_of
 
 IMPORTER = "(MJCF)"

@@ -6,7 +6,6 @@ from typing import Annotated
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from robo_genesis.core.refusals import BLANK, LINE_LIMIT
-from robo_genesis.evidence.strict_json import LARGEST
 
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 RunId = Annotated[str, Field(pattern="^[0-9a-f]{32}$")]
@@ -39,14 +38,7 @@ Message = Annotated[str, _plain(LINE_LIMIT, BLANK)]
 """A warning of the engine, which may have several lines."""
 
 
-def _bounded(value: object) -> object:
-    """Refuse a number whose magnitude is larger than that of any metric."""
-    if isinstance(value, int | float) and abs(value) > LARGEST:
-        raise ValueError("expected a magnitude of at most 2⁵³")
-    return value
-
-
-Found = Annotated[bool | int | float | LongLine | None, AfterValidator(_bounded)]
+Found = bool | int | float | LongLine | None
 """A value that a check found."""
 
 

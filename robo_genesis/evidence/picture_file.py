@@ -1,27 +1,30 @@
-"""The PNG file of one camera frame: written in one form, and read in no other."""
+"""The PNG file of one camera frame: written in one form, and read in no other.
+
+Reading writes the frame again and compares every byte. Only the packed pixels are taken as they
+are, because versions of zlib pack differently; what they unpack to is compared.
+"""
 
 import struct
 import zlib
-from collections.abc import Iterator
-from itertools import groupby
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
-from PIL.PngImagePlugin import PngInfo
 
 from robo_genesis.sim.camera.frames import require_frame
 
-SIGNATURE = b"\x89PNG\r\n\x1a\n"
-KEY = "run_id"
-CHUNKS = ["IHDR", "tEXt", "IDAT", "IEND"]
+KEY = b"run_id\0"
+LEFT = 1
+"""The filter of every row: each pixel is stored as its difference from the one on its left."""
+
+TEXT_PLACE = 33
+"""Where the chunk of text begins, after the signature and the header."""
 
 
 def write_picture(path: Path, frame: np.ndarray, run_id: str) -> None:
     """Write a frame, shape (height, width, 3) uint8, with the id of its run."""
-    text = PngInfo()
-    text.add_text(KEY, run_id)
-    Image.fromarray(frame).save(path, format="PNG", pnginfo=text)
+    require_frame(frame)
+    size = frame.shape[1], frame.shape[0]
+    path.write_bytes(_png(size, KEY + run_id.encode(), zlib.compress(_rows(frame), level=9)))
 
 
 def read_picture(path: Path, size: tuple[int, int]) -> tuple[str, np.ndarray]:
@@ -35,55 +38,45 @@ def read_picture(path: Path, size: tuple[int, int]) -> tuple[str, np.ndarray]:
         ValueError: the file is damaged, is not a usable frame of this size, or has anything in it
             that the recorder does not write: other chunks, text, animation, bytes after the end.
     """
-    chunks = list(_chunks(path.read_bytes()))
-    kinds = [kind for kind, _ in groupby(kind for kind, _ in chunks)]
-    if kinds != CHUNKS or [kind for kind, _ in chunks if kind != "IDAT"] != [
-        "IHDR",
-        "tEXt",
-        "IEND",
-    ]:
-        raise ValueError(f"Its chunks are {', '.join(kinds)[:80]}; valid: {', '.join(CHUNKS)}.")
-    header, text = chunks[0][1], chunks[1][1]
-    if header != struct.pack(">2I5B", *size, 8, 2, 0, 0, 0):
-        raise ValueError(f"It is not a picture of {size} pixels with 8 bits each of RGB.")
-    key, _, run_id = text.decode("latin-1").partition("\0")
-    if key != KEY:
-        raise ValueError(f"Its text is {key[:80]!r}; valid: {KEY!r}.")
-    if chunks[-1][1] or any(kind == "IDAT" and not data for kind, data in chunks):
-        raise ValueError("A chunk has bytes that it must not have, or has none.")
-    width, height = size
+    data, (width, height) = path.read_bytes(), size
+    text = _content(data, TEXT_PLACE)
+    packed = _content(data, TEXT_PLACE + len(_chunk(b"tEXt", text)))
+    if _png(size, text, packed) != data or not text.startswith(KEY):
+        raise ValueError("Its chunks are not those that the recorder writes.")
     stream, length = zlib.decompressobj(), height * (1 + 3 * width)
     try:
-        pixels = stream.decompress(b"".join(d for kind, d in chunks if kind == "IDAT"), length + 1)
+        rows = stream.decompress(packed, length + 1)
     except zlib.error as error:
         raise ValueError(f"Its pixels cannot be unpacked: {error}.") from error
-    if len(pixels) != length or not stream.eof or stream.unused_data:
+    if len(rows) != length or not stream.eof or stream.unused_data:
         raise ValueError("Its packed pixels are too few, or have further bytes.")
-    try:
-        with Image.open(path, formats=["PNG"]) as picture:
-            frame = np.array(picture)
-    except (OSError, SyntaxError) as error:
-        raise ValueError(f"It cannot be decoded: {error}.") from error
+    differences = np.frombuffer(rows, np.uint8).reshape(height, -1)[:, 1:]
+    frame = np.cumsum(differences.reshape(height, width, 3), axis=1, dtype=np.uint8)
+    if _rows(frame) != rows:
+        raise ValueError("Its rows have another filter than the recorder uses.")
     require_frame(frame)
-    return run_id, frame
+    return text.removeprefix(KEY).decode("latin-1"), frame
 
 
-def _chunks(data: bytes) -> Iterator[tuple[str, bytes]]:
-    """Yield the kind and content of each chunk after comparing the checksums.
+def _rows(frame: np.ndarray) -> bytes:
+    """Return the content that is packed: each row after the number of its filter."""
+    differences = np.diff(frame, axis=1, prepend=np.uint8(0)).reshape(len(frame), -1)
+    return np.insert(differences, 0, LEFT, axis=1).tobytes()
 
-    Raises:
-        ValueError: the file is damaged, or has bytes outside of chunks.
-    """
-    if not data.startswith(SIGNATURE):
-        raise ValueError("It is not a PNG file.")
-    place = len(SIGNATURE)
-    while place < len(data):
-        length = int.from_bytes(data[place : place + 4])
-        end = place + 12 + length
-        if end > len(data):
-            raise ValueError(f"It has {len(data) - place} bytes that are not a whole chunk.")
-        content, checksum = data[place + 4 : end - 4], int.from_bytes(data[end - 4 : end])
-        if zlib.crc32(content) != checksum:
-            raise ValueError(f"The chunk at byte {place} has another checksum.")
-        yield content[:4].decode("latin-1"), content[4:]
-        place = end
+
+def _png(size: tuple[int, int], text: bytes, packed: bytes) -> bytes:
+    """Return the whole file; 8 bits each of RGB, not interlaced."""
+    header = struct.pack(">2I5B", *size, 8, 2, 0, 0, 0)
+    chunks = ((b"IHDR", header), (b"tEXt", text), (b"IDAT", packed), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(_chunk(*chunk) for chunk in chunks)
+
+
+def _chunk(kind: bytes, content: bytes) -> bytes:
+    checksum = zlib.crc32(kind + content)
+    return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", checksum)
+
+
+def _content(data: bytes, place: int) -> bytes:
+    """Return the content of the chunk that begins at a place; empty beyond the end."""
+    length = int.from_bytes(data[place : place + 4])
+    return data[place + 8 : place + 8 + length]

@@ -3,7 +3,6 @@
 import base64
 import hashlib
 import importlib.metadata
-import json
 import os
 import platform
 import shutil
@@ -22,6 +21,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.picture_file import write_picture
+from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import fields_of, write_traces
 from robo_genesis.sim import session
 from robo_genesis.sim.camera.frames import Renderer
@@ -118,8 +118,8 @@ class Recorder:
     def _write_files(self, folder: Path, run: Experiment, renderer: Renderer | None) -> None:
         notes = {name: declared.note for name, declared in run.page.runs.items()}
         arrays = write_traces(folder, run.traces, run.joints, list(run.links), notes)
-        _write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
-        _write_json(folder / "metrics.json", run.records())
+        write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
+        write_json(folder / "metrics.json", run.records())
         for name, frame in run.frames.items():
             (folder / "frames").mkdir(exist_ok=True)
             write_picture(folder / "frames" / f"{name}.png", frame, self.run_id)
@@ -138,7 +138,7 @@ class Recorder:
             "predicate": self._predicate(run, renderer),
         }
         bundle.Manifest.model_validate(statement)
-        _write_json(folder / "manifest.json", statement)
+        write_json(folder / "manifest.json", statement)
 
     def _predicate(self, run: Experiment, renderer: Renderer | None) -> dict[str, Any]:
         backend = self.engine.backend
@@ -261,8 +261,3 @@ def git_record() -> dict[str, Any] | None:
 
 def _now() -> str:
     return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%S.%fZ")
-
-
-def _write_json(path: Path, value: Any) -> None:
-    text = json.dumps(value, indent=1, ensure_ascii=False, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")

@@ -5,12 +5,12 @@ joints, of free bodies.
 """
 
 from collections.abc import Mapping, Sequence
-from functools import cache
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
+from robo_genesis.core.comparison import differences
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.core.trace import BodyTrace, ContactTrace, TimeSeries, Trace, TraceError
 from robo_genesis.evidence.bundle import Arrays, CaseArrays, JointRecord, Variable
@@ -60,9 +60,6 @@ KINDS: dict[type[TimeSeries], dict[str, Field]] = {
 DTYPES = {"t": "float64", "target": "float64", "contacts": "int32"}
 """Types of fields; all others are float32, in which the engine computes."""
 
-_name_of = cache(str)
-"""Returns the name of a type, of which there are three."""
-
 Kind = TypeVar("Kind", bound=TimeSeries)
 
 
@@ -98,24 +95,29 @@ def write_traces(
         notes: by case, how its arrays differ from their long names; most cases need none.
     """
     (folder / "arrays").mkdir()
-    types = joints.types if joints else ()
-    cases = {}
+    types, cases = joints.types if joints else (), {}
     for case, trace in traces.items():
-        file, values, variables = f"arrays/{case}.npz", {}, {}
-        for field, (name, dims, unit, long_name) in fields_of(trace).items():
-            array = values[name] = getattr(trace, field)
-            variables[name] = Variable(
-                dims=dims,
-                shape=list(array.shape),
-                dtype=str(array.dtype),
-                unit=dof_units(name, types) if unit is None else unit,
-                long_name=long_name,
-            )
-        write_archive(folder / file, values)
-        cases[case] = CaseArrays(file=file, note=(notes or {}).get(case, ""), variables=variables)
+        cases[case] = described = _description(case, trace, types, (notes or {}).get(case, ""))
+        values = {name: getattr(trace, field) for field, (name, *_) in fields_of(trace).items()}
+        write_archive(folder / described.file, values)
     coords = {"dof": list(joints.names)} if joints else {}
     records = joint_records(joints) if joints else []
     return Arrays(coords=coords | {"link": links}, joints=records, cases=cases)
+
+
+def _description(case: str, trace: TimeSeries, types: Sequence[str], note: str) -> CaseArrays:
+    """Return the entry of `arrays.json` of one run, whose joints have these types."""
+    variables = {}
+    for field, (name, dims, unit, long_name) in fields_of(trace).items():
+        array = getattr(trace, field)
+        variables[name] = Variable(
+            dims=dims,
+            shape=list(array.shape),
+            dtype=str(array.dtype),
+            unit=dof_units(name, types) if unit is None else unit,
+            long_name=long_name,
+        )
+    return CaseArrays(file=f"arrays/{case}.npz", note=note, variables=variables)
 
 
 def joint_records(joints: JointMap) -> list[JointRecord]:
@@ -147,9 +149,8 @@ def read_joints(arrays: Arrays) -> JointMap:
     joints, file = arrays.joints, "arrays.json joints"
     expect("labels", file, "list of names", [j.name for j in joints], arrays.coords.get("dof", []))
     for joint in joints:
-        if joint.type_ not in POSITION_UNIT:
-            expect("labels", file, f"type of {joint.name}", joint.type_, sorted(POSITION_UNIT))
-        expect("labels", file, f"unit of {joint.name}", joint.unit, POSITION_UNIT[joint.type_])
+        unit = POSITION_UNIT.get(joint.type_, "that of another type")
+        expect("labels", file, f"unit of {joint.name}, {joint.type_},", joint.unit, unit)
     return JointMap(
         names=tuple(joint.name for joint in joints),
         types=tuple(joint.type_ for joint in joints),
@@ -180,7 +181,7 @@ def any_bodies(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
 
 
 def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
-    """Return one run of a kind after comparing its arrays with their description.
+    """Return one run of a kind; `arrays.json` must be what `write_traces` says of its arrays.
 
     Args:
         folder: of the bundle.
@@ -192,37 +193,25 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
         BundleRefused: `labels`, `path`, `too-big` or `bad-array`; `bad-trace` if the arrays do not
             form one run.
     """
-    if kind is not Trace:
-        expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
-    described, known = arrays.cases[case], KINDS[kind]
-    expect("path", "arrays.json", f"file of case {case}", described.file, f"arrays/{case}.npz")
-    _check_labels(arrays, case, known)
-    values = read_archive(folder / described.file, described.file, [n for n, *_ in known.values()])
-    for name, variable in described.variables.items():
-        found = (list(values[name].shape), _name_of(values[name].dtype))
-        what = f"shape and type of {name}"
-        expect("bad-array", described.file, what, found, (variable.shape, variable.dtype))
+    described, fields, place = arrays.cases[case], KINDS[kind], f"arrays.json {case}"
+    expect("path", place, "file", described.file, f"arrays/{case}.npz")
+    types = read_joints(arrays).types if arrays.joints else ()
+    dtypes = {name: DTYPES.get(field, "float32") for field, (name, *_) in fields.items()}
+    values = read_archive(folder / described.file, described.file, dtypes)
     try:
-        return kind(**{field: values[name] for field, (name, *_) in known.items()})
+        trace = kind(**{field: values[name] for field, (name, *_) in fields.items()})
     except TraceError as error:
         raise BundleRefused("bad-trace", f"{described.file}: {error} {AGAIN}") from error
-
-
-def _check_labels(arrays: Arrays, case: str, known: Mapping[str, Field]) -> None:
-    """Require the names, dimensions, units and types that `write_traces` gives."""
-    variables = arrays.cases[case].variables
-    types = read_joints(arrays).types if arrays.joints else ()
-    names = sorted(name for name, *_ in known.values())
-    expect("labels", "arrays.json", f"list of arrays of {case}", sorted(variables), names)
-    lengths = {"axis": 3, "wxyz": 4} | {dim: len(them) for dim, them in arrays.coords.items()}
-    for field, (name, dims, unit, long_name) in known.items():
-        found, file = variables[name], f"arrays.json {case}.{name}"
-        units = dof_units(name, types) if unit is None else unit
-        expect("labels", file, "unit", found.unit, units)
-        expect("labels", file, "dims", found.dims, dims)
-        expect("labels", file, "long_name", found.long_name, long_name)
-        expect("labels", file, "dtype", found.dtype, DTYPES.get(field, "float32"))
-        expect("labels", file, "number of dimensions", len(found.shape), len(dims))
-        for dim, length in zip(dims, found.shape, strict=True):
-            if dim in lengths:
-                expect("labels", file, f"length of {dim}", length, lengths[dim])
+    found = {
+        dim: length
+        for field, (_, dims, *_) in fields.items()
+        for dim, length in zip(dims, getattr(trace, field).shape, strict=True)
+        if dim in ("dof", "link")
+    }
+    labels = {axis: len(names) for axis, names in arrays.coords.items()}
+    expect("labels", place, "number of labels", labels, found)
+    expect("labels", place, "number of joints", len(arrays.joints), found.get("dof", 0))
+    expected = _description(case, trace, types, described.note)
+    for path, here, there in differences(described.model_dump(), expected.model_dump()):
+        expect("labels", place, path, here, there)
+    return trace

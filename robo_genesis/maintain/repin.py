@@ -14,7 +14,6 @@ from robo_genesis.core import project
 from robo_genesis.core.files import locked
 from robo_genesis.core.git import git, unclean
 from robo_genesis.core.project import ENGINE, PUBLISHED
-from robo_genesis.evidence import report
 from robo_genesis.maintain import report as refresh
 from robo_genesis.maintain.pin import (
     FILES,
@@ -137,7 +136,7 @@ class Trial:
             (old_lock, new[FILES[1]].decode()),
         )
         folder = self.request.cache / "reports" / f"repin-{self.old}-{self.new}"
-        pages = report.write(folder, refresh.markdown(found), refresh.html(found))
+        pages = refresh.document(found).write(folder)
         self.progress("report", refresh.summary(found), str(folder))
         self.command("test", f"make test with {self.new}", "make", "test")
         return pages

@@ -1,10 +1,9 @@
 """The refresh report: what another engine version changes in packages, evidence and sentences."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from difflib import SequenceMatcher
-from html import escape
 from itertools import groupby, zip_longest
 from pathlib import Path
 
@@ -12,8 +11,8 @@ from bs4 import BeautifulSoup
 
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import BundleComparison, compare
-from robo_genesis.evidence.findings import SEVERITY, worst
-from robo_genesis.evidence.report import Row
+from robo_genesis.evidence.document import Document, Part
+from robo_genesis.evidence.rows import SEVERITY, worst
 from robo_genesis.maintain.pin import locked_versions
 from robo_genesis.pipeline.bundles.status import Status, recorded_folders, recorded_status
 from robo_genesis.pipeline.html.publish import PAGES
@@ -166,28 +165,14 @@ def summary(refresh: Refresh) -> str:
     )
 
 
-def markdown(refresh: Refresh) -> str:
-    """Return the report as a Markdown page."""
-    parts = [f"# {refresh.title}", f"**{summary(refresh).capitalize()}.**"]
-    for name, remarks, rows, empty in _parts(refresh):
-        parts += [f"## {report.plain(name)}", *(f"- {report.plain(line)}" for line in remarks)]
-        parts.append(report.markdown_table(rows, empty))
-    return "\n\n".join(part.strip() for part in parts) + "\n"
+def document(refresh: Refresh) -> Document:
+    """Return the whole report."""
+    verdict = f"{summary(refresh).capitalize()}."
+    return Document(refresh.title, verdict, refresh.state, list(_parts(refresh)))
 
 
-def html(refresh: Refresh) -> str:
-    """Return the report as one HTML page that fetches nothing."""
-    state = refresh.state.replace(" ", "-")
-    body = [f"<h1>{escape(refresh.title)}</h1>"]
-    body.append(f'<p class="verdict {state}">{escape(summary(refresh).capitalize())}.</p>')
-    for name, remarks, rows, empty in _parts(refresh):
-        body += [f"<h2>{escape(name)}</h2>", *report.html_list(remarks)]
-        body.append(report.html_table(name, rows, empty))
-    return report.html_page(refresh.title, body)
-
-
-def _parts(refresh: Refresh) -> Iterator[tuple[str, Sequence[str], list[Row], str]]:
-    """Yield (heading, remarks, rows with their head, the text for a table without rows).
+def _parts(refresh: Refresh) -> Iterator[Part]:
+    """Yield the parts of the report.
 
     The first part has one row for each page. Rows that are equal are counted there and left out
     below: most of several thousand rows are.
@@ -195,24 +180,19 @@ def _parts(refresh: Refresh) -> Iterator[tuple[str, Sequence[str], list[Row], st
     both = refresh.comparisons
     rows = [(f"{one.new.lesson} {one.new.page}", one.state, report.verdict(one)) for one in both]
     rows += [(name, SEVERITY[-1], "In one build only.") for name in refresh.missing]
-    yield "Pages", (), [("page", "result", "rows"), *rows], "No page has a bundle."
-    for name, table, empty in _tables(refresh):
-        yield name, (), table, empty
+    yield Part("Pages", [("page", "result", "rows"), *rows], "No page has a bundle.")
+    packages = [(name, *versions) for name, versions in refresh.packages.items()]
+    yield Part("Packages", [("package", "old", "new"), *packages], "No other package changed.")
+    states = [
+        (name, was.state, now.state, now.reason) for name, (was, now) in refresh.recorded.items()
+    ]
+    head = ("bundle", f"under {refresh.versions[0]}", f"under {refresh.versions[1]}", "reason")
+    yield Part("Recorded bundles", [head, *states], "No bundle is recorded.")
     for one in both:
         table = report.changes(one)
         if one.remarks or len(table) > 1:
-            yield report.title(one), one.remarks, table, ""
+            yield Part(report.title(one), table, remarks=one.remarks)
     for page, changed in groupby(refresh.changed, key=lambda one: one[0]):
-        yield f"Sentences of {page}", (), [("old", "new"), *(one[1:] for one in changed)], ""
+        yield Part(f"Sentences of {page}", [("old", "new"), *(one[1:] for one in changed)])
     if not refresh.changed:
-        yield "Sentences", (), [("", "")], "No sentence of the site changed."
-
-
-def _tables(refresh: Refresh) -> Iterator[tuple[str, list[Row], str]]:
-    """Yield (heading, rows with their head, the text for a table without rows)."""
-    packages = [(name, *versions) for name, versions in refresh.packages.items()]
-    yield "Packages", [("package", "old", "new"), *packages], "No other package changed."
-    rows = [(name, was.state, now.state, now.reason)
-            for name, (was, now) in refresh.recorded.items()]  # fmt: skip
-    head = ("bundle", f"under {refresh.versions[0]}", f"under {refresh.versions[1]}", "reason")
-    yield "Recorded bundles", [head, *rows], "No bundle is recorded."
+        yield Part("Sentences", [("", "")], "No sentence of the site changed.")

@@ -37,8 +37,9 @@ from docutils.parsers.rst.directives import unchanged
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.core.comparison import Comparison, compare_values, comparison_sentence
+from robo_genesis.core.comparison import Comparison, compare_values
 from robo_genesis.core.quantities import SCALED, format_value
+from robo_genesis.core.text import comparison_sentence
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
 from robo_genesis.pipeline.pages.built import page_outputs

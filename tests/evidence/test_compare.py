@@ -31,7 +31,7 @@ from robo_genesis.core.project import ROOT
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare
-from robo_genesis.evidence.findings import SEVERITY
+from robo_genesis.evidence.rows import SEVERITY
 from robo_genesis.lessons.l04 import spec as l04
 
 
@@ -60,7 +60,7 @@ def value(case, metric, new):
 
 def rows(comparison, title):
     (section,) = (s for s in comparison.sections if s.title == title)
-    return section.findings
+    return section.rows
 
 
 def states(comparison):
@@ -384,7 +384,7 @@ def test_worst_first(unlike):
     assert order == sorted(order, reverse=True)
     assert len(set(order)) > 2
     for section in unlike.sections:
-        ranks = [(SEVERITY.index(f.state), f.weight) for f in section.findings]
+        ranks = [(SEVERITY.index(f.state), f.weight) for f in section.rows]
         assert ranks == sorted(ranks, reverse=True)
 
 
@@ -397,7 +397,7 @@ def test_the_summary_names_what_is_not_well(unlike):
 
 
 def test_the_page_fetches_nothing_and_keeps_words_as_words(unlike):
-    page = report.html(unlike)
+    page = report.document(unlike).html()
     assert not re.search(r"<(script|link|img|iframe|a)\b|\b(src|href)=|@import|url\(", page)
     assert "&lt;b&gt;1 | 2&lt;/b&gt;" in page
     assert "prefers-color-scheme: dark" in page
@@ -406,7 +406,7 @@ def test_the_page_fetches_nothing_and_keeps_words_as_words(unlike):
 
 
 def test_the_markdown_keeps_words_as_words(unlike):
-    page = report.markdown(unlike)
+    page = report.document(unlike).markdown()
     assert "- Engine warning gained: \\<b\\>1 \\| 2\\</b\\> \\# see https" in page
     for line in page.splitlines():
         if line.startswith("|"):

@@ -14,6 +14,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.shown import mime_data
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.evidence.npz_archive import write_archive
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_page
@@ -69,7 +70,7 @@ def in_archive(case, change):
         with np.load(path) as stored:
             values = {name: np.array(stored[name]) for name in stored}
         change(values)
-        np.savez_compressed(path, **values)
+        write_archive(path, values)
 
     return spoil
 

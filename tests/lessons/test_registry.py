@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from robo_genesis import lessons as registry
+from robo_genesis.core.comparison import HELD_BY
 from robo_genesis.core.declaration import Compared
-from robo_genesis.core.orderings import HELD_BY
 from robo_genesis.core.palette import CASE_CLASSES
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence.trace_files import KINDS

@@ -14,7 +14,7 @@ from robo_genesis.core import project
 from robo_genesis.core.project import ROOT
 from robo_genesis.evidence import report as pages
 from robo_genesis.evidence.compare import compare
-from robo_genesis.evidence.findings import DIFFERS, EQUAL, NOT_COMPARABLE, WITHIN
+from robo_genesis.evidence.rows import DIFFERS, EQUAL, NOT_COMPARABLE, WITHIN
 from robo_genesis.pipeline.pages.book import find_pages
 
 pytestmark = [pytest.mark.engine, pytest.mark.slow]

@@ -35,7 +35,7 @@ def compared(builds: tuple[Path, Path], **records) -> refresh.Refresh:
 def test_equal_metrics_are_reported_as_such(builds):
     found = compared(builds)
     assert (found.state, found.packages, found.changed) == ("equal", {"b": ("", "2")}, ())
-    text = refresh.markdown(found)
+    text = refresh.document(found).markdown()
     assert text.startswith(
         "# Engine 1.0 → 9.9.9\n\n**Equal; changed packages: 1, changed sentences: 0, "
     )
@@ -55,7 +55,7 @@ def test_a_bundle_that_one_build_lacks_makes_the_builds_not_comparable(builds):
     shutil.rmtree(builds[1] / "evidence" / "l04")
     found = compared(builds)
     assert (found.state, found.missing) == ("not comparable", ("l04/cpu", "l04/lecture/cpu"))
-    assert "| l04/cpu | not comparable | In one build only. |" in refresh.markdown(found)
+    assert "| l04/cpu | not comparable | In one build only. |" in refresh.document(found).markdown()
 
 
 def test_a_metric_beyond_tolerance_a_warning_and_a_flipped_relation_are_named(builds):
@@ -65,7 +65,7 @@ def test_a_metric_beyond_tolerance_a_warning_and_a_flipped_relation_are_named(bu
     seal(folder)
     found = compared(builds)
     assert found.state == "differs"
-    text, page = refresh.markdown(found), refresh.html(found)
+    text, page = refresh.document(found).markdown(), refresh.document(found).html()
     assert "- Engine warning gained: Something new." in text
     assert "- Engine warning lost: Approximating tendon." in text
     assert "flipped" in text
@@ -88,7 +88,7 @@ def test_a_bundle_that_a_new_pin_makes_stale_is_named_with_both_states(builds):
 
     found = compared(builds, recorded=(state("verified", ""), state("stale", "older")))
     assert found.stale == ["l04/amdgpu"]
-    assert "| l04/amdgpu | verified | stale | older |" in refresh.markdown(found)
+    assert "| l04/amdgpu | verified | stale | older |" in refresh.document(found).markdown()
     assert compared(builds, recorded=(state("stale", "a"), state("stale", "b"))).stale == []
 
 

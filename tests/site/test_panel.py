@@ -341,7 +341,9 @@ def test_what_the_recorder_writes_on_each_backend_is_accepted_shown_and_compared
     assert "Compared with this build's run on cpu: equal." in panel.astext()
     comparison = compare(folder, place)
     assert report.summary(comparison).startswith(f"L04 lab: {axis}\nEqual.")
-    assert f"{actual} (requested: {there.backend.requested})" in report.markdown(comparison)
+    assert (
+        f"{actual} (requested: {there.backend.requested})" in report.document(comparison).markdown()
+    )
 
 
 def test_a_recorded_run_replays_from_its_own_record(tmp_path, record):

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core import tables
+from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.orderings import HELD
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import bullets, listed

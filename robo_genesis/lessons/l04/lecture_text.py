@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core import tables
-from robo_genesis.core.comparison import compare
+from robo_genesis.core.comparison import HELD_BY, compare, order
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.orderings import HELD_BY, order
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import bullets, listed
 from robo_genesis.core.trace import Trace

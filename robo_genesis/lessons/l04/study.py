@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core.comparison import Relation, Value, outcome
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.orderings import Relation, Value, outcome
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study_spec

@@ -15,8 +15,8 @@ from robo_genesis.core.checks import (
     noted,
     within,
 )
+from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.orderings import HELD
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import is_saturated
 from robo_genesis.lessons.l04.theory import overshoot_share

@@ -8,10 +8,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from robo_genesis.core import tables
-from robo_genesis.core.comparison import compare, comparison_sentence, prediction_sentence
+from robo_genesis.core.comparison import compare
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import Block
+from robo_genesis.core.text import Block, comparison_sentence, prediction_sentence
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import (

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
+from robo_genesis.core.comparison import differences
 from robo_genesis.core.files import derived
 from robo_genesis.core.project import PUBLISHED
 from robo_genesis.core.refusals import BundleRefused, expect, shown
 from robo_genesis.core.scene import SEED
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.strict_json import differences
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages import sources, syntax
 from robo_genesis.sim import session

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.core.orderings import HELD, Relation, outcome
+from robo_genesis.core.comparison import HELD, Relation, outcome
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence import bundle, copies
 from robo_genesis.evidence.bundle import Manifest, Metric

@@ -1,27 +1,20 @@
 """Accept or refuse a bundle: whatever can be recomputed from its arrays is recomputed."""
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.core.checks import FAILED, Check, Value
+from robo_genesis.core.checks import FAILED, Check
+from robo_genesis.core.comparison import agree, differences
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, shown
+from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.evidence import bundle, bundle_files, manifest_rules
 from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.reader import from_bundle
-from robo_genesis.evidence.strict_json import differences
 from robo_genesis.pipeline.bundles import keys as evidence_key
-
-SAME_FLOAT = 1e-9
-"""Relative tolerance of a recorded value of a check against the recomputed one."""
-
-ROUNDING = 1e-12
-"""Tolerance of such a value near zero, in its own unit."""
 
 
 def verify_bundle(
@@ -138,12 +131,8 @@ def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:
     names = [check.name for check in outcomes]
     expect("checks", file, "list of checks", [check.name for check in recorded], names)
     for check, computed in zip(recorded, outcomes, strict=True):
-        for label in sorted(check.found.keys() | computed.found.keys()):
-            here, there = (of.get(label, "absent") for of in (check.found, computed.found))
-            if not agree(here, there):
-                what = f"{label}, found by check {check.name},"
-                values = f"{what} is {shown(here)}, expected {shown(there)}"
-                raise BundleRefused("checks", f"{file}: {values}. {AGAIN}")
+        for label, here, there in differences(dict(check.found), dict(computed.found), agree):
+            expect("checks", file, f"{label}, found by check {check.name},", here, there)
     failed = [f"[{check.name}] {check.detail}" for check in outcomes if not check.passed]
     if failed:
         raise BundleRefused(
@@ -161,9 +150,3 @@ def as_judged_today(manifest: Manifest) -> Manifest:
         update={"predicate": predicate.model_copy(update={"checks": passed})}
     )
 
-
-def agree(recorded: Value, computed: Value) -> bool:
-    """Return whether two found values are equal; floats may differ by rounding on another CPU."""
-    if isinstance(recorded, float) and isinstance(computed, float):
-        return math.isclose(recorded, computed, rel_tol=SAME_FLOAT, abs_tol=ROUNDING)
-    return type(recorded) is type(computed) and recorded == computed

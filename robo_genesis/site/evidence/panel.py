@@ -23,8 +23,8 @@ from robo_genesis.core.text import listed
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison, compare, specification
-from robo_genesis.evidence.findings import DIFFERS
 from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.evidence.rows import DIFFERS
 from robo_genesis.lessons import compared_cases, course_marks, filmed, find_lesson
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import Run
@@ -215,7 +215,7 @@ def value_rows(
     """Return a row for each metric of each case, in the lesson's order, with values as in prose."""
     spec = specification(found.new.lesson, found.new.page)
     ours, theirs = (bundle.read_metrics(folder) for folder in folders)
-    rows = {f.what: f for s in found.sections if s.title in VALUES for f in s.findings}
+    rows = {f.what: f for s in found.sections if s.title in VALUES for f in s.rows}
     labels = find_lesson(found.new.lesson).about_metrics("label")
     return [
         {
@@ -236,7 +236,7 @@ def ordering_rows(found: BundleComparison, both: tuple[str, str]) -> list[dict[s
     """Return a row for each ordering that the lesson claims, with the result in each run."""
     rows = []
     labels = find_lesson(found.new.lesson).about_metrics("label")
-    for f in (f for s in found.sections if s.title == RELATIONS for f in s.findings):
+    for f in (f for s in found.sections if s.title == RELATIONS for f in s.rows):
         claim, _, verdict = f.what.partition(", ")
         metric, _, order = claim.partition(": ")
         rows.append(

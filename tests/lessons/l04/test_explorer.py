@@ -9,7 +9,7 @@ from bs4 import BeautifulSoup
 from playwright.sync_api import Page
 from watching import errors
 
-from robo_genesis.core.orderings import order
+from robo_genesis.core.comparison import order
 from robo_genesis.core.quantities import format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import read_any_trace

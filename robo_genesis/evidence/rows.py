@@ -5,7 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.orderings import BROKEN, HELD, WITHIN_MARGIN, Relation, outcome
+from robo_genesis.core.comparison import (
+    BROKEN,
+    HELD,
+    WITHIN_MARGIN,
+    Relation,
+    allowed,
+    outcome,
+)
 from robo_genesis.core.quantities import six_digits
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence.bundle import Arrays, JointRecord, Manifest, Metric, by_full_name
@@ -15,6 +22,9 @@ EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
     "equal", "shown", "within tolerance", "inconclusive", "differs", "not comparable",
 )  # fmt: skip
 """States from best to worst. A row that is only shown does not affect the verdict."""
+
+MISSING = "missing"
+KINDS = {"case": "cases", "metric": "metrics", "check": "checks", "axis": "axes", "joint": "joints"}
 
 VERDICTS = {
     frozenset({HELD}): (EQUAL, "held in both"),
@@ -68,7 +78,7 @@ class Side:
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class Row:
     """One row. `weight` orders rows of the same state: a difference as a share of its limit."""
 
     state: str
@@ -85,13 +95,13 @@ class Section:
     """The rows of one kind, worst first; `empty` is the text of a section without rows."""
 
     title: str
-    findings: tuple[Finding, ...]
+    rows: tuple[Row, ...]
     empty: str = ""
 
     @property
     def state(self) -> str:
         """State of the worst row, `equal` if there are no rows."""
-        return worst([finding.state for finding in self.findings])
+        return worst([row.state for row in self.rows])
 
 
 def worst(states: Sequence[str]) -> str:
@@ -99,49 +109,39 @@ def worst(states: Sequence[str]) -> str:
     return max(states, key=SEVERITY.index, default=EQUAL)
 
 
-def section(title: str, findings: Iterator[Finding], empty: str = "") -> Section:
+def section(title: str, rows: Iterator[Row], empty: str = "") -> Section:
     """Return a section with its rows sorted, worst first."""
-    rows = sorted(findings, key=lambda f: (-SEVERITY.index(f.state), -f.weight))
-    return Section(title, tuple(rows), empty)
+    found = sorted(rows, key=lambda row: (-SEVERITY.index(row.state), -row.weight))
+    return Section(title, tuple(found), empty)
 
 
-def coverage(old: Side, new: Side, spec: PageSpecification) -> Iterator[Finding]:
+def coverage(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     """Both sides have the same cases, metrics, checks, labels and joints."""
-    metrics = {f"{case}.{name}" for case, names in spec.metrics.items() for name in names}
-    yield from _present("case", {*old.traces}, {*new.traces}, {*spec.metrics})
-    yield from _present("metric", {*old.numbers}, {*new.numbers}, metrics)
-    yield from _present("check", {*old.checks}, {*new.checks}, set())
+    here, there = _content(old), _content(new)
+    declared = {f"case {case}" for case in spec.metrics}
+    declared |= {f"metric {case}.{name}" for case, names in spec.metrics.items() for name in names}
+    for name in sorted({*here, *there, *declared}):
+        both = here.get(name, MISSING), there.get(name, MISSING)
+        if both[0] != both[1] or MISSING in both:
+            yield Row(DIFFERS, name, *both)
     if not old.checks and not new.checks:
-        yield Finding(DIFFERS, "checks", "none", "none")
-    for name in sorted(old.numbers.keys() & new.numbers.keys()):
-        here, there = (f"{m.unit}, {m.kind}" for m in (old.numbers[name], new.numbers[name]))
-        if here != there:
-            yield Finding(DIFFERS, f"unit and class of {name}", here, there)
-    for axis in sorted(old.arrays.coords.keys() | new.arrays.coords.keys()):
-        labels = [side.arrays.coords.get(axis, []) for side in (old, new)]
-        state = EQUAL if labels[0] == labels[1] else DIFFERS
-        here, there = (", ".join(of) if state == DIFFERS else str(len(of)) for of in labels)
-        yield Finding(state, f"labels of {axis}", here, there)
-    if old.arrays.joints or new.arrays.joints:
-        yield from _joints(old, new)
+        yield Row(DIFFERS, "checks", "none", "none")
+    for kind, plural in KINDS.items():
+        numbers = [sum(name.startswith(kind) for name in side) for side in (here, there)]
+        if all(numbers):
+            state = EQUAL if numbers[0] == numbers[1] else SHOWN
+            yield Row(state, f"number of {plural}", str(numbers[0]), str(numbers[1]))
 
 
-def _present(kind: str, old: set[str], new: set[str], expected: set[str]) -> Iterator[Finding]:
-    for name in sorted((old | new | expected) - (old & new)):
-        here, there = ("present" if name in side else "missing" for side in (old, new))
-        yield Finding(DIFFERS, f"{kind} {name}", here, there)
-    if old & new:
-        state = EQUAL if len(old) == len(new) else SHOWN
-        yield Finding(state, f"number of {kind}s", str(len(old)), str(len(new)))
-
-
-def _joints(old: Side, new: Side) -> Iterator[Finding]:
-    """Each joint has the same DOF, type and limits on both sides."""
-    here, there = ({j.name: _joint_text(j) for j in side.arrays.joints} for side in (old, new))
-    for name in [n for n in here if here[n] != there.get(n, here[n])]:
-        yield Finding(DIFFERS, f"joint {name}", here[name], there[name])
-    if here == there:
-        yield Finding(EQUAL, "joint map", str(len(here)), str(len(there)))
+def _content(side: Side) -> dict[str, str]:
+    """Return each thing that a bundle has, with what is said of it; names begin with the kind."""
+    return (
+        {f"case {name}": "present" for name in side.traces}
+        | {f"metric {name}": f"{m.unit}, {m.kind}" for name, m in side.numbers.items()}
+        | {f"check {name}": "present" for name in side.checks}
+        | {f"axis {name}": ", ".join(labels) for name, labels in side.arrays.coords.items()}
+        | {f"joint {joint.name}": _joint_text(joint) for joint in side.arrays.joints}
+    )
 
 
 def _joint_text(joint: JointRecord) -> str:
@@ -153,16 +153,16 @@ def _joint_text(joint: JointRecord) -> str:
     return f"{joint.type_}, {places}, {lower} to {upper}"
 
 
-def invariants(old: Side, new: Side) -> Iterator[Finding]:
+def invariants(old: Side, new: Side) -> Iterator[Row]:
     """Every check passed on both sides, and the engine was the published one."""
     wheels = [side.manifest.predicate.engine.files_match_wheel for side in (old, new)]
     passed = {n: [old.checks[n], new.checks[n]] for n in old.checks if n in new.checks}
     for name, both in (passed | {"engine files match the wheel": wheels}).items():
         here, there = ("passed" if one else "FAILED" for one in both)
-        yield Finding(EQUAL if all(both) else DIFFERS, name, here, there)
+        yield Row(EQUAL if all(both) else DIFFERS, name, here, there)
 
 
-def relations(old: Side, new: Side, spec: PageSpecification) -> Iterator[Finding]:
+def relations(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     """Both sides show each ordering that the lesson claims."""
     for relation in spec.relations:
         (first, second), metric, claim, margin = relation
@@ -171,40 +171,31 @@ def relations(old: Side, new: Side, spec: PageSpecification) -> Iterator[Finding
         units = [m.unit for side in (old, new) if (m := side.numbers.get(f"{first}.{metric}"))]
         what = f"{metric}: {second} {claim} than {first}, {verdict}"
         here, there = (f"{held}: {text}" for held, text in outcomes)
-        allowed = f"margin {six_digits(margin, units[0] if units else '1')}"
-        yield Finding(state, what, here, there, allowed=allowed)
+        limit = f"margin {six_digits(margin, units[0] if units else '1')}"
+        yield Row(state, what, here, there, allowed=limit)
 
 
-def values(
-    old: Side, new: Side, kind: str, tolerances: Mapping[str, tuple[float, float]]
-) -> Iterator[Finding]:
+def values(old: Side, new: Side, spec: PageSpecification, kind: str) -> Iterator[Row]:
     """The metrics of one class agree within atol + rtol · the larger magnitude.
 
     Counts have no tolerance. Performance is shown and does not affect the verdict.
     """
+    limits = spec.tolerances if kind == "value" else {}
     for name, a in old.numbers.items():
         b = new.numbers.get(name)
         if b is None or not a.kind == b.kind == kind or a.unit != b.unit:
             continue
         text = six_digits(a.value, a.unit), six_digits(b.value, b.unit)
         if kind == "performance":
-            yield Finding(SHOWN, name, *text)
-            continue
-        if a.value is None or b.value is None:
-            yield Finding(EQUAL if a.value == b.value else DIFFERS, name, *text)
-            continue
-        delta, keys = b.value - a.value, (name.split(".")[-1], a.unit)
-        atol, rtol = next((tolerances[key] for key in keys if key in tolerances), (0.0, 0.0))
-        allowed = atol + rtol * max(abs(a.value), abs(b.value))
-        state = EQUAL if not delta else WITHIN if abs(delta) <= allowed else DIFFERS
-        weight = abs(delta) / allowed if allowed else abs(delta)
-        more = six_digits(delta, a.unit), six_digits(allowed, a.unit)
-        yield Finding(state, name, *text, *more, weight)
+            yield Row(SHOWN, name, *text)
+        elif a.value is None or b.value is None:
+            yield Row(EQUAL if a.value == b.value else DIFFERS, name, *text)
+        else:
+            here, there = (np.array(float(value)) for value in (a.value, b.value))
+            yield _largest(name, name.split(".")[-1], here, there, a.unit, limits)
 
 
-def arrays(
-    old: Side, new: Side, tolerances: Mapping[str, tuple[float, float]]
-) -> Iterator[Finding]:
+def arrays(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     """Arrays have the same shape, and their values agree within atol + rtol · the larger magnitude.
 
     A tolerance is declared by the name of an array or by a unit; without one, and for counts,
@@ -216,36 +207,44 @@ def arrays(
             what, unit = f"{case} {name}", old.arrays.cases[case].variables[name].unit
             if a.shape != b.shape or a.dtype != b.dtype:
                 here, there = (f"{of.dtype}, shape {of.shape}" for of in (a, b))
-                yield Finding(DIFFERS, what, here, there)
+                yield Row(DIFFERS, what, here, there)
             elif np.array_equal(a, b):
-                yield Finding(EQUAL, what, str(a.shape), str(b.shape))
+                yield Row(EQUAL, what, str(a.shape), str(b.shape))
             else:
-                yield _largest(what, a, b, name, unit, tolerances)
+                yield _largest(what, name, a, b, unit, spec.tolerances)
 
 
 def _largest(
     what: str,
+    name: str,
     a: np.ndarray,
     b: np.ndarray,
-    name: str,
     unit: str | list[str],
     tolerances: Mapping[str, tuple[float, float]],
-) -> Finding:
-    """Return the row of two different arrays; `unit` is a list if the last axis has DOFs."""
+) -> Row:
+    """Return the row of two numbers or arrays: of the value that exceeds its tolerance most.
+
+    Args:
+        what: the text of the row; the place in an array is added.
+        name: of the metric or array, for its own tolerance.
+        a: those of the old side.
+        b: those of the new side, of the same shape.
+        unit: a list if the last axis has DOFs.
+        tolerances: by name or unit.
+    """
     units = np.broadcast_to(np.array(unit), a.shape)
     declared = {} if np.issubdtype(a.dtype, np.integer) else tolerances
     limits = {u: declared.get(name, declared.get(u, (0.0, 0.0))) for u in {*units.flat}}
     atol, rtol = (np.vectorize(lambda u, k=k: limits[u][k])(units) for k in (0, 1))
     here, there = a.astype(np.float64), b.astype(np.float64)
-    delta, allowed = there - here, atol + rtol * np.maximum(np.abs(here), np.abs(there))
+    delta, room = there - here, allowed(here, there, atol, rtol)
     with np.errstate(divide="ignore", invalid="ignore"):
-        shares = np.where(delta == 0, 0.0, np.abs(delta) / allowed)  # infinite without a tolerance
-    over = np.argmax(shares if np.isfinite(shares).all() else np.where(allowed, 0, np.abs(delta)))
-    worst_at = np.unravel_index(over, a.shape)
-    state = WITHIN if shares[worst_at] <= 1 else DIFFERS
-    place, of = ", ".join(map(str, worst_at)), str(units[worst_at])
+        shares = np.where(delta == 0, 0.0, np.abs(delta) / room)  # infinite without a tolerance
+    over = np.argmax(shares if np.isfinite(shares).all() else np.where(room, 0, np.abs(delta)))
+    at = np.unravel_index(over, a.shape)
+    state = DIFFERS if shares[at] > 1 else WITHIN if delta[at] else EQUAL
+    place = f"[{', '.join(map(str, at))}]" if at else ""
     old, new, apart, limit = (
-        six_digits(float(x[worst_at]), of) for x in (here, there, delta, allowed)
+        six_digits(float(x[at]), str(units[at])) for x in (here, there, delta, room)
     )
-    weight = float(shares[worst_at])
-    return Finding(state, f"{what}[{place}]", old, new, apart, limit, weight)
+    return Row(state, f"{what}{place}", old, new, apart, limit, float(shares[at]))

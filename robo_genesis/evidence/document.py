@@ -1,0 +1,141 @@
+"""A report as a Markdown page and as an HTML page that fetches nothing.
+
+Text of a bundle is escaped: it cannot control a terminal, begin a line or become markup.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+
+from robo_genesis.core import tables
+from robo_genesis.core.files import write_whole
+from robo_genesis.core.refusals import printable
+from robo_genesis.evidence.rows import SEVERITY
+
+Cells = tuple[str, ...]
+
+STYLE = """
+:root { color-scheme: light dark; --line: #c9ced6; --soft: #f3f4f5; --text: #222832; --page: #fff;
+  --bad: #a3122a; --unsure: #7a4b00; --good: #1b6b3a; }
+@media (prefers-color-scheme: dark) { :root { --line: #48566b; --soft: #222832; --text: #ced6dd;
+  --page: #14181e; --bad: #ff8f9e; --unsure: #f0b75e; --good: #6fd39a; } }
+body { background: var(--page); color: var(--text); line-height: 1.6; margin: 0 auto;
+  max-width: 60rem; padding: 1rem 1rem 3rem; overflow-wrap: anywhere;
+  font-family: -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
+h2 { border-bottom: 1px solid var(--line); margin-top: 2rem; }
+.box { overflow-x: auto; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; overflow-wrap: normal; }
+th, td { border-bottom: 1px solid var(--line); padding: .3rem .8rem .3rem 0; text-align: left;
+  vertical-align: top; }
+.differs, .not-comparable { color: var(--bad); font-weight: 600; }
+.inconclusive { color: var(--unsure); font-weight: 600; }
+.equal, .within-tolerance { color: var(--good); }
+.verdict { background: var(--soft); border-left: .3rem solid; padding: .5rem 1rem; }
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A heading with remarks and a table, whose first row is its head.
+
+    `state` is that of the worst row, empty for a table without states. `empty` is the text in the
+    place of a table that has only a head.
+    """
+
+    heading: str
+    rows: Sequence[Cells]
+    empty: str = ""
+    remarks: Sequence[str] = ()
+    state: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A report: its title, its verdict in one sentence with the state, remarks and parts."""
+
+    title: str
+    verdict: str
+    state: str
+    parts: Sequence[Part]
+    remarks: Sequence[str] = ()
+
+    def markdown(self) -> str:
+        """Return the report as a Markdown page."""
+        blocks = [f"# {_plain(self.title)}", f"**{self.verdict}**", _bullets(self.remarks)]
+        for part in self.parts:
+            state = f": {part.state}" if part.state else ""
+            blocks += [f"## {_plain(part.heading)}{state}", _bullets(part.remarks)]
+            blocks.append(_markdown_table(part.rows) if len(part.rows) > 1 else part.empty)
+        return "\n\n".join(block for block in blocks if block) + "\n"
+
+    def html(self) -> str:
+        """Return the report as one HTML page without scripts, fonts or pictures from elsewhere."""
+        verdict = f'<p class="verdict {_css(self.state)}">{_escaped(self.verdict)}</p>'
+        blocks = [f"<h1>{_escaped(self.title)}</h1>", verdict, _list(self.remarks)]
+        for part in self.parts:
+            mark = f': <span class="{_css(part.state)}">{part.state}</span>' if part.state else ""
+            blocks += [f"<h2>{_escaped(part.heading)}{mark}</h2>", _list(part.remarks)]
+            blocks.append(_html_table(part) if len(part.rows) > 1 else f"<p>{part.empty}</p>")
+        head = (
+            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+            '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+            f"<title>{_escaped(self.title)}</title>\n<style>{STYLE}</style>\n"
+            "</head>\n<body>\n<main>\n"
+        )
+        return head + "\n".join(filter(None, blocks)) + "\n</main>\n</body>\n</html>\n"
+
+    def write(self, folder: Path) -> list[Path]:
+        """Write both pages and return their paths."""
+        pages = {folder / "report.md": self.markdown(), folder / "report.html": self.html()}
+        for path, text in pages.items():
+            write_whole(path, text.encode())
+        return list(pages)
+
+
+def _bullets(lines: Sequence[str]) -> str:
+    return "\n".join(f"- {_plain(line)}" for line in lines)
+
+
+def _markdown_table(rows: Sequence[Cells]) -> str:
+    head, *body = ([_plain(cell) for cell in row] for row in rows)
+    return tables.markdown([dict(zip(head, row, strict=True)) for row in body]).strip()
+
+
+def _list(lines: Sequence[str]) -> str:
+    items = "".join(f"<li>{_escaped(line)}</li>\n" for line in lines)
+    return f"<ul>\n{items}</ul>" if items else ""
+
+
+def _html_table(part: Part) -> str:
+    """Return a table in a box that scrolls."""
+    head, *body = part.rows
+    heads = "".join(f'<th scope="col">{_escaped(cell)}</th>' for cell in head)
+    lines = "".join(f"<tr>{''.join(map(_cell, row))}</tr>\n" for row in body)
+    return (
+        f'<div class="box" role="region" aria-label="{_escaped(part.heading)}" tabindex="0">\n'
+        f"<table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{lines}</tbody>\n</table>\n</div>"
+    )
+
+
+def _cell(text: str) -> str:
+    mark = f' class="{_css(text)}"' if text in SEVERITY else ""
+    return f"<td{mark}>{_escaped(text)}</td>"
+
+
+def _css(state: str) -> str:
+    return state.replace(" ", "-")
+
+
+def _one_line(text: str) -> str:
+    """Return text as one line, without characters that change how others are shown."""
+    return printable(" ".join(text.split()))
+
+
+def _escaped(text: str) -> str:
+    return escape(_one_line(text))
+
+
+def _plain(text: str) -> str:
+    """Return text with the characters escaped that have a meaning in Markdown."""
+    return "".join(f"\\{c}" if c in "\\`*_|[]<>#" else c for c in _one_line(text))
