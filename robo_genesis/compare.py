@@ -18,10 +18,26 @@ from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison, compare
-from robo_genesis.evidence.rows import EQUAL, INCONCLUSIVE, NOT_COMPARABLE, WITHIN
+from robo_genesis.evidence.rows import DIFFERS, EQUAL, INCONCLUSIVE, NOT_COMPARABLE, WITHIN
 
 LARGEST = 500_000_000
 """Most bytes that an archive may hold; a bundle has a few hundred thousand."""
+
+REASONS = (
+    "The engines differ: {} and {}. Install the version that the site pins.",
+    "The installed files of one engine were changed. Install the engine again.",
+    "The backends differ: {} and {}. They round differently; orderings should agree.",
+    "The settings of the lesson differ: the course's package was changed.",
+    "The course's code differs: your package is of another build of the site.",
+)
+
+CONCLUSIONS = {
+    EQUAL: "Your run agrees with the site's within the tolerances of the lesson.",
+    WITHIN: "Your run agrees with the site's within the tolerances of the lesson.",
+    INCONCLUSIVE: "Whether the runs agree is undecided: see the inconclusive lines above.",
+    DIFFERS: "Your run differs from the site's. An arrow leads from its value to yours.",
+    NOT_COMPARABLE: "The two runs cannot be compared, for the reasons above.",
+}
 
 
 def bundle_folder(given: str, opened: ExitStack) -> Path:
@@ -50,39 +66,30 @@ def bundle_folder(given: str, opened: ExitStack) -> Path:
 
 def reasons(mine: Predicate, other: Predicate) -> Iterator[str]:
     """Yield what differs between two runs and may explain different numbers."""
-    engines = [p.engine for p in (mine, other)]
-    versions = [f"{e.version} (quadrants {e.quadrants_version})" for e in engines]
-    if versions[0] != versions[1]:
-        found = " and ".join(versions)
-        yield f"The engines differ: {found}. Install the version that the site pins."
-    if mine.engine.files_match_wheel != other.engine.files_match_wheel:
-        yield "The installed files of one engine were changed. Install the engine again."
-    if mine.backend.actual != other.backend.actual:
-        backends = f"{mine.backend.actual} and {other.backend.actual}"
-        yield f"The backends differ: {backends}. They round differently; orderings should agree."
-    if mine.parameters != other.parameters:
-        yield "The settings of the lesson differ: the course's package was changed."
-    if mine.source.modules != other.source.modules:
-        yield "The course's code differs: your package is of another build of the site."
+    facts = [
+        (
+            f"{run.engine.version} (quadrants {run.engine.quadrants_version})",
+            run.engine.files_match_wheel,
+            run.backend.actual,
+            run.parameters,
+            run.source.modules,
+        )
+        for run in (mine, other)
+    ]
+    for here, there, text in zip(*facts, REASONS, strict=True):
+        if here != there:
+            yield text.format(here, there)
 
 
 def explained(comparison: BundleComparison) -> list[str]:
     """Return the comparison in lines that a student can act on; the old side is the site's."""
-    lines = report.summary(comparison).splitlines()
     found = [*reasons(comparison.new, comparison.old)]
-    if comparison.state in (EQUAL, WITHIN):
-        lines.append("Your run agrees with the site's within the tolerances of the lesson.")
-    elif comparison.state == NOT_COMPARABLE:
-        lines.append("The two runs cannot be compared, for the reasons above.")
-    elif comparison.state == INCONCLUSIVE:
-        lines.append("Whether the runs agree is undecided: see the inconclusive lines above.")
-    else:
-        lines.append("Your run differs from the site's. An arrow leads from its value to yours.")
-        found = found or [
+    if comparison.state == DIFFERS and not found:
+        found = [
             "Engine, backend, settings and code are equal. Another processor can change the last "
             "digits; a larger difference comes from a changed cell of the notebook."
         ]
-    return lines + found
+    return [*report.summary(comparison).splitlines(), CONCLUSIONS[comparison.state], *found]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -28,7 +28,7 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.project import OUTPUTS_DIR
-from robo_genesis.core.refusals import BundleRefused, printable, shown
+from robo_genesis.core.refusals import BundleRefused, printable, quoted
 from robo_genesis.sim.diagnosis import STATES, STEPS, Bench, Finding, examine, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
@@ -138,15 +138,15 @@ def read_report(file: str) -> dict[str, Any]:
         report = json.loads(Path(file).read_text("utf8"))
         if report["format"] != REPORT_FORMAT:
             problem = (
-                f"has the format {shown(report['format'])}; this version reads format "
+                f"has the format {quoted(report['format'])}; this version reads format "
                 f"{REPORT_FORMAT}"
             )
         elif not (states := {f.state for f in steps_of(report)}):
             problem = "has no steps; a report has at least one"
         elif not states <= {*STATES}:
-            problem = f"has the states {shown(sorted(states))}; valid are {', '.join(STATES)}"
+            problem = f"has the states {quoted(sorted(states))}; valid are {', '.join(STATES)}"
         elif "engine" not in (facts := report["machine"]) or {*map(type, facts.values())} != {str}:
-            problem = f"has the machine {shown(facts)}; a report has texts with at least an engine"
+            problem = f"has the machine {quoted(facts)}; a report has texts with at least an engine"
         else:
             return report
     except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:

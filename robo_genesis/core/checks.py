@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from robo_genesis.core.check_spec import MASS_SHARE, TIME_TOLERANCE
+from robo_genesis.core.refusals import quoted
 from robo_genesis.core.trace import TimeSeries
 
 Subject = TypeVar("Subject")
@@ -45,7 +46,7 @@ class Finding:
     @property
     def problem(self) -> str:
         """The message about a value that is not allowed."""
-        return f"{self.label} is {shown(plain(self.found))}, expected {self.expected}"
+        return f"{self.label} is {quoted(plain(self.found))}, expected {self.expected}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,13 +81,6 @@ def plain(value: Any) -> Value:
     return value
 
 
-def shown(value: Value) -> str:
-    """Return a found or expected value as text for a message."""
-    if value is None:
-        return "not observed"
-    return f"{value:g}" if isinstance(value, float) else str(value) or "none"
-
-
 def noted(label: str, found: Any) -> Finding:
     """Record a value without a judgement of its own."""
     return Finding(label, found, True, "any value")
@@ -95,7 +89,7 @@ def noted(label: str, found: Any) -> Finding:
 def equal(label: str, found: Any, expected: Any, recorded: bool = True) -> Finding:
     """Require exactly the expected value."""
     value, required = plain(found), plain(expected)
-    return Finding(label, value, value == required, shown(required), recorded)
+    return Finding(label, value, value == required, quoted(required), recorded)
 
 
 def within(label: str, found: float | None, expected: float, tolerance: float) -> Finding:

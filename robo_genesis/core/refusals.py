@@ -5,6 +5,8 @@ A refusal has a stable code, and a message with found, expected and what to do.
 
 import re
 
+MEASURES = False
+
 AGAIN = "Record the bundle again."
 LONGEST_SHOWN = 160
 
@@ -26,9 +28,11 @@ class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepte
         super().__init__(f"{code}: {self.message}")
 
 
-def shown(value: object) -> str:
-    """Return the repr of a value, shortened for a message."""
-    text = repr(value)
+def quoted(value: object) -> str:
+    """Return a value as text for a message: shortened, a float with six digits, text in quotes."""
+    if value is None:
+        return "not observed"
+    text = f"{value:g}" if isinstance(value, float) else repr(value)
     if re.fullmatch("'[0-9a-f]{64}'", text):
         return f"{text[:13]}…'"
     return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
@@ -48,9 +52,17 @@ def expect(
         remedy: what to do.
     """
     if found != expected:
-        raise BundleRefused(
-            code, f"{file}: {what} is {shown(found)}, expected {shown(expected)}. {remedy}"
-        )
+        raise unexpected(code, file, what, found, expected, remedy)
+
+
+def unexpected(
+    code: str, file: str, what: str, found: object, expected: object, remedy: str = AGAIN
+) -> BundleRefused:
+    """Return the refusal of a value; see `expect`."""
+    here, there = quoted(found), quoted(expected)
+    if here == there:  # they differ in later digits
+        here, there = repr(found), repr(expected)
+    return BundleRefused(code, f"{file}: {what} is {here}, expected {there}. {remedy}")
 
 
 def printable(text: str) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.core.comparison import differences
-from robo_genesis.core.refusals import BundleRefused, shown
+from robo_genesis.core.refusals import BundleRefused, quoted
 from robo_genesis.evidence import bundle, bundle_files, rows
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.rows import (
@@ -147,7 +147,7 @@ def _obstacles(old: Predicate, new: Predicate) -> Iterator[str]:
         if was != now:
             yield f"The {what} differs: {was!r} and {now!r}."
     for path, was, now in differences(old.parameters, new.parameters, path="parameters"):
-        yield f"{path} differs: {shown(was)} and {shown(now)}."
+        yield f"{path} differs: {quoted(was)} and {quoted(now)}."
     for word, side in (("old", old), ("new", new)):
         if side.backend.actual != side.backend.actual_at_end:
             change = f"from {side.backend.actual} to {side.backend.actual_at_end}"

@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.refusals import AGAIN, BundleRefused, shown
+from robo_genesis.core.refusals import AGAIN, BundleRefused, quoted
 
 LARGEST = 2**53
 """The largest magnitude of a number: up to here, a float holds every integer."""
@@ -58,7 +58,7 @@ def _require_bounds(value: Any, depth: int = 0) -> None:
     if depth > DEEPEST:
         raise ValueError(f"lists and objects are nested in more than {DEEPEST} levels")
     if isinstance(value, int | float) and not abs(value) <= LARGEST:
-        raise ValueError(f"{shown(value)} is not a number within ±2⁵³")
+        raise ValueError(f"{quoted(value)} is not a number within ±2⁵³")
     if isinstance(value, dict | list | tuple):
         for inner in value.values() if isinstance(value, dict) else value:
             _require_bounds(inner, depth + 1)

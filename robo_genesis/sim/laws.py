@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding
-from robo_genesis.core.refusals import shown as quoted
+from robo_genesis.core.refusals import quoted
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import TimeSeries
 

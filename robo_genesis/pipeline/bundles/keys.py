@@ -3,7 +3,7 @@
 import json
 import os
 import re
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from robo_genesis.core import project
 from robo_genesis.core.comparison import differences
 from robo_genesis.core.files import derived
 from robo_genesis.core.project import PUBLISHED
-from robo_genesis.core.refusals import BundleRefused, expect, shown
+from robo_genesis.core.refusals import BundleRefused, expect, quoted
 from robo_genesis.core.scene import SEED
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_page
@@ -77,8 +77,11 @@ def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:
         BundleRefused: `lesson`, the book has no such page.
     """
     files = _page_files(book)
-    versions = tuple((str(path), path.stat().st_mtime_ns, path.stat().st_size) for path in files)
-    found = _page_codes(book, versions)
+    inputs = [path.relative_to(book).as_posix().encode() for path in files]
+    readers = [Path(syntax.__file__).with_name("book.py"), Path(syntax.__file__)]
+    inputs += [path.read_bytes() for path in (*files, *readers)]
+    listed = json.loads(derived("page-code", inputs, partial(_read_codes, book)))
+    found = {(lesson, page): (digest, names) for lesson, page, digest, names in listed}
     if (lesson, page) not in found:
         wanted, pages = f"{lesson}/{page}", " or ".join(sorted(map("/".join, found)))
         remedy = "Put the bundle into the folder of its own lesson."
@@ -94,19 +97,6 @@ def _page_files(book: Path) -> list[Path]:
         folders[:] = [name for name in folders if name[0] != "." and name != skipped]
         pages += (os.path.join(here, n) for n in files if n.endswith(".md") and n[0] != ".")
     return [*book.glob("_toc.yml"), *map(Path, sorted(pages))]
-
-
-@lru_cache(maxsize=8)
-def _page_codes(
-    book: Path, versions: tuple[Any, ...]
-) -> dict[tuple[str, str], tuple[str, list[str]]]:
-    """Return digest and imports by lesson and page; read again if `versions` changed."""
-    files = _page_files(book)
-    inputs = [path.relative_to(book).as_posix().encode() for path in files]
-    readers = [Path(syntax.__file__).with_name("book.py"), Path(syntax.__file__)]
-    inputs += [path.read_bytes() for path in (*files, *readers)]
-    listed = derived("page-code", inputs, partial(_read_codes, book))
-    return {(lesson, page): (digest, names) for lesson, page, digest, names in json.loads(listed)}
 
 
 def _read_codes(book: Path) -> bytes:
@@ -125,24 +115,35 @@ def _read_codes(book: Path) -> bytes:
     return json.dumps(codes).encode()
 
 
+def changed(manifest: bundle.Manifest, root: Path, book: Path) -> list[tuple[str, Any, Any]] | None:
+    """Return (path, recorded, current) of what differs; None if a bundle has the current key.
+
+    Raises:
+        BundleRefused: `lesson`, the book has no such page.
+    """
+    predicate = manifest.predicate.model_dump()
+    current = question(predicate["lesson"], predicate["page"], root, book)
+    if predicate["evidence_key"] == bundle.evidence_key(current):
+        return None
+    recorded = {name: predicate[name] for name in current}
+    recorded["engine"] = {name: recorded["engine"][name] for name in current["engine"]}
+    return list(differences(recorded, current))
+
+
 def check_current(manifest: bundle.Manifest, root: Path, book: Path) -> None:
     """Require that a bundle has the evidence key of the checkout.
 
     Raises:
         BundleRefused: `stale`, with everything that differs; `lesson`.
     """
-    predicate = manifest.predicate.model_dump()
-    expected = question(predicate["lesson"], predicate["page"], root, book)
-    if predicate["evidence_key"] == bundle.evidence_key(expected):
+    found = changed(manifest, root, book)
+    if found is None:
         return
-    found = {name: predicate[name] for name in expected}
-    found["engine"] = {name: found["engine"][name] for name in expected["engine"]}
-    changed = [
-        f"{path} is {shown(here)}, expected {shown(there)}"
-        for path, here, there in differences(found, expected)
-    ]
+    named = "; ".join(
+        f"{path} is {quoted(here)}, expected {quoted(there)}" for path, here, there in found
+    )
     raise BundleRefused(
         "stale",
-        f"manifest.json: {'; '.join(changed) or 'evidence_key differs'}. The bundle answers an "
-        f"older question. Record it again: `make evidence LESSON={predicate['lesson']}`.",
+        f"manifest.json: {named or 'evidence_key differs'}. The bundle answers an "
+        f"older question. Record it again: `make evidence LESSON={manifest.predicate.lesson}`.",
     )

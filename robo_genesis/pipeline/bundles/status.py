@@ -33,6 +33,17 @@ SUMMARIES = {
 }
 """What a reader of the site learns about a refusal, by its code."""
 
+RECORDED_WITH = "it was recorded with {name} {{}}; this site uses {{}}"
+CHANGES = {
+    "engine.version": ("engine", RECORDED_WITH.format(name="Genesis")),
+    "engine.quadrants_version": ("engine", RECORDED_WITH.format(name="Quadrants")),
+    "source.page": ("page", "the {page}'s code changed since"),
+    "source.modules": ("modules", "the course's code changed since"),
+    "parameters": ("parameters", "the parameters changed since"),
+    "seed": ("seed", "the seed changed since"),
+}
+"""What a stale bundle's change is called, by the beginning of its path in the evidence key."""
+
 
 @dataclass(frozen=True, slots=True)
 class Status:
@@ -174,28 +185,12 @@ def changes(manifest: Manifest, book: Path, root: Path = project.ROOT) -> list[t
 
     The kinds are those of `advice.BY_CHANGE`.
     """
-    found = manifest.predicate.model_dump()
-    now = evidence_key.question(found["lesson"], found["page"], root, book)
-    changed = [
-        (
-            "engine",
-            f"it was recorded with {name} {found['engine'][key]}; "
-            f"this site uses {now['engine'][key]}",
-        )
-        for name, key in (("Genesis", "version"), ("Quadrants", "quadrants_version"))
-        if found["engine"][key] != now["engine"][key]
+    found = evidence_key.changed(manifest, root, book) or []
+    return [
+        (kind, words.format(here, there, page=manifest.predicate.page))
+        for start, (kind, words) in CHANGES.items()
+        for path, here, there in [of for of in found if of[0].startswith(start)][:1]
     ]
-    changed += [
-        (kind, f"{what} changed since")
-        for kind, what, before, after in (
-            ("page", f"the {found['page']}'s code", found["source"]["page"], now["source"]["page"]),
-            ("modules", "the course's code", found["source"]["modules"], now["source"]["modules"]),
-            ("parameters", "the parameters", found["parameters"], now["parameters"]),
-            ("seed", "the seed", found["seed"], now["seed"]),
-        )
-        if before != after
-    ]
-    return changed
 
 
 def recorded_folders(book: Path) -> list[Path]:

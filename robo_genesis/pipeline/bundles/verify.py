@@ -10,7 +10,7 @@ from robo_genesis.core.checks import FAILED, Check
 from robo_genesis.core.comparison import agree, differences
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
+from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, unexpected
 from robo_genesis.evidence import bundle, bundle_files, manifest_rules
 from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.reader import from_bundle
@@ -132,7 +132,8 @@ def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:
     expect("checks", file, "list of checks", [check.name for check in recorded], names)
     for check, computed in zip(recorded, outcomes, strict=True):
         for label, here, there in differences(dict(check.found), dict(computed.found), agree):
-            expect("checks", file, f"{label}, found by check {check.name},", here, there)
+            what = f"{label}, found by check {check.name},"
+            raise unexpected("checks", file, what, here, there)
     failed = [f"[{check.name}] {check.detail}" for check in outcomes if not check.passed]
     if failed:
         raise BundleRefused(
@@ -149,4 +150,3 @@ def as_judged_today(manifest: Manifest) -> Manifest:
     return manifest.model_copy(
         update={"predicate": predicate.model_copy(update={"checks": passed})}
     )
-
