@@ -208,7 +208,11 @@ def measured_elsewhere(folder):
     """Make a bundle that of another run, with an array of each case that differs a little."""
     own_run_id(folder)
     for path in (folder / "arrays").glob("*.npz"):
-        rewrite(path.stem, internal_force=lambda a: np.nextafter(a, np.float32(np.inf)))(folder)
+        rewrite(path.stem, internal_force=last_bit)(folder)
+
+
+def last_bit(array):
+    return np.nextafter(array, np.float32(np.inf))
 
 
 # --- arrays ---------------------------------------------------------------------------------

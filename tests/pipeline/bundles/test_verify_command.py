@@ -5,21 +5,7 @@ import shutil
 
 import pytest
 from loading import ENGINE, JUPYTER, run_watched
-from spoilers import (
-    SPOILED,
-    both,
-    drop_case,
-    failing,
-    found,
-    log,
-    measured_elsewhere,
-    metric,
-    modules,
-    on,
-    part,
-    predicate,
-    seal,
-)
+from spoilers import SPOILED, both, filed_as, measured_elsewhere, metric, on, part, remove, seal
 
 from robo_genesis.core.project import ROOT, engine_pin
 from robo_genesis.evidence import advice
@@ -71,8 +57,8 @@ stale = both(part("engine", quadrants_version="1.2.9"), seal)
     ("spoil", "said"),
     [
         (stale, "stale        stale: manifest.json: engine.quadrants_version is '1.2.9', expected"),
-        (lambda folder: (folder / "log.txt").unlink(), "refused      files: listed but absent"),
-        (lambda folder: folder.rename(folder.with_name("rocm")), "rocm     refused      backend: "),
+        (remove("log.txt"), "refused      files: listed but absent"),
+        (filed_as("rocm"), "rocm     refused      backend: "),
     ],
 )
 def test_what_is_not_current_is_status_1(command, recorded, built, capsys, spoil, said):
@@ -88,49 +74,48 @@ def test_what_does_not_show_the_claims_is_status_1(command, recorded, undecided,
     assert "inconclusive Not shown of what the lesson claims: peak_speed" in capsys.readouterr().out
 
 
-def test_one_folder_is_checked_alone(command, recorded, folder, tmp_path, monkeypatch, capsys):
+@pytest.fixture
+def check(command, monkeypatch, capsys):
+    """Check one folder alone; return exit status and lines."""
+
+    def run(folder):
+        monkeypatch.setenv("BUNDLE", str(folder))
+        return command.main(), capsys.readouterr().out.splitlines()
+
+    return run
+
+
+def test_one_folder_is_checked_alone(check, recorded, folder, tmp_path):
     stale(recorded)
-    monkeypatch.setenv("BUNDLE", str(folder))
-    assert command.main() == 0
-    assert len(capsys.readouterr().out.splitlines()) == 1
-    monkeypatch.setenv("BUNDLE", str(tmp_path / "cpu"))
-    assert command.main() == 1
-    assert "missing      There is no such folder." in capsys.readouterr().out
+    status, lines = check(folder)
+    assert (status, len(lines)) == (0, 1)
+    status, lines = check(tmp_path / "cpu")
+    assert (status, lines[0].endswith(" There is no such folder.")) == (1, True)
 
 
-OLDER = both(part("engine", version="1.2.0"), log("version: ", "version: 1.2.0, was: "), seal)
+ADVICE = {
+    "an older engine": "Another version of the engine computed. Install the course's versions",
+    "no page digest": "A notebook that is run by hand does not name",
+    "another module": "Your copy of the course's modules differs",
+    "other parameters": "Your run has other settings. Your",
+    "an older schema": "The bundle was recorded with an older state",
+    "a patched engine": "A file of your installed engine differs",
+    "an architecture that spells the valid ones": "Genesis and Torch used different devices",
+    "an edited metric": "The recorded metrics are not those of the recorded",
+    "a found value too many": "The recorded outcomes of the checks are",
+    "two joints on one DOF, and it says so": "The files are sound, but a check of the run",
+    "a dropped case": "The bundle does not have exactly the page's runs.",
+}
 
 
-@pytest.mark.parametrize(
-    ("spoil", "said"),
-    [
-        (OLDER, "Another version of the engine computed. Install the course's versions"),
-        (both(part("source", page="0" * 64), seal), "Your code cells differ from the page's. Your"),
-        (both(part("source", page=None), seal), "A notebook that is run by hand does not name"),
-        (both(modules(metrics="0" * 64), seal), "Your copy of the course's modules differs"),
-        (both(part("parameters", rise_fraction=0.5), seal), "Your run has other settings. Your"),
-        (both(predicate(seed=1), log("seed: 0", "seed: 1"), seal), "Your run started from another"),
-        (predicate(schema_version=0), "The bundle was recorded with an older state"),
-        (part("engine", files_match_wheel=False), "A file of your installed engine differs"),
-        (part("backend", torch_device="cuda"), "Genesis and Torch used different devices"),
-        (both(metric(value=0.0), seal), "The recorded metrics are not those of the recorded"),
-        (both(found("mapping", "links", 12), seal), "The recorded outcomes of the checks are"),
-        (failing("two joints on one DOF", seal), "The files are sound, but a check of the run"),
-        (both(drop_case, seal), "The bundle does not have exactly the page's runs."),
-    ],
-)  # fmt: skip
-def test_a_student_learns_what_a_refusal_means(command, folder, monkeypatch, capsys, spoil, said):
-    spoil(folder)
-    monkeypatch.setenv("BUNDLE", str(folder))
-    assert command.main() == 1
-    assert f"What this means: {said}" in capsys.readouterr().out
-
-
-def test_damage_gets_no_advice(command, folder, monkeypatch, capsys):
-    (folder / "log.txt").unlink()
-    monkeypatch.setenv("BUNDLE", str(folder))
-    assert command.main() == 1
-    assert len(capsys.readouterr().out.splitlines()) == 1
+@pytest.mark.parametrize("how", [*ADVICE, "no log"])
+def test_a_student_learns_what_a_refusal_means_and_nothing_about_damage(check, folder, how):
+    both(SPOILED[how][2], seal)(folder)
+    status, lines = check(folder)
+    meant = [line for line in lines if line.startswith("What this means: ")]
+    assert status == 1
+    assert len(meant) == (how in ADVICE)
+    assert "".join(meant).startswith(f"What this means: {ADVICE[how]}" if meant else "")
 
 
 def test_every_advice_is_for_a_code_or_change_that_exists():
@@ -138,26 +123,21 @@ def test_every_advice_is_for_a_code_or_change_that_exists():
     assert {*advice.BY_CODE} <= codes
 
 
-def test_one_folder_is_compared_with_the_build(command, folder, built, monkeypatch, capsys):
-    both(OLDER, metric(value=0.5), seal)(folder)
-    monkeypatch.setenv("BUNDLE", str(folder))
-    assert command.main() == 1
-    out = capsys.readouterr().out
-    assert "Compared with this build's run on the CPU (build → yours):\nL04 lab: engine" in out
-    assert "\n    G2.overshoot: " in out
-    monkeypatch.setenv("BUNDLE", str(built))
-    assert command.main() == 0
-    assert len(capsys.readouterr().out.splitlines()) == 1
+def test_one_folder_is_compared_with_the_build(check, folder, built):
+    both(SPOILED["an older engine"][2], metric(value=0.5), seal)(folder)
+    status, lines = check(folder)
+    at = lines.index("Compared with this build's run on the CPU (build → yours):")
+    assert status == 1
+    assert lines[at + 1].startswith("L04 lab: engine")
+    assert any(line.startswith("    G2.overshoot: ") for line in lines[at:])
+    status, lines = check(built)
+    assert (status, len(lines)) == (0, 1)
 
 
-def test_a_copy_of_the_build_s_run_is_not_an_accelerator_s(
-    command, folder, built, monkeypatch, capsys
-):
-    monkeypatch.setenv("BUNDLE", str(on("amdgpu")(folder)))
-    assert command.main() == 1
-    assert "refused      copy: manifest.json: backend.actual is 'amdgpu', but a run on the CPU" in (
-        capsys.readouterr().out
-    )
+def test_a_copy_of_the_build_s_run_is_not_an_accelerator_s(check, folder, built):
+    status, lines = check(on("amdgpu")(folder))
+    said = "refused      copy: manifest.json: backend.actual is 'amdgpu', but a run on the CPU"
+    assert (status, said in lines[0]) == (1, True)
 
 
 def test_neither_verification_nor_comparison_loads_the_engine_or_jupyter(folder):
