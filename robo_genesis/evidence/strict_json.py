@@ -10,7 +10,7 @@ from typing import Any
 
 from robo_genesis.core.refusals import AGAIN, BundleRefused, quoted
 
-LARGEST = 2**53
+LARGEST = 2**53 - 1
 """The largest magnitude of a number: up to here, a float holds every integer."""
 
 DEEPEST = 32
