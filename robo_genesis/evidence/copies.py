@@ -3,13 +3,11 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-
-from robo_genesis.core.refusals import BundleRefused
-from robo_genesis.core.trace import TimeSeries
+from robo_genesis.core.comparison import same_arrays
+from robo_genesis.core.refusals import BundleRefused, expect
+from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import read_side
 from robo_genesis.evidence.rows import Side
-from robo_genesis.evidence.trace_files import fields_of
 
 IMPORTER = "(MJCF)"
 """How warnings of the model importer begin. It runs on the CPU, whatever the backend is."""
@@ -32,58 +30,37 @@ def require_own_run(folder: Path, cpu_runs: Sequence[Path]) -> None:
     if not cpu_runs:
         return
     own = read_side(folder)
-    if own.manifest.predicate.backend.actual == "cpu":
+    here = own.manifest.predicate
+    if here.backend.actual == "cpu":
         return
     for run in cpu_runs:
         try:
             other = read_side(run)
         except BundleRefused:
             continue
-        if _same_page_and_engine(own, other):
+        there = other.manifest.predicate
+        if _question(there) == _question(here) and there.backend.actual == "cpu":
             _compare(own, other)
 
 
-def _same_page_and_engine(own: Side, other: Side) -> bool:
-    here, there = own.manifest.predicate, other.manifest.predicate
-    same = (here.lesson, here.page, here.engine.version) == (
-        there.lesson,
-        there.page,
-        there.engine.version,
-    )
-    return same and there.backend.actual == "cpu"
+def _question(predicate: Predicate) -> tuple[str, str, str]:
+    return predicate.lesson, predicate.page, predicate.engine.version
 
 
 def _compare(own: Side, other: Side) -> None:
     here, there = own.manifest.predicate, other.manifest.predicate
-    what = f"manifest.json: backend.actual is {here.backend.actual!r}, but"
+    what = f"manifest.json: backend.actual is {here.backend.actual!r}, but a run on the CPU has"
     if here.run_id == there.run_id:
-        raise BundleRefused(
-            "copy",
-            f"{what} a run on the CPU has its run_id {here.run_id[:8]}, expected another. "
-            f"{MEASURE}",
-        )
-    shared = [case for case in own.traces if case in other.traces]
-    equal = [case for case in shared if _equal(own.traces[case], other.traces[case])]
+        its = f"its run_id {here.run_id[:8]}, expected another"
+        raise BundleRefused("copy", f"{what} {its}. {MEASURE}")
+    equal = [
+        case
+        for case, trace in own.traces.items()
+        if case in other.traces and same_arrays(trace, other.traces[case])
+    ]
     if equal:
-        raise BundleRefused(
-            "copy",
-            f"{what} all arrays of {', '.join(equal)} equal those of the CPU's run "
-            f"{there.run_id[:8]} to the last bit, expected others: an accelerator rounds "
-            f"differently. {MEASURE}",
-        )
-    missing = [w for w in dict.fromkeys(there.warnings) if w.startswith(IMPORTER)]
-    missing = [warning for warning in missing if warning not in here.warnings]
-    if missing:
-        raise BundleRefused(
-            "log",
-            f"log.txt: warnings of the model importer are missing: {missing}, expected each that "
-            f"the CPU's run {there.run_id[:8]} has. {MEASURE}",
-        )
-
-
-def _equal(one: TimeSeries, other: TimeSeries) -> bool:
-    """Whether two runs have the same arrays, to the last bit."""
-    if type(one) is not type(other):
-        return False
-    pairs = [(getattr(one, field), getattr(other, field)) for field in fields_of(one)]
-    return all(np.array_equal(a, b) for a, b in pairs)
+        its = f"all its arrays of {', '.join(equal)}, expected others: an accelerator rounds"
+        raise BundleRefused("copy", f"{what} {its} differently. {MEASURE}")
+    imported = [text for text in dict.fromkeys(there.warnings) if text.startswith(IMPORTER)]
+    missing = [text for text in imported if text not in here.warnings]
+    expect("log", "log.txt", "list of missing warnings of the model importer", missing, [], MEASURE)

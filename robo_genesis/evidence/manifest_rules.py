@@ -6,7 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
+from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, unexpected
 from robo_genesis.evidence.bundle import Manifest, Predicate, evidence_key
 from robo_genesis.evidence.fields import LINE_LIMIT
 from robo_genesis.lessons import LESSONS
@@ -19,6 +19,7 @@ TORCH = (
     "Use a Torch build for this backend, unset GS_TORCH_FORCE_CPU_DEVICE and QD_ARCH, and run the "
     "page again."
 )
+REINSTALL = "The installed engine was changed. Install it again from requirements.lock."
 
 FORCED = ("GS_TORCH_FORCE_CPU_DEVICE", "QD_ARCH")
 """Switches that can make the engine and Torch use different devices."""
@@ -59,13 +60,17 @@ def check_identity(
     expect("key", MANIFEST, "evidence_key", predicate.evidence_key, key)
 
 
-def check_backend(folder: Path, manifest: Manifest) -> None:
-    """Require one backend, which names the folder, during the whole run, and a matching Torch.
+def check_circumstances(folder: Path, predicate: Predicate) -> None:
+    """Require one backend, a matching Torch, switches that force no device, a true renderer.
+
+    The backend names the folder. The files of the engine are those of its wheels.
 
     Raises:
-        BundleRefused: `backend` or `torch`.
+        BundleRefused: `backend`; `torch`, also for a switch that forces a device; `environment` for
+            a variable that is no switch of the engine, and for a value that names a home folder;
+            `render`; `engine-files`.
     """
-    backend = manifest.predicate.backend
+    backend, render, switches = predicate.backend, predicate.render, predicate.environment
     expect("backend", MANIFEST, "backend.actual", backend.actual, folder.name, RELABEL)
     again = "The backend changed during the run. Run the page again."
     expect("backend", MANIFEST, "actual_at_end", backend.actual_at_end, backend.actual, again)
@@ -73,50 +78,22 @@ def check_backend(folder: Path, manifest: Manifest) -> None:
         expect("backend", MANIFEST, "actual where cpu was requested", backend.actual, "cpu")
     for what, found, expected in contradictions(backend):
         expect("torch", MANIFEST, what, found, expected, TORCH)
-
-
-def check_environment(manifest: Manifest) -> None:
-    """Require that the recorded variables are switches of the engine that force no device.
-
-    Raises:
-        BundleRefused: `torch` for a switch that forces a device; `environment` for a variable that
-            is not a switch, and for a value that names a home folder.
-    """
-    found = manifest.predicate.environment
-    forced = [name for name in FORCED if name in found]
+    forced = [name for name in FORCED if name in switches]
     expect("torch", MANIFEST, "list of set variables that must stay unset", forced, [], TORCH)
-    others = sorted(found.keys() - project.engine_switches(found).keys())
+    others = sorted(switches.keys() - project.engine_switches(switches).keys())
     expect("environment", MANIFEST, "list of variables that are not engine switches", others, [])
-    private = sorted(name for name, value in found.items() if project.HOME_FOLDER.search(value))
+    private = sorted(name for name, value in switches.items() if project.HOME_FOLDER.search(value))
     expect("environment", MANIFEST, "list of variables that name a home folder", private, [])
-
-
-def check_engine_files(manifest: Manifest) -> None:
-    """Require that the files of the engine are those of its wheels.
-
-    Raises:
-        BundleRefused: `engine-files`.
-    """
-    match = manifest.predicate.engine.files_match_wheel
-    remedy = "The installed engine was changed. Install it again from requirements.lock."
-    expect("engine-files", MANIFEST, "engine.files_match_wheel", match, True, remedy)
-
-
-def check_render(manifest: Manifest) -> None:
-    """Require that mode, vendor, name of the renderer and software flag agree.
-
-    Raises:
-        BundleRefused: `render`.
-    """
-    render = manifest.predicate.render
-    found = (render.vendor, render.renderer, render.software)
-    expected: tuple[object, ...] = (None, None, None)
+    named = render.vendor, render.renderer, render.software
     if render.mode == "camera":
-        vendor = "a vendor" if render.vendor is None else render.vendor
-        name = "a renderer" if render.renderer is None else render.renderer
-        expected = (vendor, name, Renderer(vendor, name).software)
+        vendor, name = render.vendor or "a vendor", render.renderer or "a renderer"
+        valid: tuple[object, ...] = (vendor, name, Renderer(vendor, name).software)
+    else:
+        valid = (None, None, None)
     what = f"vendor, renderer, software of mode {render.mode}"
-    expect("render", MANIFEST, what, found, expected)
+    expect("render", MANIFEST, what, named, valid)
+    match = predicate.engine.files_match_wheel
+    expect("engine-files", MANIFEST, "engine.files_match_wheel", match, True, REINSTALL)
 
 
 def check_log(folder: Path, manifest: Manifest, root: Path) -> None:
@@ -134,8 +111,8 @@ def check_log(folder: Path, manifest: Manifest, root: Path) -> None:
     lines = text.removesuffix("\n").split("\n")
     longest = max(map(len, lines))
     if longest > LINE_LIMIT:
-        what = f"a line has {longest} characters, expected at most {LINE_LIMIT}"
-        raise BundleRefused("log", f"log.txt: {what}. {AGAIN}")
+        most = f"at most {LINE_LIMIT}"
+        raise unexpected("log", "log.txt", "length of the longest line", longest, most)
     stated = set()
     for what, found, expected in _log_facts(lines, manifest.predicate):
         expect("log", "log.txt", what, found, expected)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from robo_genesis.core.comparison import differences
 from robo_genesis.core.experiment import Experiment, MeasuringPage
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.core.scene import CAMERA_RES
@@ -49,11 +50,8 @@ def check_cases(folder: Path, arrays: Arrays, page: MeasuringPage) -> None:
     """
     found = {name: case.note for name, case in arrays.cases.items()}
     declared = {name: run.note for name, run in page.runs.items()}
-    missing, further = sorted(declared.keys() - found), sorted(found.keys() - declared)
-    expect("cases", "arrays.json", "list of missing cases", missing, [])
-    expect("cases", "arrays.json", "list of undeclared cases", further, [])
-    for name, note in declared.items():
-        expect("cases", "arrays.json", f"note of the case {name}", found[name], note)
+    for name, here, there in differences(found, declared):
+        expect("cases", "arrays.json", f"note of the case {name}", here, there)
     present = sorted(path.stem for path in (folder / "arrays").glob("*.npz"))
     expect("cases", "arrays/", "list of archives", present, sorted(declared))
 

@@ -22,7 +22,7 @@ from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.picture_file import write_picture
 from robo_genesis.evidence.strict_json import write_json
-from robo_genesis.evidence.trace_files import fields_of, write_traces
+from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.sim import session
 from robo_genesis.sim.camera.frames import Renderer
 
@@ -184,11 +184,6 @@ def require_complete(run: Experiment) -> None:
             f"{', '.join(declared)}. Run each declared case, or correct the declaration."
         )
     values = {
-        f"{case} {name}": getattr(trace, field)
-        for case, trace in run.traces.items()
-        for field, (name, *_) in fields_of(trace).items()
-    }
-    values |= {
         f"{group}.{name}": record["value"]
         for group, records in run.records().items()
         for name, record in records.items()

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding
+from robo_genesis.core.comparison import same_arrays
 from robo_genesis.core.refusals import quoted
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import TimeSeries
@@ -108,6 +109,6 @@ def copied(trace: TimeSeries, others: Mapping[str, TimeSeries]) -> Iterator[Find
     of_motion = ("q", "qd", "link_pos", "link_quat", "link_vel", "link_ang")
     motion = [field.name for field in fields(trace) if field.name in of_motion]
     for label, other in others.items():
-        if all(np.array_equal(getattr(trace, name), getattr(other, name)) for name in motion):
+        if same_arrays(trace, other, *motion):
             what = f"run with the same motion as {label}, to the last bit,"
             yield broken("second-engine", what, "of another engine", "different")

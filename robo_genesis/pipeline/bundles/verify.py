@@ -53,11 +53,8 @@ def verify_bundle(
     manifest = bundle.read_manifest(folder)
     manifest_rules.check_identity(manifest, run_id, lesson, page)
     bundle_files.check_files(folder, present, manifest)
-    manifest_rules.check_backend(folder, manifest)
-    manifest_rules.check_environment(manifest)
-    manifest_rules.check_render(manifest)
+    manifest_rules.check_circumstances(folder, manifest.predicate)
     manifest_rules.check_log(folder, manifest, root)
-    manifest_rules.check_engine_files(manifest)
     evidence_key.check_current(manifest, root, book)
     if once:
         contents = [(folder / name).read_bytes() for name in sorted(present)]
