@@ -17,6 +17,7 @@ from robo_genesis.evidence.advice import advice
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.evidence.compare import compare
 from robo_genesis.pipeline.bundles.status import (
+    RECORDED_PAGE,
     Status,
     bundle_status,
     changes,
@@ -50,8 +51,8 @@ def one_bundle(folder: Path) -> tuple[Status, list[str]]:
         predicate = read_manifest(folder).predicate
     except (BundleRefused, OSError):
         predicate = None
-    reference = built(predicate.lesson) if predicate else None
-    runs = [reference] if reference and reference.is_dir() else []
+    lab = built(predicate.lesson) if predicate and predicate.page == RECORDED_PAGE else None
+    runs = [lab] if lab and lab.is_dir() else []
     status = bundle_status(folder, book=BOOK, cpu_runs=runs)
     lines = []
     if status.code:
@@ -59,20 +60,17 @@ def one_bundle(folder: Path) -> tuple[Status, list[str]]:
         changed = changes(read_manifest(folder), BOOK) if stale else []
         kinds = tuple(dict.fromkeys(kind for kind, _ in changed))
         lines += [f"What this means: {text}" for text in advice(status.code, kinds, predicate)]
-    if predicate and runs and folder.resolve() != runs[0].resolve():
-        lines += compared(runs[0], folder, predicate.page)
+    if runs and folder.resolve() != runs[0].resolve():
+        lines += compared(runs[0], folder)
     return status, lines
 
 
-def compared(reference: Path, folder: Path, page: str) -> list[str]:
-    """Return lines that compare a bundle with this build's run on the CPU of the same page."""
+def compared(reference: Path, folder: Path) -> list[str]:
+    """Return lines that compare a bundle of a lab with this build's run on the CPU."""
     try:
-        if read_manifest(reference).predicate.page != page:
-            return []
-        comparison = compare(reference, folder)
+        text = report.summary(compare(reference, folder)).splitlines()
     except BundleRefused as refusal:
         return [f"It cannot be compared with this build's run on the CPU: {refusal}"]
-    text = report.summary(comparison).splitlines()
     return ["Compared with this build's run on the CPU (build → yours):", *text]
 
 

@@ -59,9 +59,7 @@ def check_files(folder: Path, present: set[str], manifest: Manifest) -> None:
     odd = [name for name in listed if not NAME.fullmatch(name)]
     expect("path", MANIFEST, "list of names that are not plain relative paths", odd, [])
     different = len({name.casefold() for name in listed})
-    expect(
-        "path", MANIFEST, "number of names that differ in more than case", different, len(listed)
-    )
+    expect("path", MANIFEST, "number of names, whatever their case,", different, len(listed))
     for what, wrong in (
         ("listed, but absent", {*listed, *REQUIRED} - present),
         ("not listed", present - {*listed, MANIFEST}),
