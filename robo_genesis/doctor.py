@@ -28,7 +28,8 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.project import OUTPUTS_DIR
-from robo_genesis.core.refusals import BundleRefused, printable, quoted
+from robo_genesis.core.quantities import quoted
+from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.sim.diagnosis import STATES, STEPS, Bench, Finding, examine, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page

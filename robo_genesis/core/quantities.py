@@ -1,6 +1,9 @@
-"""Measured values as text, with the digits of each unit."""
+"""Values as text: measured ones with the digits of their unit, others shortened for messages."""
+
+import re
 
 NOT_OBSERVED = "not observed"
+LONGEST_SHOWN = 160
 
 DIGITS = {
     "s": 2, "rad": 4, "m": 4, "rad/s": 3, "m/s": 3, "N·m": 2, "N": 2, "kg": 3, "J": 4, "%": 1,
@@ -47,3 +50,17 @@ def six_digits(value: float | None, unit: str) -> str:
         return NOT_OBSERVED
     text = str(value) if isinstance(value, int) else f"{value:.6g}"
     return text if unit == "1" else f"{text} {unit}"
+
+
+def quoted(value: object) -> str:
+    """Return any value as text for a message: a float with six digits, long text shortened."""
+    if value is None:
+        return NOT_OBSERVED
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, list | tuple):
+        value = ", ".join(str(item) for item in value)
+    text = str(value) or "none"
+    if re.fullmatch("[0-9a-f]{64}", text):
+        return f"{text[:12]}…"
+    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"

@@ -3,12 +3,9 @@
 A refusal has a stable code, and a message with found, expected and what to do.
 """
 
-import re
-
-MEASURES = False
+from robo_genesis.core.quantities import quoted
 
 AGAIN = "Record the bundle again."
-LONGEST_SHOWN = 160
 
 LINE_LIMIT = 2**14
 """Characters of one line of the engine's log, and of one warning. Most have less than 400."""
@@ -26,16 +23,6 @@ class BundleRefused(ValueError):  # noqa: N818 - the word of the domain: accepte
     def __init__(self, code: str, message: str) -> None:
         self.code, self.message = code, printable(message)
         super().__init__(f"{code}: {self.message}")
-
-
-def quoted(value: object) -> str:
-    """Return a value as text for a message: shortened, a float with six digits, text in quotes."""
-    if value is None:
-        return "not observed"
-    text = f"{value:g}" if isinstance(value, float) else repr(value)
-    if re.fullmatch("'[0-9a-f]{64}'", text):
-        return f"{text[:13]}…'"
-    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
 
 
 def expect(

@@ -12,7 +12,7 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.comparison import same_arrays
-from robo_genesis.core.refusals import quoted
+from robo_genesis.core.quantities import quoted
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import TimeSeries
 

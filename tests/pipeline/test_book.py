@@ -186,7 +186,7 @@ def test_a_site_with_problems_is_rendered_from_nothing_the_next_time(tmp_path):
 
 def test_a_bundle_of_another_backend_is_refused():
     contract = {"ROBO_GENESIS_BACKEND": "auto", "ROBO_GENESIS_RENDER": "1"}
-    said = r"backend: .* backend\.requested is 'cpu', expected 'auto'"
+    said = r"backend: .* backend\.requested is cpu, expected auto"
     with pytest.raises(BundleRefused, match=said):
         require_contract(FACTS, contract)
 
@@ -198,14 +198,14 @@ def test_a_page_must_render_exactly_if_it_declares_a_camera(page, mode):
     facts.render = SimpleNamespace(mode=mode)
     require_contract(facts, contract)
     facts.render = SimpleNamespace(mode={"camera": "skip", "skip": "camera"}[mode])
-    with pytest.raises(BundleRefused, match=rf"frames: .* expected '{mode}'"):
+    with pytest.raises(BundleRefused, match=rf"frames: .* expected {mode}"):
         require_contract(facts, contract)
 
 
 def test_a_build_compares_its_bundles_with_its_own_contract(tmp_path, monkeypatch):
     make_book(tmp_path, lab=LAB)
     monkeypatch.setenv("ROBO_GENESIS_RENDER", "0")
-    with pytest.raises(BuildError, match=r"lab: .* render\.mode is 'camera', expected 'skip'"):
+    with pytest.raises(BuildError, match=r"lab: .* render\.mode is camera, expected skip"):
         build(tmp_path)
 
 

@@ -16,6 +16,7 @@ from sphinx.errors import ConfigError
 
 from robo_genesis.core import project, quantities, trace
 from robo_genesis.evidence import bundle, fields, npz_archive, trace_files
+from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.site.takeaways import files
 from robo_genesis.site.takeaways.files import csv_text, package_facts, run_commands, without_places
@@ -74,7 +75,7 @@ def test_a_kept_table_is_of_one_state_of_all_code_that_shapes_it(
     for folder in (run, own):
         folder.mkdir()
     described = write_traces(run, {"G2": traces["G2"]}, joints, LINKS)
-    (run / "arrays.json").write_text(described.model_dump_json(by_alias=True))
+    write_json(run / "arrays.json", described.model_dump(by_alias=True))
     monkeypatch.setattr(files, "derived", lambda kind, inputs, make: keys.append(inputs) or make())
     ((_, table, _),) = files._arrays(run, own)
     assert next(csv.reader(table.open()))[0] == "t [s]"

@@ -31,8 +31,7 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 from robo_genesis.core import project
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.quantities import MICRO, SCALED, format_value, scaled_value
-from robo_genesis.core.refusals import quoted
+from robo_genesis.core.quantities import MICRO, SCALED, format_value, quoted, scaled_value
 from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,
@@ -78,8 +77,7 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
         check, _, label = name.partition(":")
         findings = {c.name: c.found for c in predicate.checks}
         value = _chosen(lesson_page, check, label, findings, ":")
-        plain = value if isinstance(value, str) else quoted(value)
-        text = scaled_value(float(value), unit) if unit else plain
+        text = scaled_value(float(value), unit) if unit else quoted(value)
         return text, f"{origin}, found by the check {check}"
     group, _, metric = name.partition(".")
     record = _chosen(lesson_page, group, metric, bundle.read_metrics(folder), ".")

@@ -96,11 +96,9 @@ def test_it_compares_with_itself(dropped):
     found = compare(dropped, dropped)
     assert found.state == "equal"
     titles = {section.title: section for section in found.sections}
-    assert titles["Relations"].findings == ()
-    assert {f.what for f in titles["Exact counts"].findings} >= {
-        "life_cycle.scene.step after build"
-    }
-    assert any("link_vel_m_s" in f.what for f in titles["Arrays"].findings)
+    assert titles["Relations"].rows == ()
+    assert {f.what for f in titles["Exact counts"].rows} >= {"life_cycle.scene.step after build"}
+    assert any("link_vel_m_s" in f.what for f in titles["Arrays"].rows)
 
 
 def test_it_becomes_a_table_with_units(dropped):

@@ -78,7 +78,7 @@ def test_each_page_compares_with_itself_by_its_own_cases(bundles):
         found = compare(folder, folder)
         assert found.state == "equal"
         sections = {section.title: section for section in found.sections}
-        claims[page] = sections["Relations"].findings if "Relations" in sections else []
+        claims[page] = sections["Relations"].rows if "Relations" in sections else []
     assert len(claims["lab"]) == len(spec.RELATIONS)
     assert [claim.what for claim in claims["lecture"]] == [
         "stop_distance: high_on_050 lower than low_on_050, held in both"

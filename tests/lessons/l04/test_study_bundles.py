@@ -130,7 +130,7 @@ def test_a_comparison_covers_the_studies(studied, tmp_path, group, name, factor,
     seal(other)
     found = compare(old, other)
     values = next(section for section in found.sections if section.title == "Values")
-    (row,) = [finding for finding in values.findings if finding.what == f"{group}.{name}"]
+    (row,) = [row for row in values.rows if row.what == f"{group}.{name}"]
     assert row.state == state
 
 

@@ -56,7 +56,7 @@ stale = both(part("engine", quadrants_version="1.2.9"), seal)
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
-        (stale, "stale        stale: manifest.json: engine.quadrants_version is '1.2.9', expected"),
+        (stale, "stale        stale: manifest.json: engine.quadrants_version is 1.2.9, expected"),
         (remove("log.txt"), "refused      files: manifest.json: list of files that are listed"),
         (filed_as("rocm"), "rocm     refused      backend: "),
     ],

@@ -104,8 +104,8 @@ BY_HAND = lab("cuda").replace('["ROBO_GENESIS_COMMAND"]', '["HOME"]')
         (lab("cuda", more="\n1 / 0"), {}, "ZeroDivisionError: division by zero"),
         (lab("amdgpu"), {}, "Expected backend: cuda; .* finds 'amdgpu'"),
         (lab("cuda"), {"verify": refuse}, "bundle of this run is refused: metrics: metrics.json"),
-        (NO_CAMERA, {}, "render.mode is 'skip', expected 'camera'"),
-        (BY_HAND, {}, "command: manifest.json: command is .*, expected 'make evidence'"),
+        (NO_CAMERA, {}, "render.mode is skip, expected camera"),
+        (BY_HAND, {}, "command: manifest.json: command is .*, expected make evidence"),
     ],
     ids=["raising cell", "another backend", "refused bundle", "no camera", "another command"],
 )
