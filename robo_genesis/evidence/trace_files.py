@@ -195,8 +195,11 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
     """
     described, fields, place = arrays.cases[case], KINDS[kind], f"arrays.json {case}"
     expect("path", place, "file", described.file, f"arrays/{case}.npz")
+    if kind is not Trace:
+        expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
     types = read_joints(arrays).types if arrays.joints else ()
     dtypes = {name: DTYPES.get(field, "float32") for field, (name, *_) in fields.items()}
+    expect("labels", place, "list of arrays", sorted(described.variables), sorted(dtypes))
     values = read_archive(folder / described.file, described.file, dtypes)
     try:
         trace = kind(**{field: values[name] for field, (name, *_) in fields.items()})
@@ -210,7 +213,6 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
     }
     labels = {axis: len(names) for axis, names in arrays.coords.items()}
     expect("labels", place, "number of labels", labels, found)
-    expect("labels", place, "number of joints", len(arrays.joints), found.get("dof", 0))
     expected = _description(case, trace, types, described.note)
     for path, here, there in differences(described.model_dump(), expected.model_dump()):
         expect("labels", place, path, here, there)

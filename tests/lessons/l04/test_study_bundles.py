@@ -76,7 +76,7 @@ SPOILED = {
         with_value("grid_step_250mrad_KP_7000_KV_300", "peak_speed", 1.1), "metrics", "grid_step",
     ),
     "the assigned path is missing": (
-        "lecture",without_run("assigned"), "cases", "missing cases.*assigned"),
+        "lecture",without_run("assigned"), "cases", "note of the case assigned is absent"),
     "a run of MuJoCo is called one of Genesis": (
         "integrator",
         without_note("MuJoCo_Euler_G2_substeps_2"), "cases", "note of the case MuJoCo_Euler",

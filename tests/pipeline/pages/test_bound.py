@@ -214,7 +214,7 @@ def as_result(executed):
     [
         (without_metadata, "code cell 2: its code shows 2 measured outputs, found are 1"),
         (another_output, "code cell 4: its code shows 0 measured outputs, found are 1"),
-        (another_kind, "the output has ['text/html', 'text/markdown'], the bundle gives ['text"),
+        (another_kind, "the output has text/html, text/markdown, the bundle gives ['text"),
         (another_function, "the output is of {'function': 'os.system'"),
         (other_arguments, "'arguments': ['G1']"),
         (exchanged, "the output is of {'function': 'robo_genesis.lessons.l02.plots.height'"),

@@ -220,12 +220,12 @@ def test_a_change_runs_the_pages_again_that_use_it_and_makes_stale_what_it_measu
 def test_a_further_module_of_a_lesson_needs_no_list(copy):
     root, (fingerprints, modules) = copy
     path = root / "robo_genesis" / "lessons" / "l02" / "impact.py"
-    path.write_text("from robo_genesis.core.quantities import format_value\n")
+    path.write_text("from robo_genesis.core.git import git_or_none\n")
     try:
         after = keys(root, PAGES)
     finally:
         path.unlink()
-    added = {"lessons.l02.impact", "core.quantities"}
+    added = {"lessons.l02.impact", "core.git"}
     for (lesson, page), of in after[1].items():
         expected = added if lesson == "l02" else set()
         assert of.keys() - modules[lesson, page].keys() == expected
