@@ -14,7 +14,7 @@ FOLDER = "robo-genesis-site"
 """The folder that unpacking makes."""
 OFFER = ".offline-offer"
 """A page's offer of the archive; the archive's own copy of the page must not have it."""
-COMPRESSED = {".jpg", ".npz", ".png", ".webp", ".whl", ".woff2", ".zip"}
+COMPRESSED = {".jpg", ".png", ".webp", ".whl", ".woff2", ".zip"}
 """Suffixes of files that compression makes no smaller."""
 LEVEL = 3
 """The level of compression. Level 6 takes 1.6 times as long and makes the archive 2 % smaller."""

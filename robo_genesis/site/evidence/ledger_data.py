@@ -3,11 +3,13 @@
 import csv
 import hashlib
 import io
+import json
 import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from robo_genesis.core.files import derived
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.pipeline.bundles.status import Status
 
@@ -147,10 +149,17 @@ def archive(folder: Path) -> bytes:
     Args:
         folder: an accepted bundle.
     """
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED) as packed:
-        for path in sorted(path for path in folder.rglob("*") if path.is_file()):
-            entry = zipfile.ZipInfo(path.relative_to(folder).as_posix(), ZIP_EPOCH)
-            entry.create_system, entry.external_attr = 3, 0o644 << 16
-            packed.writestr(entry, path.read_bytes())
-    return stream.getvalue()
+    paths = sorted(path for path in folder.rglob("*") if path.is_file())
+    files = {path.relative_to(folder).as_posix(): path.read_bytes() for path in paths}
+
+    def pack() -> bytes:
+        stream = io.BytesIO()
+        with zipfile.ZipFile(stream, "w") as packed:
+            for name, content in files.items():
+                entry = zipfile.ZipInfo(name, ZIP_EPOCH)
+                entry.create_system, entry.external_attr = 3, 0o644 << 16
+                packed.writestr(entry, content, zipfile.ZIP_DEFLATED)
+        return stream.getvalue()
+
+    decide = [json.dumps([*files]).encode(), *files.values(), Path(__file__).read_bytes()]
+    return derived("bundle", decide, pack)
