@@ -234,10 +234,10 @@ def _largest(
     """
     units = np.broadcast_to(np.array(unit), a.shape)
     declared = {} if np.issubdtype(a.dtype, np.integer) else tolerances
-    limits = {u: declared.get(name, declared.get(u, (0.0, 0.0))) for u in {*units.flat}}
-    atol, rtol = (np.vectorize(lambda u, k=k: limits[u][k])(units) for k in (0, 1))
+    each = [declared.get(name, declared.get(str(u), (0.0, 0.0))) for u in units.flat]
+    limits = np.reshape(each, (*a.shape, 2))
     here, there = a.astype(np.float64), b.astype(np.float64)
-    delta, room = there - here, allowed(here, there, atol, rtol)
+    delta, room = there - here, allowed(here, there, limits[..., 0], limits[..., 1])
     with np.errstate(divide="ignore", invalid="ignore"):
         shares = np.where(delta == 0, 0.0, np.abs(delta) / room)  # infinite without a tolerance
     over = np.argmax(shares if np.isfinite(shares).all() else np.where(room, 0, np.abs(delta)))

@@ -4,6 +4,7 @@ import json
 import os
 import re
 from functools import partial
+from glob import glob
 from pathlib import Path
 from typing import Any
 
@@ -92,12 +93,11 @@ def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:
 
 def _page_files(book: Path) -> list[Path]:
     """Return the table of contents and every file that may be a page, also in linked folders."""
-    pages: list[str] = []
-    for here, folders, files in os.walk(book, followlinks=True):
-        skipped = PUBLISHED if here == os.fspath(book) else None
-        folders[:] = [name for name in folders if name[0] != "." and name != skipped]
-        pages += (os.path.join(here, n) for n in files if n.endswith(".md") and n[0] != ".")
-    return [*book.glob("_toc.yml"), *map(Path, sorted(pages))]
+    found = glob(
+        "**/*.md", root_dir=book, recursive=True
+    )  # it follows links, and skips hidden ones
+    pages = sorted(name for name in found if not name.startswith(f"{PUBLISHED}{os.sep}"))
+    return [*book.glob("_toc.yml"), *(book / name for name in pages)]
 
 
 def _read_codes(book: Path) -> bytes:
