@@ -1,7 +1,7 @@
 """Rules between the fields of a manifest, the name of its folder and the log."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from datetime import datetime
 from pathlib import Path
 
@@ -27,7 +27,8 @@ FORCED = ("GS_TORCH_FORCE_CPU_DEVICE", "QD_ARCH")
 STATED = ("backend", "device", "engine version", "seed", "precision")
 """The facts that the log of the pinned version states: where it runs, and how it was started."""
 
-LEVELS = ("DEBUG", "INFO", "WARNING", "ERROR", "CRITICAL")
+BEGINNING = re.compile("^(?=(?:DEBUG|INFO|WARNING|ERROR|CRITICAL) )", re.MULTILINE)
+MESSAGE = re.compile(r"(?:WARNING|ERROR|CRITICAL) (.*?)\n?\Z", re.DOTALL)
 SOFTWARE_LINE = "Software rendering context detected"
 
 
@@ -67,7 +68,7 @@ def check_circumstances(folder: Path, predicate: Predicate) -> None:
 
     Raises:
         BundleRefused: `backend`; `torch`, also for a switch that forces a device; `environment` for
-            a variable that is no switch of the engine, and for a value that names a home folder;
+            a variable that is not a switch of the engine, and for a value that names a home folder;
             `render`; `engine-files`.
     """
     backend, render, switches = predicate.backend, predicate.render, predicate.environment
@@ -108,13 +109,12 @@ def check_log(folder: Path, manifest: Manifest, root: Path) -> None:
         text = (folder / "log.txt").read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise BundleRefused("log", f"log.txt: {error}, expected UTF-8. {AGAIN}") from error
-    lines = text.removesuffix("\n").split("\n")
-    longest = max(map(len, lines))
+    longest = max(map(len, text.split("\n")))
     if longest > LINE_LIMIT:
         most = f"at most {LINE_LIMIT}"
         raise unexpected("log", "log.txt", "length of the longest line", longest, most)
     stated = set()
-    for what, found, expected in _log_facts(lines, manifest.predicate):
+    for what, found, expected in _log_facts(text, manifest.predicate):
         expect("log", "log.txt", what, found, expected)
         stated.add(what)
     if manifest.predicate.engine.version == project.engine_pin(root):
@@ -122,19 +122,19 @@ def check_log(folder: Path, manifest: Manifest, root: Path) -> None:
         expect("log", "log.txt", "list of facts that the engine does not state", missing, [])
 
 
-def _log_facts(lines: Sequence[str], predicate: Predicate) -> Iterator[tuple[str, object, object]]:
+def _log_facts(text: str, predicate: Predicate) -> Iterator[tuple[str, object, object]]:
     """Yield (name, value in the log, value in the manifest) of each fact that the log states.
 
     Each line is searched from its start alone: the time grows with its length, not its square.
     """
     backend, engine = predicate.backend, predicate.engine
-    yield "warnings", _warnings(lines), predicate.warnings
+    yield "warnings", _warnings(text), predicate.warnings
     stated = {
         "engine version": engine.version,
         "seed": str(predicate.seed),
         "precision": engine.precision,
     }
-    for line in lines:
+    for line in text.split("\n"):
         device, _, name = line.partition("Running on [")[2].rpartition("] with backend ")
         if word := re.match(r"(?:gs\.)?(\w+)", name):
             yield "backend", word[1], backend.actual
@@ -144,17 +144,11 @@ def _log_facts(lines: Sequence[str], predicate: Predicate) -> Iterator[tuple[str
             found = start.rpartition(f"{what.split()[-1]}: ")
             if found[1] and (value := re.match(r"[^,\s]+", found[2])):
                 yield what, value[0], expected
-    if predicate.render.mode == "camera" and any(SOFTWARE_LINE in line for line in lines):
+    if predicate.render.mode == "camera" and SOFTWARE_LINE in text:
         yield "software rendering", True, predicate.render.software
 
 
-def _warnings(lines: Sequence[str]) -> list[str]:
+def _warnings(text: str) -> list[str]:
     """Return the messages of the log at WARNING or above; a message may have several lines."""
-    messages: list[tuple[str, list[str]]] = []
-    for line in lines:
-        level, _, rest = line.partition(" ")
-        if level in LEVELS:
-            messages.append((level, [rest]))
-        elif messages:
-            messages[-1][1].append(line)
-    return ["\n".join(parts) for level, parts in messages if level not in ("DEBUG", "INFO")]
+    messages = (MESSAGE.match(part) for part in BEGINNING.split(text))
+    return [found[1] for found in messages if found]

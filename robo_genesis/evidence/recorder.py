@@ -3,6 +3,7 @@
 import base64
 import hashlib
 import importlib.metadata
+import math
 import os
 import platform
 import shutil
@@ -13,8 +14,6 @@ from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from robo_genesis.core import project
 from robo_genesis.core.experiment import Experiment
@@ -183,13 +182,12 @@ def require_complete(run: Experiment) -> None:
             f"The page has the runs {', '.join(found) or 'none'}; its declaration names "
             f"{', '.join(declared)}. Run each declared case, or correct the declaration."
         )
-    values = {
-        f"{group}.{name}": record["value"]
+    odd = [
+        f"{group}.{name}"
         for group, records in run.records().items()
         for name, record in records.items()
-        if record["value"] is not None
-    }
-    odd = [name for name, value in values.items() if not np.isfinite(value).all()]
+        if record["value"] is not None and not math.isfinite(record["value"])
+    ]
     if odd:
         raise RecordError(
             f"Not all values are finite: {', '.join(odd)}. A bundle takes finite numbers only. "

@@ -134,7 +134,7 @@ def coverage(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
 
 
 def _content(side: Side) -> dict[str, str]:
-    """Return each thing that a bundle has, with what is said of it; names begin with the kind."""
+    """Return each thing that a bundle has, with its description; names begin with the kind."""
     return (
         {f"case {name}": "present" for name in side.traces}
         | {f"metric {name}": f"{m.unit}, {m.kind}" for name, m in side.numbers.items()}

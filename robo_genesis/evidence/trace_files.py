@@ -181,7 +181,7 @@ def any_bodies(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
 
 
 def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
-    """Return one run of a kind; `arrays.json` must be what `write_traces` says of its arrays.
+    """Return one run of a kind; `arrays.json` must be the description that `write_traces` gives.
 
     Args:
         folder: of the bundle.
