@@ -24,7 +24,7 @@ def write_picture(path: Path, frame: np.ndarray, run_id: str) -> None:
     """Write a frame, shape (height, width, 3) uint8, with the id of its run."""
     require_frame(frame)
     size = frame.shape[1], frame.shape[0]
-    path.write_bytes(_png(size, KEY + run_id.encode(), zlib.compress(_rows(frame), level=9)))
+    path.write_bytes(_png(size, KEY + run_id.encode(), zlib.compress(_rows(frame))))
 
 
 def read_picture(path: Path, size: tuple[int, int]) -> tuple[str, np.ndarray]:
