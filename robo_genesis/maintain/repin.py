@@ -20,12 +20,11 @@ from robo_genesis.maintain import report as refresh
 from robo_genesis.maintain.pin import (
     FILES,
     RepinError,
-    Versions,
-    chosen_version,
-    installable_versions,
+    locked_versions,
     require_locked_packages,
     require_plain_files,
     set_pin,
+    wanted_version,
 )
 from robo_genesis.pipeline.command import ANSI, Progress, end_with_parent, say
 from robo_genesis.pipeline.pages.kernels import kill_with_descendants
@@ -39,15 +38,11 @@ TAIL, LINES = 25, 200
 
 @dataclass(frozen=True, slots=True)
 class Repin:
-    """Which checkout gets which engine version.
-
-    `versions` returns the installable ones, on request with pre-releases.
-    """
+    """Which checkout gets which engine version."""
 
     genesis: str
     root: Path = project.ROOT
     cache: Path = project.CACHE
-    versions: Versions = installable_versions
     say: Callable[[str], None] = say
 
 
@@ -66,7 +61,7 @@ def run_repin(request: Repin) -> list[str]:
     root, folder = request.root, request.cache / "repin"
     require_plain_files(root)
     old = project.engine_pin(root)
-    new = chosen_version(request.genesis, old, request.versions)
+    new = wanted_version(request.genesis, old)
     if problems := unclean(root, "make repin tries the last commit"):
         raise RepinError("\n".join(problems))
     require_locked_packages(root)
@@ -77,7 +72,8 @@ def run_repin(request: Repin) -> list[str]:
         locked(folder / "lock", lambda process: RepinError(busy.format(process))),
         worktree(root, folder / "work", request.cache) as work,
     ):
-        pages = Trial(request, old, new, work, Progress(request.say)).run()
+        trial = Trial(request, old, new, work, Progress(request.say))
+        pages, new = trial.run(), trial.new
         if texts(root) != before:
             raise RepinError(
                 f"{' or '.join(FILES)} changed while {new} was tried, so neither is written. "
@@ -121,6 +117,9 @@ class Trial:
         set_pin(self.work, self.old, self.new)
         lock = str(self.work / "build_scripts" / "lock.py")
         self.command("resolve", f"{ENGINE} {self.new}", sys.executable, lock, "--keep")
+        asked, locked = self.new, locked_versions((self.work / FILES[1]).read_text("utf8"))
+        self.new = locked[ENGINE]  # as the index spells it
+        set_pin(self.work, asked, self.new)
         new = texts(self.work)
         git(self.work, "checkout", "--", *FILES)
         self.command("book", f"with {self.old}", "make", "book", f"PYTHON={sys.executable}")
@@ -146,9 +145,9 @@ class Trial:
         if run_logged(command, self.work, log, lambda: self.progress(stage, what, "still running")):
             head, lines = f"Failed: {stage} {what}", last_words(log)
             remedy = (
-                f"The checkout still pins {self.old}. Change what failed, so that it passes with "
-                f"{self.new} too, commit, then run make repin GENESIS={self.new} again; it reuses "
-                "what is compiled and executed."
+                f"The checkout still pins {self.old}. Give another version, or change what failed "
+                f"so that it passes with {self.new} too, and commit; then run make repin again. It "
+                "reuses what is compiled and executed."
             )
             pages = self.write_report(head, remedy, *lines)
             places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
