@@ -1,7 +1,6 @@
 """Measure the course's commands against bare counterparts: `make bench`.
 
-A row has a limit for the ratio of its medians. Above the limit, the stages of the slow command are
-printed.
+A row may have a limit for the ratio of its medians.
 
 Environment: ROWS (names of rows, by default all) and RUNS (of each side, by default 3). It checks
 the last commit out in `.cache/bench`, with the compiled kernels and the executed pages of this
@@ -30,9 +29,6 @@ from robo_genesis.pipeline.pages.folder import NOTEBOOK
 from robo_genesis.pipeline.pages.store import folders
 from robo_genesis.pipeline.worktree import environment, worktree
 
-Side = Callable[[], str]
-"""Does the work that is measured, and returns what was printed."""
-
 TREE = project.CACHE / "bench"
 LONGEST = 300
 """Seconds until `make live` must show an edit."""
@@ -51,7 +47,7 @@ ROWS = {
 None where the row has none."""
 
 PYTHON = quote(sys.executable)
-MAKE = f"make PYTHON={PYTHON}"
+MAKE, LIVE = f"make PYTHON={PYTHON}", ["make", f"PYTHON={sys.executable}", "live"]
 SPHINX = f"{PYTHON} -m sphinx -c bare book bare/html"
 COLD = (  # without a site, there is work
     "rm -rf cold book/_build && mkdir cold && ln -s ../../npm cold && "
@@ -70,22 +66,17 @@ myst_enable_extensions = yaml.safe_load(open("book/_config.yml"))["parse"]["myst
 """
 
 
-def shell(line: str, says: str = "", **variables: str) -> str:
-    """Run a line of the shell in the worktree and return what it printed.
+def shell(line: str, says: str = "", **variables: str) -> None:
+    """Run a line of the shell in the worktree.
 
     Raises:
         ProjectError: it failed, or its output lacks the words `says`.
     """
-    given, out = environment(TREE, *SETTINGS) | variables, subprocess.PIPE
-    done = subprocess.run(
-        line, shell=True, cwd=TREE, env=given, stdout=out, stderr=subprocess.STDOUT, text=True
-    )
+    given = environment(TREE, *SETTINGS) | variables
+    done = subprocess.run(line, shell=True, cwd=TREE, env=given, capture_output=True, text=True)
     if done.returncode or says not in done.stdout:
-        raise ProjectError(
-            f"{line}: exit status {done.returncode}, expected 0 and the words {says!r}. The output "
-            "ends with:\n" + "\n".join(done.stdout.splitlines()[-15:])
-        )
-    return done.stdout
+        output = "\n".join(f"{done.stdout}{done.stderr}".splitlines()[-15:])
+        raise ProjectError(f"{line}: status {done.returncode}, expected {says!r} in:\n{output}")
 
 
 def executed(page: Page) -> Path:
@@ -110,52 +101,40 @@ def add_sentence(page: Page) -> str:
     return sentence
 
 
-@contextmanager
-def live() -> Iterator[str]:
-    """Run `make live`, and give the address that it prints when it is ready."""
-    given = environment(TREE, *SETTINGS) | {"PORT": "0"}
-    command = ["make", f"PYTHON={sys.executable}", "live"]
-    with subprocess.Popen(
-        command, cwd=TREE, env=given, stdout=subprocess.PIPE, text=True
-    ) as server:
-        try:
-            lines = (line.split()[0] for line in server.stdout or () if line.startswith("http"))
-            yield next(lines, "make live ended without an address: ")
-        finally:
-            server.terminate()
-
-
-def served(address: str, page: Page) -> str:
-    """Edit a page and wait until the server has the new sentence."""
-    sentence, end = add_sentence(page), time.monotonic() + LONGEST
-    while time.monotonic() < end:
-        with urllib.request.urlopen(f"{address}{page.docname}.html") as answer:
-            if sentence in answer.read().decode():
-                return ""
+def served(address: str, page: Page) -> None:
+    """Edit a page and wait until an address has the new sentence."""
+    sentence, end = add_sentence(page).encode(), time.monotonic() + LONGEST
+    while sentence not in urllib.request.urlopen(address).read():
+        if time.monotonic() > end:
+            raise ProjectError(f"make live did not show {sentence!r} within {LONGEST} s.")
         time.sleep(0.02)
-    raise ProjectError(f"make live did not show {sentence!r} within {LONGEST} s.")
 
 
 @contextmanager
-def sides(name: str) -> Iterator[tuple[Side, Side]]:
+def sides(name: str) -> Iterator[tuple[Callable[[], object], ...]]:
     """Prepare a row; give what runs the course's command, and what runs the bare counterpart."""
     page = [page for page in find_pages(TREE / "book") if page.page == "lab"][-1]
-    if name in ("unchanged", "prose", "live"):
-        built, done = bare_sphinx(), "no targets are out of date"
-        bare = partial(shell, SPHINX, done if name == "unchanged" else "build succeeded", **built)
     if name == "unchanged":
+        bare = partial(shell, SPHINX, "no targets are out of date", **bare_sphinx())
         yield partial(shell, f"{MAKE} book", "Nothing changed"), bare
     elif name == "prose":  # both sides see the same edit
+        bare = partial(shell, SPHINX, "build succeeded", **bare_sphinx())
         yield lambda: add_sentence(page) and shell(f"{MAKE} book", "Pages: 0 executed"), bare
     elif name == "live":
-        with live() as address:
-            yield partial(served, address, page), bare
+        bare = partial(shell, SPHINX, "build succeeded", **bare_sphinx())
+        given = environment(TREE, *SETTINGS) | {"PORT": "0"}
+        with subprocess.Popen(LIVE, cwd=TREE, env=given, stdout=subprocess.PIPE, text=True) as live:
+            try:
+                lines = (line.split()[0] for line in live.stdout or () if line.startswith("http"))
+                address = next(lines, "make live ended without an address: ")
+                yield partial(served, f"{address}{page.docname}.html", page), bare
+            finally:
+                live.terminate()
     elif name == "verify":
         bare = partial(shell, f"{PYTHON} -c 'import numpy, pydantic'")
         yield partial(shell, f"{MAKE} verify"), bare
     elif name == "jobs":
-        one, two = (partial(shell, COLD.format(n), "executed, 0 reused") for n in (1, 2))
-        yield two, one
+        yield tuple(partial(shell, COLD.format(n), "executed, 0 reused") for n in (2, 1))
     else:
         shell("mkdir warm && ln -s ../../engine warm")
         course = partial(shell, LAB, PAGE=page.docname, TO="warm/exported")
@@ -165,30 +144,27 @@ def sides(name: str) -> Iterator[tuple[Side, Side]]:
         yield course, partial(shell, f'{PYTHON} -c "{NBCLIENT}" {notebook}', **compiled)
 
 
-def seconds(side: Side) -> tuple[float, str]:
-    """Return the elapsed time [s] of one side, and what was printed."""
+def seconds(side: Callable[[], object]) -> float:
+    """Return the elapsed time of one side [s]."""
     begin = time.monotonic()
-    said = side()
-    return time.monotonic() - begin, said
+    side()
+    return time.monotonic() - begin
 
 
-def result(name: str, pairs: list[tuple[float, float]], said: str) -> list[str]:
-    """Return the lines of a row, and the stages of its command if it is above its limit.
+def result(name: str, pairs: list[list[float]]) -> list[str]:
+    """Return the lines of a row.
 
     Args:
         name: of the row.
         pairs: elapsed times of both sides [s].
-        said: what the course's command printed in its last run.
     """
     *labels, limit = ROWS[name]
     sides = [*zip(*pairs, strict=True)]
     ratio = median(sides[0]) / median(sides[1])
-    lines = [f"{name}: ratio {ratio:.2f}, limit {limit or 'none'}; min, median and max [s]:"]
+    above = "ABOVE its limit" if limit and ratio > limit else "limit"
+    lines = [f"{name}: ratio {ratio:.2f}, {above} {limit or 'none'}; min, median and max [s]:"]
     for label, side in zip(labels, sides, strict=True):
         lines.append(f"  {min(side):8.2f} {median(side):8.2f} {max(side):8.2f}  {label}")
-    if limit and ratio > limit:
-        lines += ["  Above the limit. The time goes into:"]
-        lines += [f"    {line}" for line in said.splitlines() if line.startswith("[")]
     return lines
 
 
@@ -204,8 +180,7 @@ def measure() -> list[str]:
         for name in names:
             print(f"{name}: preparation, then {runs} runs of each side", flush=True)
             with sides(name) as both:
-                found = [[seconds(side) for side in both] for _ in range(int(runs))]
-            lines += result(name, [(a[0], b[0]) for a, b in found], found[-1][0][1])
+                lines += result(name, [[*map(seconds, both)] for _ in range(int(runs))])
     return lines
 
 
