@@ -183,8 +183,9 @@ def test_what_others_need_comes_first():
     setup = read(SETUP)["runs"]["steps"]
     assert first(setup, "mkdir -p .cache/pip") < first(setup, "PIP_CACHE_DIR")
     for job in EVERY_JOB.values():
-        if any("tee .cache/" in one.get("run", "") for one in job["steps"]):
-            assert first(job["steps"], "./.github/actions/setup") < first(job["steps"], "tee .cach")
+        steps = job["steps"]
+        if any("tee .cache/" in one.get("run", "") for one in steps):
+            assert first(steps, "./.github/actions/setup") < first(steps, "tee .cache/")
     release = FLOWS["release"]["jobs"]["book"]["steps"]
     assert first(release, "GITHUB_REF_NAME") < first(release, "make book")
 
