@@ -32,7 +32,7 @@ ROCM_FOLDERS = ("/opt/rocm", "/opt/rocm-7.0.0", "/opt/rocm-6.0.0")
 
 
 @dataclass(slots=True)
-class Machine:
+class ProbedMachine:
     """Where the steps look: in these variables, below `root`, and with this right of access.
 
     `probe` adds the backend to record and the facts from Torch, whose process `ended` so; empty
@@ -60,7 +60,7 @@ class Machine:
         return self.torch[fact]
 
 
-def devices(machine: Machine) -> str:
+def devices(machine: ProbedMachine) -> str:
     """The device files of the driver exist, and this user may open them."""
     kfd, drawing = machine.at("/dev/kfd"), sorted(machine.at("/dev/dri").glob("renderD*"))
     absent = ["/dev/kfd"] * (not kfd.exists()) + ["/dev/dri/renderD*"] * (not drawing)
@@ -89,7 +89,7 @@ def _group(number: int) -> str:
         return str(number)
 
 
-def driver(machine: Machine) -> str:
+def driver(machine: ProbedMachine) -> str:
     """The kernel has loaded the driver."""
     name = DRIVERS[machine.backend]
     if not machine.at(f"/sys/module/{name}").is_dir():
@@ -98,7 +98,7 @@ def driver(machine: Machine) -> str:
     return f"{name} {version or f'of the kernel {platform.release()}, without a version'}"
 
 
-def card(machine: Machine) -> str:
+def card(machine: ProbedMachine) -> str:
     """The driver lists a card."""
     nodes = machine.at("/sys/class/kfd/kfd/topology/nodes")
     found = []
@@ -115,7 +115,7 @@ def card(machine: Machine) -> str:
     return ", ".join(found)
 
 
-def linker(machine: Machine) -> str:
+def linker(machine: ProbedMachine) -> str:
     """`ld.lld`, with which the engine's compiler links each kernel, is where it looks."""
     given = machine.environ.get("ROCM_PATH")
     folders = ([Path(given)] if given else []) + [machine.at(path) for path in ROCM_FOLDERS]
@@ -130,7 +130,7 @@ def linker(machine: Machine) -> str:
     )
 
 
-def visibility(machine: Machine) -> str:
+def visibility(machine: ProbedMachine) -> str:
     """At most the one variable is set that selects a card reliably."""
     environ = machine.environ
     given = {name: environ[name] for name in VISIBILITY if name in environ}
@@ -148,7 +148,7 @@ def visibility(machine: Machine) -> str:
     raise DoubtError(f"{text}. {remedy}")
 
 
-def torch(machine: Machine) -> str:
+def torch(machine: ProbedMachine) -> str:
     """Torch is a build for the backend."""
     version, hip, cuda = map(machine.said, ("torch", "hip", "cuda"))
     what = f"HIP {hip}" if hip else f"CUDA {cuda}" if cuda else "the CPU alone"
@@ -161,7 +161,7 @@ def torch(machine: Machine) -> str:
     )
 
 
-def device(machine: Machine) -> str:
+def device(machine: ProbedMachine) -> str:
     """Torch finds a device."""
     if (count := machine.said("count")) == 0:
         raise StepError("Torch finds no device, expected one. Check driver and rights of access.")
@@ -169,7 +169,7 @@ def device(machine: Machine) -> str:
     return f"{name}, device 0 of {count}"
 
 
-def device_code(machine: Machine) -> str:
+def device_code(machine: ProbedMachine) -> str:
     """Torch contains code for the card."""
     gfx, codes = machine.said("gfx"), machine.said("codes")
     if gfx in codes:
@@ -181,7 +181,7 @@ def device_code(machine: Machine) -> str:
     raise (DoubtError if machine.torch.get("kernel") == torch_probe.SUM else StepError)(text)
 
 
-def hip_runtime(machine: Machine) -> str:
+def hip_runtime(machine: ProbedMachine) -> str:
     """The engine's compiler opens the HIP runtime that Torch has loaded, and no second one."""
     own, files, unopened = map(machine.said, ("own", "runtimes", "unopened"))
     name = torch_probe.RUNTIME
@@ -196,7 +196,7 @@ def hip_runtime(machine: Machine) -> str:
     return ", ".join(files)
 
 
-def kernel(machine: Machine) -> str:
+def kernel(machine: ProbedMachine) -> str:
     """The card computes."""
     found, expected = machine.said("kernel"), torch_probe.SUM
     if found != expected:
@@ -209,7 +209,7 @@ def built_for(facts: Mapping[str, Any]) -> str:
     return "amdgpu" if facts.get("hip") else "cuda" if facts.get("cuda") else ""
 
 
-CHAINS: dict[str, tuple[tuple[Callable[[Machine], str], ...], ...]] = {
+CHAINS: dict[str, tuple[tuple[Callable[[ProbedMachine], str], ...], ...]] = {
     "amdgpu": (
         (devices,), (driver,), (card,), (linker,), (visibility,),
         (torch, device, device_code, hip_runtime, kernel),
@@ -219,7 +219,7 @@ CHAINS: dict[str, tuple[tuple[Callable[[Machine], str], ...], ...]] = {
 """The steps for each accelerator; a broken one ends its own chain."""
 
 
-def probe(machine: Machine, expected: str | None) -> tuple[str, list[StepResult]]:
+def probe(machine: ProbedMachine, expected: str | None) -> tuple[str, list[StepResult]]:
     """Return the backend that Torch finds, and the results of all steps.
 
     Args:
@@ -234,7 +234,7 @@ def probe(machine: Machine, expected: str | None) -> tuple[str, list[StepResult]
     return (built if machine.torch.get("count") else "") or "cpu", results
 
 
-def torch_facts(machine: Machine) -> tuple[dict[str, Any], str]:
+def torch_facts(machine: ProbedMachine) -> tuple[dict[str, Any], str]:
     """Return the facts from Torch, and how its process ended."""
     maps = machine.at("/proc/self/maps")
     command = [sys.executable, "-P", torch_probe.__file__, str(maps), str(PROBE_SECONDS)]

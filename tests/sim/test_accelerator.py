@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from robo_genesis.sim import accelerator
-from robo_genesis.sim.accelerator import Machine, probe
+from robo_genesis.sim.accelerator import ProbedMachine, probe
 from robo_genesis.sim.torch_probe import RUNTIME
 
 TORCH = """
@@ -82,7 +82,9 @@ class Synthetic:
 
     def probe(self, expected: str | None = "amdgpu") -> tuple[str, dict[str, str], dict[str, str]]:
         """Return the backend that is found, and state and words by step."""
-        machine = Machine(self.environ, self.root, lambda path, mode: path.name not in self.closed)
+        machine = ProbedMachine(
+            self.environ, self.root, lambda path, mode: path.name not in self.closed
+        )
         backend, steps = probe(machine, expected)
         return backend, {s.step: s.state for s in steps}, {s.step: s.found for s in steps}
 

@@ -46,7 +46,7 @@ class RecordingError(project.ProjectError):
 
 def probe_here(expected: str | None) -> tuple[str, list[StepResult]]:
     """Return the result of `accelerator.probe` with the variables that the kernel of a lab gets."""
-    return accelerator.probe(accelerator.Machine(users_variables()), expected)
+    return accelerator.probe(accelerator.ProbedMachine(users_variables()), expected)
 
 
 @dataclass(frozen=True, slots=True)
