@@ -11,8 +11,7 @@ import sys
 
 from robo_genesis.core.project import RENDER
 from robo_genesis.pipeline.command import choice, parser, path, run, run_status
-from robo_genesis.pipeline.recording.all_labs import record_all
-from robo_genesis.pipeline.recording.one_lab import Recording, record
+from robo_genesis.pipeline.recording.labs import Recording, record, record_all
 
 if __name__ == "__main__":
     args = parser(__doc__).parse_args()

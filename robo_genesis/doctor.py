@@ -30,7 +30,8 @@ from robo_genesis.core import project
 from robo_genesis.core.project import OUTPUTS_DIR
 from robo_genesis.core.quantities import quoted
 from robo_genesis.core.refusals import BundleRefused, printable
-from robo_genesis.sim.diagnosis import STATES, STEPS, Bench, Finding, examine, shareable
+from robo_genesis.sim import diagnosis
+from robo_genesis.sim.diagnosis import STATES, Bench, StepResult, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
 REPORT_FORMAT = 3
@@ -38,45 +39,49 @@ MAKE_REPORT = "python -m robo_genesis.doctor --json > report.json"
 PACKAGES = ("genesis-world", "quadrants", "torch", "numpy", "matplotlib")
 
 
-def table(findings: Sequence[Finding]) -> str:
-    """Return the findings as an aligned table, no line longer than `WIDTH`."""
-    indent = max(len(f.step) for f in findings) + 15
+def table(results: Sequence[StepResult]) -> str:
+    """Return the results as an aligned table, no line longer than `WIDTH`."""
+    indent = max(len(f.step) for f in results) + 15
     lines = []
-    for number, f in enumerate(findings, start=1):
+    for number, f in enumerate(results, start=1):
         head = f"{number:2}  {f.step:{indent - 15}}  {f.state:7}  "
         found = textwrap.fill(f.found, WIDTH, initial_indent=head, subsequent_indent=" " * indent)
         lines.append(found or head.rstrip())
-    text = "\n".join([*lines, "", verdict(findings)])
+    text = "\n".join([*lines, "", verdict(results)])
     return "\n".join(map(printable, text.split("\n")))
 
 
-def steps_of(report: Mapping[str, Any]) -> list[Finding]:
-    """Return the findings of a report that was read from JSON."""
+def steps_of(report: Mapping[str, Any]) -> list[StepResult]:
+    """Return the results in a report that was read from JSON."""
     return [
-        Finding(str(step["step"]), str(step["state"]), str(step["found"]))
+        StepResult(str(step["step"]), str(step["state"]), str(step["found"]))
         for step in report["steps"]
     ]
 
 
-def verdict(findings: Sequence[Finding]) -> str:
+def verdict(results: Sequence[StepResult]) -> str:
     """Return the last line: how many steps pass, or which one is broken."""
-    broken = [f"{number}, {f.step}" for number, f in enumerate(findings, 1) if f.state == "broken"]
+    broken = [f"{number}, {f.step}" for number, f in enumerate(results, 1) if f.state == "broken"]
     if broken:
         return f"DOCTOR: step {broken[0]}, is broken; fix it and run this again"
-    passed = sum(f.state == "ok" for f in findings)
-    how_many = "all" if passed == len(findings) else f"{passed} of"
-    return f"DOCTOR: {how_many} {len(findings)} steps pass"
+    passed = sum(f.state == "ok" for f in results)
+    how_many = "all" if passed == len(results) else f"{passed} of"
+    return f"DOCTOR: {how_many} {len(results)} steps pass"
 
 
-def report(findings: Sequence[Finding], bench: Bench) -> str:
-    """Return the findings as JSON, with versions and platform and without private paths."""
+def examine() -> dict[str, Any]:
+    """Run the steps; return a report with versions and platform, and without private paths."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+        # Without it, the outputs would go to the working directory.
+        bench = Bench({OUTPUTS_DIR: folder} | os.environ)
+        results = diagnosis.run_steps(diagnosis.STEPS, bench)
     warnings = bench.engine.log.warnings if bench.engine else []
     contract = project.environment_contract(bench.environ)
-    facts = {
+    return {
         "format": REPORT_FORMAT,
-        "ok": all(f.state == "ok" for f in findings),
-        "broken": next((f.step for f in findings if f.state == "broken"), None),
-        "steps": [asdict(f) for f in findings],
+        "ok": all(one.state == "ok" for one in results),
+        "broken": next((one.step for one in results if one.state == "broken"), None),
+        "steps": [asdict(one) | {"found": shareable(one.found)} for one in results],
         "machine": machine(bench),
         "versions": {"python": platform.python_version()}
         | {name: project.installed_version(name) for name in PACKAGES},
@@ -89,7 +94,6 @@ def report(findings: Sequence[Finding], bench: Bench) -> str:
         "environment": {name: shareable(value) for name, value in contract.items()},
         "warnings": [shareable(text) for text in warnings],
     }
-    return json.dumps(facts, indent=2, ensure_ascii=False)
 
 
 def machine(bench: Bench) -> dict[str, str]:
@@ -185,7 +189,7 @@ def differences(
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the findings and return the exit status."""
+    """Print the results and return the exit status."""
     parser = argparse.ArgumentParser(
         "python -m robo_genesis.doctor",
         description=__doc__,
@@ -203,23 +207,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
             )
     try:
         recorded = None if options.like is None else recorded_machine(options.like)
-        saved = None if options.report is None else read_report(options.report)
+        report = None if options.report is None else read_report(options.report)
     except (BundleRefused, zipfile.BadZipFile, ValueError) as error:
         parser.error(printable(str(error)))
-    if saved is not None:
-        findings, facts, head = steps_of(saved), saved["machine"], "report"
-        print(table(findings))
-    else:
-        print(f"{len(STEPS)} steps; the first start of the engine takes minutes", file=sys.stderr)
-        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
-            # Without it, the outputs would go to the working directory.
-            bench = Bench({OUTPUTS_DIR: folder} | os.environ)
-            findings = [*examine(bench)]
-        facts, head = machine(bench), "this machine"
-        print(report(findings, bench) if options.json else table(findings))
+    head = "this machine" if report is None else "report"
+    if report is None:
+        count = len(diagnosis.STEPS)
+        print(f"{count} steps; the first start of the engine takes minutes", file=sys.stderr)
+        report = examine()
+    results = steps_of(report)
+    text = json.dumps(report, indent=2, ensure_ascii=False) if options.json else table(results)
+    print(text)
     if recorded is not None:
-        print("", *differences(facts, recorded, head), sep="\n")
-    return 0 if all(f.state == "ok" for f in findings) else 1
+        print("", *differences(report["machine"], recorded, head), sep="\n")
+    return 0 if all(one.state == "ok" for one in results) else 1
 
 
 if __name__ == "__main__":

@@ -18,8 +18,9 @@ def checkout(tmp_path):
     folder = tmp_path / "a course"
     (folder / "build_scripts").mkdir(parents=True)
     shutil.copy(ROOT / "Makefile", folder)
-    stub = "import os\nprint(os.environ['PYTHONPATH'])\n"
-    (folder / "build_scripts" / "serve.py").write_text(stub)
+    stub = "import os\nprint(os.environ['PYTHONPATH'], os.environ.get('TO'), sep='\\n')\n"
+    for name in ("serve.py", "evidence_rocm.py"):
+        (folder / "build_scripts" / name).write_text(stub)
     return folder
 
 
@@ -36,26 +37,32 @@ def make(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
 
 
-def test_a_path_may_contain_spaces(checkout):
-    done = make(checkout, "serve", f"PYTHON={python(checkout)}")
+@pytest.mark.parametrize("target", ["serve", "evidence-rocm"])
+def test_a_path_and_a_setting_may_contain_spaces_and_what_runs_in_a_container_needs_no_venv(
+    checkout, target
+):
+    words = [] if target == "evidence-rocm" else [f"PYTHON={python(checkout)}"]
+    done = make(checkout, target, *words, "TO=a folder", "ROWS=prose live=fast", "pip_option=x")
     assert done.returncode == 0, done.stderr
-    assert str(checkout) in done.stdout.splitlines()
+    assert {str(checkout), "a folder"} <= {*done.stdout.splitlines()}
+    assert not (checkout / ".venv").exists()
 
 
-def test_a_python_without_the_packages_is_refused_with_their_names_and_the_fix(checkout):
+@pytest.mark.parametrize(
+    ("target", "packages"),
+    [("serve", "genesis, jupyter_book, pytest"), ("evidence", "genesis, jupyter_book. Install")],
+)
+def test_a_python_without_the_packages_is_refused_with_their_names_and_the_fix(
+    checkout, target, packages
+):
+    """Recording needs no package of the tests and linters."""
     without = python(checkout, "-S")
-    done = make(checkout, "serve", f"PYTHON={without}")
+    done = make(checkout, target, f"PYTHON={without}")
     assert done.returncode != 0
-    assert f"PYTHON={without} lacks genesis, jupyter_book, pytest" in done.stderr
+    assert f"PYTHON={without} lacks {packages}" in done.stderr
     assert "pip install -r requirements.lock" in done.stderr
     assert "Traceback" not in done.stderr
     assert str(checkout) not in done.stdout.splitlines()
-
-
-def test_recording_needs_no_package_of_the_tests_and_linters(checkout):
-    without = python(checkout, "-S")
-    done = make(checkout, "evidence", f"PYTHON={without}")
-    assert f"PYTHON={without} lacks genesis, jupyter_book. Install" in done.stderr
 
 
 @pytest.mark.parametrize("given", ["nowhere/python", "bad", "/tmp", "ls"])
@@ -81,11 +88,6 @@ def test_a_variable_in_small_letters_is_refused_by_name(checkout, given, said):
     assert done.returncode != 0
     assert said in done.stderr
     assert str(checkout) not in done.stdout.splitlines()
-
-
-def test_other_variables_and_values_with_spaces_are_accepted(checkout):
-    words = [f"PYTHON={python(checkout)}", "ROWS=prose live=fast", "pip_option=x"]
-    assert make(checkout, "serve", *words).returncode == 0
 
 
 def test_clean_keeps_what_the_engine_compiled_and_distclean_does_not(checkout):

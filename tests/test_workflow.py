@@ -37,9 +37,9 @@ STEPS = [step for job in EVERY_JOB.values() for step in job["steps"]]
 STEPS += read(SETUP)["runs"]["steps"]
 
 
-def step(job: dict[str, Any], uses: str) -> dict[str, Any]:
-    (found,) = [step for step in job["steps"] if step.get("uses", "").startswith(uses)]
-    return found
+def step(job: dict[str, Any], uses: str, number: int = -1) -> dict[str, Any]:
+    """Return the inputs of the step that uses an action, by default the last such step."""
+    return [one for one in job["steps"] if one.get("uses", "").startswith(uses)][number]["with"]
 
 
 def making(job: dict[str, Any], target: str) -> dict[str, Any]:
@@ -47,15 +47,11 @@ def making(job: dict[str, Any], target: str) -> dict[str, Any]:
     return found
 
 
-def test_every_target_that_a_step_makes_is_one():
+def test_every_target_that_a_step_makes_or_a_document_names_is_one():
     targets = set(re.findall(r"^([\w./-]+):", (ROOT / "Makefile").read_text(), re.M))
     made = {name for one in STEPS for name in MAKE.findall(one.get("run", ""))}
     assert made >= {"lint", "test", "execute", "agree", "book", "pages", "repin", "evidence-rocm"}
     assert made <= targets
-
-
-def test_every_target_that_a_document_names_is_one():
-    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M))
     documents = [*ROOT.glob("*.md"), *FOLDER.rglob("*.md"), *FOLDER.rglob("*.yml")]
     documents += [ROOT / ".devcontainer/devcontainer.json", ROOT / ".rocm/Dockerfile"]
     for document in documents:
@@ -87,7 +83,8 @@ def run_plan(folder: Path, python: str) -> tuple[int, dict[str, str]]:
     return done.returncode, dict(line.split("=", 1) for line in lines)
 
 
-def test_the_matrix_is_the_pages_of_the_book(tmp_path):
+def test_the_matrix_is_the_pages_of_the_book_and_a_plan_that_fails_stops_the_workflow(tmp_path):
+    assert run_plan(tmp_path, "false") == (2, {})
     status, output = run_plan(tmp_path, sys.executable)
     assert status == 0
     assert json.loads(output["pages"]) == [page.docname for page in find_pages(BOOK)]
@@ -100,29 +97,18 @@ def test_the_matrix_is_the_pages_of_the_book(tmp_path):
     assert JOBS["execute"]["strategy"]["fail-fast"] == "false"
 
 
-def test_a_plan_that_fails_stops_the_workflow(tmp_path):
-    assert run_plan(tmp_path, "false") == (2, {})
-
-
 def test_the_book_is_built_from_pages_whose_arrays_two_machines_agree_on():
     execute, agree, book = (
         making(JOBS[job], target)
         for job, target in (("execute", "execute"), ("book", "agree"), ("book", "book"))
     )
-    (sent, *_) = [
-        one["with"] for one in JOBS["execute"]["steps"] if "upload-" in one.get("uses", "")
-    ]
-    taken = {
-        one["with"]["pattern"]: one["with"]["path"]
-        for one in JOBS["book"]["steps"]
-        if "download-artifact" in one.get("uses", "")
-    }
+    sent = step(JOBS["execute"], "actions/upload-artifact", 0)
     assert execute["env"] == {"PAGE": "${{ matrix.page }}", "TO": sent["path"]}
     assert sent["name"] == "executed-${{ matrix.machine }}-${{ strategy.job-index }}"
-    assert taken == {
-        "executed-first-*": agree["env"]["FIRST"],
-        "executed-second-*": agree["env"]["SECOND"],
-    }
+    for number, name in enumerate(("FIRST", "SECOND")):
+        taken = step(JOBS["book"], "actions/download-artifact", number)
+        assert taken["pattern"] == f"executed-{name.lower()}-*"
+        assert taken["path"] == agree["env"][name]
     assert book["env"]["EXECUTED"] == agree["env"]["FIRST"]
     assert JOBS["book"]["steps"].index(agree) < JOBS["book"]["steps"].index(book)
     assert "execute" in JOBS["book"]["needs"]
@@ -132,35 +118,29 @@ def test_what_is_deployed_has_passed_the_gate_of_releases():
     builds = [
         one for job in JOBS.values() for one in job["steps"] if "make book" in one.get("run", "")
     ]
-    (book,) = builds
-    assert book in JOBS["book"]["steps"]
+    assert builds == [book := making(JOBS["book"], "book")]
+    assert "if" not in JOBS["book"]
     assert book["env"]["RELEASE"] == "1"
-    assert set(JOBS["deploy"]["needs"]) == {"workflows", "test", "book"}
     assert making(FLOWS["release"]["jobs"]["book"], "book")["env"]["RELEASE"] == "1"
     assert book["env"]["SITE_URL"] == "${{ vars.SITE_URL || needs.address.outputs.url }}"
-    (pages,) = JOBS["address"]["steps"]
     events = 'contains(fromJSON(\'["push", "workflow_dispatch"]\'), github.event_name)'
-    assert events in pages["if"]
-    assert events in JOBS["deploy"]["if"]
-    (sent,) = [
-        one["with"] for one in JOBS["book"]["steps"] if one.get("with", {}).get("name") == "site"
-    ]
-    assert sent["path"] == "book/_build/html"
-    taken = step(JOBS["deploy"], "actions/download-artifact")["with"]
-    assert taken["name"] == sent["name"]
-    assert step(JOBS["deploy"], "actions/upload-pages-artifact")["with"]["path"] == taken["path"]
-    sums = step(JOBS["deploy"], "actions/attest@")["with"]["subject-checksums"]
-    assert sums == f"{taken['path']}/{SUMS}"
-    assert "if" not in JOBS["book"]
+    assert events in JOBS["address"]["steps"][0]["if"]
+    deploy = JOBS["deploy"]
+    assert events in deploy["if"]
+    assert set(deploy["needs"]) == {"workflows", "test", "book"}
+    taken = step(deploy, "actions/download-artifact")
+    sent = [step(JOBS["book"], "actions/upload-artifact", n) for n in (0, 1)]
+    assert [one["path"] for one in sent if one["name"] == taken["name"]] == ["book/_build/html"]
+    assert step(deploy, "actions/upload-pages-artifact")["path"] == taken["path"]
+    assert step(deploy, "actions/attest@")["subject-checksums"] == f"{taken['path']}/{SUMS}"
 
 
 def test_links_to_other_sites_are_checked_weekly_on_the_whole_site():
-    assert JOBS["links"]["if"] == "github.event_name == 'schedule'"
-    assert JOBS["links"]["needs"] == "book"
-    taken = step(JOBS["links"], "actions/download-artifact")["with"]
-    assert taken["name"] == "site"
-    words = step(JOBS["links"], "lycheeverse/lychee-action")["with"]["args"]
-    assert f"'{taken['path']}/**/*.html'" in words
+    links = JOBS["links"]
+    assert (links["if"], links["needs"]) == ("github.event_name == 'schedule'", "book")
+    taken = step(links, "actions/download-artifact")
+    assert taken["name"] == step(JOBS["deploy"], "actions/download-artifact")["name"]
+    assert f"'{taken['path']}/**/*.html'" in step(links, "lycheeverse/lychee-action")["args"]
 
 
 def test_the_parts_of_the_tests_are_all_of_them():
@@ -186,43 +166,39 @@ def test_every_environment_gets_torch_for_the_cpu_from_the_address_of_the_book()
 
 def test_compiled_kernels_are_saved_when_a_page_fails_and_restored_by_the_same_name():
     for name in ("test", "execute"):
-        save = step(JOBS[name], "actions/cache/save")
-        assert save["if"] == "always()"
-        assert save["with"]["path"] == ".cache/engine"
-        restored = step(JOBS[name], "./.github/actions/setup")["with"]["kernels"]
+        [save] = [one for one in JOBS[name]["steps"] if "cache/save" in one.get("uses", "")]
+        assert (save["if"], save["with"]["path"]) == ("always()", ".cache/engine")
+        restored = step(JOBS[name], "./.github/actions/setup")["kernels"]
         assert save["with"]["key"].startswith(f"{restored}-${{{{ github.run_id }}}}")
 
 
-def test_the_folder_of_logs_and_packages_is_made_before_anything_is_written_there():
-    runs = [one.get("run", "") for one in read(SETUP)["runs"]["steps"]]
-    made = next(k for k, run in enumerate(runs) if "mkdir -p .cache/pip" in run)
-    assert made < next(k for k, run in enumerate(runs) if "PIP_CACHE_DIR" in run)
+def first(steps: list[dict[str, Any]], words: str) -> int:
+    """Return the number of the first step whose action or script contains some words."""
+    texts = [one.get("uses", "") + one.get("run", "") for one in steps]
+    return next(k for k, text in enumerate(texts) if words in text)
+
+
+def test_what_others_need_comes_first():
+    """The folder of logs and packages before what is written there, and a release's tag."""
+    setup = read(SETUP)["runs"]["steps"]
+    assert first(setup, "mkdir -p .cache/pip") < first(setup, "PIP_CACHE_DIR")
     for job in EVERY_JOB.values():
-        uses = [one.get("uses", "") for one in job["steps"]]
-        logs = [k for k, one in enumerate(job["steps"]) if "tee .cache/" in one.get("run", "")]
-        assert not logs or uses.index("./.github/actions/setup") < min(logs)
+        steps = job["steps"]
+        if any("tee .cache/" in one.get("run", "") for one in steps):
+            assert first(steps, "./.github/actions/setup") < first(steps, "tee .cache/")
+    release = FLOWS["release"]["jobs"]["book"]["steps"]
+    assert first(release, "GITHUB_REF_NAME") < first(release, "make book")
 
 
-def test_a_release_begins_with_its_tag():
-    steps = FLOWS["release"]["jobs"]["book"]["steps"]
-    tag = next(k for k, one in enumerate(steps) if "GITHUB_REF_NAME" in one.get("run", ""))
-    assert tag < next(k for k, one in enumerate(steps) if "make book" in one.get("run", ""))
-
-
-def test_a_scheduled_run_restores_nothing():
+def test_a_scheduled_run_and_one_of_a_tag_restore_nothing():
     cached = [one for one in STEPS if re.match("actions/cache(/restore)?@", one.get("uses", ""))]
     assert len(cached) == 3
     assert all("github.event_name != 'schedule'" in one["if"] for one in cached)
-
-
-def test_a_run_of_a_tag_restores_nothing():
-    for one in read(SETUP)["runs"]["steps"]:
-        if re.match("actions/cache(/restore)?@", one.get("uses", "")):
-            assert "github.ref_type != 'tag'" in one["if"]
-    used = [
-        one.get("uses", "") for job in FLOWS["release"]["jobs"].values() for one in job["steps"]
-    ]
-    assert not any("cache" in name for name in used)
+    of_setup = [one for one in cached if one in read(SETUP)["runs"]["steps"]]
+    assert of_setup
+    assert all("github.ref_type != 'tag'" in one["if"] for one in of_setup)
+    release = [one for job in FLOWS["release"]["jobs"].values() for one in job["steps"]]
+    assert not any("cache" in one.get("uses", "") for one in release)
 
 
 def test_a_job_that_can_fail_leaves_its_reports():
@@ -234,23 +210,21 @@ def test_a_job_that_can_fail_leaves_its_reports():
 def test_jobs_can_write_only_what_they_must():
     assert {str(flow["permissions"]) for flow in FLOWS.values()} == {"{'contents': 'read'}"}
     more = {name: job["permissions"] for name, job in EVERY_JOB.items() if "permissions" in job}
+    pull_request = {"contents": "write", "pull-requests": "write"}
+    signed = {"id-token": "write", "attestations": "write"}
     assert more == {
         "book.address": {"pages": "read"},
-        "book.deploy": {"pages": "write", "id-token": "write", "attestations": "write"},
-        "book.propose": {"contents": "write", "pull-requests": "write"},
-        "record.propose": {"contents": "write", "pull-requests": "write"},
-        "release.release": {"contents": "write", "id-token": "write", "attestations": "write"},
+        "book.deploy": {"pages": "write"} | signed,
+        "book.propose": pull_request,
+        "record.propose": pull_request,
+        "release.release": {"contents": "write"} | signed,
     }
     assert JOBS["deploy"]["if"].startswith("github.ref == 'refs/heads/main'")
     for name in more:  # what can write runs no code of the course, of its packages or its pages
-        steps = EVERY_JOB[name]["steps"]
-        assert not any(MAKE.search(one.get("run", "")) for one in steps), name
-        assert not any("python" in one.get("run", "") for one in steps), name
-        assert not any(one.get("uses", "").startswith("./") for one in steps), name
-
-
-def test_no_checkout_leaves_its_token():
-    for name, job in EVERY_JOB.items():
+        for one in EVERY_JOB[name]["steps"]:
+            assert not re.search(rf"{MAKE.pattern}|python", one.get("run", "")), name
+            assert not one.get("uses", "").startswith("./"), name
+    for name, job in EVERY_JOB.items():  # no checkout leaves its token
         for one in job["steps"]:
             if one.get("uses", "").startswith("actions/checkout"):
                 assert one["with"]["persist-credentials"] == "false", name
@@ -268,13 +242,8 @@ def test_a_recording_is_verified_and_compared_before_it_is_proposed():
     assert making(jobs["cpu"], "evidence")["env"] == {"BACKEND": "cpu", "TO": "executed"}
     compare = [MAKE.findall(one.get("run", "")) for one in jobs["compare"]["steps"]]
     assert [name for names in compare for name in names] == ["verify", "compare"]
-    needs = {name: job.get("needs") for name, job in jobs.items()}
-    assert needs == {
-        "cpu": None,
-        "record": "cpu",
-        "compare": ["cpu", "record"],
-        "propose": "compare",
-    }
+    needs = [jobs[name].get("needs") for name in ("cpu", "record", "compare", "propose")]
+    assert needs == [None, "cpu", ["cpu", "record"], "compare"]
 
 
 def test_every_action_is_pinned_by_its_commit_or_digest():
@@ -286,10 +255,8 @@ def test_every_action_is_pinned_by_its_commit_or_digest():
         local = LOCAL.match(line)
         assert local or PINNED.match(line), line
         assert local is None or (ROOT / local[1] / "action.yml").is_file(), line
-    names = {line.partition("@")[0]: set() for line in used}
-    for line in used:
-        names[line.partition("@")[0]].add(line)
-    assert {len(versions) for versions in names.values()} == {1}, names
+    versions = {line.partition("@")[0]: line for line in used}
+    assert set(versions.values()) == set(used)  # one version of each
 
 
 def test_input_never_becomes_shell_and_every_job_ends():

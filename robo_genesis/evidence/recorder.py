@@ -23,15 +23,13 @@ from robo_genesis.evidence.picture_file import write_picture
 from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.sim import session
+from robo_genesis.sim.accelerator import driver_version
 from robo_genesis.sim.camera.frames import Renderer
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ENGINE, COMPILER = project.ENGINE, "quadrants"
 NOT_RECORDED = f":(exclude,glob){project.BOOK.name}/evidence/*/*/**"
 """The pathspec of git for all files of a checkout that are not in a recorded bundle."""
-
-DRIVERS = {"amdgpu": "amdgpu", "cuda": "nvidia"}
-"""The kernel's module that drives the device of a backend."""
 
 
 class RecordError(ValueError):
@@ -226,17 +224,6 @@ def host_record(cpu: str | None) -> dict[str, Any]:
         "python": platform.python_version(),
         "packages": dict(sorted(packages.items())),
     }
-
-
-def driver_version(backend: str, root: Path = Path("/")) -> str | None:
-    """Return the version of the kernel driver of a backend, None if it names none.
-
-    Args:
-        backend: the actual backend.
-        root: the root of the file system.
-    """
-    path = root / "sys" / "module" / DRIVERS.get(backend, backend) / "version"
-    return path.read_text().strip() if path.is_file() else None
 
 
 def git_record() -> dict[str, Any] | None:

@@ -1,9 +1,6 @@
 """The engine pin: which version may replace it, and how it is written."""
 
 import re
-import subprocess
-import sys
-from collections.abc import Callable
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -17,23 +14,21 @@ FILES = ("pyproject.toml", "requirements.lock")
 """What a change of the pin changes: measured results are never kept in the tree."""
 
 USAGE = "Usage: make repin GENESIS=1.2.3"
-Versions = Callable[[bool], list[str]]
 
 
 class RepinError(ProjectError):
     """The new pin was refused or failed; the message is the whole report."""
 
 
-def chosen_version(given: str, pin: str, versions: Versions) -> str:
-    """Return the wanted version as the index spells it.
+def wanted_version(given: str, pin: str) -> str:
+    """Return the wanted version, without a leading `v`; whether it exists, pip knows.
 
     Args:
         given: what the user gave.
         pin: the version that is pinned now.
-        versions: returns the installable ones, on request with pre-releases.
 
     Raises:
-        RepinError: none was given, it is not a version, it is the pin, or it cannot be installed.
+        RepinError: none was given, it is not a version, or it is the pin.
     """
     if not given:
         raise RepinError(f"GENESIS is not given. {USAGE} (the pin is {pin}).")
@@ -45,33 +40,7 @@ def chosen_version(given: str, pin: str, versions: Versions) -> str:
         ) from None
     if version == Version(pin):
         raise RepinError(f"GENESIS={given} is the pin already. Give another version.")
-    known = versions(version.is_prerelease)
-    found = [name for name in known if Version(name) == version]
-    if not found:
-        newest = ", ".join(sorted(known, key=Version, reverse=True)[:12])
-        raise RepinError(
-            f"GENESIS={given}: there is no {ENGINE} {given} for this Python. The newest versions: "
-            f"{newest}{', …' if len(known) > 12 else ''}. Give one of them."
-        )
-    return found[0]
-
-
-def installable_versions(prereleases: bool) -> list[str]:
-    """Return the engine's versions that pip finds for this Python.
-
-    Raises:
-        RepinError: pip cannot ask its index.
-    """
-    command = [sys.executable, "-m", "pip", "index", "versions", ENGINE]
-    command += ["--pre"] if prereleases else []
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    line = re.search(r"^Available versions: (.+)$", done.stdout, re.MULTILINE)
-    if done.returncode or line is None:
-        raise RepinError(
-            f"pip cannot list the versions of {ENGINE}: {done.stderr.strip()[-600:]}\n"
-            "A new pin needs the network: check it, or pip's index (pip config list)."
-        )
-    return line[1].split(", ")
+    return str(version)
 
 
 def require_locked_packages(root: Path) -> None:

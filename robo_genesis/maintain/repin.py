@@ -3,11 +3,12 @@
 Nothing of the checkout is touched before the last step, which writes two files.
 """
 
+import re
 import signal
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from robo_genesis.core import project
@@ -18,34 +19,29 @@ from robo_genesis.maintain import report as refresh
 from robo_genesis.maintain.pin import (
     FILES,
     RepinError,
-    Versions,
-    chosen_version,
-    installable_versions,
+    locked_versions,
     require_locked_packages,
     require_plain_files,
     set_pin,
+    wanted_version,
 )
-from robo_genesis.pipeline.command import Progress, end_with_parent, say
+from robo_genesis.pipeline.command import ANSI, Progress, end_with_parent, say
 from robo_genesis.pipeline.pages.kernels import kill_with_descendants
 from robo_genesis.pipeline.worktree import environment, worktree
 
 HEARTBEAT = 60.0
 """Seconds between two lines of progress of one command."""
-TAIL = 25
-"""How many last lines of a log an error shows."""
+TAIL, LINES = 25, 200
+"""How many last lines of a log an error shows, and the report."""
 
 
 @dataclass(frozen=True, slots=True)
 class Repin:
-    """Which checkout gets which engine version.
-
-    `versions` returns the installable ones, on request with pre-releases.
-    """
+    """Which checkout gets which engine version."""
 
     genesis: str
     root: Path = project.ROOT
     cache: Path = project.CACHE
-    versions: Versions = installable_versions
     say: Callable[[str], None] = say
 
 
@@ -64,7 +60,7 @@ def run_repin(request: Repin) -> list[str]:
     root, folder = request.root, request.cache / "repin"
     require_plain_files(root)
     old = project.engine_pin(root)
-    new = chosen_version(request.genesis, old, request.versions)
+    new = wanted_version(request.genesis, old)
     if problems := unclean(root, "make repin tries the last commit"):
         raise RepinError("\n".join(problems))
     require_locked_packages(root)
@@ -75,7 +71,8 @@ def run_repin(request: Repin) -> list[str]:
         locked(folder / "lock", lambda process: RepinError(busy.format(process))),
         worktree(root, folder / "work", request.cache) as work,
     ):
-        pages = Trial(request, old, new, work, Progress(request.say)).run()
+        trial = Trial(request, old, new, work, Progress(request.say))
+        pages, new = trial.run(), trial.new
         if texts(root) != before:
             raise RepinError(
                 f"{' or '.join(FILES)} changed while {new} was tried, so neither is written. "
@@ -103,56 +100,76 @@ def write(root: Path, files: dict[str, bytes]) -> None:
         (root / name).write_bytes(content)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Trial:
-    """The steps in the worktree, each with its log."""
+    """The steps in the worktree, each with its log; `before` is what the old version built."""
 
     request: Repin
     old: str
     new: str
     work: Path
     progress: Progress
+    before: refresh.EngineBuild | None = None
 
     def run(self) -> list[Path]:
         """Resolve, build with the old and the new version, report, test; return the report."""
         set_pin(self.work, self.old, self.new)
         lock = str(self.work / "build_scripts" / "lock.py")
         self.command("resolve", f"{ENGINE} {self.new}", sys.executable, lock, "--keep")
+        asked, locked = self.new, locked_versions((self.work / FILES[1]).read_text("utf8"))
+        self.new = locked[ENGINE]  # as the index spells it
+        set_pin(self.work, asked, self.new)
         new = texts(self.work)
         git(self.work, "checkout", "--", *FILES)
-        old_lock = (self.work / FILES[1]).read_text("utf8")
         self.command("book", f"with {self.old}", "make", "book", f"PYTHON={sys.executable}")
-        recorded = refresh.recorded(self.work)
-        built, aside = self.work / "book" / PUBLISHED, self.work / ".cache" / "old"
-        built.rename(aside)
+        site = (self.work / "book" / PUBLISHED).rename(self.work / ".cache" / "old") / "html"
+        self.before = refresh.read_build(self.work, self.old, site)
         write(self.work, new)
         python = f"BASE_PYTHON={sys.executable}"
         self.command("install", "the new lock", "make", ".venv/.installed", python)
         self.command("book", f"with {self.new}", "make", "book")
-        found = refresh.compare_builds(
-            (self.old, self.new),
-            (aside, built),
-            (recorded, refresh.recorded(self.work)),
-            (old_lock, new[FILES[1]].decode()),
-        )
-        folder = self.request.cache / "reports" / f"repin-{self.old}-{self.new}"
-        pages = refresh.document(found).write(folder)
-        self.progress("report", refresh.summary(found), str(folder))
-        self.command("test", f"make test with {self.new}", "make", "test")
+        pages = self.write_report()
+        self.command("test", f"with {self.new}", "make", "test")
         return pages
 
     def command(self, stage: str, what: str, *command: str) -> None:
-        """Run one command in the worktree; a failure names it, its version and its log."""
+        """Run one command in the worktree; a failure names it and its log, and ends with a report.
+
+        Raises:
+            RepinError: the command failed.
+        """
         self.progress(stage, what)
         version = project.engine_pin(self.work)
         log = self.request.cache / "repin" / "logs" / f"{stage}-{version}.log"
         if run_logged(command, self.work, log, lambda: self.progress(stage, what, "still running")):
-            lines = log.read_text("utf8", errors="replace").rstrip().splitlines()
-            raise RepinError(
-                "\n".join([*lines[-TAIL:], f"Log: {log}"])
-                + f"\n\nGENESIS={self.new}: {stage} ({what}) failed. "
-                f"The checkout still pins {self.old}."
+            head, lines = f"Failed: {stage} {what}", last_words(log)
+            remedy = (
+                f"The checkout still pins {self.old}. Give another version, or change what failed "
+                f"so that it passes with {self.new} too, and commit; then run make repin again. It "
+                "reuses what is compiled and executed."
             )
+            pages = self.write_report(head, remedy, *lines)
+            places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
+            raise RepinError("\n".join([*lines[-TAIL:], *places, "", f"{head}. {remedy}"]))
+
+    def write_report(self, *failed: str) -> list[Path]:
+        """Compare what both versions built, as far as they did, and write the report."""
+        found = refresh.Refresh((self.old, self.new))
+        if self.before:
+            site = self.work / "book" / PUBLISHED / "html"
+            after = refresh.read_build(self.work, self.new, site)
+            found = refresh.compare_builds(self.before, after)
+        found = replace(found, failed=failed)
+        folder = self.request.cache / "reports" / f"repin-{self.old}-{self.new}"
+        self.progress("report", refresh.summary(found), str(folder))
+        return refresh.document(found).write(folder)
+
+
+def last_words(log: Path) -> list[str]:
+    """Return what a command wrote after its last line of progress, without empty lines."""
+    text = ANSI.sub("", log.read_text("utf8", errors="replace"))
+    after = re.split(r"^\[ *[\d.]+ s\] .*$", text, flags=re.MULTILINE)[-1]
+    return [line.rstrip() for line in after.splitlines() if line.strip()][-LINES:]
 
 
 def run_logged(

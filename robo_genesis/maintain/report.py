@@ -2,20 +2,24 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from itertools import groupby, zip_longest
 from pathlib import Path
 
 from bs4 import BeautifulSoup
 
+from robo_genesis.core.project import STORE
+from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.document import Document, Part
 from robo_genesis.evidence.rows import SEVERITY, worst
 from robo_genesis.maintain.pin import locked_versions
 from robo_genesis.pipeline.bundles.status import Status, recorded_folders, recorded_status
-from robo_genesis.pipeline.html.publish import PAGES
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.folder import read_record, recorded_bundle
+from robo_genesis.pipeline.pages.store import folders
 
 Pair = tuple[str, str]
 
@@ -35,25 +39,43 @@ LEFT_OUT = {Path("evidence", "ledger.html"), Path("performance", "costs.html")}
 
 
 @dataclass(frozen=True, slots=True)
+class EngineBuild:
+    """What one engine version made of a checkout.
+
+    `bundles` is lesson/page/backend → folder of each page that was executed, `recorded`
+    lesson/backend → state of each recorded bundle under the pin. `site` is the folder of the HTML,
+    which a refused build lacks.
+    """
+
+    version: str
+    lock: str
+    bundles: dict[str, Path]
+    recorded: dict[str, Status]
+    site: Path
+
+
+@dataclass(frozen=True, slots=True)
 class Refresh:
     """The comparison of two builds of one checkout, each with its engine version.
 
-    `packages` is name → versions in both locks, "" for none; `missing` names the lessons with a
-    bundle in one build only; `recorded` is lesson/backend → state under both pins;
-    `changed` holds (page, old, new) of each changed sentence, see `changed_sentences`.
+    `packages` is name → versions in both locks, "" for none; `missing` is lesson/page/backend → why
+    its bundles were not compared; `recorded` is lesson/backend → state under both pins; `changed`
+    holds (page, old, new) of each changed sentence, see `changed_sentences`. `failed` says what
+    failed, why, and what to do; what was not reached is empty then.
     """
 
     versions: Pair
-    packages: dict[str, Pair]
-    comparisons: tuple[BundleComparison, ...]
-    missing: tuple[str, ...]
-    recorded: dict[str, tuple[Status, Status]]
-    changed: tuple[tuple[str, str, str], ...]
+    packages: dict[str, Pair] = field(default_factory=dict)
+    comparisons: tuple[BundleComparison, ...] = ()
+    missing: dict[str, str] = field(default_factory=dict)
+    recorded: dict[str, tuple[Status, Status]] = field(default_factory=dict)
+    changed: tuple[tuple[str, str, str], ...] = ()
+    failed: tuple[str, ...] = ()
 
     @property
     def state(self) -> str:
-        """The worst state of a lesson; a lesson that is in one build only cannot be compared."""
-        lacking = [SEVERITY[-1]] if self.missing else []
+        """The worst state of a page; a page that one build lacks cannot be compared."""
+        lacking = [SEVERITY[-1]] if self.missing or self.failed else []
         return worst([comparison.state for comparison in self.comparisons] + lacking)
 
     @property
@@ -68,39 +90,39 @@ class Refresh:
         return [name for name, (was, now) in both if now.state == "stale" != was.state]
 
 
-def compare_builds(
-    versions: Pair,
-    builds: tuple[Path, Path],
-    recorded: tuple[dict[str, Status], dict[str, Status]],
-    locks: Pair,
-) -> Refresh:
-    """Compare the builds of the old and the new version.
+def read_build(root: Path, version: str, site: Path) -> EngineBuild:
+    """Return what an engine version has built in a checkout that pins it, refused or not."""
+    bundles, book = {}, root / "book"
+    for page in find_pages(book):
+        for folder in folders(root / ".cache" / STORE, page):
+            record = read_record(folder)
+            bundle = recorded_bundle(folder, record)
+            if bundle and record.engine == version:
+                bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle
+                break
+    lock = (root / "requirements.lock").read_text("utf8")
+    return EngineBuild(version, lock, bundles, recorded(root), site)
 
-    Args:
-        versions: of the engine, old and new, as all pairs here.
-        builds: folders with `html` and `evidence`.
-        recorded: the result of `recorded` under each pin.
-        locks: texts of requirements.lock.
 
-    Raises:
-        BundleRefused: a built bundle cannot be read.
-    """
-    old, new = (built_bundles(build) for build in builds)
-    shared = sorted(old.keys() & new.keys())
+def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
+    """Compare what two engine versions made of one checkout."""
+    comparisons, missing = [], {}
+    for name in sorted(old.bundles | new.bundles):
+        try:
+            comparisons.append(compare(old.bundles[name], new.bundles[name]))
+        except KeyError:
+            missing[name] = "In one build only."
+        except BundleRefused as error:
+            missing[name] = str(error)
+    versions = old.version, new.version
     return Refresh(
         versions,
-        changed_packages(*locks),
-        tuple(compare(old[n], new[n]) for n in shared),
-        tuple(sorted(old.keys() ^ new.keys())),
-        {name: (recorded[0][name], recorded[1][name]) for name in recorded[0]},
-        tuple(changed_sentences(builds[0] / "html", builds[1] / "html", versions)),
+        changed_packages(old.lock, new.lock),
+        tuple(comparisons),
+        missing,
+        {name: (old.recorded[name], new.recorded[name]) for name in old.recorded},
+        tuple(changed_sentences(old.site, new.site, versions)) if new.site.is_dir() else (),
     )
-
-
-def built_bundles(build: Path) -> dict[str, Path]:
-    """Return lesson/backend (a lab's) or lesson/page/backend → folder of all bundles of a build."""
-    labs = {"/".join(folder.parts[-2:]): folder for folder in recorded_folders(build)}
-    return labs | {"/".join(f.parts[-3:]): f for f in sorted((build / PAGES).glob("*/*/*"))}
 
 
 def recorded(root: Path) -> dict[str, Status]:
@@ -159,35 +181,42 @@ def sentences(page: Path) -> Iterator[str]:
 
 def summary(refresh: Refresh) -> str:
     """Return the result in one line."""
+    result = refresh.failed[0] if refresh.failed else refresh.state
     return (
-        f"{refresh.state}; changed packages: {len(refresh.packages)}, changed sentences: "
+        f"{result}; changed packages: {len(refresh.packages)}, changed sentences: "
         f"{len(refresh.changed)}, recorded bundles that became stale: {len(refresh.stale)}"
     )
 
 
 def document(refresh: Refresh) -> Document:
     """Return the whole report."""
-    verdict = f"{summary(refresh).capitalize()}."
+    text = summary(refresh)
+    verdict = f"{text[0].upper()}{text[1:]}."
     return Document(refresh.title, verdict, refresh.state, list(_parts(refresh)))
 
 
 def _parts(refresh: Refresh) -> Iterator[Part]:
     """Yield the parts of the report.
 
-    The first part has one row for each page. Rows that are equal are counted there and left out
+    The part of the pages has one row for each. Rows that are equal are counted there and left out
     below: most of several thousand rows are.
     """
+    none = ("The trial failed before, or found nothing here.",) * 4 if refresh.failed else (
+        "No page has a bundle.", "No other package changed.", "No bundle is recorded.",
+        "No sentence of the site changed.",
+    )  # fmt: skip
+    old, new = refresh.versions
     both = refresh.comparisons
+    if refresh.failed:
+        yield Part(refresh.failed[0], [()], remarks=refresh.failed[1:])
     rows = [(f"{one.new.lesson} {one.new.page}", one.state, report.verdict(one)) for one in both]
-    rows += [(name, SEVERITY[-1], "In one build only.") for name in refresh.missing]
-    yield Part("Pages", [("page", "result", "rows"), *rows], "No page has a bundle.")
+    rows += [(name, SEVERITY[-1], why) for name, why in refresh.missing.items()]
+    yield Part("Pages", [("page", "result", "rows"), *rows], none[0])
     packages = [(name, *versions) for name, versions in refresh.packages.items()]
-    yield Part("Packages", [("package", "old", "new"), *packages], "No other package changed.")
-    states = [
-        (name, was.state, now.state, now.reason) for name, (was, now) in refresh.recorded.items()
-    ]
-    head = ("bundle", f"under {refresh.versions[0]}", f"under {refresh.versions[1]}", "reason")
-    yield Part("Recorded bundles", [head, *states], "No bundle is recorded.")
+    yield Part("Packages", [("package", "old", "new"), *packages], none[1])
+    states = [(name, a.state, b.state, b.reason) for name, (a, b) in refresh.recorded.items()]
+    head = ("bundle", f"under {old}", f"under {new}", "reason")
+    yield Part("Recorded bundles", [head, *states], none[2])
     for one in both:
         table = report.changes(one)
         if one.remarks or len(table) > 1:
@@ -195,4 +224,4 @@ def _parts(refresh: Refresh) -> Iterator[Part]:
     for page, changed in groupby(refresh.changed, key=lambda one: one[0]):
         yield Part(f"Sentences of {page}", [("old", "new"), *(one[1:] for one in changed)])
     if not refresh.changed:
-        yield Part("Sentences", [("", "")], "No sentence of the site changed.")
+        yield Part("Sentences", [("", "")], none[3])

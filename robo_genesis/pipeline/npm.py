@@ -97,21 +97,20 @@ def published(name: str, root: Path = ROOT, cache: Path = CACHE) -> bytes:
     Raises:
         ProjectError: the fetched file differs as well, or npm failed.
     """
-    found = _digest_and_content(packages(root, cache) / name)
-    if found[0] != PUBLISHED[name]:
-        folder = packages(root, cache).parent
-        print(
-            f"{folder / 'node_modules' / name} is not the locked file: fetching all packages anew"
-        )
-        shutil.rmtree(folder)
-        found = _digest_and_content(packages(root, cache) / name)
-    if found[0] != PUBLISHED[name]:
-        raise ProjectError(
-            f"npm's file {name} has the digest {found[0]}, expected is {PUBLISHED[name]}. If "
-            "package-lock.json names a new version, read what changed in the file and write its "
-            "digest into PUBLISHED of robo_genesis/pipeline/npm.py."
-        )
-    return found[1]
+    for attempt in (1, 2):
+        file = packages(root, cache) / name
+        content = file.read_bytes() if file.is_file() else b""
+        digest = hashlib.sha256(content).hexdigest()
+        if digest == PUBLISHED[name]:
+            return content
+        if attempt == 1:
+            print(f"{file} is not the locked file: fetching all packages anew")
+            shutil.rmtree(packages(root, cache).parent)
+    raise ProjectError(
+        f"npm's file {name} has the digest {digest}, expected is {PUBLISHED[name]}. If "
+        "package-lock.json names a new version, read what changed in the file and write its "
+        "digest into PUBLISHED of robo_genesis/pipeline/npm.py."
+    )
 
 
 def require_published() -> None:
@@ -125,11 +124,6 @@ def locked(name: str, root: Path = ROOT) -> dict[str, str]:
     lock = json.loads((root / LOCK[1]).read_text("utf8"))
     entry: dict[str, str] = lock["packages"][f"node_modules/{name}"]
     return entry
-
-
-def _digest_and_content(file: Path) -> tuple[str, bytes]:
-    content = file.read_bytes() if file.is_file() else b""
-    return hashlib.sha256(content).hexdigest(), content
 
 
 def _install(folder: Path) -> None:

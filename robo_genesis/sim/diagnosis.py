@@ -4,10 +4,10 @@ import os
 import platform
 import re
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -37,7 +37,11 @@ AT_LIMIT = 0.99
 
 
 class StepError(RuntimeError):
-    """A step of the diagnosis failed; the message says what was found and what to do."""
+    """A step failed; the message says what was found and what to do."""
+
+
+class DoubtError(StepError):
+    """A step found something that can stop the engine, or that makes no difference."""
 
 
 @dataclass(slots=True)
@@ -54,12 +58,12 @@ class Bench:
     trace: Any = None
 
 
-STATES = ("ok", "broken", "not run")
+STATES = ("ok", "warning", "broken", "not run")
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
-    """The result of one step; `state` is one of `STATES`."""
+class StepResult:
+    """What one step found; `state` is one of `STATES`."""
 
     step: str
     state: str
@@ -186,18 +190,28 @@ STEPS: tuple[Callable[[Bench], str], ...] = (
 """In the order of the lesson: each step comes after the steps that it needs."""
 
 
-def examine(bench: Bench) -> tuple[Finding, ...]:
-    """Run the steps in order; after a broken one, run none."""
-    findings: list[Finding] = []
-    for step in STEPS:
+Subject = TypeVar("Subject")
+
+
+def run_steps(steps: Sequence[Callable[[Subject], str]], subject: Subject) -> list[StepResult]:
+    """Run steps in order; after a broken one, run none.
+
+    Args:
+        steps: each returns what it found, or raises an error that says what to do.
+        subject: what all steps look at, and where they leave what later steps need.
+    """
+    results: list[StepResult] = []
+    for step in steps:
         state, found = "not run", ""
-        if all(finding.state == "ok" for finding in findings):
+        if not any(result.state == "broken" for result in results):
             try:
-                state, found = "ok", step(bench)
-            except Exception as error:  # the doctor reports any error
+                state, found = "ok", step(subject)
+            except DoubtError as doubt:
+                state, found = "warning", str(doubt)
+            except Exception as error:  # any error is reported
                 state, found = "broken", advice(error)
-        findings.append(Finding(step.__name__, state, shareable(found)))
-    return tuple(findings)
+        results.append(StepResult(step.__name__, state, found))
+    return results
 
 
 def advice(error: Exception) -> str:

@@ -1,56 +1,32 @@
 """Which version may take the pin's place, and the one line that is written."""
 
-import subprocess
-from types import SimpleNamespace
-
 import pytest
 
 from robo_genesis.core import project
 from robo_genesis.core.project import ProjectError
-from robo_genesis.maintain.pin import RepinError, chosen_version, installable_versions, set_pin
-
-KNOWN = ["1.4.5", "1.4.0", "1.3.3", "2.0.0rc1"]
+from robo_genesis.maintain.pin import RepinError, set_pin, wanted_version
 
 
 @pytest.mark.parametrize(
-    ("given", "found", "prereleases"),
+    ("given", "found"),
+    [("1.4", "1.4"), ("v1.4.0", "1.4.0"), ("2.0.0rc1", "2.0.0rc1"), ("1.3.30", "1.3.30")],
+)
+def test_a_version_is_read_as_pip_reads_it(given, found):
+    assert wanted_version(given, "1.3.3") == found
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
     [
-        ("1.4", "1.4.0", False),
-        ("v1.4.0", "1.4.0", False),
-        ("2.0.0rc1", "2.0.0rc1", True),
+        ("", r"GENESIS is not given\. Usage: make repin GENESIS=.* \(the pin is 1\.3\.3\)"),
+        ("newest", r"GENESIS='newest' is not a version\. Usage"),
+        ("1.3.3", r"is the pin already"),
+        ("v1.3.3.0", r"is the pin already"),
     ],
 )
-def test_a_version_is_spelled_as_the_index_spells_it(given, found, prereleases):
-    asked = []
-    assert chosen_version(given, "1.3.3", lambda pre: asked.append(pre) or KNOWN) == found
-    assert asked == [prereleases]
-
-
-def answer(monkeypatch, **done):
-    values = {"returncode": 0, "stdout": "", "stderr": ""} | done
-    commands = []
-
-    def run(command, **options):
-        commands.append(command)
-        return SimpleNamespace(**values)
-
-    monkeypatch.setattr(subprocess, "run", run)
-    return commands
-
-
-def test_pip_is_asked_for_the_versions(monkeypatch):
-    out = "genesis-world (1.4.5)\nAvailable versions: 1.4.5, 1.4.4\n  INSTALLED: 1.3.3\n"
-    commands = answer(monkeypatch, stdout=out)
-    assert installable_versions(False) == ["1.4.5", "1.4.4"]
-    installable_versions(True)
-    assert [command[-1] for command in commands] == ["genesis-world", "--pre"]
-
-
-@pytest.mark.parametrize("done", [{"returncode": 1, "stderr": "no route"}, {"stdout": "other"}])
-def test_without_an_answer_the_network_is_named(monkeypatch, done):
-    answer(monkeypatch, **done)
-    with pytest.raises(RepinError, match=r"cannot list the versions.*\n.*needs the network"):
-        installable_versions(False)
+def test_what_is_no_other_version_is_refused(given, says):
+    with pytest.raises(RepinError, match=says):
+        wanted_version(given, "1.3.3")
 
 
 def project_file(folder, line: str):

@@ -49,10 +49,7 @@ def book(tmp_path, courses_pages) -> Path:
 def test_a_clean_commit_with_its_own_evidence_lacks_nothing(checkout, built, book):
     assert unclean(checkout) == []
     assert missing(book, built, checkout) == []
-
-
-def test_a_new_file_is_seen_whatever_the_user_s_git_shows(checkout):
-    git(checkout, "config", "status.showUntrackedFiles", "no")
+    git(checkout, "config", "status.showUntrackedFiles", "no")  # whatever the user's git shows
     (checkout / "new.md").write_text("New.\n")
     assert "new.md" in unclean(checkout)[0]
 

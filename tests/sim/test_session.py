@@ -8,6 +8,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from types import ModuleType, SimpleNamespace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -20,7 +21,6 @@ from robo_genesis.sim.session import (
     Contract,
     ContractError,
     EngineError,
-    import_engine,
     read_contract,
     require_agreement,
     start,
@@ -43,10 +43,7 @@ def test_the_contract_is_read_from_the_environment(
     contract = Contract(backend, render, tmp_path / folder)
     assert read_contract(environ) == contract
     assert list(contract.outputs.iterdir()) == []
-    for variable in (BACKEND, RENDER, OUTPUTS):
-        monkeypatch.delenv(variable, raising=False)
-    for variable, value in environ.items():
-        monkeypatch.setenv(variable, value)
+    monkeypatch.setattr(session.os, "environ", environ)
     assert read_contract() == contract
 
 
@@ -61,37 +58,32 @@ def test_any_other_value_names_variable_value_and_choices(tmp_path, variable, va
     assert str(caught.value) == f"{variable}={value!r} is not valid. Choose one of: {choices}."
 
 
-def test_an_outputs_folder_that_cannot_be_made_is_refused(no_file):
+def test_an_outputs_folder_that_cannot_be_made_or_written_is_refused(
+    no_file, tmp_path, monkeypatch
+):
     for path in (no_file, no_file.parent):  # below a file, and the file itself
         with pytest.raises(ContractError, match=f"{OUTPUTS}='{path}' cannot be written"):
             read_contract({OUTPUTS: str(path)})
-
-
-def test_an_outputs_folder_that_cannot_be_written_is_refused(tmp_path, monkeypatch):
-    def refuse(dir):
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr(session.tempfile, "TemporaryFile", refuse)
+    refusal = PermissionError(13, "Permission denied")
+    monkeypatch.setattr(session.tempfile, "TemporaryFile", Mock(side_effect=refusal))
     with pytest.raises(ContractError, match="Permission denied"):
         read_contract({OUTPUTS: str(tmp_path)})
 
 
-def test_a_start_without_egl_names_the_command_that_installs_it(tmp_path, monkeypatch):
-    def load(name):
-        if name == "libEGL.so.1":
-            raise OSError(f"{name}: cannot open shared object file")
-
-    monkeypatch.setattr(session.ctypes, "CDLL", load)
-    monkeypatch.setitem(sys.modules, "genesis", None)  # as if: its import must not be reached
-    with pytest.raises(EngineError, match=r"libEGL\.so\.1 .*apt install libegl1 libgl1"):
+@pytest.mark.parametrize(
+    ("libraries", "message"),
+    [
+        (OSError("no such file"), r"libEGL\.so\.1 .*apt install libegl1 libgl1"),
+        (None, r"Genesis cannot be imported: .* requirements\.lock"),
+    ],
+)
+def test_a_start_without_libraries_or_engine_names_what_installs_them(
+    tmp_path, monkeypatch, libraries, message
+):
+    monkeypatch.setattr(session.ctypes, "CDLL", Mock(side_effect=libraries))
+    monkeypatch.setitem(sys.modules, "genesis", None)  # as if it were not installed
+    with pytest.raises(EngineError, match=message):
         start(Contract("cpu", True, tmp_path))
-
-
-def test_a_missing_engine_names_the_lock(monkeypatch):
-    monkeypatch.setitem(sys.modules, "genesis", None)
-    monkeypatch.setattr(session, "require_libraries", lambda *names: None)
-    with pytest.raises(EngineError, match=r"requirements.lock"):
-        import_engine()
 
 
 class Searched(ModuleType):
@@ -178,6 +170,8 @@ def test_a_start_keeps_the_log_and_the_switches_that_the_engine_did_not_set(
 
 VALID = {"seed": session.SEED, "precision": "32", "use_deterministic_algorithms": True}
 KEPT = {"logging_level": "info"}
+UNASKED = VALID | KEPT
+"""Of a gs.init before the backend was asked for, when the log is not kept yet."""
 
 
 @pytest.mark.parametrize(
@@ -188,21 +182,17 @@ KEPT = {"logging_level": "info"}
         (VALID | KEPT | {"precision": "64"}, "'precision': '64'.*valid is .*'precision': '32'"),
         (VALID | KEPT | {"use_deterministic_algorithms": False}, "use_deterministic_algorithms"),
         (VALID, r"its log was not kept. Restart the kernel .*\*\*rg.PLAIN_LOG"),
+        (UNASKED, "its log was not kept"),
     ],
 )
 def test_an_engine_with_other_arguments_is_refused(fake_engine, tmp_path, given, message):
     contract = Contract("cpu", True, tmp_path)
     with pytest.raises(EngineError, match="not initialised"):
         session.started(contract)
-    fake_engine.init(backend=session.requested_backend(contract), **given)
+    backend = "cpu" if given is UNASKED else session.requested_backend(contract)
+    fake_engine.init(backend=backend, **given)
     with pytest.raises(EngineError, match=message):
         session.started(contract)
-
-
-def test_an_engine_whose_log_was_not_kept_from_the_start_is_refused(fake_engine, tmp_path):
-    fake_engine.init(backend="cpu", **VALID, **KEPT)
-    with pytest.raises(EngineError, match="its log was not kept"):
-        session.started(Contract("cpu", True, tmp_path))
 
 
 def test_a_second_attempt_to_start_keeps_one_log(fake_engine, tmp_path):
@@ -213,19 +203,14 @@ def test_a_second_attempt_to_start_keeps_one_log(fake_engine, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("message", "name"),
-    [
-        (
-            "Running on ~~<[A [fast] CPU]>~~ with backend ~~<gs.cpu>~~. Memory: 8 GB.",
-            "A [fast] CPU",
-        ),
-        ("Running somewhere.", "as the engine finds it"),
-    ],
-)
-def test_the_device_has_the_name_in_the_log_or_is_asked_for(fake_engine, tmp_path, message, name):
+    ("where", "name"),
+    [("on ~~<[A [fast] CPU]>~~ with backend ~~<gs.cpu>~~. Memory: 8 GB.", "A [fast] CPU"),
+     ("somewhere.", "as the engine finds it")],
+)  # fmt: skip
+def test_the_device_has_the_name_in_the_log_or_is_asked_for(fake_engine, tmp_path, where, name):
     asked = SimpleNamespace(get_device=lambda backend: (None, "as the engine finds it"))
     session.requested_backend(Contract("cpu", True, tmp_path))
-    logging.getLogger("genesis").warning(message)
+    logging.getLogger("genesis").warning(f"Running {where}")
     assert session._device_name(SimpleNamespace(backend="cpu", utils=asked)) == name
 
 

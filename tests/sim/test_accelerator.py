@@ -7,10 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.pipeline.recording import backend_probe
-from robo_genesis.pipeline.recording.backend_probe import probe
-from robo_genesis.pipeline.recording.probe_steps import Machine
-from robo_genesis.pipeline.recording.torch_probe import RUNTIME
+from robo_genesis.sim import accelerator
+from robo_genesis.sim.accelerator import ProbedMachine, probe
+from robo_genesis.sim.torch_probe import RUNTIME
 
 TORCH = """
 import json, os, pathlib, types
@@ -83,10 +82,11 @@ class Synthetic:
 
     def probe(self, expected: str | None = "amdgpu") -> tuple[str, dict[str, str], dict[str, str]]:
         """Return the backend that is found, and state and words by step."""
-        machine = Machine(self.root, self.environ, lambda path, mode: path.name not in self.closed)
-        backend, findings = probe(expected, machine)
-        states = {finding.step: finding.state for finding in findings}
-        return backend, states, {finding.step: finding.found for finding in findings}
+        machine = ProbedMachine(
+            self.environ, self.root, lambda path, mode: path.name not in self.closed
+        )
+        backend, steps = probe(machine, expected)
+        return backend, {s.step: s.state for s in steps}, {s.step: s.found for s in steps}
 
 
 def loadable() -> Path:
@@ -102,8 +102,9 @@ def machine(tmp_path):
     return Synthetic(tmp_path)
 
 
-def test_an_amd_machine_is_fine(machine):
-    backend, states, found = machine.probe()
+@pytest.mark.parametrize("expected", ["amdgpu", None])
+def test_an_amd_machine_is_fine(machine, expected):
+    backend, states, found = machine.probe(expected)
     assert backend == "amdgpu"
     assert {*states.values()} == {"ok"}
     assert found == {
@@ -120,16 +121,8 @@ def test_an_amd_machine_is_fine(machine):
     }
 
 
-def unversioned(machine):
-    (machine.root / "lib" / RUNTIME).unlink()
-
-
 def removed(*paths):
-    def change(machine):
-        for path in paths:
-            (machine.root / path).unlink()
-
-    return change
+    return lambda machine: [(machine.root / path).unlink() for path in paths]
 
 
 def told(**values):
@@ -141,15 +134,7 @@ def variables(**values):
 
 
 def closed(*names):
-    def change(machine):
-        machine.closed = names
-
-    return change
-
-
-def in_kernel(machine):
-    """The driver of the kernel itself, which names no version."""
-    (machine.root / "sys/module/amdgpu/version").unlink()
+    return lambda machine: setattr(machine, "closed", names)
 
 
 def as_index(value):
@@ -169,12 +154,11 @@ LLD = "opt/rocm/llvm/bin/ld.lld"
 @pytest.mark.parametrize(
     ("change", "step", "state", "words"),
     [
-        (removed("dev/kfd"), "devices", "broken", "/dev/kfd missing, expected both. Load the dri"),
         (removed("dev/kfd", "dev/dri/renderD128"), "devices", "broken",
-         "/dev/kfd and /dev/dri/renderD* missing"),
+         "/dev/kfd and /dev/dri/renderD* missing, expected both. Load the driver"),
         (closed("kfd"), "devices", "broken", "You may open renderD128, expected kfd and a renderD"),
-        (closed("kfd", "renderD128"), "devices", "broken", "usermod -aG render,video"),
-        (in_kernel, "driver", "ok", "amdgpu of the kernel "),
+        (closed("renderD128"), "devices", "broken", "usermod -aG render,video"),
+        (removed("sys/module/amdgpu/version"), "driver", "ok", "amdgpu of the kernel "),
         (topology(0), "card", "broken", "names no card"),
         (topology(90010), "card", "ok", "gfx90a"),
         (topology(120001), "card", "ok", "gfx1201"),
@@ -193,7 +177,7 @@ LLD = "opt/rocm/llvm/bin/ld.lld"
          "device_code", "broken", "code for no card, expected gfx942"),
         (lambda m: m.loaded(OWN, OTHER), "hip_runtime", "warning",
          f"2 are loaded: {OWN}, {OTHER}; expected Torch's. Link {RUNTIME} in a folder to {OWN}"),
-        (unversioned, "hip_runtime", "broken", "which the engine opens, cannot be loaded"),
+        (removed(f"lib/{RUNTIME}"), "hip_runtime", "broken", "the engine opens, cannot be loaded"),
         (told(kernel="raise RuntimeError('HIP error: out of memory\\nmore')"), "kernel", "broken",
          "an answer: RuntimeError: HIP error: out of memory. Repair that environment"),
         (told(kernel="os.kill(os.getpid(), 11)"), "kernel", "broken", "killed by SIGSEGV"),
@@ -225,33 +209,29 @@ def test_ld_lld_is_looked_for_where_the_compiler_looks(machine):
     assert machine.probe()[1]["linker"] == "broken"
 
 
-@pytest.mark.parametrize("expected", ["cuda", None])
-def test_a_cuda_machine_is_fine(machine, expected):
+@pytest.mark.parametrize(
+    ("expected", "loaded", "state", "driver"),
+    [
+        ("cuda", True, "ok", "nvidia 580.1"),
+        (None, True, "ok", "nvidia 580.1"),
+        ("cuda", False, "warning", "expected the driver loaded: modprobe nvidia."),
+    ],
+)
+def test_a_cuda_machine_is_fine_and_a_driver_that_sys_does_not_name_is_a_warning(
+    machine, expected, loaded, state, driver
+):
     machine.told(**CUDA)
-    machine.write("sys/module/nvidia/version", "580.1\n")
-    assert machine.probe(expected) == (
-        "cuda",
-        dict.fromkeys(("driver", "torch", "device", "kernel"), "ok"),
-        {
-            "driver": "nvidia 580.1",
-            "torch": "2.13.0+cu130, built for CUDA 13.0",
-            "device": "a card, device 0 of 1",
-            "kernel": "a sum on the card is 140, as expected",
-        },
-    )
-
-
-def test_a_driver_that_sys_does_not_name_is_a_warning(machine):
-    machine.told(**CUDA)
-    _, states, found = machine.probe("cuda")
-    assert states == {"driver": "warning", "torch": "ok", "device": "ok", "kernel": "ok"}
-    assert "expected the driver loaded: modprobe nvidia" in found["driver"]
-
-
-@pytest.mark.parametrize(("given", "expected"), [({}, "amdgpu"), (CUDA, "cuda")])
-def test_without_a_name_the_build_of_torch_decides(machine, given, expected):
-    machine.told(**given)
-    assert machine.probe(None)[0] == expected
+    if loaded:
+        machine.write("sys/module/nvidia/version", "580.1\n")
+    backend, states, found = machine.probe(expected)
+    assert backend == "cuda"
+    assert states == {"driver": state, "torch": "ok", "device": "ok", "kernel": "ok"}
+    assert found.pop("driver").endswith(driver)
+    assert found == {
+        "torch": "2.13.0+cu130, built for CUDA 13.0",
+        "device": "a card, device 0 of 1",
+        "kernel": "a sum on the card is 140, as expected",
+    }
 
 
 @pytest.mark.parametrize("expected", ["amdgpu", "cuda", None])
@@ -274,7 +254,7 @@ def test_a_torch_for_the_cpu_alone_is_named(machine, expected):
     ],
 )
 def test_a_torch_that_does_not_answer_is_named_with_the_fix(machine, monkeypatch, torch, said):
-    monkeypatch.setattr(backend_probe, "PROBE_SECONDS", 1.0)
+    monkeypatch.setattr(accelerator, "PROBE_SECONDS", 1)
     machine.write("torch.py", torch)
     backend, states, found = machine.probe("amdgpu")
     assert backend == "cpu"
@@ -289,12 +269,3 @@ def test_the_probe_loads_neither_engine_nor_course(machine):
     kernel = f"import sys; assert not {{*sys.modules}} & set({modules}), 'loaded'"
     machine.told(kernel=kernel)
     assert machine.probe()[1]["kernel"] == "ok"
-
-
-def test_this_machine_is_looked_at_with_the_variables_of_a_kernel(monkeypatch):
-    monkeypatch.setenv("ROCM_PATH", "/opt/rocm-7.2.0")
-    monkeypatch.setenv("PYTORCH_NO_HIP_MEMORY_CACHING", "1")
-    machine = Machine()
-    assert machine.root == Path("/")
-    assert machine.environ["ROCM_PATH"] == "/opt/rocm-7.2.0"
-    assert "PYTORCH_NO_HIP_MEMORY_CACHING" not in machine.environ

@@ -1,59 +1,54 @@
-"""The steps of the probe: each says what it found, what is valid and what to do.
+"""The steps of the doctor for an accelerator: what a run would find, without starting the engine.
 
-They read files below a given root, variables, and what Torch answered in a process of its own.
+They read files below a given root, variables, and what Torch answers in a process of its own.
 """
 
 import grp
+import json
 import os
 import platform
 import shutil
+import signal
+import subprocess
 import sys
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.evidence.recorder import DRIVERS, driver_version
-from robo_genesis.pipeline.pages.kernels import users_variables
-from robo_genesis.pipeline.recording import torch_probe
-from robo_genesis.sim.diagnosis import StepError
+from robo_genesis.sim import torch_probe
+from robo_genesis.sim.diagnosis import DoubtError, StepError, StepResult, run_steps
+
+PROBE_SECONDS = 180
+"""Until Torch must have answered."""
+
+DRIVERS = {"amdgpu": "amdgpu", "cuda": "nvidia"}
+"""Kernel module of each accelerator's driver."""
 
 VISIBILITY = ("ROCR_VISIBLE_DEVICES", "HIP_VISIBLE_DEVICES", "CUDA_VISIBLE_DEVICES")
 ROCM_FOLDERS = ("/opt/rocm", "/opt/rocm-7.0.0", "/opt/rocm-6.0.0")
 """Where the engine's compiler looks for `llvm/bin/ld.lld` after ROCM_PATH and before PATH."""
 
 
-class DoubtError(StepError):
-    """A step found something that can stop the engine, or that makes no difference."""
+@dataclass(slots=True)
+class ProbedMachine:
+    """Where the steps look: in these variables, below `root`, and with this right of access.
 
-
-@dataclass(frozen=True, slots=True)
-class Machine:
-    """Where the steps look: below `root`, in these variables, and with this right of access.
-
-    By default these are the variables that the kernel of a lab gets.
+    `probe` adds the backend to record and the facts from Torch, whose process `ended` so; empty
+    means without an error.
     """
 
+    environ: Mapping[str, str]
     root: Path = Path("/")
-    environ: Mapping[str, str] = field(default_factory=users_variables)
     access: Callable[[Path, int], bool] = os.access
+    backend: str = ""
+    torch: Mapping[str, Any] = field(default_factory=dict)
+    ended: str = ""
 
     def at(self, path: str) -> Path:
         """Return an absolute path below the root."""
         return self.root / path.lstrip("/")
-
-
-@dataclass(frozen=True, slots=True)
-class Subject:
-    """A machine, the backend to record, and the facts from Torch, whose process `ended` so.
-
-    `ended` is empty if it ended without an error.
-    """
-
-    machine: Machine
-    backend: str
-    torch: Mapping[str, Any]
-    ended: str
 
     def said(self, fact: str) -> Any:
         """Return a fact from Torch; raise StepError if its process ended before."""
@@ -65,9 +60,8 @@ class Subject:
         return self.torch[fact]
 
 
-def devices(subject: Subject) -> str:
+def devices(machine: ProbedMachine) -> str:
     """The device files of the driver exist, and this user may open them."""
-    machine = subject.machine
     kfd, drawing = machine.at("/dev/kfd"), sorted(machine.at("/dev/dri").glob("renderD*"))
     absent = ["/dev/kfd"] * (not kfd.exists()) + ["/dev/dri/renderD*"] * (not drawing)
     if absent:
@@ -95,18 +89,18 @@ def _group(number: int) -> str:
         return str(number)
 
 
-def driver(subject: Subject) -> str:
+def driver(machine: ProbedMachine) -> str:
     """The kernel has loaded the driver."""
-    name = DRIVERS[subject.backend]
-    if not subject.machine.at(f"/sys/module/{name}").is_dir():
+    name = DRIVERS[machine.backend]
+    if not machine.at(f"/sys/module/{name}").is_dir():
         raise DoubtError(f"/sys/module has no {name}, expected the driver loaded: modprobe {name}.")
-    version = driver_version(subject.backend, subject.machine.root)
+    version = driver_version(machine.backend, machine.root)
     return f"{name} {version or f'of the kernel {platform.release()}, without a version'}"
 
 
-def card(subject: Subject) -> str:
+def card(machine: ProbedMachine) -> str:
     """The driver lists a card."""
-    nodes = subject.machine.at("/sys/class/kfd/kfd/topology/nodes")
+    nodes = machine.at("/sys/class/kfd/kfd/topology/nodes")
     found = []
     for path in sorted(nodes.glob("*/properties")):
         lines = (line.partition(" ") for line in path.read_text("utf8").splitlines())
@@ -121,9 +115,8 @@ def card(subject: Subject) -> str:
     return ", ".join(found)
 
 
-def linker(subject: Subject) -> str:
+def linker(machine: ProbedMachine) -> str:
     """`ld.lld`, with which the engine's compiler links each kernel, is where it looks."""
-    machine = subject.machine
     given = machine.environ.get("ROCM_PATH")
     folders = ([Path(given)] if given else []) + [machine.at(path) for path in ROCM_FOLDERS]
     for file in (folder / "llvm/bin/ld.lld" for folder in folders):
@@ -137,9 +130,9 @@ def linker(subject: Subject) -> str:
     )
 
 
-def visibility(subject: Subject) -> str:
+def visibility(machine: ProbedMachine) -> str:
     """At most the one variable is set that selects a card reliably."""
-    environ = subject.machine.environ
+    environ = machine.environ
     given = {name: environ[name] for name in VISIBILITY if name in environ}
     if hiding := [name for name, value in given.items() if not value.strip()]:
         raise StepError(
@@ -155,42 +148,42 @@ def visibility(subject: Subject) -> str:
     raise DoubtError(f"{text}. {remedy}")
 
 
-def torch(subject: Subject) -> str:
+def torch(machine: ProbedMachine) -> str:
     """Torch is a build for the backend."""
-    version, hip, cuda = map(subject.said, ("torch", "hip", "cuda"))
+    version, hip, cuda = map(machine.said, ("torch", "hip", "cuda"))
     what = f"HIP {hip}" if hip else f"CUDA {cuda}" if cuda else "the CPU alone"
-    if (built := built_for(subject.torch)) and built == subject.backend:
+    if (built := built_for(machine.torch)) and built == machine.backend:
         return f"{version}, built for {what}"
     raise StepError(
         f"Torch {version} is built for {what}, expected a build for "
-        f"{subject.backend or 'amdgpu or cuda'}. Name an environment with one by PYTHON=path, or "
+        f"{machine.backend or 'amdgpu or cuda'}. Name an environment with one by PYTHON=path, or "
         "record the CPU with BACKEND=cpu."
     )
 
 
-def device(subject: Subject) -> str:
+def device(machine: ProbedMachine) -> str:
     """Torch finds a device."""
-    if (count := subject.said("count")) == 0:
+    if (count := machine.said("count")) == 0:
         raise StepError("Torch finds no device, expected one. Check driver and rights of access.")
-    name = f"{subject.said('device')} {subject.said('gfx')}".rstrip()
+    name = f"{machine.said('device')} {machine.said('gfx')}".rstrip()
     return f"{name}, device 0 of {count}"
 
 
-def device_code(subject: Subject) -> str:
+def device_code(machine: ProbedMachine) -> str:
     """Torch contains code for the card."""
-    gfx, codes = subject.said("gfx"), subject.said("codes")
+    gfx, codes = machine.said("gfx"), machine.said("codes")
     if gfx in codes:
         return f"Torch has code for {gfx}"
     text = (
         f"Torch has code for {', '.join(codes) or 'no card'}, expected {gfx}. Install Torch with "
         f"it: torch[device-{gfx}] from AMD's index."
     )
-    raise (DoubtError if subject.torch.get("kernel") == torch_probe.SUM else StepError)(text)
+    raise (DoubtError if machine.torch.get("kernel") == torch_probe.SUM else StepError)(text)
 
 
-def hip_runtime(subject: Subject) -> str:
+def hip_runtime(machine: ProbedMachine) -> str:
     """The engine's compiler opens the HIP runtime that Torch has loaded, and no second one."""
-    own, files, unopened = map(subject.said, ("own", "runtimes", "unopened"))
+    own, files, unopened = map(machine.said, ("own", "runtimes", "unopened"))
     name = torch_probe.RUNTIME
     remedy = (
         f"Link {name} in a folder to {own[0] if own else 'the copy of Torch'}, and name that "
@@ -203,9 +196,9 @@ def hip_runtime(subject: Subject) -> str:
     return ", ".join(files)
 
 
-def kernel(subject: Subject) -> str:
+def kernel(machine: ProbedMachine) -> str:
     """The card computes."""
-    found, expected = subject.said("kernel"), torch_probe.SUM
+    found, expected = machine.said("kernel"), torch_probe.SUM
     if found != expected:
         raise StepError(f"A sum on the card is {found}, expected {expected}. Check the driver.")
     return f"a sum on the card is {found}, as expected"
@@ -216,12 +209,59 @@ def built_for(facts: Mapping[str, Any]) -> str:
     return "amdgpu" if facts.get("hip") else "cuda" if facts.get("cuda") else ""
 
 
-Step = Callable[[Subject], str]
-SYSTEM: dict[str, tuple[Step, ...]] = {
-    "amdgpu": (devices, driver, card, linker, visibility),
-    "cuda": (driver,),
-}
-TORCH: dict[str, tuple[Step, ...]] = {
-    "amdgpu": (torch, device, device_code, hip_runtime, kernel),
-    "cuda": (torch, device, kernel),
-}
+CHAINS: dict[str, tuple[tuple[Callable[[ProbedMachine], str], ...], ...]] = {
+    "amdgpu": (
+        (devices,), (driver,), (card,), (linker,), (visibility,),
+        (torch, device, device_code, hip_runtime, kernel),
+    ),
+    "cuda": ((driver,), (torch, device, kernel)),
+}  # fmt: skip
+"""The steps for each accelerator; a broken one ends its own chain."""
+
+
+def probe(machine: ProbedMachine, expected: str | None) -> tuple[str, list[StepResult]]:
+    """Return the backend that Torch finds, and the results of all steps.
+
+    Args:
+        machine: the one to look at.
+        expected: the accelerator to record, None for the one that Torch is built for.
+    """
+    machine.torch, machine.ended = torch_facts(machine)
+    built = built_for(machine.torch)
+    machine.backend = expected or built
+    chains = CHAINS.get(machine.backend, ((torch,),))
+    results = [result for chain in chains for result in run_steps(chain, machine)]
+    return (built if machine.torch.get("count") else "") or "cpu", results
+
+
+def torch_facts(machine: ProbedMachine) -> tuple[dict[str, Any], str]:
+    """Return the facts from Torch, and how its process ended."""
+    maps = machine.at("/proc/self/maps")
+    command = [sys.executable, "-P", torch_probe.__file__, str(maps), str(PROBE_SECONDS)]
+    done = subprocess.run(command, env={**machine.environ}, capture_output=True, check=False)
+    facts: dict[str, Any] = {}
+    for line in done.stdout.decode("utf8", errors="replace").splitlines():
+        with suppress(ValueError, TypeError):  # a driver may write lines of its own
+            facts |= json.loads(line)
+    return facts, facts.pop("error", _ended(done.returncode, done.stderr))
+
+
+def _ended(status: int, errors: bytes) -> str:
+    """Return how a process ended: by a signal, or with the last line that it wrote."""
+    if status == -signal.SIGALRM:
+        return f"no answer in {PROBE_SECONDS} s"
+    if status < 0:
+        return f"killed by {signal.Signals(-status).name}"
+    lines = errors.decode("utf8", errors="replace").strip().splitlines()
+    return lines[-1] if lines else f"status {status}"
+
+
+def driver_version(backend: str, root: Path = Path("/")) -> str | None:
+    """Return the version of the kernel driver of a backend, None if it names none.
+
+    Args:
+        backend: the actual backend.
+        root: the root of the file system.
+    """
+    path = root / "sys" / "module" / DRIVERS.get(backend, backend) / "version"
+    return path.read_text().strip() if path.is_file() else None

@@ -1,11 +1,12 @@
-"""What Torch finds on this machine, in a process that `backend_probe` starts: facts as JSON lines.
+"""What Torch finds on this machine, in a process that `accelerator` starts: facts as JSON lines.
 
-Each line is written at once, so a crash or a hang leaves the facts before it. Nothing of the course
-and of the engine is imported: Torch is loaded as in a process of its own.
+Each line is written at once, so a crash or a hang leaves the facts before it. An alarm ends a
+hanging process, with or without its parent. Nothing of the course and the engine is imported.
 """
 
 import ctypes
 import json
+import signal
 import sys
 from pathlib import Path
 
@@ -55,6 +56,7 @@ def main(maps: Path) -> None:
 
 
 if __name__ == "__main__":
+    signal.alarm(int(sys.argv[2]))
     try:
         main(Path(sys.argv[1]))
     except Exception as error:

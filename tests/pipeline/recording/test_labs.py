@@ -1,0 +1,339 @@
+"""Recording labs: what is run, kept, refused and printed, with tiny books and made-up probes."""
+
+import json
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from spoilers import both, on, own_run_id, part, seal
+from tiny_book import accept, cell, lab, make_book, notebook, old_bundle
+
+from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.evidence.bundle import BundleRefused
+from robo_genesis.pipeline.pages.execute import kernel_environment
+from robo_genesis.pipeline.pages.kernels import clean_environment
+from robo_genesis.pipeline.recording import labs as recording
+from robo_genesis.pipeline.recording.labs import Recording, RecordingError, record, record_all
+from robo_genesis.pipeline.recording.report import checkout
+from robo_genesis.pipeline.stages import BuildError, build_lock
+from robo_genesis.sim.diagnosis import StepResult
+
+
+def refuse(folder: Path, run_id: str) -> SimpleNamespace:
+    raise BundleRefused("metrics", "metrics.json g1.rise_time is not what the arrays say.")
+
+
+def finds(backend: str | None = None, *steps: StepResult):
+    """Return a probe that finds this backend, by default the expected one or cuda."""
+    steps = steps or (StepResult("torch", "ok", "2.13.0"),)
+    return lambda expected: (backend or expected or "cuda", [*steps])
+
+
+PROBED = finds()
+
+
+def run(folder: Path, page: str, expected: str | None = None, **settings) -> list[str]:
+    """Record the tiny book's lab into `folder/kept`; Torch sees what the test says."""
+    book = make_book(folder, lab=page)
+    values = {"lesson": "l04", "verify": accept, "probe": PROBED, "say": lambda line: None}
+    values |= {"to": folder / "kept"} | settings
+    return record(Recording(book=book, cache=folder / "cache", expected=expected, **values))
+
+
+def test_the_lab_is_recorded_anew_each_time_under_the_name_of_its_backend(tmp_path):
+    old, run_ids = old_bundle(tmp_path, "cuda"), []
+    place = tmp_path / "kept/l04/cuda"
+    for _ in range(2):
+        said: list[str] = []
+        last = run(tmp_path, lab("cuda"), say=said.append)
+        assert sorted(path.name for path in place.iterdir()) == ["log.txt", "manifest.json"]
+        assert old.read_text() == "new"
+        run_ids.append(json.loads((place / "manifest.json").read_text())["predicate"]["run_id"])
+    assert run_ids[0] != run_ids[1]
+    stages = list(dict.fromkeys(line.split("] ")[1].split()[0] for line in said))
+    assert stages == ["probe", "execute", "verify", "record"]
+    assert last[:7] == [
+        f"Recorded: {place}",
+        "Backend: requested auto, actual cuda, device a device",
+        "Engine: genesis-world 1.2.3, quadrants 0.9, torch 2.13.0",
+        "Camera: llvmpipe (drawn in software)",
+        "Checks passed: 2 of 2. Engine warnings kept: 1.",
+        "Files: 2, 0.0 MB",
+        "Checkout: changed since commit 0123456789ab, and the manifest says so; a release refuses "
+        "that. Commit or stash, then record each lab again with LESSON=name.",
+    ]
+    assert last[7].startswith("Before you commit: look at both pictures")
+    assert checkout(None).startswith("Checkout: no git here, so no commit is recorded")
+
+
+def test_the_cpu_is_recorded_without_a_probe_and_by_default_in_the_book(tmp_path):
+    last = run(tmp_path, lab("cpu"), "cpu", to=None, probe=None)
+    assert (tmp_path / "book/evidence/l04/cpu/manifest.json").is_file()
+    assert last[1] == "Backend: requested cpu, actual cpu, device a device"
+
+
+@pytest.mark.parametrize(
+    ("expected", "actual", "said"),
+    [
+        ("amdgpu", "cuda", "Expected backend: amdgpu; ROBO_GENESIS_BACKEND=auto finds 'cuda'"),
+        ("cuda", "amdgpu", "record amdgpu on purpose with BACKEND=amdgpu"),
+        ("amdgpu", "cpu", "record cpu on purpose with BACKEND=cpu"),
+        ("cpu", "cuda", "Expected backend: cpu; ROBO_GENESIS_BACKEND=cpu finds 'cuda'"),
+        (None, "cpu", "none given, so one of amdgpu, cuda; .* with BACKEND=cpu"),
+        (None, "metal", "finds 'metal'. .* Check driver, device and Torch build\\."),
+    ],
+)
+def test_another_backend_than_expected_is_refused(expected, actual, said):
+    with pytest.raises(RecordingError, match=said):
+        recording.require_expected(Recording("l04", expected), actual)
+
+
+NO_CAMERA = lab("cuda").replace('"camera" if camera', '"skip" if camera')
+BY_HAND = lab("cuda").replace('["ROBO_GENESIS_COMMAND"]', '["HOME"]')
+RELABELLED = lab("amdgpu", more='\nfolder.rename(folder.with_name("cuda"))')
+
+
+@pytest.mark.parametrize(
+    ("page", "settings", "said"),
+    [
+        (lab("cuda", more="\n1 / 0"), {}, "ZeroDivisionError: division by zero"),
+        (lab("amdgpu"), {}, "Expected backend: cuda; .* finds 'amdgpu'"),
+        (RELABELLED, {}, "Expected backend: cuda; .* finds 'amdgpu'"),
+        (lab("cuda"), {"verify": refuse}, "bundle of this run is refused: metrics: metrics.json"),
+        (NO_CAMERA, {}, "render.mode is skip, expected camera"),
+        (BY_HAND, {}, "command: manifest.json: command is .*, expected make evidence"),
+    ],
+    ids=["raises", "another backend", "relabelled", "refused", "no camera", "another command"],
+)
+def test_a_run_that_is_not_accepted_leaves_the_old_bundle(tmp_path, page, settings, said):
+    old = old_bundle(tmp_path, "cuda")
+    with pytest.raises(RecordingError, match=said):
+        run(tmp_path, page, "cuda", **settings)
+    assert old.read_text() == "old"
+    assert not (tmp_path / "cache/recording").exists()
+    assert [path.name for path in (tmp_path / "kept/l04").iterdir()] == ["cuda"]
+
+
+def test_engine_switches_reach_lab_and_probe_and_the_user_s_contract_does_not(
+    tmp_path, monkeypatch
+):
+    switches = {"GS_ENABLE_ZEROCOPY": "0", "ROCM_PATH": "/opt/rocm", "LD_LIBRARY_PATH": "/opt/hip"}
+    own = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "0", "PYTORCH_CACHING": "1"}
+    for name, value in (switches | own).items():
+        monkeypatch.setenv(name, value)
+    contract = Recording("l04").contract
+    environment = kernel_environment(ROOT, tmp_path, "make evidence", **contract)
+    environment = clean_environment(tmp_path, tmp_path, ROOT, environment)
+    given = {"ROBO_GENESIS_BACKEND": "auto", "ROBO_GENESIS_RENDER": "1"}
+    assert environment.items() >= (switches | given).items()
+    assert environment["ROBO_GENESIS_COMMAND"] == "make evidence"
+
+    monkeypatch.setattr(recording.accelerator, "probe", lambda machine, expected: machine)
+    probed = recording.probe_here(None).environ
+    assert probed.items() >= switches.items()
+    assert not probed.keys() & own.keys()
+
+
+FOUND = [StepResult(name, "broken", "a\nb") for name in ("devices", "kernel")]
+FOUND += [StepResult("torch", "warning", "c")]
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"lesson": "l05"}, r"^LESSON='l05' is not valid\. Lessons with a lab: l04; unset, all\."),
+        ({"expected": "rocm"}, r"^BACKEND='rocm' is not valid\. Choices: amdgpu, cuda, cpu;"),
+        ({"to": Path("file", "below")}, r"file is not a folder .* TO=folder"),
+        ({"root": Path()}, r"Installed is genesis-world \S+, pinned in pyproject.toml is 0\.0\.1"),
+        ({"probe": finds("cuda", *FOUND)}, r"^Broken: devices, kernel\. The lines"),
+        ({"probe": finds("cuda", *FOUND), "lesson": ""}, r"^Broken: devices, kernel\. The lines"),
+    ],
+)
+def test_what_cannot_be_recorded_is_refused_before_the_run(tmp_path, monkeypatch, settings, said):
+    monkeypatch.chdir(tmp_path)
+    Path("file").touch()
+    Path("pyproject.toml").write_text('[project]\ndependencies = ["genesis-world==0.0.1"]\n')
+    lines: list[str] = []
+    with pytest.raises(ProjectError, match=said):
+        run(tmp_path, lab("cuda"), **settings, say=lines.append)
+    probed = [r"probe devices broken a\nb", r"probe kernel broken a\nb", "probe torch warning c"]
+    found = [" ".join(line.split("] ")[1].split()) for line in lines]
+    assert found == (probed if "probe" in settings else [])
+
+
+def test_a_recording_beside_a_build_is_refused(tmp_path):
+    with build_lock(tmp_path / "cache"), pytest.raises(BuildError, match="Another build"):
+        run(tmp_path, lab("cuda"))
+
+
+def test_the_next_command_brings_back_what_a_kill_left_aside(tmp_path):
+    old = old_bundle(tmp_path, "cuda")
+    old.parent.rename(old.parents[1] / ".cuda.old")
+    with pytest.raises(RecordingError):
+        run(tmp_path, lab("cuda"), lesson="l05")
+    assert old.read_text() == "old"
+
+
+# All labs in one command
+
+
+FACTS = SimpleNamespace(
+    backend=SimpleNamespace(device_name="a GPU\x1b[1m"),
+    checks=[SimpleNamespace(passed=True), SimpleNamespace(passed=False)],
+    git=SimpleNamespace(commit="0123456789abcdef", dirty=False),
+)
+
+
+@pytest.fixture
+def labs(tmp_path, courses_pages):
+    """Record the three labs of a book in a moment, or let some fail as a test says.
+
+    Returns the exit status, the lessons that ran, and what was said.
+    """
+    front = "robo_genesis: {{lesson: {}, page: lab}}\n"
+    pages = {name: notebook(cell("1"), front=front.format(name)) for name in ("l02", "l03", "l04")}
+    book, kept = make_book(tmp_path, plain=notebook(cell("1")), **pages), tmp_path / "kept"
+
+    def record(expected: str | None = "amdgpu", probe=PROBED, **fails):
+        ran, said = list[str](), list[str]()
+
+        def runner(recording, page, progress):
+            ran.append(page.lesson)
+            if error := fails.get(page.lesson):
+                raise error
+            return kept / page.lesson / "amdgpu", FACTS
+
+        places = {"to": kept, "book": book, "cache": tmp_path / "cache"}
+        asked = Recording("", expected, **places, probe=probe, say=said.append)
+        return record_all(asked, runner), ran, said
+
+    return record
+
+
+@pytest.fixture
+def recorded(folder, tmp_path):
+    """Put a bundle of L04 that an accelerator left into the folder of recorded bundles."""
+
+    def put(spoil=seal, backend="amdgpu"):
+        there = on(backend)(folder)
+        spoil(there)
+        return shutil.copytree(there, tmp_path / "kept" / "l04" / backend)
+
+    return put
+
+
+def last(said: list[str]) -> list[str]:
+    """Return the table and what follows it, with one space between the columns."""
+    (head,) = (n for n, line in enumerate(said) if line.startswith("lab "))
+    return [" ".join(line.split()) for line in said[head:]]
+
+
+def test_all_labs_are_recorded_in_the_order_of_the_book(labs, tmp_path):
+    status, ran, said = labs()
+    assert (status, ran) == (0, ["l02", "l03", "l04"])
+    kept = tmp_path / "kept"
+    assert last(said) == [
+        "lab backend device state checks seconds place or reason",
+        *(
+            rf"{name} amdgpu a GPU\x1b[1m recorded 1 of 2 0 {kept}/{name}/amdgpu"
+            for name in ("l02", "l03", "l04")
+        ),
+        "Checkout: clean, commit 0123456789ab",
+        f"Before you commit: look at both pictures in {kept}/*/amdgpu/frames, read log.txt, and "
+        "check that manifest.json names nothing private of your machine.",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("error", "reason", "report"),
+    [
+        (RecordingError("1 of 1 pages failed.\n\nlab, cell 1", "E: no\nmore"), "E: no", "lab, ce"),
+        (RecordingError("Refused.\nBecause."), "Refused.", "Because."),
+        (ProjectError("No place.\nMove it."), "No place.", "Move it."),
+        (OSError(28, "No space left"), "[Errno 28] No space left", "No space left"),
+    ],
+)
+def test_a_failure_is_reported_at_once_and_the_next_lab_follows(labs, error, reason, report):
+    status, ran, said = labs(l02=error)
+    assert (status, ran) == (1, ["l02", "l03", "l04"])
+    assert last(said)[1] == f"l02 amdgpu – failed – 0 {reason}"
+    assert " recorded " in last(said)[2]
+    assert report in next(line for line in said if line.startswith("\n"))
+
+
+def test_an_interruption_ends_the_command_after_the_table(labs):
+    status, ran, said = labs(l03=KeyboardInterrupt())
+    assert (status, ran) == (130, ["l02", "l03"])
+    assert last(said)[2:4] == [
+        "l03 amdgpu – interrupted – 0 the older bundle is unchanged",
+        "l04 amdgpu – not run – –",
+    ]
+
+
+def test_an_accepted_bundle_is_kept_and_named(labs, recorded):
+    place = recorded()
+    run_id = json.loads((place / "manifest.json").read_text())["predicate"]["run_id"]
+    status, ran, said = labs()
+    assert (status, ran) == (0, ["l02", "l03"])
+    (line,) = (" ".join(line.split("] ")[1].split()) for line in said if "] keep" in line)
+    assert line == f"keep l04 amdgpu-verified, run {run_id[:8]}; LESSON=l04 records it again"
+    row = last(said)[3]
+    assert row.startswith("l04 amdgpu a GPU kept ")
+    assert row.endswith(f" – {place}")
+
+
+CLEAN, DIRTY = (both(part("git", dirty=dirty), seal) for dirty in (False, True))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "left_by", "asked", "again"),
+    [
+        (both(part("engine", quadrants_version="1.2.9"), CLEAN), "amdgpu", "amdgpu", True),
+        (both(part("source", page="0" * 64), CLEAN), "amdgpu", "amdgpu", True),
+        (both(CLEAN, lambda folder: (folder / "log.txt").unlink()), "amdgpu", "amdgpu", True),
+        (CLEAN, "cuda", "amdgpu", True),
+        (CLEAN, "cuda", None, False),
+        (DIRTY, "amdgpu", "amdgpu", True),
+    ],
+    ids=["engine", "page", "damaged", "another backend", "backend of the probe", "changed tree"],
+)
+def test_a_bundle_that_is_not_accepted_for_this_backend_is_recorded_again(
+    labs, recorded, monkeypatch, spoil, left_by, asked, again
+):
+    monkeypatch.setattr(recording, "git_record", lambda: {"commit": "0" * 40, "dirty": False})
+    recorded(spoil, left_by)
+    assert labs(asked)[1] == ["l02", "l03", *["l04"] * again]
+
+
+def test_a_bundle_of_a_changed_tree_is_kept_while_the_tree_is_changed(labs, recorded, monkeypatch):
+    monkeypatch.setattr(recording, "git_record", lambda: {"commit": "0" * 40, "dirty": True})
+    recorded(DIRTY)
+    assert labs()[1] == ["l02", "l03"]
+
+
+def test_a_copy_of_the_cpu_s_run_is_recorded_again(labs, recorded, folder, tmp_path):
+    shutil.copytree(folder, tmp_path / "kept" / "l04" / "cpu")
+    recorded(both(own_run_id, seal))
+    assert labs()[1] == ["l02", "l03", "l04"]
+
+
+def test_an_accepted_run_that_does_not_show_the_claims_is_kept(labs, recorded, undecided):
+    recorded()
+    _, ran, said = labs()
+    assert ran == ["l02", "l03"]
+    assert any("amdgpu-inconclusive" in line for line in said)
+
+
+def test_a_lab_is_really_run_and_kept_whole(tmp_path):
+    said: list[str] = []
+    book = make_book(tmp_path, lab=lab("cpu"), more=lab("cpu", "\n1 / 0").replace("l04", "l03"))
+    places = {"to": tmp_path / "kept", "book": book, "cache": tmp_path / "cache"}
+    assert record_all(Recording("", "cpu", **places, verify=accept, say=said.append)) == 1
+    place = tmp_path / "kept" / "l04" / "cpu"
+    assert sorted(path.name for path in place.iterdir()) == ["log.txt", "manifest.json"]
+    assert [path.name for path in (tmp_path / "kept").iterdir()] == ["l04"]
+    rows = last(said)
+    assert rows[1].startswith("l04 cpu a device recorded 2 of 2 ")
+    assert rows[2].endswith(" ZeroDivisionError: division by zero")
+    assert any("more, code cell 1, line " in line for line in said)
