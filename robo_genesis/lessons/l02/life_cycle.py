@@ -39,34 +39,25 @@ def refusal(call: Callable[[], Any]) -> str | None:
     return None
 
 
-def calls(scene: Any, box: Any, camera: Any, morph: Any) -> dict[str, Callable[[], Any]]:
-    """Return the calls to try, by name; `build` is the last, since it changes the side.
+def try_both_sides(scene: Any, box: Any, camera: Any, morph: Any) -> Attempts:
+    """Try every call before `build` and after it.
 
     Args:
-        scene: a scene that the calls may spoil.
+        scene: a scene that is not built yet; the calls spoil it.
         box: one of its entities.
         camera: one of its cameras, None where rendering is off; then rendering is not tried.
         morph: the morph of another entity.
     """
-    render = {RENDER: camera.render} if camera is not None else {}
-    return {
+    tried = {
         "scene.add_entity": lambda: scene.add_entity(morph),
         "scene.add_camera": lambda: scene.add_camera(GUI=False),
         "scene.step": scene.step,
         "scene.reset": scene.reset,
         "box.get_pos": box.get_pos,
         "box.set_pos": lambda: box.set_pos((0.0, 0.0, 0.5)),
-        **render,
-        "scene.build": scene.build,
+        **({} if camera is None else {RENDER: camera.render}),
+        "scene.build": scene.build,  # the last, because it changes the side
     }
-
-
-def try_both_sides(scene: Any, box: Any, camera: Any, morph: Any) -> Attempts:
-    """Try every call before `build` and after it.
-
-    The arguments are those of `calls`; the scene is not built yet, and is spoilt afterwards.
-    """
-    tried = calls(scene, box, camera, morph)
     return {(name, side): refusal(tried[name]) for side in (BEFORE, AFTER) for name in tried}
 
 

@@ -46,41 +46,41 @@ def late_entity(scene: Any, morph: Any) -> Failure:
     )
 
 
-def heights(scene: Any, bodies: dict[str, Any], steps: int) -> dict[str, FloatArray]:
-    """Reset, step, and return the height of each body's first link at every state, (steps+1,)."""
+def heights(
+    scene: Any, case: Drop, steps: int, **bodies: Any
+) -> tuple[FloatArray, dict[str, FloatArray]]:
+    """Reset and step; return times [s] and each body's height [m] at every state, (steps+1,)."""
     scene.reset()
     found = {name: [read_body(body)[0][0, 2]] for name, body in bodies.items()}
     for _ in range(steps):
         scene.step()
         for name, body in bodies.items():
             found[name].append(read_body(body)[0][0, 2])
-    return {name: np.array(values, dtype=np.float64) for name, values in found.items()}
+    t = np.arange(steps + 1) * case.dt
+    return t, {name: np.array(values, dtype=np.float64) for name, values in found.items()}
 
 
 def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
     """Drop a free box and a box whose morph has `fixed=True`."""
-    found = heights(scene, {"fixed": fixed, "free": free}, case.steps)
-    t = np.arange(case.steps + 1) * case.dt
-    moved = {name: float(z[0] - z[-1]) for name, z in found.items()}
+    t, z = heights(scene, case, case.steps, fixed=fixed, free=free)
+    moved, fell = (float(z[name][0] - z[name][-1]) for name in ("fixed", "free"))
+    expected = float(continuous_drop(t[-1], case.gravity))
+    dofs = fixed.n_dofs, free.n_dofs
     return Failure(
         "fixed_body",
-        shown=(
-            moved["fixed"] == 0
-            and moved["free"] > 0.9 * float(continuous_drop(t[-1], case.gravity))
-            and (fixed.n_dofs, free.n_dofs) == (0, 6)
-        ),
+        shown=moved == 0 and fell > 0.9 * expected and dofs == (0, 6),
         evidence=(
-            f"In {t[-1]:g} s this box fell {moved['fixed']:.4f} m and the other one "
-            f"{moved['free']:.4f} m. They have {fixed.n_dofs} and {free.n_dofs} DOFs."
+            f"In {t[-1]:g} s this box fell {moved:.4f} m and the other one {fell:.4f} m. They have "
+            f"{dofs[0]} and {dofs[1]} DOFs."
         ),
-        curves={"this box": (t, found["fixed"]), "the other one": (t, found["free"])},
+        curves={"this box": (t, z["fixed"]), "the other one": (t, z["free"])},
     )
 
 
 def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
     """Place a box 'on' the ground with a height of its centre of zero."""
-    z = heights(scene, {"sunken": sunken}, case.steps)["sunken"]
-    t = np.arange(case.steps + 1) * case.dt
+    t, found = heights(scene, case, case.steps, sunken=sunken)
+    z = found["sunken"]
     speed, below = float(np.diff(z).max() / case.dt), 1000 * (case.size / 2 - float(z[0]))
     return Failure(
         "centre_for_underside",
@@ -96,19 +96,18 @@ def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
 
 def no_collision(scene: Any, ghost: Any, solid: Any, case: Drop) -> Failure:
     """Drop a box whose morph has `collision=False`, beside an ordinary one."""
-    found = heights(scene, {"ghost": ghost, "solid": solid}, FALL_STEPS)
-    t = np.arange(FALL_STEPS + 1) * case.dt
-    end = {name: float(z[-1]) for name, z in found.items()}
+    t, z = heights(scene, case, FALL_STEPS, ghost=ghost, solid=solid)
+    fallen, landed = (float(z[name][-1]) for name in ("ghost", "solid"))
     return Failure(
         "no_collision",
-        shown=end["ghost"] < -case.size and 0 < end["solid"] < case.size,
+        shown=fallen < -case.size and 0 < landed < case.size,
         evidence=(
-            f"After {t[-1]:g} s the centre of this box is at {end['ghost']:.3f} m and that of the "
-            f"other one at {end['solid']:.3f} m. The lists `vgeoms` have {len(ghost.vgeoms)} and "
+            f"After {t[-1]:g} s the centre of this box is at {fallen:.3f} m and that of the other "
+            f"one at {landed:.3f} m. The lists `vgeoms` have {len(ghost.vgeoms)} and "
             f"{len(solid.vgeoms)} entries, the lists `geoms` {len(ghost.geoms)} and "
             f"{len(solid.geoms)}."
         ),
-        curves={"this box": (t, found["ghost"]), "the other one": (t, found["solid"])},
+        curves={"this box": (t, z["ghost"]), "the other one": (t, z["solid"])},
     )
 
 

@@ -5,13 +5,7 @@ from dataclasses import replace
 from robo_genesis.core.declaration import Filmed, Lesson, Moving
 from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.core.trace import BodyTrace
-from robo_genesis.lessons.l02 import (
-    checks,
-    life_cycle,
-    spec,
-    study,
-    trials,
-)
+from robo_genesis.lessons.l02 import checks, life_cycle, spec, study, trials
 from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
 
 MEASURES = False

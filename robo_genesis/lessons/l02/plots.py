@@ -8,7 +8,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.free_fall import continuous_drop
 from robo_genesis.core.plotting import look
 from robo_genesis.lessons.l02 import spec, trials
-from robo_genesis.lessons.l02.study import step_study
+from robo_genesis.lessons.l02.study import by_step, expected_gap
 from robo_genesis.sim.bodies.falls import fallen, predicted
 
 MEASURES = False
@@ -104,12 +104,13 @@ def three_drops(run: Experiment) -> Figure:
 
 def gaps(run: Experiment) -> Figure:
     """Draw the distance ahead of continuous free fall at the end of the run by solver step."""
-    study = step_study(run.metrics, run.cases)
     figure, ax = plotting.axes(3.4)
-    h = 1000 * study.h
-    ax.loglog(h, 1000 * study.expected, label="g h t / 2", **look("target"))
-    ax.loglog(h, 1000 * study.gaps, "o", markersize=6, label="measured",
-              color=look("baseline")["color"])  # fmt: skip
+    names = by_step(run)
+    h = [1000 * run.cases[name].h for name in names]
+    expected = [1000 * expected_gap(run, name) for name in names]
+    measured = [1000 * run.metrics[name].continuous_gap for name in names]
+    ax.loglog(h, expected, label="g h t / 2", **look("target"))
+    ax.loglog(h, measured, "o", markersize=6, label="measured", color=look("baseline")["color"])
     ax.set(xlabel="solver step h [ms]", ylabel="farther down at the end [mm]")
     ax.set_title("Difference at the end, by solver step", loc="left")
     ax.set_xticks(h, [f"{step:g}" for step in h])

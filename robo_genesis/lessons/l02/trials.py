@@ -37,12 +37,9 @@ def count_shapes(entities: Mapping[str, Any]) -> dict[str, int]:
     """Return the counts of the visual and collision geometry of entities, by name."""
     found: dict[str, int] = {}
     for name, entity in entities.items():
-        seen, felt = (
-            sum(len(geom.get_trimesh().faces) for geom in geoms)
-            for geoms in (entity.vgeoms, entity.geoms)
-        )
-        values = (seen, felt, len(entity.geoms))
-        found |= {f"{name}_{what}": n for what, n in zip(COUNTED, values, strict=True)}
+        for what, geoms in (("seen", entity.vgeoms), ("felt", entity.geoms)):
+            found[f"{name}_{what}"] = sum(len(geom.get_trimesh().faces) for geom in geoms)
+        found[f"{name}_pieces"] = len(entity.geoms)
     return found
 
 

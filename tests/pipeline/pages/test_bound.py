@@ -246,8 +246,8 @@ def test_a_call_that_the_build_cannot_repeat_is_refused(executed, folder, source
 
 def test_a_function_that_fails_on_the_bundle_is_refused(executed, folder):
     sources = list(SOURCES)
-    sources[2] = "page.show(lesson.text.speed_sentence)"  # takes no experiment
-    name = "robo_genesis.lessons.l02.text.speed_sentence"
+    sources[2] = "page.show(lesson.text.readable)"  # takes no experiment
+    name = "robo_genesis.lessons.l02.text.readable"
     output(executed, 2, 0).metadata["robo_genesis"]["function"] = name
     assert "it cannot be called on the bundle" in refusal(executed, folder, *sources)
 

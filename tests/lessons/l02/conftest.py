@@ -1,0 +1,31 @@
+"""A run of L02's lecture without the engine: drops that follow the stepped formula."""
+
+import pytest
+from lessons.body_runs import make_drop
+
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.lessons.l02 import LECTURE, life_cycle, spec, trials
+
+SHAPES = {"box": (12, 12, 1), "duck": (3534, 500, 1), "tray": (260, 344, 5), "hammer": (24, 24, 2)}
+
+
+@pytest.fixture(scope="session")
+def run(frames) -> Experiment:
+    """A run of the lecture that passes all checks."""
+    counts = life_cycle.expected(rendered=True)
+    shapes = {
+        f"{name}_{what}": n
+        for name, values in SHAPES.items()
+        for what, n in zip(trials.COUNTED, values, strict=True)
+    }
+    readings = {
+        "model": spec.EXPECTED_MODEL,
+        "body": {"mass": spec.BASELINE.mass},
+        life_cycle.GROUP: {name: int(accepted) for name, accepted in counts.items()},
+        trials.SHAPES: shapes,
+        trials.TRAYS: {trials.PIECES: 0.0308, trials.HULL: 0.1749},
+        trials.FURTHER: trials.expected_falls(),
+    }
+    traces = {name: make_drop(case) for name, case in (spec.CASES | spec.SUBSTEP_CASES).items()}
+    pictures = frames | {spec.TRAYS: frames["final"]}
+    return Experiment(LECTURE, traces, [spec.LINK], readings, pictures, True)

@@ -1,0 +1,27 @@
+"""Each function that a page leaves to the student has a stub, a short solution, and a test."""
+
+import re
+
+import pytest
+from lessons.exercise_cells import require_exercise
+
+from robo_genesis.core.project import BOOK
+from robo_genesis.pipeline.pages.book import find_pages
+
+STUBS = [
+    (page.lesson, stub[1], page.page)
+    for page in find_pages(BOOK)
+    for cell in page.notebook.cells
+    if "raise NotImplementedError" in cell.source
+    and (stub := re.match(r"def (\w+)\(", cell.source))
+]
+
+
+@pytest.mark.parametrize("stub", STUBS, ids=lambda stub: " ".join(stub))
+def test_the_student_writes_at_most_fifteen_lines_below_a_docstring(stub):
+    require_exercise(*stub)
+
+
+def test_each_lab_leaves_functions_to_write():
+    labs = {page.lesson for page in find_pages(BOOK) if page.page == "lab"}
+    assert labs == {lesson for lesson, _, page in STUBS if page == "lab"}
