@@ -11,9 +11,9 @@ import numpy as np
 
 from robo_genesis.core.mistakes import Failure, quoted, refused
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l05.run import END_EFFECTOR, ReachCase, ask, control_case
+from robo_genesis.lessons.l05.run import ReachCase, ask, control_case
 from robo_genesis.sim.arm import kinematics
-from robo_genesis.sim.arm.engine_kinematics import IkAnswer, link_poses_at
+from robo_genesis.sim.arm.engine_kinematics import END_EFFECTOR, IkAnswer, link_poses_at
 from robo_genesis.sim.arm.joint_control import reset, run_case, validate
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
 from robo_genesis.sim.camera import geometry as cameras

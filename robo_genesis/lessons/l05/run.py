@@ -8,7 +8,14 @@ import numpy as np
 from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import franka
-from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, solve_ik
+from robo_genesis.sim.arm.engine_kinematics import (
+    END_EFFECTOR,
+    MOVED,
+    IkAnswer,
+    IkSettings,
+    accepted_command,
+    solve_ik,
+)
 from robo_genesis.sim.arm.joint_control import (
     ControlCase,
     Controlled,
@@ -17,16 +24,8 @@ from robo_genesis.sim.arm.joint_control import (
     run_case,
 )
 from robo_genesis.sim.arm.joints import JointMap
-from robo_genesis.sim.arm.kinematics import ARM, accepted, distances
+from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
-
-END_EFFECTOR = "hand"
-MOVED = franka.JOINT_NAMES[:ARM]
-"""The joints that the solver may move."""
-
-
-class NotAccepted(ValueError):  # noqa: N818 - read aloud: not accepted
-    """The solver's answer is not finite or too far from the target; nothing was commanded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,19 +76,9 @@ def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:
     """Return the control case that commands an answer.
 
     Raises:
-        NotAccepted: the answer is not finite, or a residual is beyond its tolerance; the message
-            gives both residuals and both tolerances.
+        NotAccepted: the answer is not finite, or a residual is beyond its tolerance.
     """
-    limits = case.settings.tolerances
-    if not accepted(answer.q, answer.error, *limits):
-        apart, angle = distances(answer.error)
-        raise NotAccepted(
-            f"The residual is {apart:.3g} m and {angle:.3g} rad, accepted are {limits[0]:g} m and "
-            f"{limits[1]:g} rad with finite joint positions. Nothing is commanded: choose another "
-            "target, or another start of the solver."
-        )
-    q_target = answer.q.astype(np.float64)
-    q_target[ARM:] = case.q_start[ARM:]
+    q_target = accepted_command(answer, case.settings, case.q_start)
     if case.compensated:
         q_target[:ARM] += (mujoco_kinematics.gravity_effort(q_target) / case.kp)[:ARM]
     return case.commanding(q_target)

@@ -9,7 +9,7 @@ from robo_genesis.core.experiment import Experiment, Readings, counts
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec
-from robo_genesis.lessons.l05.run import END_EFFECTOR, SolveCase, ask
+from robo_genesis.lessons.l05.run import SolveCase, ask
 from robo_genesis.sim.arm import engine_kinematics as engine
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.joint_control import reset
@@ -38,8 +38,8 @@ def read(page: Any, scene: Any, robot: Any, joints: JointMap) -> None:
     first, second = (ask(robot, joints, spec.BASELINE) for _ in range(2))
     apart, angle = kinematics.distances(first.error)
     q = to_numpy(robot.get_dofs_position(joints.dofs_idx_local.tolist())).astype(np.float64)
-    rows = engine.jacobian(robot, joints, END_EFFECTOR)
-    differences = np.abs(rows - mujoco_kinematics.jacobian(q, END_EFFECTOR))
+    rows = engine.jacobian(robot, joints, engine.END_EFFECTOR)
+    differences = np.abs(rows - mujoco_kinematics.jacobian(q, engine.END_EFFECTOR))
     values = map(float, (apart, angle, differences.max()))
     page.readings[GROUP] = dict(zip(READINGS[GROUP].units, values, strict=True))
     differ = (first.q != second.q).sum() + (first.error != second.error).sum()

@@ -7,7 +7,7 @@ import numpy as np
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l06.run import World
+from robo_genesis.lessons.l06.run import Environment
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.kinematics import HAND, Pose, distance_and_angle, hand_pose, measured_hand
 
@@ -35,7 +35,7 @@ class WorldMetrics(CaseMetrics):
     )
 
 
-def world_metrics(trace: Trace, world: World) -> WorldMetrics:
+def world_metrics(trace: Trace, world: Environment) -> WorldMetrics:
     """Measure the run of one environment.
 
     Raises:

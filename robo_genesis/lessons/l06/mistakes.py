@@ -16,7 +16,7 @@ from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.metrics import measured_hand
-from robo_genesis.lessons.l06.run import World, ask, commands
+from robo_genesis.lessons.l06.run import Environment, ask, commands
 from robo_genesis.lessons.l06.throughput import Build, start
 from robo_genesis.sim.arm.batch import Batch
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
@@ -29,7 +29,7 @@ COMPILING = "Compiling"
 """How a line of the engine's log begins when `build` compiles kernels, or loads stored ones."""
 
 
-def begin(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World]) -> Batch:
+def begin(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment]) -> Batch:
     """Return a batch at the start of its worlds, commanded to stay there."""
     cases = [world.commanding(world.q_start) for world in worlds]
     batch = Batch(scene, robot, joints, cases)
@@ -44,7 +44,7 @@ def distances(trace: Trace, target: FloatArray) -> FloatArray:
 
 
 def one_value_each(
-    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World],
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment],
     *openings: Mapping[int, float],
 ) -> Failure:  # fmt: skip
     """Give one opening for each environment [m] to both fingers, for several lists of environments.
@@ -65,7 +65,7 @@ def one_value_each(
 
 
 def numbers_as_rows(
-    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World], envs: Sequence[int]
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment], envs: Sequence[int]
 ) -> Failure:
     """Ask for some environments, and take the row with the number of the first of them."""
     batch, first = begin(scene, robot, joints, worlds), envs[0]
@@ -83,7 +83,7 @@ def numbers_as_rows(
 
 
 def mean_of_rows(
-    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World], row: int, position: Any
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment], row: int, position: Any
 ) -> Failure:
     """Give one environment a target beyond its reach, and judge the mean over all environments."""
     worlds = [replace(world, settings=spec.ONE_START) for world in worlds]

@@ -8,24 +8,21 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.batch import Batch
-from robo_genesis.sim.arm.engine_kinematics import IkAnswer, IkSettings, solve_ik
+from robo_genesis.sim.arm.engine_kinematics import (
+    END_EFFECTOR,
+    MOVED,
+    IkAnswer,
+    IkSettings,
+    accepted_command,
+    solve_ik,
+)
 from robo_genesis.sim.arm.joint_control import Controlled
 from robo_genesis.sim.arm.joints import JointMap
-from robo_genesis.sim.arm.kinematics import ARM, accepted
-
-END_EFFECTOR = "hand"
-MOVED = franka.JOINT_NAMES[:ARM]
-"""The joints that the solver may move."""
-
-
-class NotAccepted(ValueError):  # noqa: N818 - read aloud: not accepted
-    """The answer of at least one row is refused; nothing was commanded."""
 
 
 @dataclass(frozen=True, slots=True)
-class World(Controlled):
+class Environment(Controlled):
     """One environment: the targets of its hand in their order, its controlled arm, and its load.
 
     `positions` (p, 3) [m] and `quat` (4,) are in the world. A second target is commanded after
@@ -40,7 +37,7 @@ class World(Controlled):
 
 
 def ask(
-    robot: Any, joints: JointMap, worlds: Sequence[World], number: int = 0,
+    robot: Any, joints: JointMap, worlds: Sequence[Environment], number: int = 0,
     envs: Sequence[int] | None = None,
 ) -> IkAnswer:  # fmt: skip
     """Ask in one call for a target of each world; row k of the answer belongs to `worlds[k]`.
@@ -62,32 +59,22 @@ def ask(
     return IkAnswer(found.q.reshape(len(worlds), -1), found.error.reshape(len(worlds), -1))
 
 
-def commands(worlds: Sequence[World], answer: IkAnswer) -> FloatArray:
+def commands(worlds: Sequence[Environment], answer: IkAnswer) -> FloatArray:
     """Return the joint positions (k, d) that accepted answers command; the fingers stay.
 
     Raises:
-        NotAccepted: an answer is not finite, or a residual is beyond its tolerance; the message
-            names the rows.
+        NotAccepted: an answer is not finite, or a residual is beyond its tolerance.
     """
-    limits = worlds[0].settings.tolerances
-    refused = np.flatnonzero(~accepted(answer.q, answer.error, *limits))
-    if refused.size:
-        raise NotAccepted(
-            f"Rows {refused.tolist()} are refused: their residuals are beyond {limits[0]:g} m or "
-            f"{limits[1]:g} rad, or their joint positions are not finite. Command the other rows "
-            "alone, or choose other targets."
-        )
-    q = answer.q.astype(np.float64)
-    q[:, ARM:] = [world.q_start[ARM:] for world in worlds]
-    return q
+    starts = np.stack([world.q_start for world in worlds])
+    return accepted_command(answer, worlds[0].settings, starts)
 
 
-def start(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World]) -> Batch:
+def start(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment]) -> Batch:
     """Reset every environment to the start of its world, with its gains."""
     return Batch(scene, robot, joints, [world.commanding(world.q_start) for world in worlds])
 
 
-def reach(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World]) -> list[Trace]:
+def reach(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment]) -> list[Trace]:
     """Command the first target of all worlds, later the second target of those that have one.
 
     Returns:
@@ -106,7 +93,7 @@ def reach(scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World]) -> 
 
 
 def reset_some(
-    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[World],
+    scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment],
     envs: Sequence[int], after: int,
 ) -> list[Trace]:  # fmt: skip
     """Reset some environments while all are moving, and command their first target again.

@@ -9,7 +9,7 @@ from typing import Any
 
 from robo_genesis.core.experiment import inputs
 from robo_genesis.core.scene import CAMERA, read_only
-from robo_genesis.lessons.l06.run import World
+from robo_genesis.lessons.l06.run import Environment
 from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.engine_kinematics import IkSettings
 
@@ -52,7 +52,7 @@ BEYOND_REACH = read_only((2.0, 0.0, 2.0))
 MIXED = read_only([TARGETS[0], TARGETS[1], BEYOND_REACH, TARGETS[3]])
 """Targets of which one is refused [m]."""
 
-FIRST = World(TARGETS[:1], DOWN, IK, SWITCH, steps=STEPS)
+FIRST = Environment(TARGETS[:1], DOWN, IK, SWITCH, steps=STEPS)
 ENVS = tuple(range(len(TARGETS)))
 """Numbers of the environments."""
 

@@ -9,9 +9,10 @@ import numpy as np
 from robo_genesis.core.experiment import Readings, counts
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import spec
-from robo_genesis.lessons.l06.run import END_EFFECTOR, ask, reach, reset_some, start
+from robo_genesis.lessons.l06.run import ask, reach, reset_some, start
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.batch import set_link_mass
+from robo_genesis.sim.arm.engine_kinematics import END_EFFECTOR
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joints import resolve_joints
 

@@ -1,17 +1,23 @@
-"""Tables and sentences of L06's lecture and lab, each a function of the experiment."""
+"""Tables of L06, and the sentences that the lab generates, each a function of the experiment.
 
+Those about throughput are correct for every outcome, because elapsed times differ in each run.
+"""
+
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.text import bullets, decimal, listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import spec, study
+from robo_genesis.lessons.l06.throughput import FITTED, GROUP
 from robo_genesis.sim.arm.kinematics import ARM
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
+from robo_genesis.sim.throughput import Model, fit
 
 MEASURES = False
 
@@ -82,36 +88,30 @@ def alone_table(run: Experiment) -> str:
     return tables.number_table("run", heads, rows)
 
 
+def numbers(names: Iterable[str]) -> str:
+    """Return the numbers of environments at the end of the names of runs as a list in prose."""
+    return listed([name[-1] for name in names])
+
+
 CLAIMED = {
-    "permuted": "the worlds in the order {order}",
-    "beside": "environments {kept}, while {reset} are reset and commanded after {after} s",
-    "again": "environments {reset} from their reset on, against their first start",
+    "permuted": f"the worlds in the order {', '.join(map(str, spec.ORDER))}",
+    "beside": f"environments {numbers(spec.BESIDE)}, while {numbers(spec.AGAIN)} are reset and "
+    f"commanded after {spec.RESET_AFTER * spec.FIRST.dt:g} s",
+    "again": f"environments {numbers(spec.AGAIN)} from their reset on, against their first start",
     "plain": "the plain robot beside other gains and loads, against environment 0",
 }
 
 
 def equal_table(run: Experiment) -> str:
     """Return how many entries differ where runs must be equal to the last bit."""
-    words = {
-        "order": ", ".join(map(str, spec.ORDER)),
-        "kept": listed([name[-1] for name in spec.BESIDE]),
-        "reset": listed([name[-1] for name in spec.AGAIN]),
-        "after": f"{spec.RESET_AFTER * spec.FIRST.dt:g}",
-    }
-    rows = []
+    rows = {}
     for claim, names in study.pairs().items():
-        counted = [
-            study.entries_that_differ(run.traces[one], run.traces[other]) for one, other in names
-        ]
+        pairs = [(run.traces[one], run.traces[other]) for one, other in names]
+        counted = [study.entries_that_differ(*pair) for pair in pairs]
         differ, compared = (sum(column) for column in zip(*counted, strict=True))
-        rows.append(
-            {
-                "what changed": CLAIMED[claim].format(**words),
-                "numbers compared": f"{compared:,}".replace(",", " "),
-                "that differ": f"{differ}",
-            }
-        )
-    return tables.markdown(rows)
+        rows[CLAIMED[claim]] = f"{compared:,}".replace(",", " "), f"{differ}"
+    heads = {"numbers compared": 0, "that differ": 0}
+    return tables.number_table("what changed", heads, rows)
 
 
 def variant_table(run: Experiment) -> str:
@@ -130,26 +130,129 @@ def variant_table(run: Experiment) -> str:
     return tables.number_table("robot", heads, rows)
 
 
+MOVED = (
+    "After the second command, the named environments moved by {named} mm or more, the others did "
+    "not move.",
+    "After the second command, the named environments moved by {named} mm or more, the others by "
+    "{others:.2g} µm or less.",
+)
+"""What the lab says if the other environments kept their place, and if they did not."""
+
+
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the lab's runs."""
     m = run.metrics
-    accepted = [name[-1] for name, is_ in run.readings["mixed_accepted"].items() if is_]
-    moved = {k: m[f"env_{k}"].moved_later for k in spec.ENVS}
+    accepted = numbers(name for name, is_ in run.readings["mixed_accepted"].items() if is_)
+    named, others = (
+        [m[f"env_{k}"].moved_later for k in spec.ENVS if (k in spec.LATER) == is_]
+        for is_ in (True, False)
+    )
     apart = max(
         study.largest_differences(run.traces[f"env_{k}"], run.traces[f"alone_{k}"], slice(ARM))["q"]
         for k in spec.ENVS
     )
-    named, others = ([moved[k] for k in spec.ENVS if (k in spec.LATER) == is_] for is_ in (1, 0))
-    still = max(others)
-    lines = [
-        f"One of the four targets is beyond reach. Rows {listed(accepted)} are accepted.",
-        f"After the second command, the named environments moved by {mm(min(named))} mm or more, "
-        + (f"the others by {1e6 * still:.2g} µm or less." if still else "the others did not move."),
+    return bullets([
+        f"One of the four targets is beyond reach. Rows {accepted} are accepted.",
+        MOVED[max(others) > 0].format(named=mm(min(named)), others=1e6 * max(others)),
         "Positions of arm joints in a row and in the same run alone differ by up to "
         f"{1e6 * apart:.2f} µrad.",
         *(
             f"The hand stops {mm(m[name].final_distance)} mm from its target ({spec.LABELS[name]})."
             for name in spec.VARIANTS
         ),
-    ]
-    return bullets(lines)
+    ])  # fmt: skip
+
+
+def three(value: float) -> str:
+    """Return a number with three significant digits, with commas from 1000 on."""
+    rounded = float(f"{value:.3g}")
+    text = f"{rounded:,.0f}" if abs(rounded) >= 100 else f"{rounded:g}"
+    return text.replace("-", "−")
+
+
+def ms(seconds: float) -> str:
+    """Return a time in milliseconds."""
+    return three(1000 * seconds)
+
+
+def sizes(run: Experiment) -> list[int]:
+    """Return the numbers of environments that were timed."""
+    return [int(name[6:]) for name in run.readings[GROUP] if name.startswith("build_")]
+
+
+def steps(run: Experiment) -> dict[int, float]:
+    """Return the time of a step by the number of environments [s]."""
+    return {size: run.readings[GROUP][f"step_{size}"] for size in sizes(run)}
+
+
+def throughput_table(run: Experiment) -> str:
+    """Return time and throughput of each number of environments; the largest one is bold."""
+    found, rows = steps(run), {}
+    first, best = next(iter(found.values())), max(found, key=lambda size: size / found[size])
+    for size, step in found.items():
+        rate = three(size / step)
+        rows[f"{size}"] = ms(step), three(step / first), f"**{rate}**" if size == best else rate
+    heads = ("one step [ms]", "times the first", "steps per second, all")
+    return tables.number_table("environments", dict.fromkeys(heads, 0), rows)
+
+
+def throughput_details(run: Experiment) -> str:
+    """Return what else was measured with each number of environments."""
+    found, rows = run.readings[GROUP], {}
+    for size, step in steps(run).items():
+        of = [found[f"{name}_{size}"] for name in ("fastest", "slowest", "build", "memory")]
+        rows[f"{size}"] = f"{ms(of[0])} to {ms(of[1])}", three(DT / step), *of[2:]
+    heads = ("fastest to slowest [ms]", "simulated s per s, each", "build [s]", "memory [MiB]")
+    return tables.number_table("environments", dict(zip(heads, (0, 0, 1, 0), strict=True)), rows)
+
+
+def fitted(run: Experiment) -> Model:
+    """Return the model of the time of a step, fitted on the sizes of `FITTED`."""
+    return fit(FITTED, [steps(run)[size] for size in FITTED])
+
+
+def model_table(run: Experiment) -> str:
+    """Return measured time and model of each number of environments."""
+    model, rows = fitted(run), {}
+    for size, step in steps(run).items():
+        expected, name = float(model.step_time(size)), f"{size}{', fitted' * (size in FITTED)}"
+        rows[name] = ms(step), ms(expected), step / expected
+    heads = {"measured [ms]": 0, "model [ms]": 0, "ratio": 2}
+    return tables.number_table("B", heads, rows)
+
+
+def constants_table(run: Experiment) -> str:
+    """Return both constants of the model, and what follows from them."""
+    model = fitted(run)
+    rows = {
+        "*a*, the fixed part of a step": f"{ms(model.fixed)} ms",
+        "*b*, the part of each environment": f"{three(1e6 * model.each)} µs",
+        "1/*b*, the limit of the throughput": f"{three(1 / model.each)} steps per second",
+        "*a*/*b*, with which the throughput is half of it": (
+            f"{three(model.fixed / model.each)} environments"
+        ),
+    }
+    return tables.number_table("constant", {"fit": 0}, {name: (of,) for name, of in rows.items()})
+
+
+def content_table(run: Experiment) -> str:
+    """Return the time of a step with a sphere and with the robot."""
+    rows = {}
+    for size in (1, 256):
+        sphere, robot = (run.readings[GROUP][f"step_{of}{size}"] for of in ("sphere_", ""))
+        rows[f"{size}"] = ms(sphere), ms(robot), three(robot / sphere)
+    return tables.number_table("B", dict.fromkeys(("sphere [ms]", "robot [ms]", "ratio"), 0), rows)
+
+
+def cache_table(run: Experiment) -> str:
+    """Compare one scene of 1024 environments with four of 256."""
+    found = run.readings[GROUP]
+    one, four = found["step_1024"], found["step_four_scenes"]
+    grown = (found["memory_1024"] - found["memory_256"]) / (1024 - 256)
+    rows = {
+        "a step of one scene of 1024": f"{ms(one)} ms",
+        "a step of four scenes of 256, in turn": f"{ms(four)} ms",
+        "the first divided by the second": three(one / four),
+        "memory of each environment": f"{three(grown)} MiB",
+    }
+    return tables.number_table("what", {"measured": 0}, {name: (of,) for name, of in rows.items()})

@@ -7,11 +7,21 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joints import JointMap, to_numpy
+from robo_genesis.sim.arm.kinematics import ARM, accepted, distances
+
+END_EFFECTOR = "hand"
+MOVED = JOINT_NAMES[:ARM]
+"""The joints of the Franka that the solver may move."""
 
 
 class KinematicsError(ValueError):
     """A query has the wrong shape or a value that is not finite; the message says which."""
+
+
+class NotAccepted(ValueError):  # noqa: N818 - read aloud: not accepted
+    """An answer is not finite or too far from its target; nothing was commanded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +107,33 @@ def solve_ik(
         **chosen,
     )
     return IkAnswer(to_numpy(q)[..., joints.qs_idx_local], to_numpy(error))
+
+
+def accepted_command(answer: IkAnswer, settings: IkSettings, q_start: FloatArray) -> FloatArray:
+    """Return the joint positions (…, d) that accepted answers command; the fingers stay.
+
+    Args:
+        answer: of one question, or with a row for each.
+        settings: of the solver; both residuals must be within its tolerances.
+        q_start: (…, d) joint positions with those of the fingers [rad or m].
+
+    Raises:
+        NotAccepted: an answer is not finite, or a residual is beyond its tolerance; the message
+            names the rows, and gives the largest residuals.
+    """
+    refused = ~np.asarray(accepted(answer.q, answer.error, *settings.tolerances))
+    if refused.any():
+        rows = np.flatnonzero(refused).tolist()
+        apart, angle = (np.max(of) for of in distances(answer.error[refused]))
+        raise NotAccepted(
+            f"{f'Rows {rows} are' if refused.ndim else 'The answer is'} refused. The residual is "
+            f"{apart:.3g} m and {angle:.3g} rad, accepted are {settings.position_tolerance:g} m "
+            f"and {settings.rotation_tolerance:g} rad with finite joint positions. Nothing is "
+            "commanded: choose another target, or another start of the solver."
+        )
+    q = answer.q.astype(np.float64)
+    q[..., ARM:] = q_start[..., ARM:]
+    return q
 
 
 def link_poses_at(

@@ -7,9 +7,9 @@ import pytest
 
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.lessons.l05.run import NotAccepted, reach, solve_all
+from robo_genesis.lessons.l05.run import reach, solve_all
 from robo_genesis.sim.arm import kinematics
-from robo_genesis.sim.arm.engine_kinematics import link_poses_at
+from robo_genesis.sim.arm.engine_kinematics import NotAccepted, link_poses_at
 
 pytestmark = pytest.mark.engine
 

@@ -9,7 +9,7 @@ from robot_runs import driven
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import LECTURE, checks, spec, study
-from robo_genesis.lessons.l06.run import World
+from robo_genesis.lessons.l06.run import Environment
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.mujoco.kinematics import bare_robot, gravity_effort
@@ -18,7 +18,7 @@ LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
 ROUNDING = np.float32(1.2e-7)
 
 
-def command(world: World, number: int) -> np.ndarray:
+def command(world: Environment, number: int) -> np.ndarray:
     """Return joint positions (9,) for a target as a solver like the engine's answers."""
     target = kinematics.Pose(world.positions[number], world.quat)
     joint = bare_robot()[0].joint
@@ -27,7 +27,7 @@ def command(world: World, number: int) -> np.ndarray:
     return np.float32([*q, *world.q_start[7:]]).astype(float)
 
 
-def run_of(world: World) -> Trace:
+def run_of(world: Environment) -> Trace:
     """Return the run of one world."""
     targets = np.repeat(command(world, 0)[None], world.steps, axis=0)
     targets[world.switch :] = command(world, -1)

@@ -9,8 +9,9 @@ import pytest
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l06 import LECTURE, checks, mistakes, spec, study
-from robo_genesis.lessons.l06.run import NotAccepted, ask, reach
+from robo_genesis.lessons.l06.run import ask, reach
 from robo_genesis.sim.arm.batch import Batch, run_batch, set_link_mass
+from robo_genesis.sim.arm.engine_kinematics import NotAccepted
 from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import CaseError, describe
 from robo_genesis.sim.arm.joints import resolve_joints, to_numpy
