@@ -1,6 +1,7 @@
-"""Tables and sentences of L01, each a function of the experiment."""
+"""Tables of L01, and the sentence that the lab generates, each a function of the experiment."""
 
 import textwrap
+from collections.abc import Sequence
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
@@ -56,29 +57,16 @@ def doctor_lines(steps: list[dict[str, str]]) -> str:
 
 
 def start_table(run: Experiment) -> str:
-    """Return the times of both starts, part by part [s]."""
+    """Return the times of both starts, part by part [s], and how they compare."""
     found = run.readings[machine.TIMES]
-    rows = {
+    rows: dict[str, Sequence[float]] = {
         words: [found[f"{start}_{part}"] for start in machine.STARTS]
         for part, words in PARTS.items()
     }
-    rows["together"] = [sum(of) for of in zip(*rows.values(), strict=True)]
-    return tables.number_table("part", {f"{start} start [s]": 3 for start in machine.STARTS}, rows)
-
-
-def start_sentence(run: Experiment) -> str:
-    """Say by which factor the second start is faster."""
-    found = run.readings[machine.TIMES]
-    first, second = (sum(found[f"{s}_{part}"] for part in PARTS) for s in machine.STARTS)
-    if second < first:
-        return (
-            f"The first start took {first:.1f} s and the second {second:.1f} s: the first took "
-            f"{first / second:.1f} times as long."
-        )
-    return (
-        f"In this run the second start took {second:.1f} s and the first {first:.1f} s, so the "
-        "kept kernels saved nothing. Another program may have slowed it down."
-    )
+    first, second = (sum(of) for of in zip(*rows.values(), strict=True))
+    ratio = {"first divided by second": (f"{first / second:.1f}", "")}
+    heads = {f"{start} start [s]": 3 for start in machine.STARTS}
+    return tables.number_table("part", heads, {**rows, "together": (first, second), **ratio})
 
 
 def metric_table(run: Experiment) -> str:
@@ -86,17 +74,20 @@ def metric_table(run: Experiment) -> str:
     return tables.six_digits(run.metrics)
 
 
+CONCLUSION = {
+    True: "After {steps} outer steps the sphere's centre is at {height:.6f} m. No height differs "
+    "from the computed one by more than {error:.2g} µm, which is the rounding of float32 numbers: "
+    "the engine follows the stepping rule.",
+    False: "After {steps} outer steps the sphere's centre is at {height:.6f} m. A height differs "
+    "from the computed one by {error:.2g} µm, which is more than rounding explains. Check version, "
+    "gravity and step.",
+}
+"""What the lab says, by whether the measured heights are the computed ones."""
+
+
 def conclusion(run: Experiment) -> str:
     """Compare the measured height with the computed one."""
-    found, case = run.metrics["baseline"], run.cases["baseline"]
-    agrees = found.formula_error <= spec.FORMULA_TOLERANCE
-    return (
-        f"After {case.steps} outer steps the sphere's centre is at {found.final_height:.6f} m. "
-        f"The largest difference from the computed height over all states is "
-        f"{1e6 * found.formula_error:.2g} µm. "
-        + (
-            "That is the rounding of float32 numbers: the engine follows the stepping rule."
-            if agrees
-            else "That is more than rounding explains. Check version, gravity and step."
-        )
-    )
+    found = run.metrics["baseline"]
+    text = CONCLUSION[found.formula_error <= spec.FORMULA_TOLERANCE]
+    values = {"height": found.final_height, "error": 1e6 * found.formula_error}
+    return text.format(steps=run.cases["baseline"].steps, **values)

@@ -10,7 +10,7 @@ from robo_genesis.core.experiment import Experiment, Readings, counts
 from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import spec
-from robo_genesis.sim.end_state import usable_frame
+from robo_genesis.sim.common_checks import usable_frame
 
 SHAPES, TRAYS, FURTHER = "shapes", "trays", "further"
 """Groups of a bundle's metrics: counts of geometry, heights of balls, distances fallen."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.lessons.l05.solutions_text import QUANTITIES, records
+from robo_genesis.lessons.l05.text import QUANTITIES, records
 from robo_genesis.sim.camera.geometry import other_axes
 from robo_genesis.sim.camera.record import DEPTH_UNIT, SEGMENTS, view_of
 

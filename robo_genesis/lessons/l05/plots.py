@@ -9,7 +9,7 @@ from robo_genesis.core.palette import PARTS
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.checks import marker
-from robo_genesis.lessons.l05.solutions_text import CRITERIA, chosen
+from robo_genesis.lessons.l05.text import CRITERIA, chosen
 from robo_genesis.sim.arm.franka import LINK_PARENTS
 from robo_genesis.sim.arm.kinematics import ARM, HAND, link_poses
 from robo_genesis.sim.camera import geometry as cameras

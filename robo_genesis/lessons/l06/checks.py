@@ -9,11 +9,10 @@ from robo_genesis.core.checks import Finding, above, at_most, equal, model_count
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study, throughput
 from robo_genesis.lessons.l06.laws import laws_of_motion
-from robo_genesis.sim import end_state
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.kinematics import ARM, Pose
-from robo_genesis.sim.common_checks import stamps
+from robo_genesis.sim.common_checks import both_ends, stamps
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 
@@ -116,7 +115,7 @@ def own_gains_and_mass(run: Experiment) -> Iterator[Finding]:
 
 def posture(run: Experiment) -> Iterator[Finding]:
     """Two different camera frames, or a schematic whose links moved, show the end state."""
-    return end_state.findings(run.rendered, run.frames, run.traces["env_0"].link_pos)
+    return both_ends(run.rendered, run.frames, run.traces["env_0"].link_pos)
 
 
 def equal_work(run: Experiment) -> Iterator[Finding]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from robo_genesis.lessons.l05 import explorer, plots, solutions_text, spec, study
+from robo_genesis.lessons.l05 import explorer, plots, spec, study, text
 
 
 def test_each_target_of_a_plane_is_one_cell_and_upwards_is_up(solved):
@@ -30,9 +30,9 @@ def test_the_map_of_solutions_has_the_accepted_answers_along_their_curves(solved
 
 
 def test_each_criterion_chooses_the_best_accepted_answer(solved):
-    found, chosen = study.many_answers(solved), solutions_text.chosen(solved)
+    found, chosen = study.many_answers(solved), text.chosen(solved)
     assert len(set(chosen.values())) > 1
-    for name, (key, best) in solutions_text.CRITERIA.items():
+    for name, (key, best) in text.CRITERIA.items():
         assert found[key][chosen[name]] == best(found[key][found["accepted"]])
     squares = [ax.lines[-1].get_xydata() for ax in plots.solutions(solved).axes[1:]]
     joint1 = [solved.traces["many_starts"].q[1 + k, 0] for k in chosen.values()]
