@@ -47,7 +47,7 @@ class Level:
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class ReplayView:
     """The 3D view of runs.
 
     `thing` is the name of what moves: "robot". `alt` describes the view. `credit` names the authors
@@ -76,7 +76,7 @@ class Runs:
     channels: Sequence[Channel]
     levels: Sequence[Level]
     moves: Mapping[str, str]
-    view: View
+    view: ReplayView
     alt: str
     caption: str
 

@@ -6,7 +6,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, Protocol
 
-from robo_genesis.core.channels import View
+from robo_genesis.core.channels import ReplayView
 from robo_genesis.core.checks import claim_of
 from robo_genesis.core.comparison import Relation
 from robo_genesis.core.experiment import MeasuringPage
@@ -68,7 +68,7 @@ class Compared(Drawn):
 
     joint: str
     band: float
-    view: View
+    view: ReplayView
     alt: str
     caption: str
     quality: str

@@ -16,7 +16,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import tables
-from robo_genesis.core.channels import View
+from robo_genesis.core.channels import ReplayView
 from robo_genesis.core.declaration import Compared
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
@@ -70,7 +70,7 @@ class PostureMapDirective(SphinxDirective):
 
 def posture_block(
     directive: SphinxDirective, key: str, which: str, folder: Path, experiment: Experiment,
-    maps: Sequence[Mapping[str, Any]], shape: Path, view: View,
+    maps: Sequence[Mapping[str, Any]], shape: Path, view: ReplayView,
 ) -> nodes.Node:  # fmt: skip
     """Return maps with one picture in 3D, and a table of each.
 
@@ -132,7 +132,11 @@ def with_target(trace: Trace, targets: FloatArray) -> Trace:
 
 
 def model_of(
-    shape: Path, links: Sequence[str], traces: Mapping[str, Trace], view: View, camera: "Camera"
+    shape: Path,
+    links: Sequence[str],
+    traces: Mapping[str, Trace],
+    view: ReplayView,
+    camera: "Camera",
 ) -> bytes:
     """Return the model of all answers, one animation a map, with the cross and a floor."""
     import trimesh  # these load slowly
@@ -150,7 +154,7 @@ def model_of(
 
 def opening(
     name: str, maps: Sequence[Mapping[str, Any]], camera: "Camera", files: controls.Files,
-    view: View,
+    view: ReplayView,
 ) -> str:  # fmt: skip
     """Return the start of the maps as HTML, with what `_static/posture-map.js` needs to know."""
     shown = ("run", "caption", "axes", "rows", "columns")

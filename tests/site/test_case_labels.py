@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from robo_genesis.core import palette
-from robo_genesis.core.channels import Channel, Level, Runs, View
+from robo_genesis.core.channels import Channel, Level, ReplayView, Runs
 from robo_genesis.site.case_labels import MARKS, label, labelled
 
 CASES = ("dt10_sub1", "baseline")
@@ -22,7 +22,7 @@ def runs() -> Runs:
         channels=(Channel("height", "z", "m", 4, by_case),),
         levels=(Level("target", "height", next(iter(palette.MARKS)), "", by_case, by_case),),
         moves={case: f"**{case}**: the cube falls." for case in CASES},
-        view=View("cube", "The cube."),
+        view=ReplayView("cube", "The cube."),
         alt="",
         caption="",
     )

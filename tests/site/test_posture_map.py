@@ -14,7 +14,7 @@ from test_body_replay import HEIGHT, falling
 from watching import errors, violations
 from without_sphinx import Panel, page_of
 
-from robo_genesis.core.channels import View
+from robo_genesis.core.channels import ReplayView
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim import visual_shape
 from robo_genesis.site import posture_map
@@ -58,7 +58,7 @@ def block(folder, tmp_path) -> nodes.Node:
     return posture_map.posture_block(
         Panel(tmp_path / "book"), KEY, "reach", folder,
         SimpleNamespace(traces=traces, links=["box"]), maps,
-        tmp_path / visual_shape.FILE, View("box", "A box."),
+        tmp_path / visual_shape.FILE, ReplayView("box", "A box."),
     )  # fmt: skip
 
 

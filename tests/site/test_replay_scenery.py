@@ -8,7 +8,7 @@ import trimesh
 from falling import falling
 from trimesh.transformations import quaternion_from_matrix, rotation_matrix, translation_matrix
 
-from robo_genesis.core.channels import Channel, Level, Runs, View
+from robo_genesis.core.channels import Channel, Level, ReplayView, Runs
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.bodies import channels as body_channels
 from robo_genesis.sim.visual_shape import WORLD, Part, slab
@@ -53,7 +53,15 @@ def turning(
     position = Channel("position", "q", unit, 4, {"run": q + np.linspace(0, off, 11)})
     level = Level("target", "position", "target", "", {"run": (target,)}, {"run": "x"})
     return Runs(
-        "joint", {"run": trace}, LINKS, [position], [level], {"run": ""}, View("arm", ""), "", ""
+        "joint",
+        {"run": trace},
+        LINKS,
+        [position],
+        [level],
+        {"run": ""},
+        ReplayView("arm", ""),
+        "",
+        "",
     )
 
 

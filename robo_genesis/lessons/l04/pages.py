@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from robo_genesis.core.channels import View
+from robo_genesis.core.channels import ReplayView
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.declaration import Compared, Filmed, Lesson
 from robo_genesis.core.experiment import (
@@ -125,7 +125,7 @@ LESSON = Lesson(
         joint=spec.STEPPED_JOINT,
         band=SETTLING_BAND,
         until=0.6,
-        view=View(
+        view=ReplayView(
             thing="robot",
             alt="The robot in 3D, in the posture of the sample that is shown. "
             f"{spec.STEPPED_JOINT} moves.",

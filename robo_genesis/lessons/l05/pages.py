@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.channels import View
+from robo_genesis.core.channels import ReplayView
 from robo_genesis.core.declaration import Compared, Filmed, Lesson
 from robo_genesis.core.experiment import MeasuringPage, Run, case_inputs, counts, runs_of
 from robo_genesis.core.trace import Trace
@@ -89,7 +89,7 @@ LESSON = Lesson(
         joint="joint4",
         band=0.01,
         until=0.6,
-        view=View(
+        view=ReplayView(
             thing="robot",
             alt="The robot in the posture of the sample; a sphere marks the target of the hand.",
             credit=CREDIT,

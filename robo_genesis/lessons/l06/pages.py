@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from robo_genesis.core.channels import View
+from robo_genesis.core.channels import ReplayView
 from robo_genesis.core.declaration import Compared, Filmed, Lesson
 from robo_genesis.core.experiment import MeasuringPage, Run, counts, runs_of
 from robo_genesis.core.palette import MARKS
@@ -83,7 +83,7 @@ LESSON = Lesson(
         joint="joint1",
         band=0.01,
         places=spec.PLACES,
-        view=View(
+        view=ReplayView(
             thing="robots",
             alt="Four robots in 3D, in the postures of the sample that is shown. Spheres in the "
             "colours of the runs are at the targets of the hands.",

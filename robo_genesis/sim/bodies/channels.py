@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.channels import Channel, Runs, View, farthest_link
+from robo_genesis.core.channels import Channel, ReplayView, Runs, farthest_link
 from robo_genesis.core.text import listed, time_digits, with_unit
 from robo_genesis.core.trace import BodyTrace
 
@@ -71,7 +71,7 @@ def runs(
             + (f". {farthest_link(links, trace)}" if len(links) > 1 else ".")
             for case, trace in traces.items()
         },
-        view=View(
+        view=ReplayView(
             thing=thing,
             alt=f"{subject.capitalize()} in 3D, where it is at the sample that is shown.",
         ),
