@@ -1,6 +1,6 @@
 """Named checks that several lessons use."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -8,7 +8,6 @@ from robo_genesis.core import checks
 from robo_genesis.core.check_spec import START_TOLERANCE
 from robo_genesis.core.checks import Finding, above, equal, within
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.camera.frames import FrameError, require_frame
 
 
@@ -36,22 +35,10 @@ def posture(run: Experiment) -> Iterator[Finding]:
     """Two different camera frames, or a schematic whose links moved, show both ends of the run."""
     views = {*run.page.frames} - {"initial", "final"} if run.rendered else set()
     frames = {name: frame for name, frame in run.frames.items() if name not in views}
-    return both_ends(run.rendered, frames, run.traces["baseline"].link_pos)
-
-
-def both_ends(
-    rendered: bool, frames: Mapping[str, np.ndarray], links: FloatArray
-) -> Iterator[Finding]:
-    """Require two different camera frames, or links that moved where there is no camera.
-
-    Args:
-        rendered: whether camera frames show both states; else a schematic of the links does.
-        frames: the camera's pictures by name.
-        links: (n+1, l, 3) link positions of the run [m], which a schematic draws.
-    """
-    expected = ["final", "initial"] if rendered else []
+    expected = ["final", "initial"] if run.rendered else []
     yield equal("frames", sorted(frames), expected)
-    if not rendered:
+    if not run.rendered:
+        links = run.traces[next(iter(run.cases))].link_pos  # a schematic draws the first run
         yield above("moved_m", float(np.abs(links[-1] - links[0]).max()), 0)
     elif sorted(frames) == expected:
         usable = [usable_frame(name, frames[name]) for name in expected]

@@ -12,7 +12,7 @@ from robo_genesis.lessons.l06.laws import laws_of_motion
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.kinematics import ARM, Pose
-from robo_genesis.sim.common_checks import both_ends, stamps
+from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 
@@ -111,11 +111,6 @@ def own_gains_and_mass(run: Experiment) -> Iterator[Finding]:
         for law, torque in torques.items():
             apart = float(np.abs(trace.control_force[-1] - torque)[:ARM].max())
             yield at_most(f"{name}.torque_not_explained_by_{law}_N_m", apart, spec.HELD)
-
-
-def posture(run: Experiment) -> Iterator[Finding]:
-    """Two different camera frames, or a schematic whose links moved, show the end state."""
-    return both_ends(run.rendered, run.frames, run.traces["env_0"].link_pos)
 
 
 def equal_work(run: Experiment) -> Iterator[Finding]:
