@@ -25,25 +25,20 @@ FALL_STEPS = 60
 def second_init(gs: Any) -> Failure:
     """Initialise the engine a second time."""
     error = refused(lambda: gs.init(backend=gs.cpu))
-    return Failure(
-        "second_init",
-        shown=type(error).__name__ == "GenesisException",
-        evidence=f"The second call of `gs.init` in the process of this page: {quoted(error)}",
-    )
+    text = f"The second call of `gs.init` in the process of this page: {quoted(error)}"
+    return Failure("second_init", type(error).__name__ == "GenesisException", text)
 
 
 def late_entity(scene: Any, morph: Any) -> Failure:
     """Add an entity to a built scene."""
     before = len(scene.entities)
     error = refused(lambda: scene.add_entity(morph))
-    return Failure(
-        "late_entity",
-        shown=type(error).__name__ == "GenesisException" and len(scene.entities) == before,
-        evidence=(
-            f"The call after `build`: {quoted(error)} The scene had {before} entities before the "
-            f"call and has {len(scene.entities)} now."
-        ),
+    shown = type(error).__name__ == "GenesisException" and len(scene.entities) == before
+    text = (
+        f"The call after `build`: {quoted(error)} The scene had {before} entities before the call "
+        f"and has {len(scene.entities)} now."
     )
+    return Failure("late_entity", shown, text)
 
 
 def heights(
@@ -64,17 +59,14 @@ def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
     """Drop a free box and a box whose morph has `fixed=True`."""
     t, z = heights(scene, case, case.steps, fixed=fixed, free=free)
     moved, fell = (float(z[name][0] - z[name][-1]) for name in ("fixed", "free"))
-    expected = float(continuous_drop(t[-1], case.gravity))
+    falls = fell > 0.9 * float(continuous_drop(t[-1], case.gravity))
     dofs = fixed.n_dofs, free.n_dofs
-    return Failure(
-        "fixed_body",
-        shown=moved == 0 and fell > 0.9 * expected and dofs == (0, 6),
-        evidence=(
-            f"In {t[-1]:g} s this box fell {moved:.4f} m and the other one {fell:.4f} m. They have "
-            f"{dofs[0]} and {dofs[1]} DOFs."
-        ),
-        curves={"this box": (t, z["fixed"]), "the other one": (t, z["free"])},
+    text = (
+        f"In {t[-1]:g} s this box fell {moved:.4f} m and the other one {fell:.4f} m. They have "
+        f"{dofs[0]} and {dofs[1]} DOFs."
     )
+    curves = {"this box": (t, z["fixed"]), "the other one": (t, z["free"])}
+    return Failure("fixed_body", moved == 0 and falls and dofs == (0, 6), text, curves)
 
 
 def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
@@ -82,54 +74,46 @@ def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
     t, found = heights(scene, case, case.steps, sunken=sunken)
     z = found["sunken"]
     speed, below = float(np.diff(z).max() / case.dt), 1000 * (case.size / 2 - float(z[0]))
-    return Failure(
-        "centre_for_underside",
-        shown=bool(z[0] < case.size / 2 and z.max() > z[0] + LEAP * case.size),
-        evidence=(
-            f"Its centre started at {z[0]:.3f} m, its underside {below:.0f} mm below the ground. "
-            f"The centre rose to {z.max():.3f} m; the largest upward speed between two samples was "
-            f"{speed:.2f} m/s."
-        ),
-        curves={"centre of the box": (t, z)},
+    shown = bool(z[0] < case.size / 2 and z.max() > z[0] + LEAP * case.size)
+    text = (
+        f"Its centre started at {z[0]:.3f} m, its underside {below:.0f} mm below the ground. The "
+        f"centre rose to {z.max():.3f} m; the largest upward speed between two samples was "
+        f"{speed:.2f} m/s."
     )
+    return Failure("centre_for_underside", shown, text, {"centre of the box": (t, z)})
 
 
 def no_collision(scene: Any, ghost: Any, solid: Any, case: Drop) -> Failure:
     """Drop a box whose morph has `collision=False`, beside an ordinary one."""
     t, z = heights(scene, case, FALL_STEPS, ghost=ghost, solid=solid)
     fallen, landed = (float(z[name][-1]) for name in ("ghost", "solid"))
-    return Failure(
-        "no_collision",
-        shown=fallen < -case.size and 0 < landed < case.size,
-        evidence=(
-            f"After {t[-1]:g} s the centre of this box is at {fallen:.3f} m and that of the other "
-            f"one at {landed:.3f} m. The lists `vgeoms` have {len(ghost.vgeoms)} and "
-            f"{len(solid.vgeoms)} entries, the lists `geoms` {len(ghost.geoms)} and "
-            f"{len(solid.geoms)}."
-        ),
-        curves={"this box": (t, z["ghost"]), "the other one": (t, z["solid"])},
+    text = (
+        f"After {t[-1]:g} s the centre of this box is at {fallen:.3f} m and that of the other one "
+        f"at {landed:.3f} m. The lists `vgeoms` have {len(ghost.vgeoms)} and {len(solid.vgeoms)} "
+        f"entries, the lists `geoms` {len(ghost.geoms)} and {len(solid.geoms)}."
     )
+    curves = {"this box": (t, z["ghost"]), "the other one": (t, z["solid"])}
+    shown = fallen < -case.size and 0 < landed < case.size
+    return Failure("no_collision", shown, text, curves)
 
 
 def picture_of_nothing(camera: Any) -> Failure:
     """Turn the camera away from all bodies of the scene, and render; None means no camera."""
     if camera is None:
         skipped = "SKIP: rendering is off, so no picture was taken."
-        return Failure("picture_of_nothing", shown=True, evidence=skipped)
+        return Failure("picture_of_nothing", True, skipped)
     pose = np.array(camera.transform)
     x, y, z = (float(value) for value in np.asarray(camera.pos).reshape(-1)[:3])
     camera.set_pose(pos=(x, y, z), lookat=(2 * x, 2 * y, z + 2.0))
     rgb = camera.render()[0]
     camera.set_pose(transform=pose)
     error = refused(lambda: require_frame(rgb))
-    return Failure(
-        "picture_of_nothing",
-        shown=isinstance(error, FrameError) and "empty picture" in str(error),
-        evidence=(
-            f"`camera.render()` returned an array of shape {np.shape(rgb)}, dtype "
-            f"{np.asarray(rgb).dtype}, and raised nothing. The course's test of it: {quoted(error)}"
-        ),
+    text = (
+        f"`camera.render()` returned an array of shape {np.shape(rgb)}, dtype "
+        f"{np.asarray(rgb).dtype}, and raised nothing. The course's test of it: {quoted(error)}"
     )
+    shown = isinstance(error, FrameError) and "empty picture" in str(error)
+    return Failure("picture_of_nothing", shown, text)
 
 
 def kept_reading(scene: Any, box: Any, case: Drop) -> Failure:
@@ -139,11 +123,8 @@ def kept_reading(scene: Any, box: Any, case: Drop) -> Failure:
     for _ in range(case.steps):
         scene.step()
     old, new = (float(np.asarray(of.cpu())[2]) for of in (kept, box.get_pos()))
-    return Failure(
-        "kept_reading",
-        shown=old != new,
-        evidence=(
-            f"`z = box.get_pos()[2]` from before the loop is still {old:.4f} m after {case.steps} "
-            f"steps; a new reading is {new:.4f} m."
-        ),
+    text = (
+        f"`z = box.get_pos()[2]` from before the loop is still {old:.4f} m after {case.steps} "
+        f"steps; a new reading is {new:.4f} m."
     )
+    return Failure("kept_reading", old != new, text)

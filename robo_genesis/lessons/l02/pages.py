@@ -44,7 +44,7 @@ MISTAKES = replace(LAB)
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, DropMetrics),
-    pages={"lab": LAB, spec.STUDY_PAGE: LECTURE, "mistakes": MISTAKES},
+    pages={"lab": LAB, "lecture": LECTURE, "mistakes": MISTAKES},
     filmed=Filmed("the box"),
     compared=Moving(tuple(spec.CASES), link=spec.LINK, thing="box"),
 )

@@ -14,8 +14,6 @@ from robo_genesis.sim.bodies.rigid_bodies import Drop
 MEASURES = False
 
 MINIMUM_HARDWARE = "cpu"
-STUDY_PAGE = "lecture"
-"""The page of the lesson that runs the study of substeps."""
 
 BASELINE = Drop(size=0.10, density=500.0, height=0.5, steps=20)
 CASES = {"baseline": BASELINE}

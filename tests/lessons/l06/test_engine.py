@@ -6,14 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import DT, SUBSTEPS
-from robo_genesis.lessons.l06 import LECTURE, checks, mistakes, spec, study
+from robo_genesis.lessons.l06 import mistakes, spec, study
 from robo_genesis.lessons.l06.run import ask, reach
 from robo_genesis.sim.arm.batch import Batch, run_batch, set_link_mass
 from robo_genesis.sim.arm.engine_kinematics import NotAccepted
 from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.arm.joint_control import CaseError, describe
+from robo_genesis.sim.arm.joint_control import CaseError
 from robo_genesis.sim.arm.joints import resolve_joints, to_numpy
 from robo_genesis.sim.arm.kinematics import ARM
 
@@ -47,28 +46,23 @@ def single(real_engine):
 
 @pytest.fixture(scope="module")
 def measured(four, single):
-    """The runs and readings of the lecture, without a camera."""
-    page = SimpleNamespace(traces={}, readings={}, links=[], joints=None)
+    """The runs of the lecture's environments, each alone too, and then those of other robots."""
+    page = SimpleNamespace(traces={}, readings={}, joints=four.joints)
     page.capture = lambda camera, name: None
-    describe(page, four.robot)
-    study.read_mixed(page, four.robot)
     study.record(page, four.scene, four.robot, None)
     study.record_alone(page, single.scene, single.robot)
-    study.record_copies(page, four.scene, four.robot)
     study.record_variants(page, four.scene, four.robot)
-    declared = replace(LECTURE, checks=checks.WITHOUT_CAMERA)
-    traces = {name: page.traces[name] for name in LECTURE.runs}
-    return Experiment(declared, traces, page.links, page.readings, {}, False, page.joints)
-
-
-def test_runs_without_a_camera_pass_their_checks_and_are_possible(measured):
-    assert [check.detail for check in measured.outcomes() if not check.passed] == []
+    return page.traces
 
 
 def test_a_second_run_agrees_with_the_first_and_inherits_no_load(four, measured):
     for name, run in zip(spec.WORLDS, reach(**vars(four), worlds=WORLDS), strict=True):
-        apart = study.largest_differences(run, measured.traces[name])
-        assert all(apart[array] <= most for array, most in spec.SAME_RUN.items()), apart
+        assert_within_bounds(run, measured[name])
+
+
+def assert_within_bounds(run, other):
+    apart = study.largest_differences(run, other)
+    assert all(apart[array] <= most for array, most in spec.SAME_RUN.items()), apart
 
 
 def test_answers_of_some_environments_are_those_of_all(four):
@@ -108,7 +102,7 @@ def test_a_mass_is_that_of_one_environment_and_survives_a_reset(four):
 def test_batches_have_equal_bits_and_one_environment_those_alone(real_engine, measured, size, same):
     worlds = [WORLDS[k % len(WORLDS)] for k in range(size)]
     runs = reach(**vars(build(real_engine.gs, size)), worlds=worlds)
-    pairs = [(run, measured.traces[f"{same}_{k % len(WORLDS)}"]) for k, run in enumerate(runs)]
+    pairs = [(run, measured[f"{same}_{k % len(WORLDS)}"]) for k, run in enumerate(runs)]
     assert {study.entries_that_differ(*pair)[0] for pair in pairs} == {0}
 
 
@@ -119,8 +113,7 @@ def test_random_runs_agree_with_those_alone_within_the_declared_bounds(real_engi
     rows = run_batch(**vars(build(real_engine.gs, len(cases))), cases=cases)
     for name, case in cases.items():
         (alone,) = run_batch(**vars(single), cases={name: case}).values()
-        apart = study.largest_differences(rows[name], alone)
-        assert all(apart[array] <= most for array, most in spec.SAME_RUN.items()), apart
+        assert_within_bounds(rows[name], alone)
 
 
 def test_without_its_option_a_scene_has_one_set_of_gains_whatever_environment_is_named(real_engine):
