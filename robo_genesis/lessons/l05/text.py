@@ -143,26 +143,25 @@ ANSWER = {
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the lab's runs and its picture."""
-    m, ik = run.metrics, run.readings[study.GROUP]
-    base = m["baseline"]
-    residuals = ik["residual_m"], ik["residual_rad"]
-    lines = [
-        ANSWER[bool(np.less_equal(residuals, spec.IK.tolerances).all())].format(
-            *np.multiply(1000, residuals)
+    (base, *others), ik = run.metrics.items(), run.readings[study.GROUP]
+    residuals = np.array([ik["residual_m"], ik["residual_rad"]])
+    answer = ANSWER[bool((residuals <= spec.IK.tolerances).all())]
+    start, end, behind = (
+        1000 * getattr(base[1], f"{name}_distance") for name in ("start", "final", "tracking")
+    )
+    return bullets([
+        answer.format(*1000 * residuals),
+        f"The hand's distance from its target went from {start:.1f} mm to {end:.2f} mm. The arm "
+        f"stopped {behind:.2f} mm from the pose of its command.",
+        *(
+            f"With {spec.LABELS[name]}, {1000 * m.final_distance:.2f} mm are left."
+            for name, m in others
         ),
-        f"The hand's distance from its target went from {1000 * base.start_distance:.1f} mm to "
-        f"{1000 * base.final_distance:.2f} mm. The arm stopped {1000 * base.tracking_distance:.2f} "
-        "mm from the pose of its command.",
-    ]
-    lines += [
-        f"With {spec.LABELS[name]}, {1000 * m[name].final_distance:.2f} mm are left."
-        for name in tuple(spec.CASES)[1:]
-    ]
-    lines += [
-        f"The pixels of the {name} are {1000 * found.largest:.3f} mm or less from its surface."
-        for name, found in surfaces(run).items()
-    ]
-    return bullets(lines)
+        *(
+            f"The pixels of the {name} are {1000 * found.largest:.3f} mm or less from its surface."
+            for name, found in surfaces(run).items()
+        ),
+    ])  # fmt: skip
 
 
 def records(run: Experiment, name: str) -> list[dict[str, str]]:
