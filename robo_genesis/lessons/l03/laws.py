@@ -13,8 +13,6 @@ from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 MEASURES = False
 
-BY_MUJOCO = {*study_spec.IN_MUJOCO}
-
 MOTION = ("link_pos", "link_quat", "link_vel", "link_ang", "penetration")
 AGAIN = dict.fromkeys(MOTION, 1e-5)
 """Tolerances of a run that is computed again, by array. If settings change by the rounding of
@@ -27,13 +25,13 @@ AGAIN_BY_DEFAULTS = dict.fromkeys(MOTION, 2e-5) | {"link_ang": 4e-3}
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     """At each sample a body moves and touches as the contact model makes it; MuJoCo runs repeat."""
-    by_genesis = {name: of for name, of in run.traces.items() if name not in BY_MUJOCO}
+    by_genesis = {n: of for n, of in run.traces.items() if n not in study_spec.IN_MUJOCO}
     for name, case in run.cases.items():
         trace = run.traces[name]
-        if name in BY_MUJOCO:
-            broken = in_mujoco(trace, case, name == study_spec.OWN_DEFAULTS, by_genesis)
-        else:
+        if name in by_genesis:
             broken = body_on_surface(trace, case)
+        else:
+            broken = in_mujoco(trace, case, name == study_spec.OWN_DEFAULTS, by_genesis)
         yield from kept(name, broken)
 
 

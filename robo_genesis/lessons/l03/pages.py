@@ -14,19 +14,9 @@ from robo_genesis.core.experiment import (
     runs_of,
 )
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import (
-    checks,
-    spec,
-    study,
-    study_contact,
-    study_energy,
-    study_spec,
-)
+from robo_genesis.lessons.l03 import checks, spec, study, study_deeper, study_spec
 from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
-from robo_genesis.sim.bodies.contacts import (
-    SETTINGS,
-    ContactCase,
-)
+from robo_genesis.sim.bodies.contacts import SETTINGS, ContactCase
 
 MEASURES = False
 
@@ -78,21 +68,23 @@ def further(
     )
 
 
-LECTURE = further(
-    "lecture",
-    study_spec.OF_LECTURE,
-    study.CHECKS,
-    study_spec.STEP_CASES.keys() | study_spec.STIFF_CASES.keys(),
+LECTURE = replace(
+    further(
+        "lecture",
+        study_spec.OF_LECTURE,
+        (*study.CHECKS, checks.posture),
+        study_spec.STEP_CASES | study_spec.STIFF_CASES,
+    ),
+    camera=True,
 )
-LECTURE = replace(LECTURE, checks=(*LECTURE.checks, checks.posture), camera=True)
-CONTACT = further("contact", study_spec.OF_CONTACT, study_contact.CHECKS)
+CONTACT = further("contact", study_spec.OF_CONTACT, study_deeper.OF_CONTACT)
 IN_MUJOCO = {
     name: Run(case, note="run in MuJoCo, not in Genesis")
     for name, case in study_spec.IN_MUJOCO.items()
 }
 CONTACT = replace(CONTACT, runs={**CONTACT.runs, **IN_MUJOCO})
 ENERGY = further(
-    "energy", study_spec.OF_ENERGY, study_energy.CHECKS, study_spec.RELEASE_CASES.keys()
+    "energy", study_spec.OF_ENERGY, study_deeper.OF_ENERGY, study_spec.RELEASE_CASES
 )
 MISTAKES = further("mistakes", study_spec.OF_MISTAKES, ())
 
