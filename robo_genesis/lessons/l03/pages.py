@@ -83,9 +83,7 @@ IN_MUJOCO = {
     for name, case in study_spec.IN_MUJOCO.items()
 }
 CONTACT = replace(CONTACT, runs={**CONTACT.runs, **IN_MUJOCO})
-ENERGY = further(
-    "energy", study_spec.OF_ENERGY, study_deeper.OF_ENERGY, study_spec.RELEASE_CASES
-)
+ENERGY = further("energy", study_spec.OF_ENERGY, study_deeper.OF_ENERGY, study_spec.RELEASE_CASES)
 MISTAKES = further("mistakes", study_spec.OF_MISTAKES, ())
 
 LESSON = Lesson(

@@ -16,7 +16,6 @@ HOPPED = {name: SLIDES[name] for name in ("low_on_050", "high_on_050")}
 """The slides of the lecture's second replay, with the engine's default friction model."""
 
 
-
 def by_step(kind: str, *steps: tuple[float, int]) -> dict[str, dict[str, Any]]:
     """Return settings with each outer step [s] and number of substeps, named by the solver step.
 

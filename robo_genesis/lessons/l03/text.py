@@ -52,8 +52,8 @@ SENTENCES = {
         "differs is numerical error, and a share above 100 % is more energy than it had.",
         "level_in_flight": "Within a flight the total energy changes by up to "
         "{bounce_sub1.flight_change} with one substep, and by {bounce_sub100.flight_change} with a "
-        "hundred. This error is bounded: without m g h v / 2, the energy with one substep changes "
-        "by {bounce_sub1.flight_drift}.",
+        "hundred. This error is bounded: without m g h v / 2, the energy with a hundred changes "
+        "by {bounce_sub100.flight_drift}.",
     },
 }
 """By title, what the lab says if a check passed, with the metrics of its runs."""
