@@ -11,7 +11,7 @@ import numpy as np
 from robo_genesis.core.metrics import CaseMetrics, metric
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace, first_time, settled_from
-from robo_genesis.sim.bodies.contacts import BOUNCE, LANDING, SLIDE, TOP, ContactCase
+from robo_genesis.sim.bodies.contacts import TOP, ContactCase
 
 CLEAR = 1e-4
 """Clearance from which a body without contact points counts as separated [m]."""
@@ -118,15 +118,11 @@ def flights(trace: BodyTrace, case: ContactCase) -> Iterator[slice]:
             yield slice(int(first), int(after))
 
 
-def metrics_class(case: ContactCase) -> type[CaseMetrics]:
-    """Return the class of a case's metrics, by the kind of its experiment."""
-    return {LANDING: LandingMetrics, SLIDE: SlideMetrics, BOUNCE: BounceMetrics}[case.kind]
-
-
 def case_metrics(trace: ContactTrace, case: ContactCase) -> CaseMetrics:
-    """Measure a run by the kind of its case, which gives body, gravity and solver step."""
-    by_kind = {LANDING: landing_metrics, SLIDE: slide_metrics, BOUNCE: bounce_metrics}
-    return by_kind[case.kind](trace, case)
+    """Measure a run by the motion that its case studies: bounce, slide or landing."""
+    if case.spring:
+        return bounce_metrics(trace, case)
+    return slide_metrics(trace, case) if case.speed else landing_metrics(trace, case)
 
 
 def landing_metrics(trace: ContactTrace, case: ContactCase) -> LandingMetrics:

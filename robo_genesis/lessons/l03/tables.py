@@ -71,21 +71,6 @@ def bounces(run: Experiment) -> Iterator[Row]:
     return by_run(checks.measured(run, BounceMetrics))
 
 
-def landing_rows(cases: Mapping[str, ContactCase]) -> list[Row]:
-    """Return one row per case: its steps and the resulting numbers of states and solver steps."""
-    return [
-        {
-            "run": spec.LABELS[name],
-            "dt [ms]": f"{1000 * case.dt:g}",
-            "substeps": str(case.substeps),
-            "h [ms]": f"{1000 * case.h:g}",
-            "states": str(case.steps + 1),
-            "solver steps": str(case.steps * case.substeps),
-        }
-        for name, case in cases.items()
-    ]
-
-
 # The lecture
 
 
@@ -117,25 +102,6 @@ def depths(run: Experiment) -> Iterator[Row]:
             "v T / e": millimetres(theory.depth(case)),
             "measured": millimetres(run.metrics[name].penetration),
             "nine heights, measured / (v T / e)": span(study.depth_shares(run, scene)),
-        }
-
-
-@as_table
-def before_after(run: Experiment) -> Iterator[Row]:
-    """Return the stopping distances on both tables, by the cube's own coefficient."""
-    for lane in ("low", "high"):
-        names = [f"{lane}_on_{table}_elliptic" for table in ("050", "030")]
-        cases = [run.cases[name] for name in names]
-        yield {
-            "friction of the cube": f"{cases[0].friction:g}",
-            **{
-                f"stops after (table {case.surface_friction:g})": stop(run, name)
-                for name, case in zip(names, cases, strict=True)
-            },
-            **{
-                f"μ of the pair, table {case.surface_friction:g}": f"{theory.pair_friction(case):g}"
-                for case in cases
-            },
         }
 
 
@@ -254,7 +220,7 @@ def engines(run: Experiment) -> Iterator[Row]:
         yield {
             "run": described(run.cases[pair[0]], pair[1] == study_spec.OWN_DEFAULTS),
             "rebound or hop [mm]": " and ".join(heights),
-            "farthest apart": apart(float(distance.max())),
+            "farthest apart [µm]": f"{1e6 * distance.max():.2f}",
             "over 0.05 mm from": since,
             "contacts there": " and ".join(counts),
         }
@@ -266,14 +232,6 @@ def described(case: ContactCase, own_defaults: bool) -> str:
         return f"push, {case.cone}, μ = {theory.pair_friction(case):g}"
     own = ", MuJoCo's own contact" if own_defaults else ""
     return f"landing, h = {milliseconds(case.h)}{own}"
-
-
-def apart(distance: float) -> str:
-    """Write a distance between two runs [m]."""
-    micrometres = 1e6 * distance
-    if micrometres < 0.01:
-        return "below 0.01 µm"
-    return f"{micrometres:.2g} µm" if micrometres < 1000 else f"{1000 * distance:.2f} mm"
 
 
 @as_table

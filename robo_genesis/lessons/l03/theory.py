@@ -31,11 +31,6 @@ def coulomb_distance(case: ContactCase) -> float:
     return case.speed**2 / (2 * pair_friction(case) * case.gravity)
 
 
-def coulomb_time(case: ContactCase) -> float:
-    """Return v / (μ g), the time after which it stops [s]."""
-    return case.speed / (pair_friction(case) * case.gravity)
-
-
 def stepped_distance(case: ContactCase) -> float:
     """Return v² / (2 μ g) − v h / 2, the same distance in solver steps of length h [m].
 
