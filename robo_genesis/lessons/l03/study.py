@@ -165,7 +165,7 @@ def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[Finding]:
 
 
 def clean_slides_order(run: Experiment) -> Iterator[Finding]:
-    """With the elliptic cone, too, the smaller coefficient changes no stopping distance."""
+    """With the elliptic cone, less friction gives a longer slide; the smaller changes nothing."""
     return checks.orders_of_distances(run, "_elliptic")
 
 
