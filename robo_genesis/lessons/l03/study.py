@@ -165,7 +165,9 @@ def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[Finding]:
 
 
 def clean_slides_order(run: Experiment) -> Iterator[Finding]:
-    """With the elliptic cone, less friction gives a longer slide; the smaller changes nothing."""
+    """With less friction a cube with the elliptic cone travels farther; the smaller coefficient
+    changes nothing.
+    """
     return checks.orders_of_distances(run, "_elliptic")
 
 
