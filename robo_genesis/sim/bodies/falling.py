@@ -15,7 +15,7 @@ from robo_genesis.core.checks import Finding
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.bodies.falls import predicted
 from robo_genesis.sim.bodies.rigid_bodies import Drop
-from robo_genesis.sim.laws import apart, kept, times, unit_quaternions
+from robo_genesis.sim.laws import UNTURNED, ZERO, apart, kept, times, unit_quaternions
 
 MEASURES = False
 
@@ -36,8 +36,7 @@ def falling(trace: BodyTrace, case: Drop) -> Iterator[Finding]:
     place, motion = np.zeros((2, trace.steps + 1, 3))
     place[:, 2] = case.height - predicted(trace, case)
     motion[:, 2] = -case.gravity * trace.t
-    upright = np.array([1.0, 0, 0, 0])
     yield from apart("motion", "link_pos [m]", trace.link_pos[:, 0], place, FALLEN)
     yield from apart("motion", "link_vel [m/s]", trace.link_vel[:, 0], motion, FALLING)
-    yield from apart("motion", "link_quat", trace.link_quat[:, 0], upright, 0.0)
-    yield from apart("motion", "link_ang [rad/s]", trace.link_ang[:, 0], np.zeros(()), 0.0)
+    yield from apart("motion", "link_quat", trace.link_quat[:, 0], UNTURNED, 0.0)
+    yield from apart("motion", "link_ang [rad/s]", trace.link_ang[:, 0], ZERO, 0.0)
