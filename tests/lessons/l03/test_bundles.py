@@ -98,7 +98,6 @@ SPOILED = {
     "contacts that were never read": ("lab", "labels", without_contacts),
     "a count of contacts was written": ("lab", "contact", changed(
         "low_on_050", "contacts", lambda a: a.fill(4))),
-    "another friction than asked for": ("lab", "checks", metric("friction", "low_on_050", 0.45)),
     "a friction that was not read": (
         "lab", "metrics", pop("metrics.json", "friction", "low_on_050")),
     "a finding that was altered": ("lab", "checks", altered("near_coulomb")),
@@ -139,18 +138,6 @@ JUDGEMENTS = {
             "LEVEL_SHARE": (-1.0, "level_in_flight"),
             "COARSE_SHARE": (1e9, "energy_converges"),
         },
-    ),
-    "lecture": (
-        study_spec,
-        {
-            "SCATTER_COARSE": (1e9, "scatter_shrinks"),
-            "STIFF_SHARE": (-1.0, "depth_by_hand"),
-            "INVISIBLE": (-1.0, "hop_follows_speed"),
-        },
-    ),
-    "contact": (
-        study_spec,
-        {"BLOW": (1e9, "hop_is_paid_by_friction"), "SAME_HOP": (-1.0, "engines_hop_alike")},
     ),
     "energy": (study_spec, {"REBOUND_SHARE": (-1.0, "stiff_contacts_rebound")}),
 }
