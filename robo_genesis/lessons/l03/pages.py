@@ -54,12 +54,10 @@ LAB = MeasuringPage(
 
 
 def further(
-    name: str,
-    cases: Mapping[str, ContactCase],
-    *own: Callable[[Experiment], Iterable[Finding]],
-    camera: bool = False,
+    name: str, *own: Callable[[Experiment], Iterable[Finding]], camera: bool = False
 ) -> MeasuringPage:
     """Return a page with runs in Genesis and checks of its own."""
+    cases = study_spec.CASES_OF[name]
     return replace(
         LAB,
         runs=runs_of(cases),
@@ -70,15 +68,15 @@ def further(
     )
 
 
-LECTURE = further("lecture", study_spec.OF_LECTURE, *study.CHECKS, checks.posture, camera=True)
-CONTACT = further("contact", study_spec.OF_CONTACT, *study_deeper.OF_CONTACT)
+LECTURE = further("lecture", *study.CHECKS, checks.posture, camera=True)
+CONTACT = further("contact", *study_deeper.OF_CONTACT)
 IN_MUJOCO = {
     name: Run(case, note="run in MuJoCo, not in Genesis")
     for name, case in study_spec.IN_MUJOCO.items()
 }
 CONTACT = replace(CONTACT, runs={**CONTACT.runs, **IN_MUJOCO})
-ENERGY = further("energy", study_spec.OF_ENERGY, *study_deeper.OF_ENERGY)
-MISTAKES = further("mistakes", study_spec.OF_MISTAKES)
+ENERGY = further("energy", *study_deeper.OF_ENERGY)
+MISTAKES = further("mistakes")
 
 LESSON = Lesson(
     spec=spec,

@@ -145,13 +145,13 @@ def flat(*groups: dict[str, dict[str, ContactCase]]) -> dict[str, ContactCase]:
     }
 
 
-OF_LECTURE = (
-    DROPPED | flat(STEP_CASES, STIFF_CASES) | ELLIPTIC | HOPPED | flat(HOP_STEP_CASES)
-    | HOP_SPEED_CASES
-)  # fmt: skip
-OF_CONTACT = BY_BOTH | ELLIPTIC | FINER_SLIDES | flat(STOP_CASES)
-OF_ENERGY = BOUNCES | flat(RELEASE_CASES)
-OF_MISTAKES = LANDINGS | HOPPED
+CASES_OF = {
+    "lecture": DROPPED | flat(STEP_CASES, STIFF_CASES) | ELLIPTIC | HOPPED | flat(HOP_STEP_CASES)
+    | HOP_SPEED_CASES,
+    "contact": BY_BOTH | ELLIPTIC | FINER_SLIDES | flat(STOP_CASES),
+    "energy": BOUNCES | flat(RELEASE_CASES),
+    "mistakes": LANDINGS | HOPPED,
+}  # fmt: skip
 """The runs in Genesis of each page."""
 
 # What only judges
@@ -224,29 +224,25 @@ RELEASE_SHARE = 0.1
 REBOUND_SHARE = 0.25
 """Tolerance of a rebound against that of a linear contact, as a share."""
 
-OWN: dict[str, dict[str, Any]] = {
+GROUPS: dict[str, dict[str, Any]] = {
     "lecture": {
-        "cases": case_inputs(OF_LECTURE),
         "scenes": {name: list(of) for name, of in (STEP_CASES | STIFF_CASES).items()},
         "as_baseline": AS_BASELINE,
         "hops": {name: list(of) for name, of in HOP_STEP_CASES.items()},
         "hop_speeds": list(HOP_SPEED_CASES),
     },
     "contact": {
-        "cases": case_inputs(OF_CONTACT),
         "in_mujoco": sorted(IN_MUJOCO),
         "with_its_own_contact": OWN_DEFAULTS,
         "engine_pairs": ENGINE_PAIRS,
         "stops": {name: list(of) for name, of in STOP_CASES.items()},
     },
-    "energy": {
-        "cases": case_inputs(OF_ENERGY),
-        "releases": {name: list(of) for name, of in RELEASE_CASES.items()},
-    },
-    "mistakes": {"cases": case_inputs(OF_MISTAKES)},
+    "energy": {"releases": {name: list(of) for name, of in RELEASE_CASES.items()}},
+    "mistakes": {},
 }
+"""By page, the roles of its runs."""
 
 
 def parameters(page: str) -> dict[str, Any]:
     """Return every configured input of a page's own runs as JSON values, for the evidence key."""
-    return {"studies": OWN[page]}
+    return {"studies": {"cases": case_inputs(CASES_OF[page]), **GROUPS[page]}}
