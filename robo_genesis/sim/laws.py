@@ -28,6 +28,9 @@ REPEATED = 1e-4
 """Tolerance of a run that is computed again on another CPU: in SI units, and as a share of the
 largest value of an array. Two runs on one CPU are equal; other CPUs round float64 differently."""
 
+ZERO, UNTURNED = np.zeros(()), np.array([1.0, 0, 0, 0])
+"""Expected values of what is zero, and of the quaternion of a body that has not turned."""
+
 
 def broken(code: str, what: str, found: Any, expected: object) -> Finding:
     """Return the finding of something in a run's arrays that no such run has."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from itertools import combinations
+from typing import TypeVar
 
 import numpy as np
 
@@ -16,27 +17,19 @@ from robo_genesis.core.checks import (
     within,
 )
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l03 import friction, spec
-from robo_genesis.lessons.l03.energy import kept_at_bounces
+from robo_genesis.core.metrics import CaseMetrics
+from robo_genesis.lessons.l03 import spec, theory
 from robo_genesis.lessons.l03.laws import laws_of_motion
 from robo_genesis.lessons.l03.metrics import BounceMetrics, LandingMetrics, SlideMetrics
 from robo_genesis.sim.bodies.contacts import SETTINGS, TOP
 from robo_genesis.sim.common_checks import posture, stamps
 
-
-def landings(run: Experiment) -> dict[str, LandingMetrics]:
-    """Return the metrics of the dropped cubes."""
-    return {n: m for n, m in run.metrics.items() if isinstance(m, LandingMetrics)}
+Metrics = TypeVar("Metrics", bound=CaseMetrics)
 
 
-def slides(run: Experiment) -> dict[str, SlideMetrics]:
-    """Return the metrics of the pushed cubes."""
-    return {n: m for n, m in run.metrics.items() if isinstance(m, SlideMetrics)}
-
-
-def bounces(run: Experiment) -> dict[str, BounceMetrics]:
-    """Return the metrics of the balls."""
-    return {n: m for n, m in run.metrics.items() if isinstance(m, BounceMetrics)}
+def measured(run: Experiment, metrics: type[Metrics]) -> dict[str, Metrics]:
+    """Return the metrics of the runs of one kind, by run."""
+    return {name: of for name, of in run.metrics.items() if isinstance(of, metrics)}
 
 
 def structure(run: Experiment) -> Iterator[Finding]:
@@ -84,7 +77,7 @@ def one_factor(run: Experiment) -> Iterator[Finding]:
 
 def lands(run: Experiment) -> Iterator[Finding]:
     """Each dropped cube touches the surface, and its centre stays above the upper face."""
-    for name, found in landings(run).items():
+    for name, found in measured(run, LandingMetrics).items():
         trace = run.traces[name]
         yield above(f"{name}.touchdown_s", found.touchdown, 0)
         yield above(f"{name}.most_contacts", int(trace.contacts.max()), 0)
@@ -93,7 +86,7 @@ def lands(run: Experiment) -> Iterator[Finding]:
 
 def reported_late(run: Experiment) -> Iterator[Finding]:
     """With one substep, a reported depth belongs to the state before: it is one step old."""
-    for name in landings(run):
+    for name in measured(run, LandingMetrics):
         case, trace = run.cases[name], run.traces[name]
         if case.substeps == 1:
             below = case.rest_height - trace.link_pos[:-1, 0, 2].astype(np.float64)
@@ -103,7 +96,7 @@ def reported_late(run: Experiment) -> Iterator[Finding]:
 
 def equal_step_equal_states(run: Experiment) -> Iterator[Finding]:
     """Runs with equal solver steps and different outer steps share states at shared times."""
-    for pair in combinations(landings(run), 2):
+    for pair in combinations(measured(run, LandingMetrics), 2):
         short, long = sorted(pair, key=lambda name: run.cases[name].dt)
         if run.cases[short].h != run.cases[long].h or run.cases[short].dt == run.cases[long].dt:
             continue
@@ -116,49 +109,53 @@ def equal_step_equal_states(run: Experiment) -> Iterator[Finding]:
 
 def settles(run: Experiment) -> Iterator[Finding]:
     """Each dropped cube settles at its resting height within the window."""
-    for name, found in landings(run).items():
+    for name, found in measured(run, LandingMetrics).items():
         yield above(f"{name}.resting_time_s", found.resting_time, 0)
 
 
 def stops(run: Experiment) -> Iterator[Finding]:
     """Each pushed cube stops within the window by the declared rule."""
-    for name, found in slides(run).items():
+    for name, found in measured(run, SlideMetrics).items():
         stopped = found.stop_distance is not None
         yield Finding(f"{name}.stop_distance_m", found.stop_distance, stopped, "a distance")
 
 
 def friction_orders(run: Experiment) -> Iterator[Finding]:
     """With less friction a cube travels farther; the smaller coefficient changes nothing."""
-    far = {name: found.stop_distance or np.nan for name, found in slides(run).items()}
-    for near, farther in (("high_on_050", "low_on_050"), ("low_on_050", "low_on_030")):
+    return orders_of_distances(run, "")
+
+
+def orders_of_distances(run: Experiment, model: str) -> Iterator[Finding]:
+    """Require the orders of stopping distances; `model` ends the names of the compared runs."""
+    names = [name + model for name in ("high_on_050", "low_on_050", "low_on_030", "high_on_030")]
+    far = {name: run.metrics[name].stop_distance or np.nan for name in names}
+    high, low, low_after, high_after = names
+    for near, farther in ((high, low), (low, low_after)):
         yield above(f"{farther}.farther_than_{near}_m", far[farther] - far[near], 0)
-    difference = abs(far["high_on_030"] - far["high_on_050"])
-    yield at_most("high_on_030.distance_to_high_on_050_m", difference, spec.SAME_SLIDE)
+    difference = abs(far[high_after] - far[high])
+    yield at_most(f"{high_after}.distance_to_{high}_m", difference, spec.SAME_SLIDE)
 
 
 def near_coulomb(run: Experiment) -> Iterator[Finding]:
     """Each stopping distance is within 20 % of v² / (2 μ g) with the larger coefficient."""
-    for name, found in slides(run).items():
-        case = run.cases[name]
-        mu = friction.pair_friction(case)
-        expected = friction.coulomb_distance(case.speed, mu, case.gravity)
+    for name, found in measured(run, SlideMetrics).items():
+        expected = theory.coulomb_distance(run.cases[name])
         allowed = spec.COULOMB_SHARE * expected
         yield within(f"{name}.stop_distance_m", found.stop_distance, expected, allowed)
 
 
 def level_in_flight(run: Experiment) -> Iterator[Finding]:
     """In the air, the energy that semi-implicit Euler conserves is constant to within float32."""
-    for name, found in bounces(run).items():
+    for name, found in measured(run, BounceMetrics).items():
         allowed = spec.LEVEL_SHARE * found.start_energy
         yield at_most(f"{name}.flight_drift_J", found.flight_drift, allowed)
 
 
 def energy_converges(run: Experiment) -> Iterator[Finding]:
     """The finest step keeps at the bounce the energy of a linear spring; a coarse one does not."""
-    finest, *coarser = sorted(bounces(run), key=lambda name: run.cases[name].h)
-    spring = run.cases[finest].spring or (np.nan, np.nan)
-    expected = 100 * kept_at_bounces(spring[1])
-    kept = {name: found.first_kept for name, found in bounces(run).items()}
+    kept = {name: found.first_kept for name, found in measured(run, BounceMetrics).items()}
+    finest, *coarser = sorted(kept, key=lambda name: run.cases[name].h)
+    expected = 100 * theory.kept_at_bounces(run.cases[finest].spring[1])
     yield within(f"{finest}.first_kept_percent", kept[finest], expected, spec.FINE_SHARE)
     for name in coarser:
         bounced = kept[name] is not None

@@ -8,8 +8,7 @@ import numpy as np
 from robo_genesis.core.checks import Finding, at_most, equal, within
 from robo_genesis.core.exercises import as_test, compared
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03.energy import clearance
-from robo_genesis.lessons.l03.metrics import LandingMetrics, SlideMetrics
+from robo_genesis.lessons.l03.metrics import LandingMetrics, SlideMetrics, clearance
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
 

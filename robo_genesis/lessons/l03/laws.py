@@ -1,19 +1,15 @@
 """What runs of landings, slides and bounces have in common by the laws of motion."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import study_spec
-from robo_genesis.sim.bodies.contacts import ContactCase
 from robo_genesis.sim.bodies.laws import body_on_surface, never_still, reported_contacts
 from robo_genesis.sim.laws import computed_again, copied, kept, times
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 MEASURES = False
-
-BY_MUJOCO = {*study_spec.IN_MUJOCO}
 
 MOTION = ("link_pos", "link_quat", "link_vel", "link_ang", "penetration")
 AGAIN = dict.fromkeys(MOTION, 1e-5)
@@ -27,25 +23,19 @@ AGAIN_BY_DEFAULTS = dict.fromkeys(MOTION, 2e-5) | {"link_ang": 4e-3}
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
     """At each sample a body moves and touches as the contact model makes it; MuJoCo runs repeat."""
-    by_genesis = {name: of for name, of in run.traces.items() if name not in BY_MUJOCO}
     for name, case in run.cases.items():
-        trace = run.traces[name]
-        if name in BY_MUJOCO:
-            broken = in_mujoco(trace, case, name == study_spec.OWN_DEFAULTS, by_genesis)
-        else:
-            broken = body_on_surface(trace, case)
+        by_mujoco = name in study_spec.IN_MUJOCO
+        broken = in_mujoco(run, name) if by_mujoco else body_on_surface(run.traces[name], case)
         yield from kept(name, broken)
 
 
-def in_mujoco(
-    trace: ContactTrace,
-    case: ContactCase,
-    own_defaults: bool,
-    by_genesis: Mapping[str, ContactTrace],
-) -> Iterator[Finding]:
-    """Yield what a run in MuJoCo does not have; the arguments as of `mujoco_contacts.run_case`."""
+def in_mujoco(run: Experiment, name: str) -> Iterator[Finding]:
+    """Yield what a run of `mujoco_contacts.run_case` does not have."""
+    trace, case, own_defaults = run.traces[name], run.cases[name], name == study_spec.OWN_DEFAULTS
     yield from times(trace, case.steps, case.dt)
-    yield from copied(trace, by_genesis)
+    yield from copied(
+        trace, {n: of for n, of in run.traces.items() if n not in study_spec.IN_MUJOCO}
+    )
     again = mujoco_contacts.run_case(case, own_defaults)
     yield from computed_again(trace, again, AGAIN_BY_DEFAULTS if own_defaults else AGAIN)
     yield from reported_contacts(trace, case)

@@ -10,8 +10,7 @@ import numpy as np
 
 from robo_genesis.core.mistakes import Failure
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03.energy import clearance
-from robo_genesis.lessons.l03.metrics import STOP_SPEED, slide_metrics, stopped_at
+from robo_genesis.lessons.l03.metrics import STOP_SPEED, clearance, slide_metrics, stopped_at
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase, build_world, run_world, time_constant
 
 MEASURES = False

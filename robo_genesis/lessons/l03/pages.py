@@ -1,6 +1,6 @@
 """The measuring pages of L03, and its declaration."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
 from robo_genesis.core.checks import Finding
@@ -14,38 +14,30 @@ from robo_genesis.core.experiment import (
     runs_of,
 )
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import (
-    checks,
-    spec,
-    study,
-    study_contact,
-    study_energy,
-    study_spec,
+from robo_genesis.lessons.l03 import checks, spec, study, study_deeper, study_spec
+from robo_genesis.lessons.l03.metrics import (
+    BounceMetrics,
+    LandingMetrics,
+    SlideMetrics,
+    case_metrics,
 )
-from robo_genesis.lessons.l03.metrics import case_metrics, metrics_class
-from robo_genesis.sim.bodies.contacts import (
-    SETTINGS,
-    ContactCase,
-)
+from robo_genesis.sim.bodies.contacts import SETTINGS, ContactCase
 
 MEASURES = False
 
 
-def readings(
-    cases: Mapping[str, ContactCase], scenes: Collection[str] = ()
-) -> Callable[[bool], dict[str, Readings]]:
-    """Return a function for the engine's values of a page.
+def readings(cases: Mapping[str, ContactCase]) -> Callable[[bool], dict[str, Readings]]:
+    """Return a function for the engine's values of a page with these cases.
 
     They are the counts of the cube's scene, the masses, the settings of the cases, and the time
-    constants of some scenes.
+    constants of the scenes side by side.
     """
-    shapes = dict.fromkeys(case.shape for case in cases.values())
     found = {
         "model": counts(spec.EXPECTED_MODEL),
-        "mass": Readings(dict.fromkeys(shapes, "kg")),
+        "mass": Readings(dict.fromkeys([case.shape for case in cases.values()], "kg")),
         **{name: Readings(dict.fromkeys(cases, "1")) for name in SETTINGS},
     }
-    if scenes:
+    if scenes := [scene for scene, row in study.ROWS.items() if row.keys() <= cases.keys()]:
         found[study.GROUP] = Readings(dict.fromkeys(scenes, "s"))
     return lambda rendered: found
 
@@ -62,43 +54,37 @@ LAB = MeasuringPage(
 
 
 def further(
-    name: str,
-    cases: Mapping[str, ContactCase],
-    own: Sequence[Callable[[Experiment], Iterable[Finding]]],
-    scenes: Collection[str] = (),
+    name: str, *own: Callable[[Experiment], Iterable[Finding]], camera: bool = False
 ) -> MeasuringPage:
-    """Return a page without a camera, with runs and checks of its own."""
+    """Return a page with runs in Genesis and checks of its own."""
+    cases = study_spec.CASES_OF[name]
     return replace(
         LAB,
         runs=runs_of(cases),
-        readings=readings(cases, scenes),
+        readings=readings(cases),
         checks=(*checks.OF_ALL_PAGES, *own),
         parameters=lambda: spec.parameters() | study_spec.parameters(name),
-        camera=False,
+        camera=camera,
     )
 
 
-LECTURE = further(
-    "lecture",
-    study_spec.OF_LECTURE,
-    study.CHECKS,
-    study_spec.STEP_CASES.keys() | study_spec.STIFF_CASES.keys(),
-)
-LECTURE = replace(LECTURE, checks=(*LECTURE.checks, checks.posture), camera=True)
-CONTACT = further("contact", study_spec.OF_CONTACT, study_contact.CHECKS)
+LECTURE = further("lecture", *study.CHECKS, checks.posture, camera=True)
+CONTACT = further("contact", *study_deeper.OF_CONTACT)
 IN_MUJOCO = {
     name: Run(case, note="run in MuJoCo, not in Genesis")
     for name, case in study_spec.IN_MUJOCO.items()
 }
 CONTACT = replace(CONTACT, runs={**CONTACT.runs, **IN_MUJOCO})
-ENERGY = further(
-    "energy", study_spec.OF_ENERGY, study_energy.CHECKS, study_spec.RELEASE_CASES.keys()
-)
-MISTAKES = further("mistakes", study_spec.OF_MISTAKES, ())
+ENERGY = further("energy", *study_deeper.OF_ENERGY)
+MISTAKES = further("mistakes")
 
 LESSON = Lesson(
     spec=spec,
-    metrics={name: metrics_class(case) for name, case in spec.CASES.items()},
+    metrics={
+        **dict.fromkeys(spec.LANDINGS, LandingMetrics),
+        **dict.fromkeys(spec.SLIDES, SlideMetrics),
+        **dict.fromkeys(spec.BOUNCES, BounceMetrics),
+    },
     pages={
         "lab": LAB,
         "lecture": LECTURE,

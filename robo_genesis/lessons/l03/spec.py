@@ -46,8 +46,11 @@ SLIDES = {
 }
 """Two cubes of low and high own friction, side by side on two surfaces."""
 
+SPRING = (1.0, 0.01)
+"""Time constant [s] and damping ratio of a nearly undamped contact."""
+
 DROPPED_BALL = ContactCase(
-    start=(0.0, 0.0, TOP + 0.04 + 0.10), duration=2.0, shape="ball", spring=(1.0, 0.01)
+    start=(0.0, 0.0, TOP + 0.04 + 0.10), duration=2.0, shape="ball", spring=SPRING
 )
 BOUNCES = {f"bounce_sub{n}": replace(DROPPED_BALL, substeps=n) for n in (1, 2, 4, 10, 20, 100)}
 """One ball on a nearly undamped contact, named by its number of substeps."""

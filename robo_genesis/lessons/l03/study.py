@@ -1,15 +1,13 @@
 """Studies of the lecture: landings by step and time constant, clean slides, hops."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, equal, noted, within
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, noted, within
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03 import friction, spec, study_spec, theory
-from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics, SlideMetrics
+from robo_genesis.lessons.l03 import checks, spec, study_spec, theory
+from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 GROUP = "time_constant"
@@ -19,22 +17,9 @@ ROWS = study_spec.STEP_CASES | study_spec.STIFF_CASES | study_spec.RELEASE_CASES
 """Scenes with the landings from all heights side by side."""
 
 
-def landings_of(metrics: Mapping[str, CaseMetrics], scene: str) -> list[LandingMetrics]:
-    """Return the metrics of the landings of a scene, in the order of their heights."""
-    found = [metrics[name] for name in ROWS[scene]]
-    return [of for of in found if isinstance(of, LandingMetrics)]
-
-
-def slide(metrics: Mapping[str, CaseMetrics], name: str) -> SlideMetrics:
-    """Return the metrics of a run that slides.
-
-    Raises:
-        KeyError: the run does not exist or is not a slide.
-    """
-    found = metrics[name]
-    if not isinstance(found, SlideMetrics):
-        raise KeyError(f"{name} is not a slide")
-    return found
+def row(run: Experiment, scene: str) -> list[tuple[str, ContactCase, LandingMetrics]]:
+    """Return name, case and metrics of each landing of a scene, in the order of their heights."""
+    return [(name, case, run.metrics[name]) for name, case in ROWS[scene].items()]
 
 
 def case_of(scene: str) -> ContactCase:
@@ -48,24 +33,17 @@ def share_of_step(scene: str) -> float:
     return case.h / theory.contact_seconds(case)
 
 
-def depth_shares(metrics: Mapping[str, CaseMetrics], scene: str) -> list[float]:
+FINEST_SCENE = min(study_spec.STEP_CASES, key=share_of_step)
+
+
+def depth_shares(run: Experiment, scene: str) -> list[float]:
     """Return each depth as a share of v T / e, in the order of the heights."""
-    pairs = zip(landings_of(metrics, scene), ROWS[scene].values(), strict=True)
-    return [found.penetration / theory.depth(case) for found, case in pairs]
+    return [found.penetration / theory.depth(case) for _, case, found in row(run, scene)]
 
 
 def clean(run: Experiment) -> list[str]:
     """Return the slides with the elliptic cone and the resolution that comes with it."""
     return [n for n, c in run.cases.items() if c.cone == "elliptic" and c.resolution is None]
-
-
-def first_impulses(trace: ContactTrace, case: ContactCase) -> tuple[float, float]:
-    """Return the loss of v_x and the gain of v_z against gravity in the first outer step [m/s].
-
-    Both are an impulse of the contact divided by the mass.
-    """
-    before, after = (trace.link_vel[k, 0].astype(np.float64) for k in (0, 1))
-    return float(before[0] - after[0]), float(after[2] - before[2] + case.gravity * case.dt)
 
 
 def time_constants(run: Experiment) -> Iterator[Finding]:
@@ -89,7 +67,7 @@ def rebound_goes(run: Experiment) -> Iterator[Finding]:
     steps studied, none does from any of the nine heights.
     """
     for name in study_spec.STEP_CASES:
-        highest = max(found.rebound for found in landings_of(run.metrics, name))
+        highest = max(found.rebound for *_, found in row(run, name))
         label, step = f"{name}.highest_rebound_m", case_of(name).h
         if step > spec.BASELINE.h:
             yield noted(label, highest)
@@ -103,13 +81,14 @@ def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
     """Depths as shares of v T / e scatter widely at h = T / 2, and less at every smaller step."""
     limit = np.inf
     for name in sorted(study_spec.STEP_CASES, key=share_of_step, reverse=True):
-        scatter = float(np.ptp(depth_shares(run.metrics, name)))
-        label = f"{name}.scatter_of_depth_share"
+        shares = depth_shares(run, name)
+        scatter, label = float(np.ptp(shares)), f"{name}.scatter_of_depth_share"
         if share_of_step(name) >= 0.5:
             yield above(label, scatter, study_spec.SCATTER_COARSE)
         else:
-            yield Finding(label, scatter, scatter < limit, f"less than {limit:g}")
-            limit = scatter
+            yield below(label, scatter, limit)
+        limit = min(limit, scatter)
+        yield noted(f"{name}.smallest_depth_share", min(shares))
     yield at_most("scatter_left", limit, study_spec.SCATTER_FINE)
 
 
@@ -117,18 +96,16 @@ def depth_by_hand(run: Experiment) -> Iterator[Finding]:
     """With fine steps, each cube sinks in by v T / e: within 10 % for a time constant of 10 ms, and
     within 20 % for 2 ms.
     """
-    finest = min(study_spec.STEP_CASES, key=share_of_step)
-    allowed = {finest: study_spec.DEPTH_SHARE, study_spec.STIFF: study_spec.STIFF_SHARE}
+    allowed = {FINEST_SCENE: study_spec.DEPTH_SHARE, study_spec.STIFF: study_spec.STIFF_SHARE}
     for scene, share in allowed.items():
-        names = ROWS[scene]
-        for name, found in zip(names, depth_shares(run.metrics, scene), strict=True):
+        for name, found in zip(ROWS[scene], depth_shares(run, scene), strict=True):
             yield within(f"{name}.depth_share", found, 1.0, share)
 
 
 def hops(run: Experiment, names: Iterable[str]) -> Iterator[Finding]:
     """Require slides that leave the surface."""
     for name in names:
-        yield above(f"{name}.hop_m", slide(run.metrics, name).hop, study_spec.HOP)
+        yield above(f"{name}.hop_m", run.metrics[name].hop, study_spec.HOP)
 
 
 def default_cone_hops(run: Experiment) -> Iterator[Finding]:
@@ -136,36 +113,36 @@ def default_cone_hops(run: Experiment) -> Iterator[Finding]:
     return hops(run, study_spec.HOPPED)
 
 
+def by_formula(run: Experiment, name: str) -> Finding:
+    """Require the hop of one solver step, within 25 %."""
+    expected = theory.hop(run.cases[name])
+    allowed = study_spec.HOP_SHARE * expected
+    return within(f"{name}.hop_m", run.metrics[name].hop, expected, allowed)
+
+
 def hop_follows_step(run: Experiment) -> Iterator[Finding]:
     """From 10 ms to 2 ms the hop is that of the formula for one step, within 25 %; at smaller steps
     at most 15 % of the hop at 5 ms is left.
     """
     for step, cases in study_spec.HOP_STEP_CASES.items():
-        for name, case in cases.items():
-            found, label = slide(run.metrics, name).hop, f"{name}.hop_m"
+        for name in cases:
             if step in study_spec.HOP_APPLIES:
-                expected = theory.hop(case)
-                yield within(label, found, expected, study_spec.HOP_SHARE * expected)
+                yield by_formula(run, name)
             else:
-                yield below_coarsest(run, label, found, name)
-
-
-def below_coarsest(run: Experiment, label: str, found: float, name: str) -> Finding:
-    """Require a hop that is smaller than that of the same cube at a solver step of 5 ms."""
-    coarse = slide(run.metrics, f"hop_5000us_{name.rpartition('_')[2]}").hop
-    return at_most(label, found, study_spec.HOP_LEFT * coarse)
+                coarse = run.metrics[name.replace(step, "hop_5000us")].hop
+                limit = study_spec.HOP_LEFT * coarse
+                yield at_most(f"{name}.hop_m", run.metrics[name].hop, limit)
 
 
 def hop_follows_speed(run: Experiment) -> Iterator[Finding]:
     """At a step of 5 ms the hop grows with the speed, and is below 1 mm up to 0.2 m/s."""
     previous = 0.0
     for name, case in study_spec.HOP_SPEED_CASES.items():
-        found, label = slide(run.metrics, name).hop, f"{name}.hop_m"
+        found = run.metrics[name].hop
         if case.speed <= study_spec.SLOW:
-            yield at_most(label, found, study_spec.INVISIBLE)
+            yield at_most(f"{name}.hop_m", found, study_spec.INVISIBLE)
         else:
-            expected = theory.hop(case)
-            yield within(label, found, expected, study_spec.HOP_SHARE * expected)
+            yield by_formula(run, name)
         yield above(f"{name}.higher_than_slower_m", found - previous, 0.0)
         previous = found
 
@@ -173,7 +150,7 @@ def hop_follows_speed(run: Experiment) -> Iterator[Finding]:
 def clean_slides_stay_down(run: Experiment) -> Iterator[Finding]:
     """With the engine's elliptic cone, cubes slide on four corners at every sample."""
     for name in clean(run):
-        yield at_most(f"{name}.hop_m", slide(run.metrics, name).hop, CLEAR)
+        yield at_most(f"{name}.hop_m", run.metrics[name].hop, CLEAR)
         contacts = run.traces[name].contacts[:, 0]
         yield equal(f"{name}.fewest_contacts", contacts.min(), 4)
         yield equal(f"{name}.most_contacts", contacts.max(), 4)
@@ -182,35 +159,36 @@ def clean_slides_stay_down(run: Experiment) -> Iterator[Finding]:
 def clean_slides_are_coulomb_s(run: Experiment) -> Iterator[Finding]:
     """With the elliptic cone, a cube stops at v² / (2 μ g) − v h / 2: Coulomb's law in steps."""
     for name in clean(run):
-        case = run.cases[name]
-        mu = friction.pair_friction(case)
-        expected = friction.stepped_distance(case.speed, mu, case.h, case.gravity)
-        found = slide(run.metrics, name).stop_distance
+        expected = theory.stepped_distance(run.cases[name])
+        found = run.metrics[name].stop_distance
         yield within(f"{name}.stop_distance_m", found, expected, study_spec.STEPPED_TOLERANCE)
+
+
+def clean_slides_order(run: Experiment) -> Iterator[Finding]:
+    """With less friction a cube with the elliptic cone travels farther; the smaller coefficient
+    changes nothing.
+    """
+    return checks.orders_of_distances(run, "_elliptic")
 
 
 def larger_friction_rules(run: Experiment) -> Iterator[Finding]:
     """Clean slides show the larger of two coefficients, and fit no other rule."""
     for name in clean(run):
-        case, distance = run.cases[name], slide(run.metrics, name).stop_distance
-        label = f"{name}.friction"
+        case, distance = run.cases[name], run.metrics[name].stop_distance
         if distance is None:
-            yield Finding(label, None, False, "a coefficient")
+            yield Finding(f"{name}.friction", None, False, "a coefficient")
             continue
-        continuous = distance + case.speed * case.h / 2
-        apparent = friction.apparent_friction(case.speed, continuous, case.gravity)
-        fits = [
-            rule
-            for rule, of in friction.RULES.items()
-            if abs(of(case.friction, case.surface_friction) - apparent) <= study_spec.RULE_TOLERANCE
-        ]
-        expected = f"the larger of {case.friction:g} and {case.surface_friction:g}"
-        expected += f" and no other rule; it fits {' and '.join(fits) or 'none'}"
-        yield Finding(label, apparent, fits == ["the larger"], expected)
+        apparent = theory.apparent_friction(case, distance + case.speed * case.h / 2)
+        both = case.friction, case.surface_friction
+        errors = {rule: abs(of(*both) - apparent) for rule, of in theory.RULES.items()}
+        fits = [rule for rule, error in errors.items() if error <= study_spec.RULE_TOLERANCE]
+        expected = f"the larger of {both[0]:g} and {both[1]:g} and no other rule; "
+        expected += f"it fits {' and '.join(fits) or 'none'}"
+        yield Finding(f"{name}.friction", apparent, fits == ["the larger"], expected)
 
 
 CHECKS = (
     time_constants, records_each_step, rebound_goes, scatter_shrinks, depth_by_hand,
-    clean_slides_stay_down, clean_slides_are_coulomb_s, larger_friction_rules, default_cone_hops,
-    hop_follows_step, hop_follows_speed,
+    clean_slides_stay_down, clean_slides_are_coulomb_s, clean_slides_order, larger_friction_rules,
+    default_cone_hops, hop_follows_step, hop_follows_speed,
 )  # fmt: skip

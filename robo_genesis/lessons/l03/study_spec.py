@@ -15,19 +15,16 @@ DROPPED = {name: replace(LANDINGS[name], duration=0.5) for name in ("baseline", 
 HOPPED = {name: SLIDES[name] for name in ("low_on_050", "high_on_050")}
 """The slides of the lecture's second replay, with the engine's default friction model."""
 
-# Landings by solver step and by time constant
 
-STEPS_STUDIED = {
-    "h_20000us": (0.02, 1),
-    "h_10000us": (0.01, 1),
-    "h_5000us": (0.005, 1),
-    "h_4000us": (0.004, 1),
-    "h_2500us": (0.0025, 1),
-    "h_1000us": (0.001, 1),
-    "h_500us": (0.001, 2),
-    "h_125us": (0.001, 8),
-}
-"""Outer step [s] and substeps, named by the solver step in microseconds."""
+def by_step(kind: str, *steps: tuple[float, int]) -> dict[str, dict[str, Any]]:
+    """Return settings with each outer step [s] and number of substeps, named by the solver step.
+
+    The names have microseconds: `h_2500us`.
+    """
+    return {f"{kind}_{1e6 * dt / n:.0f}us": {"dt": dt, "substeps": n} for dt, n in steps}
+
+
+# Landings by solver step and by time constant
 
 HEIGHTS_STUDIED = tuple(round(1.0 + 0.0066 * k, 4) for k in range(-4, 5))
 """Initial heights [m]: with them the cubes meet the surface at many phases of a step."""
@@ -49,8 +46,13 @@ def side_by_side(
 
 
 STEP_CASES = {
-    name: side_by_side(name, dt=dt, substeps=n) for name, (dt, n) in STEPS_STUDIED.items()
-}
+    name: side_by_side(name, **step)
+    for name, step in by_step(
+        "h",
+        (0.02, 1), (0.01, 1), (0.005, 1), (0.004, 1), (0.0025, 1), (0.001, 1), (0.001, 2),
+        (0.001, 8),
+    ).items()
+}  # fmt: skip
 """By solver step, the landing from each height with the default time constant."""
 
 AS_BASELINE = "h_5000us_10000"
@@ -87,60 +89,36 @@ CONVEX_SLIDES = {
 }
 """The elliptic cone alone; all other settings are the defaults of the pyramid."""
 
-# Hops with the default cone
+# Pushes with the default cone
 
-HOP_STEPS = {
-    "hop_10000us": (0.01, 1),
-    "hop_5000us": (0.005, 1),
-    "hop_2500us": (0.0025, 1),
-    "hop_2000us": (0.002, 1),
-    "hop_1000us": (0.001, 1),
-    "hop_500us": (0.001, 2),
-    "hop_100us": (0.001, 10),
-}
-"""Outer step [s] and substeps of the pushes at 2 m/s, named by the solver step."""
 
-HOP_STEP_CASES = {
-    name: {
-        f"{name}_low": replace(PUSHED, dt=dt, substeps=n, duration=0.4),
-        f"{name}_high": replace(BESIDE, dt=dt, substeps=n, duration=0.4),
+def pushes(kind: str, duration: float, *steps: tuple[float, int]) -> dict[str, Any]:
+    """Return by solver step the pushes of both cubes to 2 m/s, recorded for `duration` [s]."""
+    cubes = {"low": PUSHED, "high": BESIDE}
+    return {
+        name: {f"{name}_{c}": replace(of, duration=duration, **step) for c, of in cubes.items()}
+        for name, step in by_step(kind, *steps).items()
     }
-    for name, (dt, n) in HOP_STEPS.items()
-}
 
-HOP_SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0)
-"""Speeds of the push [m/s]."""
+
+HOP_STEP_CASES = pushes(
+    "hop", 0.4,
+    (0.01, 1), (0.005, 1), (0.0025, 1), (0.002, 1), (0.001, 1), (0.001, 2), (0.001, 10),
+)  # fmt: skip
+STOP_CASES = pushes(
+    "stop", 1.2,
+    (0.0025, 1), (0.001, 1), (0.001, 2), (0.001, 4), (0.001, 8), (0.02, 200), (0.001, 12),
+)  # fmt: skip
+"""Those that are recorded until they stop; `HOPPED` continues them at 5 ms."""
 
 HOP_SPEED_CASES = {
     f"hop_{round(1000 * speed)}mm_s": replace(
         PUSHED, start=(-0.6, round(0.16 * k - 0.32, 2), 0.765), speed=speed, dt=0.005, substeps=1,
         duration=0.4,
     )
-    for k, speed in enumerate(HOP_SPEEDS)
+    for k, speed in enumerate((0.1, 0.2, 0.5, 1.0, 2.0))
 }  # fmt: skip
-"""The cube with the low coefficient, pushed at each speed with a solver step of 5 ms."""
-
-# Stopping distances by step
-
-STOP_STEPS = {
-    "stop_2500us": (0.0025, 1),
-    "stop_1000us": (0.001, 1),
-    "stop_500us": (0.001, 2),
-    "stop_250us": (0.001, 4),
-    "stop_125us": (0.001, 8),
-    "stop_100us": (0.02, 200),
-    "stop_83us": (0.001, 12),
-}
-"""Outer step [s] and substeps of the pushes that are recorded until they stop."""
-
-STOP_CASES = {
-    name: {
-        f"{name}_low": replace(PUSHED, dt=dt, substeps=n, duration=1.2),
-        f"{name}_high": replace(BESIDE, dt=dt, substeps=n, duration=1.2),
-    }
-    for name, (dt, n) in STOP_STEPS.items()
-}
-"""By solver step; `HOPPED` continues them at 5 ms."""
+"""The cube with the low coefficient, pushed at each speed [m/s] with a solver step of 5 ms."""
 
 HALF_THE_STEP = "stop_2500us_high"
 """The push of the cube with the higher coefficient at half the solver step of `HOPPED`."""
@@ -167,13 +145,13 @@ def flat(*groups: dict[str, dict[str, ContactCase]]) -> dict[str, ContactCase]:
     }
 
 
-OF_LECTURE = (
-    DROPPED | flat(STEP_CASES, STIFF_CASES) | ELLIPTIC | HOPPED | flat(HOP_STEP_CASES)
-    | HOP_SPEED_CASES
-)  # fmt: skip
-OF_CONTACT = BY_BOTH | ELLIPTIC | FINER_SLIDES | flat(STOP_CASES)
-OF_ENERGY = BOUNCES | flat(RELEASE_CASES)
-OF_MISTAKES = LANDINGS | HOPPED
+CASES_OF = {
+    "lecture": DROPPED | flat(STEP_CASES, STIFF_CASES) | ELLIPTIC | HOPPED | flat(HOP_STEP_CASES)
+    | HOP_SPEED_CASES,
+    "contact": BY_BOTH | ELLIPTIC | FINER_SLIDES | flat(STOP_CASES),
+    "energy": BOUNCES | flat(RELEASE_CASES),
+    "mistakes": LANDINGS | HOPPED,
+}  # fmt: skip
 """The runs in Genesis of each page."""
 
 # What only judges
@@ -183,9 +161,6 @@ DEPTH_SHARE = 0.1
 
 STIFF_SHARE = 0.2
 """The same for a time constant of 2 ms: at depths of a millimetre the contact is softer."""
-
-ADVISED = (0.25, 0.1)
-"""Shares of the time constant that the lesson advises as solver step: at most, and better."""
 
 SCATTER_COARSE, SCATTER_FINE = 0.5, 0.05
 """Scatter of depth / (v T / e) over the heights: at least this at h = T / 2, at most this at the
@@ -249,30 +224,25 @@ RELEASE_SHARE = 0.1
 REBOUND_SHARE = 0.25
 """Tolerance of a rebound against that of a linear contact, as a share."""
 
-
-OWN: dict[str, dict[str, Any]] = {
+GROUPS: dict[str, dict[str, Any]] = {
     "lecture": {
-        "cases": case_inputs(OF_LECTURE),
         "scenes": {name: list(of) for name, of in (STEP_CASES | STIFF_CASES).items()},
         "as_baseline": AS_BASELINE,
         "hops": {name: list(of) for name, of in HOP_STEP_CASES.items()},
         "hop_speeds": list(HOP_SPEED_CASES),
     },
     "contact": {
-        "cases": case_inputs(OF_CONTACT),
         "in_mujoco": sorted(IN_MUJOCO),
         "with_its_own_contact": OWN_DEFAULTS,
         "engine_pairs": ENGINE_PAIRS,
         "stops": {name: list(of) for name, of in STOP_CASES.items()},
     },
-    "energy": {
-        "cases": case_inputs(OF_ENERGY),
-        "releases": {name: list(of) for name, of in RELEASE_CASES.items()},
-    },
-    "mistakes": {"cases": case_inputs(OF_MISTAKES)},
+    "energy": {"releases": {name: list(of) for name, of in RELEASE_CASES.items()}},
+    "mistakes": {},
 }
+"""By page, the roles of its runs."""
 
 
 def parameters(page: str) -> dict[str, Any]:
     """Return every configured input of a page's own runs as JSON values, for the evidence key."""
-    return {"studies": OWN[page]}
+    return {"studies": {"cases": case_inputs(CASES_OF[page]), **GROUPS[page]}}

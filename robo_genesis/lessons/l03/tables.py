@@ -1,80 +1,256 @@
-"""Tables of the lab: functions of the experiment, and rows."""
+"""Tables of landings, slides and bounces: functions of the experiment."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import wraps
+
+import numpy as np
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.quantities import NOT_OBSERVED, format_value
-from robo_genesis.lessons.l03 import checks, spec
+from robo_genesis.lessons.l03 import checks, spec, study, study_deeper, study_spec, theory
+from robo_genesis.lessons.l03.metrics import CLEAR, BounceMetrics, LandingMetrics, SlideMetrics
+from robo_genesis.lessons.l03.text import millimetres, milliseconds, readable
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 MEASURES = False
 
-SHORT = {"m": ("mm", 0.1), "J": ("mJ", 1.0)}
-"""By unit, a unit a thousand times smaller for values below a limit."""
-
 BEFORE_UNIT = re.compile(r"(?<=\d) (?=[A-Za-zµ%/]+$)")
 """The space between a number and its unit at the end of a cell."""
 
-
-def markdown(rows: Sequence[Mapping[str, str]]) -> str:
-    """Return rows as a Markdown table in which no line ends between a number and its unit."""
-    kept = [{k: BEFORE_UNIT.sub("\u00a0", text) for k, text in row.items()} for row in rows]
-    return tables.markdown(kept)
+Row = dict[str, str]
 
 
-def by_run(metrics: Mapping[str, CaseMetrics], left_out: str = "") -> str:
-    """Return one row per run and one column per metric; one may be left out for room."""
-    labels = next(iter(metrics.values())).about("label")
-    return markdown(
-        [
-            {"run": spec.LABELS[run]}
-            | {labels[n]: readable(v, unit) for n, v, unit in of.items() if n != left_out}
-            for run, of in metrics.items()
-        ]
-    )
+def as_table(rows: Callable[[Experiment], Iterable[Row]]) -> Callable[[Experiment], str]:
+    """Make a function that returns a Markdown table of one that yields its rows.
+
+    In the table, no line ends between a number and its unit.
+    """
+
+    @wraps(rows)
+    def table(run: Experiment) -> str:
+        kept = [{k: BEFORE_UNIT.sub("\u00a0", of) for k, of in row.items()} for row in rows(run)]
+        return tables.markdown(kept)
+
+    return table
 
 
-def landings(run: Experiment) -> str:
+def span(values: Sequence[float], digits: int = 2) -> str:
+    """Write the smallest and the largest value: `0.94 to 0.96`."""
+    return f"{min(values):.{digits}f} to {max(values):.{digits}f}"
+
+
+# The lab
+
+
+def by_run(metrics: Mapping[str, CaseMetrics], left_out: str = "") -> Iterator[Row]:
+    """Yield one row per run with one column per metric; one may be left out for room."""
+    for run, of in metrics.items():
+        labels = of.about("label")
+        cells = {labels[n]: readable(v, unit) for n, v, unit in of.items() if n != left_out}
+        yield {"run": spec.LABELS[run]} | cells
+
+
+@as_table
+def landings(run: Experiment) -> Iterator[Row]:
     """Return the metrics of the dropped cubes."""
-    return by_run(checks.landings(run), left_out="touchdown")
+    return by_run(checks.measured(run, LandingMetrics), left_out="touchdown")
 
 
-def slides(run: Experiment) -> str:
+@as_table
+def slides(run: Experiment) -> Iterator[Row]:
     """Return the metrics of the pushed cubes."""
-    return by_run(checks.slides(run), left_out="first_speed")
+    return by_run(checks.measured(run, SlideMetrics), left_out="first_speed")
 
 
-def bounces(run: Experiment) -> str:
+@as_table
+def bounces(run: Experiment) -> Iterator[Row]:
     """Return the metrics of the balls."""
-    return by_run(checks.bounces(run))
+    return by_run(checks.measured(run, BounceMetrics))
 
 
-def readable(value: float | None, unit: str) -> str:
-    """Write a value with a unit of its size: `6.43 mm` and `0.4104 m`."""
-    small, limit = SHORT.get(unit, ("", 0.0))
-    if value is None:
-        return NOT_OBSERVED
-    if value == 0 and small:
-        return f"0 {small}"
-    if not small or abs(value) >= limit:
-        return format_value(value, unit).replace("-", "−")
-    text = f"{1000 * value:.3f}" if abs(value) < 1e-3 else f"{1000 * value:.2f}"
-    return f"{text} {small}".replace("-", "−")
+# The lecture
 
 
-def landing_rows(cases: Mapping[str, ContactCase]) -> Sequence[dict[str, str]]:
-    """Return one row per case: its steps and the resulting numbers of states and solver steps."""
-    return [
-        {
-            "run": spec.LABELS[name],
-            "dt [ms]": f"{1000 * case.dt:g}",
-            "substeps": str(case.substeps),
-            "h [ms]": f"{1000 * case.h:g}",
-            "states": str(case.steps + 1),
-            "solver steps": str(case.steps * case.substeps),
+@as_table
+def steps(run: Experiment) -> Iterator[Row]:
+    """Return the landings by solver step: time constant, depth by hand and measured, rebounds."""
+    for name in study_spec.STEP_CASES:
+        found = [of for *_, of in study.row(run, name)]
+        yield {
+            "h": milliseconds(study.case_of(name).h),
+            "T in force": milliseconds(run.readings[study.GROUP][name]),
+            "h / T": f"{study.share_of_step(name):.3g}",
+            "depth": f"{span([1000 * of.penetration for of in found], 1)} mm",
+            "depth / (v T / e)": span(study.depth_shares(run, name)),
+            "rebounds": f"{sum(of.rebound > CLEAR for of in found)} of {len(found)}",
         }
-        for name, case in cases.items()
-    ]
+
+
+@as_table
+def depths(run: Experiment) -> Iterator[Row]:
+    """Return depth by hand and measured from the lab's height, for both time constants."""
+    for scene in (study.FINEST_SCENE, study_spec.STIFF):
+        name = f"{scene}_10000"
+        case = run.cases[name]
+        yield {
+            "T": milliseconds(theory.contact_seconds(case)),
+            "h": milliseconds(case.h),
+            "v": f"{theory.impact_speed(case):.2f} m/s",
+            "v T / e": millimetres(theory.depth(case)),
+            "measured": millimetres(run.metrics[name].penetration),
+            "nine heights, measured / (v T / e)": span(study.depth_shares(run, scene)),
+        }
+
+
+def stop(run: Experiment, name: str) -> str:
+    """Write a stopping distance."""
+    return format_value(run.metrics[name].stop_distance, "m")
+
+
+@as_table
+def clean_slides(run: Experiment) -> Iterator[Row]:
+    """Return the slides with the elliptic cone beside Coulomb's distance."""
+    for name in study.clean(run):
+        case = run.cases[name]
+        yield {
+            "cube on table": f"{case.friction:g} on {case.surface_friction:g}",
+            "h": milliseconds(case.h),
+            "measured": stop(run, name),
+            "v² / (2 μ g)": format_value(theory.coulomb_distance(case), "m"),
+            "v² / (2 μ g) − v h / 2": format_value(theory.stepped_distance(case), "m"),
+            "hop": millimetres(run.metrics[name].hop),
+        }
+
+
+@as_table
+def hops_by_step(run: Experiment) -> Iterator[Row]:
+    """Return the hops by solver step for both coefficients, with the formula of one step."""
+    for cases in study_spec.HOP_STEP_CASES.values():
+        case = next(iter(cases.values()))
+        row = {
+            "h": milliseconds(case.h),
+            "h / T": f"{case.h / theory.contact_seconds(case):.3g}",
+        }
+        for name, of in cases.items():
+            mu = theory.pair_friction(of)
+            row[f"μ = {mu:g}"] = millimetres(run.metrics[name].hop)
+            row[f"formula, μ = {mu:g}"] = millimetres(theory.hop(of))
+        yield row
+
+
+@as_table
+def hops_by_speed(run: Experiment) -> Iterator[Row]:
+    """Return the hops by the speed of the push at a solver step of 5 ms."""
+    for name, case in study_spec.HOP_SPEED_CASES.items():
+        yield {
+            "push": f"{case.speed:g} m/s",
+            "hop": millimetres(run.metrics[name].hop),
+            "formula": millimetres(theory.hop(case)),
+        }
+
+
+# The deeper pages
+
+
+@as_table
+def settings_of_cones(run: Experiment) -> Iterator[Row]:
+    """Return the pushed cubes by what the setting of the cone switches."""
+    kinds = (("", "convex", "1"), ("_convex", "convex", "1"), ("_elliptic", "signorini", "100"))
+    for suffix, resolution, impratio in kinds:
+        for name in (f"{of}{suffix}" for of in study_spec.HOPPED):
+            case, found = run.cases[name], run.metrics[name]
+            distance = found.stop_distance
+            apparent = distance and f"{theory.apparent_friction(case, distance):.3f}"
+            yield {
+                "cone": case.cone,
+                "resolution": resolution,
+                "impratio": impratio,
+                "μ": f"{theory.pair_friction(case):g}",
+                "hop": millimetres(found.hop),
+                "turns at up to": f"{found.spin:.2f} rad/s",
+                "stops after": stop(run, name),
+                "apparent μ": apparent or NOT_OBSERVED,
+            }
+
+
+@as_table
+def first_impulses(run: Experiment) -> Iterator[Row]:
+    """Return the impulses of the first outer step of the pushed cubes."""
+    for name in study_spec.HOPPED:
+        case, (lost, gained) = run.cases[name], study_deeper.first_impulses(run, name)
+        mu = theory.pair_friction(case)
+        yield {
+            "μ of the pair": f"{mu:g}",
+            "lost along x": f"{lost:.3f} m/s",
+            "gained upwards": f"{gained:.3f} m/s",
+            "their ratio": f"{lost / gained:.3f}",
+            "formula, upwards": f"{theory.upward_blow(case):.3f} m/s",
+            "μ g dt, under the weight": f"{mu * case.gravity * case.dt:.3f} m/s",
+        }
+
+
+@as_table
+def stops_by_step(run: Experiment) -> Iterator[Row]:
+    """Return the stopping distances of both pushed cubes by solver step."""
+    low, high = (study_deeper.stops_of_lane(run, lane) for lane in study_deeper.LANES)
+    for one, other in zip(low, high, strict=True):
+        yield {
+            "h": milliseconds(run.cases[one].h),
+            "μ = 0.5 stops after": stop(run, one),
+            "μ = 0.8 stops after": stop(run, other),
+            "μ = 0.8 takes": format_value(run.metrics[other].stop_time, "s"),
+        }
+
+
+@as_table
+def engines(run: Experiment) -> Iterator[Row]:
+    """Return how far each pair of runs is apart, and from when they are farther than 0.05 mm."""
+    for pair in (*study_spec.ENGINE_PAIRS.items(), ("baseline", study_spec.OWN_DEFAULTS)):
+        distance = study_deeper.distance_between(run.traces, *pair)
+        excess = np.flatnonzero(distance > study_spec.ENGINES_APART)
+        since, counts = "never", ["–", "–"]
+        if len(excess):
+            since = f"{run.traces[pair[1]].t[excess[0]]:.2f} s"
+            counts = [str(run.traces[name].contacts[excess[0], 0]) for name in pair]
+        rise = "hop" if run.cases[pair[0]].speed else "rebound"
+        heights = [f"{1000 * getattr(run.metrics[name], rise):.2f}" for name in pair]
+        yield {
+            "run": described(run.cases[pair[0]], pair[1] == study_spec.OWN_DEFAULTS),
+            "rebound or hop [mm]": " and ".join(heights),
+            "farthest apart [µm]": f"{1e6 * distance.max():.2f}",
+            "over 0.05 mm from": since,
+            "contacts there": " and ".join(counts),
+        }
+
+
+def described(case: ContactCase, own_defaults: bool) -> str:
+    """Describe a pair of runs, in Genesis and in the other engine, by what distinguishes it."""
+    if case.speed:
+        return f"push, {case.cone}, μ = {theory.pair_friction(case):g}"
+    own = ", MuJoCo's own contact" if own_defaults else ""
+    return f"landing, h = {milliseconds(case.h)}{own}"
+
+
+@as_table
+def releases(run: Experiment) -> Iterator[Row]:
+    """Return release speed and rebound by time constant, beside the linear contact."""
+    for scene in study_spec.RELEASE_CASES:
+        runs, case = study.row(run, scene), study.case_of(scene)
+        shares = [found.upward_speed / theory.impact_speed(of) for _, of, found in runs]
+        yield {
+            "T": milliseconds(theory.contact_seconds(case)),
+            "h": milliseconds(case.h),
+            "upward speed / impact speed": span(shares, 3),
+            "rebound": heights([found.rebound for *_, found in runs]),
+            "linear contact": heights([theory.rebound(of) for _, of, _ in runs]),
+        }
+
+
+def heights(rebounds: Sequence[float]) -> str:
+    """Write the smallest and the largest rebound."""
+    if max(rebounds) <= CLEAR:
+        return "none"
+    return f"{span([1000 * rebound for rebound in rebounds])} mm"

@@ -1,14 +1,59 @@
-"""A contact as a linear spring and damper: depth, release, rebound, and the hop of one step.
+"""Formulas of a contact as a linear spring and damper, and of Coulomb's friction on it.
 
 At a damping ratio of one, a contact with time constant T gives a body the acceleration
-−(2 / T) v − x / T², and it never pulls. Gravity is neglected while the two overlap.
+−(2 / T) v − x / T², and it never pulls. Gravity is neglected while the two overlap. A sliding body
+has the speed v of its case and the friction coefficient μ of the pair.
 """
+
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from robo_genesis.lessons.l03.friction import pair_friction
 from robo_genesis.sim.bodies.contacts import ContactCase
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
+
+RULES: Mapping[str, Callable[[float, float], float]] = {
+    "the larger": max,
+    "the smaller": min,
+    "the mean": lambda a, b: (a + b) / 2,
+    "the geometric mean": lambda a, b: float(np.sqrt(a * b)),
+}
+"""The rules by which engines combine the coefficients of two surfaces, by their names in a text."""
+
+
+def pair_friction(case: ContactCase) -> float:
+    """Return the coefficient μ of body and surface by the engine's rule, the larger of the two."""
+    return max(case.friction, case.surface_friction)
+
+
+def coulomb_distance(case: ContactCase) -> float:
+    """Return v² / (2 μ g), the distance after which friction stops a sliding body [m]."""
+    return case.speed**2 / (2 * pair_friction(case) * case.gravity)
+
+
+def stepped_distance(case: ContactCase) -> float:
+    """Return v² / (2 μ g) − v h / 2, the same distance in solver steps of length h [m].
+
+    Each step first takes μ g h from the speed and then moves the body with the new speed, as
+    semi-implicit Euler does. It is behind the continuous solution for a body that slows down, and
+    ahead of it for a body that falls. The formula is the exact sum where v / (μ g h) is a whole
+    number of steps; otherwise the sum is longer by up to μ g h² / 8.
+    """
+    return coulomb_distance(case) - case.speed * case.h / 2
+
+
+def apparent_friction(case: ContactCase, distance: float) -> float:
+    """Return the coefficient for which Coulomb's formula gives a measured distance [m]."""
+    return case.speed**2 / (2 * case.gravity * distance)
+
+
+def kept_at_bounces(damping_ratio: float) -> float:
+    """Return the share of the energy that a linear spring with damping ratio ζ returns.
+
+    Half a period of x″ + 2 ζ ω x′ + ω² x = 0 multiplies the velocity by e^(−π ζ / √(1 − ζ²)), and
+    the energy by its square. The formula neglects gravity and lets the spring pull.
+    """
+    return float(np.exp(-2 * np.pi * damping_ratio / np.sqrt(1 - damping_ratio**2)))
 
 
 def contact_seconds(case: ContactCase) -> float:

@@ -33,8 +33,6 @@ SHARED = (
 SETTINGS = ("friction", "surface_friction", "substeps")
 """Settings that no array of a run shows; they are read back from the scene."""
 
-LANDING, SLIDE, BOUNCE = "landing", "slide", "bounce"
-
 State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatArray]
 
 
@@ -112,13 +110,6 @@ class ContactCase:
     def rest_height(self) -> float:
         """Height of the centre of a body on the surface without penetration [m]."""
         return TOP + self.size / 2
-
-    @property
-    def kind(self) -> str:
-        """The motion that the case studies: landing, slide or bounce."""
-        if self.spring:
-            return BOUNCE
-        return SLIDE if self.speed else LANDING
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding
-from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.bodies.falls import predicted
 from robo_genesis.sim.bodies.rigid_bodies import Drop
-from robo_genesis.sim.laws import apart, kept, times, unit_quaternions
+from robo_genesis.sim.laws import UNTURNED, ZERO, apart, kept, times, unit_quaternions
 
 MEASURES = False
 
@@ -34,11 +34,9 @@ def falling(trace: BodyTrace, case: Drop) -> Iterator[Finding]:
     yield from times(trace, case.steps, case.dt)
     yield from unit_quaternions(trace.link_quat)
     place, motion = np.zeros((2, trace.steps + 1, 3))
-    solver_steps = case.substeps * np.arange(trace.steps + 1)
-    place[:, 2] = case.height - summed_drop(case.h, solver_steps, case.gravity)
+    place[:, 2] = case.height - predicted(trace, case)
     motion[:, 2] = -case.gravity * trace.t
-    upright = np.array([1.0, 0, 0, 0])
     yield from apart("motion", "link_pos [m]", trace.link_pos[:, 0], place, FALLEN)
     yield from apart("motion", "link_vel [m/s]", trace.link_vel[:, 0], motion, FALLING)
-    yield from apart("motion", "link_quat", trace.link_quat[:, 0], upright, 0.0)
-    yield from apart("motion", "link_ang [rad/s]", trace.link_ang[:, 0], np.zeros(()), 0.0)
+    yield from apart("motion", "link_quat", trace.link_quat[:, 0], UNTURNED, 0.0)
+    yield from apart("motion", "link_ang [rad/s]", trace.link_ang[:, 0], ZERO, 0.0)

@@ -34,7 +34,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase
 from robo_genesis.sim.bodies.continuation import NEXT, continued, cross
-from robo_genesis.sim.laws import apart, broken, times, unit_quaternions
+from robo_genesis.sim.laws import UNTURNED, ZERO, apart, broken, times, unit_quaternions
 
 MEASURES = False
 
@@ -103,13 +103,13 @@ def body_on_surface(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]
 def bounded(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield a speed that gravity and push cannot give, or a place that it does not lead to."""
     fastest = case.speed + case.gravity * (case.duration + 1)
-    zero, about = np.zeros(()), np.array(case.start)
-    yield from apart("motion", "link_vel [m/s]", trace.link_vel[:, 0], zero, fastest)
-    yield from apart("motion", "link_ang [rad/s]", trace.link_ang[:, 0], zero, fastest / case.size)
+    about = np.array(case.start)
+    yield from apart("motion", "link_vel [m/s]", trace.link_vel[:, 0], ZERO, fastest)
+    yield from apart("motion", "link_ang [rad/s]", trace.link_ang[:, 0], ZERO, fastest / case.size)
     untouched = np.cumsum(trace.contacts[:, 0]) == 0
     if not case.settle:
         spin = trace.link_ang[untouched, 0]
-        yield from apart("motion", "link_ang before any contact [rad/s]", spin, zero, 0.0)
+        yield from apart("motion", "link_ang before any contact [rad/s]", spin, ZERO, 0.0)
     far = fastest * (case.duration + 1)
     yield from apart("motion", "link_pos [m]", trace.link_pos[:, 0], about, far)
 
@@ -121,12 +121,10 @@ def sliding(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     along = np.maximum(velocity[:-1, 0] - lost, 0)
     yield from apart("motion", "link_vel along x [m/s]", velocity[1:, 0], along, SLIDING)
     across = velocity[:, 1:]
-    zero = np.zeros(())
-    yield from apart("motion", "link_vel along y and z [m/s]", across, zero, NEXT["link_vel"])
+    yield from apart("motion", "link_vel along y and z [m/s]", across, ZERO, NEXT["link_vel"])
     path = case.dt * (velocity[1:] + velocity[:-1]) / 2
     yield from apart("motion", "path in one step [m]", np.diff(position, axis=0), path, PATH)
-    upright = np.array([1.0, 0, 0, 0])
-    yield from apart("motion", "link_quat", trace.link_quat[:, 0], upright, UPRIGHT)
+    yield from apart("motion", "link_quat", trace.link_quat[:, 0], UNTURNED, UPRIGHT)
 
 
 def start(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
@@ -135,10 +133,8 @@ def start(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     place, speed = np.array(case.start), np.array([case.speed, 0, 0])
     yield from apart("start", "start of link_pos [m]", trace.link_pos[0, 0], place, room)
     yield from apart("start", "start of link_vel [m/s]", trace.link_vel[0, 0], speed, room)
-    upright = np.array([1.0, 0, 0, 0])
-    yield from apart("start", "start of link_quat", trace.link_quat[0, 0], upright, room)
-    zero = np.zeros(())
-    yield from apart("start", "start of link_ang [rad/s]", trace.link_ang[0, 0], zero, room)
+    yield from apart("start", "start of link_quat", trace.link_quat[0, 0], UNTURNED, room)
+    yield from apart("start", "start of link_ang [rad/s]", trace.link_ang[0, 0], ZERO, room)
 
 
 def reported_contacts(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
@@ -260,11 +256,10 @@ def impulses(trace: ContactTrace, case: ContactCase, steps: np.ndarray) -> Itera
     beyond = np.maximum(across - friction * gained[:, 2], -gained[:, 2])
     turned = np.linalg.norm(np.diff(spin, axis=0)[steps], axis=1) * case.size / 6
     reach = np.sqrt(3) / 2 * np.linalg.norm(gained, axis=1)
-    zero = np.zeros(())
     what = "impulse outside the friction cone, per mass [m/s]"
-    yield from apart("motion", what, np.maximum(beyond, 0), zero, IMPULSE)
+    yield from apart("motion", what, np.maximum(beyond, 0), ZERO, IMPULSE)
     what = "impulse that the turning needs beyond that of the motion, per mass [m/s]"
-    yield from apart("motion", what, np.maximum(turned - reach, 0), zero, IMPULSE)
+    yield from apart("motion", what, np.maximum(turned - reach, 0), ZERO, IMPULSE)
 
 
 def before_last_step(trace: BodyTrace, h: float) -> tuple[FloatArray, FloatArray]:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from robo_genesis.lessons.l03 import spec, study_spec
-from robo_genesis.lessons.l03.metrics import CLEAR, STOP_HOLD, STOP_SPEED
+from robo_genesis.lessons.l03.metrics import STOP_SPEED
 from robo_genesis.sim.bodies import contacts
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
@@ -17,7 +17,6 @@ CONFIGURED = {
     "lowest height studied [m]": study_spec.HEIGHTS_STUDIED[0],
     "highest height studied [m]": study_spec.HEIGHTS_STUDIED[-1],
     "finest step studied [ms]": 0.125,
-    "length of the surface [m]": contacts.SURFACE_SIZE[0],
     "window of a landing [s]": spec.BASELINE.duration,
     "friction of the first cubes, and the hold of a stop [s]": spec.PUSHED.friction,
     "friction of the other cubes": spec.BESIDE.friction,
@@ -25,8 +24,6 @@ CONFIGURED = {
     "mean of both coefficients": round((LOW + HIGH) / 2, 2),
     "friction of the other surface, and the time to settle [s]": spec.PUSHED.settle,
     "speed of a stopped body [m/s], and a damping ratio": STOP_SPEED,
-    "hold of a stop [s]": STOP_HOLD,
-    "clearance of a separated body [mm]": 1000 * CLEAR,
     "speed of a gentle push [m/s]": study_spec.SLOW,
     "step of T / 4 [ms]": 2.5,
     "height of the fixed step [m]": 0.02,
@@ -35,5 +32,4 @@ CONFIGURED = {
     "largest impedance": mujoco_contacts.IMPEDANCE[1],
     "1 + μ² in the third calculation": 1 + HIGH**2,
     "T / 10 in the second calculation [ms], speed in the third [m/s]": 0.4,
-    "difference of a depth and v T / e that counts as small [mm]": 0.05,
 }

@@ -191,7 +191,7 @@ CHANGES = [
 ]
 CHANGES += [  # a lesson can be removed with the folder of its tests alone
     (file, CONSTANT, ("l03",), ("l03",))
-    for file in ("sim/bodies/contacts", "lessons/l03/metrics", "lessons/l03/energy")
+    for file in ("sim/bodies/contacts", "lessons/l03/metrics")
     if "l03" in LESSONS
 ]
 

@@ -1,0 +1,218 @@
+"""Each named check passes for sound runs and fails for one spoiled run; the exercise's promise."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lessons.body_runs import body_at, slide_on_corners
+from lessons.changed_runs import failed, with_reading, with_trace
+
+from robo_genesis.core.experiment import Run
+from robo_genesis.lessons.l03 import LESSON, spec, study, study_spec, text
+from robo_genesis.lessons.l03.metrics import case_metrics
+
+REST = spec.BASELINE.rest_height
+
+
+def reading(group, name, value):
+    return lambda run: with_reading(run, group, name, value)
+
+
+def changed(name, field, change):
+    """Return a function that gives one run another array, made from a copy of its own."""
+    return lambda run: with_trace(
+        run, name, **{field: change(np.array(getattr(run.traces[name], field)))}
+    )
+
+
+def shift(name, by, field="link_pos", axis=2, first=0, end=None):
+    """Return a function that changes an array of one run along an axis from `first` until `end`."""
+
+    def change(array):
+        array[first:end, 0, axis] += by
+        return array
+
+    return changed(name, field, change)
+
+
+def as_other(name, other):
+    return lambda run: replace(run, traces=run.traces | {name: run.traces[other]})
+
+
+def on_corners(*names, **changes):
+    """Return a function that lets cubes slide on four corners, with other settings."""
+
+    def spoil(run):
+        slides = {n: slide_on_corners(replace(run.cases[n], **changes)) for n in names}
+        return replace(run, traces=run.traces | slides)
+
+    return spoil
+
+
+def with_case(name, **changes):
+    def spoil(run):
+        runs = run.page.runs | {name: Run(replace(run.cases[name], **changes))}
+        return replace(run, page=replace(run.page, runs=runs))
+
+    return spoil
+
+
+def without_last_step(run):
+    trace = run.traces["bounce_sub1"]
+    return with_trace(
+        run, "bounce_sub1", **{f: getattr(trace, f)[:-1] for f in trace.__dataclass_fields__}
+    )
+
+
+def with_kept(share):
+    """Return a function that gives the ball with the finest step another share of its energy."""
+
+    def measure(trace, case):
+        found = case_metrics(trace, case)
+        finest = case == spec.BOUNCES["bounce_sub100"]
+        return replace(found, first_kept=share) if finest else found
+
+    return lambda run: replace(run, page=replace(run.page, measure=measure))
+
+
+def at(name, by, height):
+    """Return a function that puts the body at one sample, or at the deepest for None, elsewhere."""
+
+    def change(position):
+        sample = int(position[:, 0, 2].argmin()) if by is None else by
+        position[sample, 0, 2] = height(position[sample, 0, 2])
+        return position
+
+    return changed(name, "link_pos", change)
+
+
+def equal_tables(run):
+    """Return the run after the change that the lab proposes; its answer names what fails."""
+    for name in ("low_on_030", "high_on_030"):
+        run = with_reading(run, "surface_friction", name, 0.5)
+        run = as_other(name, name.replace("030", "050"))(run)
+    return run
+
+
+def never_rebounding(run):
+    for name in study_spec.STEP_CASES["h_5000us"]:
+        position = np.array(run.traces[name].link_pos)
+        landed = np.maximum.accumulate(position[:, 0, 2] < REST)
+        position[landed, 0, 2] = np.minimum(position[landed, 0, 2], REST)
+        run = with_trace(run, name, link_pos=position)
+    return run
+
+
+def one_corner_less(contacts):
+    contacts[5] -= 1
+    return contacts
+
+
+STILL = body_at([spec.DROPPED_BALL.rest_height] * 201)
+FAILING = {
+    "lab": {
+        "one more link": (reading("model", "links", 2), {"structure"}),
+        "no mass": (reading("mass", "ball", None), {"mass"}),
+        "another friction": (reading("friction", "low_on_050", 0.45), {"settings"}),
+        "settings that were not read": (
+            lambda run: replace(run, readings=run.readings | {"substeps": {}}), {"settings"}),
+        "a missing step": (without_last_step, {"stamps"}),
+        "a start elsewhere": (shift("high_on_030", 0.01, axis=1), {"start"}),
+        "a start at another speed": (shift("low_on_030", -0.1, "link_vel", 0, end=1), {"start"}),
+        "a second factor": (with_case("bounce_sub4", spring=(1.0, 0.02)), {"one_factor"}),
+        "a cube that hovers": (changed("baseline", "contacts", np.zeros_like), {"lands"}),
+        "a cube that falls through": (shift("baseline", -0.05, first=30), {"lands", "settles"}),
+        "depths of the same state": (
+            changed("dt10_sub1", "penetration", lambda a: np.roll(a, -1)), {"reported_late"}),
+        "other positions at shared times": (
+            shift("dt20_sub2", 1e-5, axis=0, first=5), {"equal_step_equal_states"}),
+        "a cube that does not stop": (
+            shift("low_on_030", 0.5, "link_vel", 0, first=60),
+            {"stops", "friction_orders", "near_coulomb"}),
+        "a table that changes the other cube": (
+            shift("high_on_030", 0.01, axis=0, first=20), {"friction_orders"}),
+        "energy that leaks in flight": (
+            shift("bounce_sub20", 0.002, first=10), {"level_in_flight"}),
+        "no flight": (
+            lambda run: replace(run, traces=run.traces | {"bounce_sub20": STILL}),
+            {"start", "level_in_flight", "energy_converges"}),
+        "energy that does not converge": (with_kept(90.0), {"energy_converges"}),
+        "no share kept": (with_kept(None), {"energy_converges"}),
+        "one picture twice": (
+            lambda run: replace(run, frames=dict.fromkeys(run.frames, run.frames["initial"])),
+            {"posture"}),
+        "equal tables": (equal_tables, {"settings", "friction_orders", "near_coulomb"}),
+    },
+    "lecture": {
+        "another time constant": (
+            reading(study.GROUP, "h_20000us", 0.01), {"time_constants"}),
+        "a record of each step that moves otherwise": (
+            shift(study_spec.AS_BASELINE, 1e-5, first=20, end=40), {"records_each_step"}),
+        "a rebound that stays with smaller steps": (
+            at("h_500us_10000", -20, lambda _: REST + 0.002), {"rebound_goes"}),
+        "no rebound at all": (never_rebounding, {"records_each_step", "rebound_goes"}),
+        "a depth that depends on the start at fine steps": (
+            at("h_125us_10000", None, lambda z: z - 0.003), {"scatter_shrinks", "depth_by_hand"}),
+        "a clean slide that hops": (
+            shift("low_on_030_elliptic", 0.001, first=10, end=12), {"clean_slides_stay_down"}),
+        "a clean slide on three corners": (
+            changed("low_on_030_elliptic", "contacts", one_corner_less),
+            {"clean_slides_stay_down"}),
+        "a clean slide that stops elsewhere": (
+            shift("high_on_030_elliptic", 0.001, axis=0, first=10),
+            {"clean_slides_are_coulomb_s", "clean_slides_order"}),
+        "another rule of friction": (
+            on_corners("low_on_050_elliptic", friction=0.3, surface_friction=0.3),
+            {"clean_slides_are_coulomb_s", "clean_slides_order", "larger_friction_rules"}),
+        "a hop that a finer step does not reduce": (
+            shift("hop_2500us_low", 0.02, first=1), {"hop_follows_step"}),
+        "a hop that stays at the finest step": (
+            shift("hop_100us_high", 0.02, first=1), {"hop_follows_step"}),
+        "a slow push that hops": (shift("hop_200mm_s", 0.002, first=1), {"hop_follows_speed"}),
+    },
+    "contact": {
+        "a pushed cube that stays down": (
+            on_corners("high_on_050"),
+            {"default_cone_hops", "hop_is_paid_by_friction", "half_the_step_contradicts",
+             "engines_hop_alike"}),
+        "a blow that friction does not explain": (
+            shift("low_on_050", -0.1, "link_vel", 0, first=1, end=2), {"hop_is_paid_by_friction"}),
+        "a stop far from Coulomb's": (
+            shift("low_on_050", 0.05, axis=0, first=10), {"stops_nearly_right"}),
+        "a round cone that stays down": (
+            as_other("low_on_050_convex", "low_on_050_elliptic"),
+            {"the_cone_alone_hops", "engines_hop_alike"}),
+        "a stop that converges": (
+            on_corners(*(f"{step}_high" for step in study_spec.STOP_CASES)),
+            {"one_stop_converges"}),
+        "engines that land apart": (
+            as_other("mujoco_baseline", study_spec.OWN_DEFAULTS), {"engines_land_alike"}),
+    },
+    "energy": {
+        "a release that is too fast": (
+            shift("release_5ms_10000", 0.2, "link_vel", 2, first=220), {"release_speed"}),
+        "a soft contact that rebounds": (
+            shift("release_10ms_10000", 0.01, first=270), {"stiff_contacts_rebound"}),
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("page", LESSON.pages)
+def test_a_sound_run_passes_every_check(experiments, page):
+    assert [check.name for check in experiments[page].outcomes() if not check.passed] == []
+
+
+@pytest.mark.parametrize(("page", "name"), [(p, name) for p, of in FAILING.items() for name in of])
+def test_a_wrong_run_fails_its_checks(experiments, page, name):
+    spoil, names = FAILING[page][name]
+    assert failed(spoil(experiments[page])) == names
+
+
+def test_the_lab_says_what_its_runs_show_or_which_check_failed(experiments):
+    said = text.conclusions(experiments["lab"])
+    assert "Its depth is 7.80 mm with two steps in 10 ms" in said
+    assert "The check" not in said
+    never = with_kept(None)(experiments["lab"])
+    assert "The check `energy_converges` failed: bounce_sub100.first_kept_percent is not obs" in (
+        text.conclusions(never)
+    )

@@ -1,0 +1,177 @@
+"""Known answers: theory, energy, clearance, metrics, and the tables and figures of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from lessons.body_runs import body_at, slide_on_corners
+
+from robo_genesis.lessons.l03 import metrics, plots, spec, study_deeper, study_spec, tables, theory
+from robo_genesis.lessons.l03.metrics import bounce_metrics, landing_metrics, slide_metrics
+from robo_genesis.lessons.l03.text import readable
+from robo_genesis.sim.bodies.contacts import TOP
+
+PUSH = replace(spec.PUSHED, gravity=10.0)  # at 2 m/s with μ = 0.5
+REST = spec.BASELINE.rest_height
+
+
+@pytest.mark.parametrize(
+    ("found", "expected"),
+    [
+        (theory.coulomb_distance(PUSH), 0.4),  # 4 / 10 m
+        (theory.apparent_friction(PUSH, 0.4), 0.5),
+        ([rule(0.2, 0.8) for rule in theory.RULES.values()], [0.8, 0.2, 0.5, 0.4]),
+        (theory.kept_at_bounces(0.0), 1),
+        (theory.kept_at_bounces(0.001), np.exp(-2 * np.pi * 0.001)),
+        (theory.impact_speed(spec.BASELINE), np.sqrt(2 * 9.81 * 0.235)),
+        (theory.contact_seconds(spec.BASELINE), 0.01),
+        (theory.contact_seconds(spec.LANDINGS["dt20_sub1"]), 0.04),
+        (theory.contact_seconds(replace(spec.BASELINE, time_constant=0.002)), 0.01),  # two steps
+        (theory.rebound(spec.BASELINE), 0),
+        (theory.upward_blow(replace(spec.PUSHED, speed=1.0)), 0.4),  # 2 · 0.5 · 0.5 / 1.25 m/s
+        (theory.hop(replace(spec.PUSHED, speed=1.0)), 0.16 / 19.62),
+        (theory.hop(replace(spec.PUSHED, substeps=1)), theory.hop(spec.PUSHED)),  # T = 2 h in both
+        (theory.hop(spec.PUSHED), 4 * theory.hop(replace(spec.PUSHED, substeps=4))),
+    ],
+)
+def test_numbers_by_hand(found, expected):
+    assert found == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("n", [4, 40, 4.5, 40.5])
+def test_the_stepped_distance_is_what_a_loop_adds_up_to(n):
+    h = 0.4 / n  # the body stops after n steps
+    case = replace(PUSH, dt=h, substeps=1, duration=h, settle=0)
+    v, x = 2.0, 0.0
+    for _ in range(int(n)):
+        v -= 5 * h
+        x += v * h
+    longer = x - theory.stepped_distance(case)
+    largest = 0 if n == int(n) else 5 * h**2 / 8
+    assert -1e-12 < longer <= largest + 1e-12
+    assert (longer > 1e-12) == (n != int(n))
+
+
+def test_depth_and_release_are_those_of_the_equation():
+    case = study_spec.RELEASE_CASES["release_5ms"]["release_5ms_10000"]
+    seconds, h = 0.005, 1e-7
+    x, v, deepest = 0.0, theory.impact_speed(case), 0.0
+    while (push := 2 * v / seconds + x / seconds**2) >= 0:  # it never pulls
+        v -= h * push
+        x += h * v
+        deepest = max(deepest, x)
+    assert deepest == pytest.approx(theory.depth(case), rel=1e-3)
+    assert -v == pytest.approx(theory.release_speed(case), rel=1e-3)
+    assert v**2 / (2 * case.gravity) - x == pytest.approx(theory.rebound(case), rel=1e-2)
+
+
+def test_the_kept_energy_of_a_thrown_body_stays_and_the_total_one_does_not():
+    h = 0.01
+    case = replace(spec.BASELINE, dt=h, substeps=1, duration=60 * h)
+    v = 3.0 - case.gravity * h * np.arange(61)
+    z = 2.0 + h * np.append(0, np.cumsum(v[1:]))
+    trace = body_at(z, vz=v, dt=h)
+    kept, total = metrics.conserved_energy(trace, case), metrics.total_energy(trace, case)
+    assert np.ptp(kept) < 1e-6 * kept[0]
+    assert np.ptp(total) == pytest.approx(case.mass * case.gravity * h * np.ptp(v) / 2, rel=1e-4)
+    turning = replace(trace, link_ang=np.full_like(trace.link_ang, 10))
+    more = metrics.total_energy(turning, case) - total
+    assert more == pytest.approx(np.full(61, case.inertia * 300 / 2), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("axis", "reach"),
+    [((1, 0, 0), 0.04 * np.sqrt(2)), ((0, 1, 0), 0.04 * np.sqrt(2)), ((0, 0, 1), 0.04)],
+)
+def test_a_cube_on_its_edge_reaches_lower(axis, reach):
+    half = np.pi / 8  # 45° about the axis
+    trace = body_at([1.0, 1.0], quat=(np.cos(half), *(np.sin(half) * np.array(axis))))
+    for case, lowest in ((spec.BASELINE, reach), (spec.DROPPED_BALL, 0.04)):
+        expected = 1.0 - lowest - TOP
+        assert metrics.clearance(trace, case) == pytest.approx([expected] * 2, abs=1e-6)
+
+
+def test_flights_are_the_stretches_in_the_air():
+    up, down = REST + 0.01, REST - 0.001
+    trace = body_at([up] * 4 + [down] * 2 + [up] * 2 + [down] + [up] * 3)
+    found = list(metrics.flights(trace, spec.DROPPED_BALL))
+    assert found == [slice(0, 4), slice(9, 12)]  # two states are too few
+
+
+def test_metrics_of_a_landing_by_hand():
+    z = REST + np.array([0.02, 0.01, -0.008, -0.001, 0.003, 0.002, -0.0001, 0, 0, 0])
+    trace = body_at(z, contacts=[0, 0, 0, 4, 0, 0, 4, 4, 4, 4], vz=[0, -1, 0.5, 0.2] + [0] * 6)
+    found = landing_metrics(trace, spec.BASELINE)
+    assert (found.penetration, found.rebound) == pytest.approx((0.008, 0.003), abs=1e-6)
+    assert (found.touchdown, found.upward_speed) == pytest.approx((0.02, 0.5))
+    assert found.separated == pytest.approx(0.02)  # two samples without contact and clear
+    assert (found.resting_time, found.resting_offset) == pytest.approx((0.06, 0), abs=1e-6)
+    never = landing_metrics(body_at([1.0] * 5), spec.BASELINE)
+    assert (never.touchdown, never.resting_time) == (None, None)
+    assert (never.penetration, never.rebound, never.separated) == (0, 0, 0)
+
+
+def test_a_stop_takes_a_hold():
+    speed = np.array([1, 0.005, 0.5] + [0.005] * 11 + [0.0])
+    assert metrics.stopped_at(speed, 0.01) == 3  # not the one slow sample before
+    assert metrics.stopped_at(speed[:13], 0.01) is None  # the window ends before the hold does
+    assert metrics.stopped_at(np.full(40, 0.01), 0.01) is None  # slower, not as slow
+
+
+def test_metrics_of_a_slide_on_corners():
+    case = study_spec.ELLIPTIC["low_on_050_elliptic"]
+    found = slide_metrics(slide_on_corners(case), case)
+    assert found.stop_distance == pytest.approx(theory.stepped_distance(case), abs=1e-4)
+    assert (found.hop, found.airborne, found.spin) == (0, 0, 0)
+    assert found.first_speed == pytest.approx(2 - 0.5 * 9.81 * 0.01, rel=1e-6)
+
+
+def test_the_kept_share_is_that_of_the_flights(contact_traces):
+    case = spec.BOUNCES["bounce_sub20"]
+    found = bounce_metrics(contact_traces["bounce_sub20"], case)
+    assert found.start_energy == pytest.approx(case.mass * 9.81 * 0.1, rel=1e-4)
+    assert found.first_kept == pytest.approx(100 * theory.kept_at_bounces(0.01), abs=1)
+    assert found.later_kept < found.first_kept
+    resting = bounce_metrics(body_at([REST] * 5), case)
+    assert (resting.first_kept, resting.flight_drift) == (None, None)
+
+
+def test_a_distance_between_runs_takes_shared_times_and_no_lanes(experiments):
+    traces = experiments["contact"].traces
+    fine = study_deeper.distance_between(traces, "dt10_sub1", "mujoco_dt20_sub1")
+    assert len(fine) == 76  # every second state of the finer one
+    assert fine[0] == 0
+
+
+def test_the_table_of_both_engines_says_when_runs_separate(experiments):
+    rows = tables.engines(experiments["contact"]).splitlines()[2:]
+    assert len(rows) == len(study_spec.ENGINE_PAIRS) + 1
+    assert rows[0].startswith("| landing, h = 5\u00a0ms |")
+    assert rows[0].endswith("| never | – and – |")
+    assert rows[-1].startswith("| landing, h = 5 ms, MuJoCo's own contact |")
+    assert "never" not in rows[-1]
+
+
+def test_a_stop_that_was_not_observed_is_said_and_not_drawn(experiments):
+    run = experiments["lab"]
+    gone = replace(run.metrics["low_on_050"], stop_distance=None)
+    without = replace(run, accepted=run.metrics | {"low_on_050": gone})
+    assert "not observed" in tables.slides(without)
+    assert [len(plots.stopping_distances(of).axes[0].patches) for of in (run, without)] == [4, 3]
+
+
+def test_measured_curves_are_solid(experiments):
+    for figure in (plots.landings, plots.contact_counts, plots.pushed, plots.ball_energies):
+        lines = [line for ax in figure(experiments["lab"]).axes for line in ax.lines]
+        assert {line.get_linestyle() for line in lines} == {"-"}
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "words"),
+    [
+        (0.006431, "m", "6.43 mm"), (-2.5e-5, "m", "−0.025 mm"), (0.41040, "m", "0.4104 m"),
+        (0.00123, "J", "1.23 mJ"), (0.22, "s", "0.22 s"), (None, "m", "not observed"),
+    ],
+)  # fmt: skip
+def test_a_value_has_a_unit_of_its_size(value, unit, words):
+    assert readable(value, unit) == words

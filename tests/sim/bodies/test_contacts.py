@@ -1,0 +1,71 @@
+"""Cases of bodies on a surface: what follows from them, and what is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from robo_genesis.core.trace import TraceError
+from robo_genesis.sim.bodies.contacts import ContactCase, ContactError, shared_case
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
+
+CASE = ContactCase(start=(0.0, 0.0, 1.0), duration=1.5)
+
+
+def test_a_case_knows_its_step_mass_and_place():
+    ball = replace(CASE, shape="ball")
+    assert (CASE.h, CASE.steps, CASE.rest_height) == pytest.approx((0.005, 150, 0.765))
+    assert (CASE.mass, CASE.inertia) == pytest.approx((0.256, 0.256 * 0.08**2 / 6))
+    assert ball.mass == pytest.approx(500 * 4 / 3 * np.pi * 0.04**3)
+    assert ball.inertia == pytest.approx(0.4 * ball.mass * 0.04**2)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"dt": 0.4}, r"duration is 1\.5 s, no whole number .* 0\.4 s"),
+        ({"settle": 0.005}, r"settle is 0\.005 s"),
+        ({"shape": "cone"}, r"shape 'cone' was given, valid is 'cube' or 'ball'"),
+        ({"cone": "round"}, r"cone 'round' was given, valid is 'pyramidal' or"),
+    ],
+)
+def test_a_case_that_cannot_be_run_is_refused(changes, message):
+    with pytest.raises(ContactError, match=message):
+        replace(CASE, **changes)
+
+
+def test_cases_of_one_scene_share_what_a_scene_has_once():
+    assert shared_case({"a": CASE, "b": replace(CASE, friction=0.1)}) is CASE
+    with pytest.raises(ContactError, match=r"b asks for surface_friction=0\.3, .* 0\.8"):
+        shared_case({"a": CASE, "b": replace(CASE, surface_friction=0.3)})
+    with pytest.raises(ContactError, match="at least one"):
+        shared_case({})
+
+
+@pytest.mark.parametrize(
+    ("h", "asked", "in_force"),
+    [(0.02, None, 0.04), (0.001, None, 0.01), (0.0001, 0.002, 0.002), (0.005, 0.002, 0.01)],
+)
+def test_the_shortest_time_constant_is_two_steps(h, asked, in_force):
+    case = replace(CASE, dt=h, substeps=1, duration=h, time_constant=asked)
+    assert mujoco_contacts.time_constant(h, asked) == in_force
+    assert mujoco_contacts.load(case).geom_solref[0].tolist() == [in_force, 1]
+    own = mujoco_contacts.load(case, own_defaults=True)
+    assert own.geom_solref[0].tolist() == [0.02, 1]
+
+
+def test_contacts_of_another_length_form_no_run():
+    trace = mujoco_contacts.run_case(replace(CASE, duration=0.03))
+    with pytest.raises(TraceError, match=r"contacts has shape \(3, 1\), expected \(4, 1\)"):
+        replace(trace, contacts=trace.contacts[:3])
+
+
+def test_mujoco_turns_in_the_world_s_axes():
+    push = replace(CASE, start=(0, 0, 0.765), duration=0.4, settle=0.3, speed=2.0)
+    trace = mujoco_contacts.run_case(push)
+    k = int(np.abs(trace.link_ang[1:-1, 0, 1]).argmax()) + 1
+    w, x, y, z = trace.link_quat[k - 1 : k + 2, 0].T.astype(float)
+    pitch = np.unwrap(2 * np.arctan2(y, w))
+    assert np.abs([x, z]).max() < 1e-3  # it turns about y alone
+    rate = (pitch[2] - pitch[0]) / (2 * trace.dt)
+    assert trace.link_ang[k, 0, 1] == pytest.approx(rate, rel=0.3)
