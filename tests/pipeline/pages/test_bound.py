@@ -16,8 +16,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.bound import require_shown
-from robo_genesis.pipeline.pages.svg_difference import svg_difference
+from robo_genesis.pipeline.pages.bound import difference_of, require_shown
 
 TABLE, HEIGHT, POSTURE = (
     f"robo_genesis.lessons.l02.{name}" for name in ("text.metric_table", "plots.height",
@@ -176,8 +175,8 @@ def test_another_drawing_is_refused(executed, folder, cell, number, spoil):
 def test_names_that_follow_from_points_may_differ(sound):
     svg = output(sound, 1, 1)["data"]["image/svg+xml"]
     name = re.search(r'clipPath id="(\w+)"', svg)[1]
-    assert svg_difference(svg.replace(name, "another"), svg) is None
-    assert svg_difference(svg.replace(f'id="{name}"', 'id="another"'), svg)
+    assert difference_of(svg.replace(name, "another"), svg, True) is None
+    assert difference_of(svg.replace(f'id="{name}"', 'id="another"'), svg, True)
 
 
 def without_metadata(executed):
