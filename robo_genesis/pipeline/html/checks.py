@@ -1,16 +1,16 @@
 """Checks on the built site that need no browser: links, alt texts, scripts, leftovers."""
 
-import json
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
+from typing import Any
 from urllib.parse import unquote, urldefrag, urlsplit
 
 from bs4 import BeautifulSoup, Tag
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived_value
 from robo_genesis.pipeline.html import scripts
 
 ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
@@ -72,15 +72,13 @@ class Site:
 
     def _facts(self, path: Path) -> PageFacts:
         text = path.read_text("utf8")
-        place = json.dumps([self.name(path), self.base]).encode()
-        sources = (Path(module).read_bytes() for module in (__file__, scripts.__file__))
+        inputs = [text, self.name(path), self.base, Path(scripts.__file__).read_text("utf8")]
 
-        def make() -> bytes:
+        def make() -> dict[str, Any]:
             parsed = BeautifulSoup(text, "html.parser")
-            page = scripts.Page(self.root, self.base, path, parsed, text)
-            return json.dumps(asdict(page_facts(page))).encode()
+            return asdict(page_facts(scripts.Page(self.root, self.base, path, parsed, text)))
 
-        return PageFacts(**json.loads(derived("checked", [text.encode(), place, *sources], make)))
+        return PageFacts(**derived_value("checked", inputs, make))
 
     def file(self, folder: Path, place: str) -> Path | None:
         """Return the file at a place relative to a folder, None if the site has no such file."""

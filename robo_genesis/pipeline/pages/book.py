@@ -16,7 +16,7 @@ from myst_nb.core.read import is_myst_markdown_notebook, myst_nb_reader_plugin
 from nbformat import NotebookNode
 from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived, derived_value
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.pages.syntax import PACKAGE, cell_digests
 
@@ -162,9 +162,7 @@ def cell_sources(page: Page) -> list[str]:
 def plain_python(notebook: NotebookNode) -> list[str]:
     """Return the code cells of a notebook as plain Python; magics of IPython are translated."""
     cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
-    inputs = [json.dumps(cells).encode(), Path(__file__).read_bytes()]
-    made = derived("plain", inputs, lambda: json.dumps([*map(_plain_python, cells)]).encode())
-    plain: list[str] = json.loads(made)
+    plain: list[str] = derived_value("plain", cells, lambda: [*map(_plain_python, cells)])
     return plain
 
 

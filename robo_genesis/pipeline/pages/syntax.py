@@ -8,10 +8,9 @@ import tokenize
 from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from importlib.util import resolve_name
-from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived_value
 
 PACKAGE = "robo_genesis"
 QUIET = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.ENDMARKER)
@@ -30,21 +29,19 @@ def syntax_digest(source: str) -> str:
         source: Python. One that does not parse counts by its text.
     """
 
-    def make() -> bytes:
+    def make() -> str:
         try:
-            tree = ast.parse(source)
+            return sha256_of(_canonical(ast.parse(source)))
         except (SyntaxError, ValueError):
-            return sha256_of(source).encode()
-        return sha256_of(_canonical(tree)).encode()
+            return sha256_of(source)
 
-    return derived("syntax", [source.encode(), _own_source()], make).decode()
+    digest: str = derived_value("syntax", source, make)
+    return digest
 
 
 def cell_digests(cells: Sequence[str]) -> list[str]:
     """Return the digest of each code cell of a page; see `cell_digest`."""
-    inputs = [json.dumps(cells).encode(), _own_source()]
-    made = derived("cells", inputs, lambda: json.dumps([*map(cell_digest, cells)]).encode())
-    digests: list[str] = json.loads(made)
+    digests: list[str] = derived_value("cells", cells, lambda: [*map(cell_digest, cells)])
     return digests
 
 
@@ -145,9 +142,7 @@ def imported_names(source: str, package: str = "") -> tuple[str, ...]:
         source: Python. One that does not parse imports nothing: its page fails when it is executed.
         package: the package of the source, to which relative imports refer.
     """
-    inputs = [source.encode(), package.encode(), _own_source()]
-    made = derived("imports", inputs, lambda: " ".join(_names(source, package)).encode())
-    return tuple(made.decode().split())
+    return tuple(derived_value("imports", [source, package], lambda: _names(source, package)))
 
 
 def _names(source: str, package: str) -> list[str]:
@@ -169,14 +164,9 @@ def _names(source: str, package: str) -> list[str]:
 
 def imports_of(cells: Sequence[str]) -> list[str]:
     """Return the dotted names below the course package that the code cells of a page import."""
-    found = derived(
-        "cell-imports",
-        [json.dumps(cells).encode(), _own_source()],
-        lambda: " ".join(sorted({n for cell in cells for n in _names(cell, "")})).encode(),
-    )
-    return found.decode().split()
 
+    def make() -> list[str]:
+        return sorted({name for cell in cells for name in _names(cell, "")})
 
-@lru_cache(maxsize=1)
-def _own_source() -> bytes:
-    return Path(__file__).read_bytes()
+    names: list[str] = derived_value("cell-imports", cells, make)
+    return names
