@@ -109,9 +109,11 @@ def run_build(build: Build) -> list[str]:
         if build.release:
             _require_for_release(unclean(build.root))
         if build.executed:
-            for record in import_pages(build.executed, pages, into, verify):
-                progress("import", record.docname, f"run {record.run_id[:8]}")
-        results = _execute(build, pages, into, progress)
+            results = import_pages(build.executed, pages, into, verify)
+            for result in results:
+                progress("import", result.page.docname, f"run {result.run_id[:8]}")
+        else:
+            results = _execute(build, pages, into, progress)
         manifests: dict[str, Any] = {}
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it

@@ -21,7 +21,7 @@ from robo_genesis.pipeline.html import kept
 from robo_genesis.pipeline.html.sphinx_process import HTML
 from robo_genesis.pipeline.pages.book import Page, code_digest, docnames, find_pages
 from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, BuiltPages
-from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, read_record
+from robo_genesis.pipeline.pages.folder import PageRefused, read_record
 from robo_genesis.pipeline.pages.store import folders, places
 
 FOLDER = "live"
@@ -113,9 +113,7 @@ class Live:
             if self.execute and not place.is_dir() and place not in self.failed:
                 self.run_page(page, place)
             if folder := self.last_run(page, place):
-                found.folders[page.docname] = folder
-                if page.declares_bundle:
-                    found.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
+                found.add(page, folder)
             if place.is_dir():
                 self.named.discard(page.docname)
             elif page.docname not in self.named and not self.execute:

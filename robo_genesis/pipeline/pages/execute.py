@@ -17,7 +17,7 @@ from robo_genesis.pipeline.pages.book import Page, cell_sources
 from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, Record
 from robo_genesis.pipeline.pages.kernels import interrupts_blocked, kill_with_descendants
 from robo_genesis.pipeline.pages.progress import Lines, Underway
-from robo_genesis.pipeline.pages.results import Failure, PageResult, find_bundle
+from robo_genesis.pipeline.pages.results import Failure, PageResult, Status, find_bundle
 from robo_genesis.pipeline.pages.store import last_record, stored_result
 from robo_genesis.pipeline.pages.worker import PageRun, work
 
@@ -185,12 +185,11 @@ def _receive(connection: Any, worker: Worker) -> PageResult | None:
     except EOFError:
         worker.process.join()
         cell = f" in cell {worker.underway.cell}" if worker.underway.cell else ""
-        status = worker.process.exitcode
-        message = f"the worker process ended{cell} with status {status}; out of memory?"
+        code = worker.process.exitcode
+        message = f"the worker process ended{cell} with status {code}; out of memory?"
         seconds, failure = 0.0, Failure("WorkerDied", message)
     worker.process.join()
     connection.close()
-    if failure:
-        return PageResult(run.page, "failed", seconds, run.run_id, failure=failure, log=log)
-    bundle = find_bundle(run.place / OUTPUTS, run.run_id) if run.page.declares_bundle else None
-    return PageResult(run.page, "executed", seconds, run.run_id, bundle, folder=run.place, log=log)
+    status: Status = "failed" if failure else "executed"
+    bundle = None if failure else find_bundle(run.place / OUTPUTS, run.run_id)
+    return PageResult(run.page, status, seconds, run.run_id, bundle, failure, run.place, log)

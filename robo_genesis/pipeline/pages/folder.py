@@ -144,11 +144,6 @@ def plain_files(folder: Path) -> list[str]:
     return names
 
 
-def recorded_bundle(place: Path, record: Record) -> Path | None:
-    """Return the folder of the bundle of the recorded run."""
-    return find_bundle(place / OUTPUTS, record.run_id) if record.lesson else None
-
-
 def read_record(place: Path) -> Record:
     """Return what the record of an executed page says.
 
@@ -206,7 +201,7 @@ def require_this_page(place: Path, record: Record, page: Page, fingerprint: str)
     run_id = metadata.get("run_id") if isinstance(metadata, dict) else None
     if run_id != record.run_id:
         raise PageRefused("run", f"{NOTEBOOK} is of run {run_id}, {RECORD} of {record.run_id}.")
-    if page.declares_bundle and recorded_bundle(place, record) is None:
+    if page.declares_bundle and find_bundle(place / OUTPUTS, record.run_id) is None:
         raise PageRefused("bundle", f"it has no evidence bundle of run {record.run_id}.")
     return notebook
 
@@ -222,5 +217,4 @@ def code_and_kernel(notebook: NotebookNode) -> tuple[list[str], str | None]:
 
 def stored_notebook(result: PageResult) -> NotebookNode:
     """Return the code cells of a page that was executed, with their outputs."""
-    assert result.folder is not None  # only a failed page has none
     return nbformat.read(result.folder / NOTEBOOK, as_version=4)
