@@ -7,7 +7,6 @@ next build empties: a warning is given only when a page is read.
 
 import json
 import shutil
-from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from hashlib import sha256
@@ -15,6 +14,7 @@ from pathlib import Path
 
 from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline import up_to_date
+from robo_genesis.pipeline.html.sphinx_process import read_again
 from robo_genesis.pipeline.pages.book import docnames
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import RECORD
@@ -22,7 +22,6 @@ from robo_genesis.pipeline.pages.folder import RECORD
 STATE = "state.json"
 UNFIT = "unfit"
 """Sphinx writes this file if the pages must not be kept; see `site.kept_pages`."""
-DOCTREES = "_build/.doctrees"
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,12 +85,6 @@ def prepare(folder: Path, state: State) -> bool:
     folder.mkdir(parents=True, exist_ok=True)
     read_again(folder, {n for n, digest in state.pages.items() if last.pages.get(n) != digest})
     return usable
-
-
-def read_again(folder: Path, pages: Iterable[str]) -> None:
-    """Make Sphinx read some pages again, whatever the times of their files are."""
-    for name in pages:
-        (folder / DOCTREES / f"{name}.doctree").unlink(missing_ok=True)
 
 
 def fit(folder: Path) -> bool:

@@ -20,7 +20,7 @@ from robo_genesis.pipeline.html import kept
 from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.kept import State
 from robo_genesis.pipeline.html.render import render
-from robo_genesis.pipeline.html.sphinx_process import RenderError, SphinxProcess
+from robo_genesis.pipeline.html.sphinx_process import DOCTREES, RenderError, SphinxProcess
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK, RECORD
@@ -149,7 +149,7 @@ def test_figures_tables_and_code_are_numbered_across_pages_wherever_they_are(tmp
     }
     (make_book(tmp_path, **pages) / "a.svg").write_text(DRAWING)
     publish(tmp_path, BuiltPages())
-    with open(tmp_path / "kept" / kept.DOCTREES / "environment.pickle", "rb") as stream:
+    with open(tmp_path / "kept" / DOCTREES / "environment.pickle", "rb") as stream:
         numbers = pickle.load(stream).toc_fignumbers
     assert numbers["first"] == {"figure": {"drawn-1": (1,)}, "code-block": {"code-1": (1,)}}
     assert numbers["second"] == {
@@ -238,7 +238,7 @@ def test_equal_names_of_pictures_make_a_folder_unfit(tmp_path):
 def test_changed_pages_are_read_again_and_other_changes_empty_the_folder(
     tmp_path, state, usable, left
 ):
-    doctrees = tmp_path / kept.DOCTREES
+    doctrees = tmp_path / DOCTREES
     doctrees.mkdir(parents=True)
     for name in SOME.pages:
         (doctrees / f"{name}.doctree").touch()

@@ -135,7 +135,7 @@ def test_a_bad_edit_is_reported_and_the_last_good_state_stays(live, file, conten
         ("live", "book/page.md", notebook(cell(SYNTAX_ERROR)), "EXECUTE=1 runs it"),
         ("executing", "book/page.md", notebook(cell(SYNTAX_ERROR)), "line 10: def f(:\n"),
         ("executing", f"{MODULES}/core/printed.py", SYNTAX_ERROR, "(printed.py, line 1)"),
-        ("executing", f"{MODULES}/pipeline/html/live_sphinx.py", SYNTAX_ERROR, "Sphinx stopped"),
+        ("executing", f"{MODULES}/pipeline/html/sphinx_process.py", SYNTAX_ERROR, "Sphinx stopped"),
     ],
     ids=["cell", "executed cell", "module of a page", "module of the site"],
 )
@@ -264,7 +264,7 @@ def test_what_starts_after_the_end_is_ended(tmp_path):
     live = Live(make_book(tmp_path), tmp_path)
     live.stop()
     with pytest.raises(LiveEndedError):
-        live.start([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+        live.note(subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE))
     assert live.started[0].returncode == -signal.SIGTERM
 
 
