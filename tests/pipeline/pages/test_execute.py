@@ -133,18 +133,6 @@ def test_a_page_that_is_not_to_be_reused_is_executed_and_replaces_the_stored_one
     assert execute(lab)["lab"].run_id == after.run_id
 
 
-def test_a_failed_run_keeps_the_page_so_that_undoing_a_typo_executes_nothing(lab):
-    page, before = lab / "book/lab.md", execute(lab)["lab"].run_id
-    text = page.read_text()
-    page.write_text(text.replace("import json", "import jsn", 1))
-    try:
-        assert execute(lab)["lab"].failure.error == "ModuleNotFoundError"
-    finally:
-        page.write_text(text)
-    after = execute(lab)["lab"]
-    assert (after.status, after.run_id) == ("reused", before)
-
-
 def test_a_run_that_fails_with_the_same_code_keeps_the_page(tmp_path):
     make_book(tmp_path, page=notebook(cell("import os\nassert 'FAIL' not in os.environ")))
     before = execute(tmp_path)["page"].run_id
@@ -181,11 +169,8 @@ MANIFEST, NOTEBOOK, RECORD = "outputs/cpu/manifest.json", "executed.ipynb", "pag
 @pytest.mark.parametrize(
     ("name", "content"),
     [
-        (MANIFEST, None),
         (MANIFEST, '{"predicate": {"run_id": "of another run"}}'),
         (NOTEBOOK, None),
-        (NOTEBOOK, '{"cells": ['),
-        (RECORD, None),
         (RECORD, "{"),
     ],
 )
@@ -246,15 +231,10 @@ def test_a_page_that_measures_time_runs_when_no_other_page_does(tmp_path):
     assert len(begun_or_ended) == 6
 
 
-@pytest.mark.parametrize(
-    "spoil",
-    [Path.touch, lambda page: page.symlink_to("no folder/page")],
-    ids=["a file", "a link to nothing"],
-)
-def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path, spoil):
+def test_a_store_that_cannot_be_used_is_named_before_any_run(tmp_path):
     make_book(tmp_path, page=notebook(cell("1")))
     (tmp_path / "store").mkdir()
-    spoil(tmp_path / "store" / "page")
+    (tmp_path / "store" / "page").symlink_to("no folder/page")
     said = []
     with pytest.raises(OSError, match=str(tmp_path / "store" / "page")):
         execute(tmp_path, report=Lines(lambda *words: said.append(words)))
@@ -291,7 +271,7 @@ def test_pages_start_in_the_order_of_their_stored_durations(tmp_path):
 
 
 def test_kernels_are_clean(tmp_path, monkeypatch):
-    """A user's kernelspec, start-up file and search path do not reach the page."""
+    """A user's kernelspec, start-up file and search path do not reach the page; its imports do."""
     spec = tmp_path / "jupyter/kernels/python3"
     spec.mkdir(parents=True)
     (spec / "kernel.json").write_text('{"argv": ["/bin/false"], "display_name": "python3"}')
@@ -303,7 +283,11 @@ def test_kernels_are_clean(tmp_path, monkeypatch):
     monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
     monkeypatch.setenv("PYTHONSTARTUP", str(startup / "leak.py"))
     code = """\
-import os, sys
+import inspect, os, sys
+from robo_genesis.core import text
+names = os.environ["ROBO_GENESIS_PAGE_IMPORTS"].split()
+assert names == ["robo_genesis.core", "robo_genesis.core.text"], names
+assert "<frozen importlib._bootstrap>" in inspect.modulesbyfile  # the engine's searches are spared
 print(sys.executable, "leaked" in globals(), os.listdir("."), os.environ["PYTHONPATH"])
 e = os.environ
 print(e["PYTHONNOUSERSITE"], e["GIVEN"], len(e["ROBO_GENESIS_RUN_ID"]))"""
@@ -314,22 +298,6 @@ print(e["PYTHONNOUSERSITE"], e["GIVEN"], len(e["ROBO_GENESIS_RUN_ID"]))"""
     assert output.text == f"{sys.executable} False [] {ROOT}\n1 yes 32\n"
 
 
-def test_a_kernel_spares_the_engine_s_searches_before_the_first_cell(tmp_path):
-    code = 'import inspect; assert "<frozen importlib._bootstrap>" in inspect.modulesbyfile'
-    make_book(tmp_path, page=notebook(cell(code)))
-    assert execute(tmp_path)["page"].status == "executed"
-
-
-def test_a_kernel_learns_what_its_page_imports(tmp_path):
-    code = """\
-import os
-from robo_genesis.core import text
-names = os.environ["ROBO_GENESIS_PAGE_IMPORTS"].split()
-assert names == ["robo_genesis.core", "robo_genesis.core.text"], names"""
-    make_book(tmp_path, page=notebook(cell(code)))
-    assert execute(tmp_path)["page"].status == "executed"
-
-
 def test_a_killed_worker_is_a_failed_page(tmp_path):
     """The kernel kills its parent, as the system does when memory runs out."""
     code = "import os, signal\nos.kill(os.getppid(), signal.SIGKILL)\nimport time; time.sleep(60)"
@@ -338,20 +306,6 @@ def test_a_killed_worker_is_a_failed_page(tmp_path):
     assert results["page"].failure.error == "WorkerDied"
     assert "ended in cell 1 with status -9" in results["page"].failure.message
     assert results["good"].status == "executed"
-
-
-def test_a_long_silence_is_broken_by_what_runs(tmp_path):
-    """The page ends when the line that names it has been said."""
-    said = tmp_path / "said"
-    code = f"import pathlib, time\nwhile not pathlib.Path({str(said)!r}).exists(): time.sleep(0.05)"
-    make_book(tmp_path, page=notebook(cell(code)))
-
-    def hear(what, event):
-        if what.startswith("1 running: page: cell 1 of 1, "):
-            said.touch()
-
-    execute(tmp_path, timeout=30, report=Lines(hear, every=0.1))
-    assert said.exists()
 
 
 def test_ctrl_c_while_a_worker_starts_kills_it(tmp_path, monkeypatch):
