@@ -141,7 +141,7 @@ def run_build(build: Build) -> list[str]:
 
         def finish(published: Path) -> None:
             now = up_to_date.inputs_digest(build.root, build.book)
-            up_to_date.record(published, inputs, now, summary(executed=0), draft.digests)
+            up_to_date.record(published, inputs, now, summary(executed=0))
 
         html = publish(target, draft.folder, finish)  # last: after it, nothing may fail
         progress("publish", str(html))

@@ -114,12 +114,12 @@ class SphinxProcess:
     def complaints(self) -> list[str]:
         """Wait for the end of the render; return its warnings and errors."""
         assert self.process.stdout is not None
-        stopped = {"said": [f"Sphinx stopped. Log: {self.log}"], "ended": True}
-        line = self.process.stdout.readline()
-        answer = json.loads(line) if line else stopped
-        if answer["ended"]:
+        said, ended = [f"Sphinx stopped. Log: {self.log}"], True
+        if line := self.process.stdout.readline():
+            said, ended = json.loads(line)
+        if ended:
             self.process.wait()
-        return list(answer["said"])
+        return said
 
 
 def read_again(folder: Path, pages: Iterable[str]) -> None:
@@ -184,7 +184,7 @@ def main() -> None:
         if said and app:  # what was not written correctly is written again
             vars(app.env).pop("robo_genesis_shown", None)
         again = again if said else set()
-        answer = {"said": [*dict.fromkeys(said), *failed], "ended": bool(failed)}
+        answer = [[*dict.fromkeys(said), *failed], bool(failed)]
         print(json.dumps(answer), file=answers, flush=True)
         if failed:
             break
