@@ -129,7 +129,8 @@ def test_anything_else_is_refused(page, displayed, function, arguments, message)
 @pytest.mark.parametrize(
     "name",
     ["os.system", "robo_genesis.pipeline.pages.bound.marked",
-     "robo_genesis.lessons.l02.text.tables", "robo_genesis.lessons.l02..text", "robo_genesis.core.nothing.here"],
+     "robo_genesis.lessons.l02.text.tables", "robo_genesis.lessons.l02..text",
+     "robo_genesis.core.nothing.here"],
 )  # fmt: skip
 def test_only_functions_of_lessons_and_core_are_found(name):
     with pytest.raises(shown.ShownError, match="cannot be shown"):

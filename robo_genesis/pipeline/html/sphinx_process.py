@@ -1,8 +1,8 @@
 """A process that loads Sphinx while pages are executed or written, and then renders a book.
 
-Each line of its input is an order, a JSON object: the folder of the output, the pages to read
-again, and variables. It answers with a line: the warnings and errors, none if the render succeeded,
-and whether it ends, because Sphinx cannot build again after an exception.
+Each line of its input is an order in JSON: the folder of the output, variables, the pages to read
+again, and whether it is the last. It answers with a line: the warnings and errors, none if the
+render succeeded, and whether it ends, because Sphinx cannot build again after an exception.
 """
 
 import importlib
@@ -83,10 +83,7 @@ class SphinxProcess:
         Raises:
             RenderError: Sphinx failed or gave a warning.
         """
-        self.order(folder, built.write(folder / EXECUTED))
-        assert self.process.stdin is not None
-        with suppress(BrokenPipeError):
-            self.process.stdin.close()
+        self.order(folder, built.write(folder / EXECUTED), last=True)
         with self:  # nothing writes into the folder after an interrupt, or a refusal meanwhile
             meanwhile()
             said = self.complaints()
@@ -96,18 +93,25 @@ class SphinxProcess:
         if said:
             raise RenderError("\n".join([*said, f"The complete log is in {self.log}"]))
 
-    def order(self, folder: Path, variables: Mapping[str, str], again: Iterable[str] = ()) -> None:
+    def order(
+        self,
+        folder: Path,
+        variables: Mapping[str, str],
+        again: Iterable[str] = (),
+        last: bool = False,
+    ) -> None:
         """Begin to render what changed.
 
         Args:
             folder: of Sphinx's output.
             variables: for its environment.
             again: pages that are read again, whatever the times of their files are.
+            last: whether the process ends after it.
         """
         assert self.process.stdin is not None
         self.log.parent.mkdir(parents=True, exist_ok=True)
         self.log.write_text("Sphinx ended before it began.\n", "utf8")
-        order = {"folder": str(folder), "variables": dict(variables), "again": [*again]}
+        order = [str(folder), dict(variables), [*again], last]
         with suppress(BrokenPipeError):  # reported below
             print(json.dumps(order), file=self.process.stdin, flush=True)
 
@@ -160,10 +164,10 @@ def main() -> None:
             importlib.import_module(extension)
     warnings, again, app = io.StringIO(), set[str](), None
     for line in sys.stdin:
-        order = json.loads(line)
-        folder = Path(order["folder"])
-        again |= set(order["again"])
-        os.environ.update(order["variables"])
+        place, variables, pages, last = json.loads(line)
+        folder = Path(place)
+        again |= set(pages)
+        os.environ.update(variables)
         with open(log, "w") as stream:
             for output in (1, 2):
                 os.dup2(stream.fileno(), output)
@@ -184,9 +188,9 @@ def main() -> None:
         if said and app:  # what was not written correctly is written again
             vars(app.env).pop("robo_genesis_shown", None)
         again = again if said else set()
-        answer = [[*dict.fromkeys(said), *failed], bool(failed)]
+        answer = [[*dict.fromkeys(said), *failed], bool(failed) or last]
         print(json.dumps(answer), file=answers, flush=True)
-        if failed:
+        if failed or last:
             break
     for child in multiprocessing.active_children():  # the sitemap's, which ends at a usual exit
         child.kill()
