@@ -106,8 +106,6 @@ def run_build(build: Build) -> list[str]:
         engine, pages, into = _prepare(build)
         from_nothing = build.release or build.executed or site_address()
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
-        if build.release:
-            _require_for_release(unclean(build.root))
         if build.executed:
             results = import_pages(build.executed, pages, into, verify)
             for result in results:
@@ -208,12 +206,6 @@ def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path]]:
     return engine, pages, places(pages, build.cache / project.STORE, build.root)
 
 
-def _require_for_release(problems: Sequence[str]) -> None:
-    """Raise BuildError if there is a reason against a release."""
-    if problems:
-        raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
-
-
 def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
     """Return the folder of the lab's bundle of this build, by lesson of the book."""
     labs: dict[str, Path | None] = {
@@ -259,8 +251,10 @@ def _accepted(
     if refused := refused + refused_records(build.book, _labs(results)):
         raise BuildError("\n".join(refused))
     if build.release:
-        problems = missing_for_release(build.book, _labs(results), manifests, build.root)
-        _require_for_release([*unclean(build.root), *problems])
+        problems = unclean(build.root)
+        problems += missing_for_release(build.book, _labs(results), manifests, build.root)
+        if problems:
+            raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
         progress("release", "clean tree, current evidence")
     return manifests
 

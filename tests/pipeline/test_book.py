@@ -164,8 +164,9 @@ def test_a_build_that_is_refused_leaves_the_old_site(
 ):
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
-    tree = "robo_genesis.pipeline.stages.unclean"
-    monkeypatch.setattr(tree, lambda root: ["The tree has 1 changed file"])
+    stages = "robo_genesis.pipeline.stages"
+    monkeypatch.setattr(f"{stages}.unclean", lambda root: ["The tree has 1 changed file"])
+    monkeypatch.setattr(f"{stages}.missing_for_release", lambda *given: [])
     marker = published_marker(make_book(tmp_path, lab=page))
     with pytest.raises(error, match=said):
         build(tmp_path, **settings)
