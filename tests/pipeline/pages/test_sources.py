@@ -293,10 +293,7 @@ def test_what_a_module_does_counts_and_not_how_it_is_written(one, other, same):
     ("source", "digest"),
     [
         ('x = f"a{y!r:>{w}.{p}f}b" "c" f"{z}" ""', "329fb3f9bda1"),
-        ('x = f"{y:}" f"" f"plain"', "27aaf8ca32d7"),
         ("x = f'{y = }' f\"{f'{z}'}\" rf'\\d{z:%H\\d}'", "501cf4f4d50e"),
-        ("x = f'{y:{\"a\"}}'", "63bb6ce022b1"),
-        ('x = f"{{}}{y}{{"', "420f7d040630"),
         ('x = f"""\n{\n y\n:>3}\n"""', "f1eddcae91a7"),
         (
             "match x:\n"
@@ -305,14 +302,6 @@ def test_what_a_module_does_counts_and_not_how_it_is_written(one, other, same):
             "  case None | True: pass\n"
             "  case C(a, b=1): pass",
             "3aaa8b4af96c",
-        ),
-        ('def f(a, /, b=1, *c, d, e=2, **g) -> int:\n  "doc"\n  return a', "3262161a4139"),
-        (
-            "async def f():\n"
-            "  async with a as b, c: pass\n"
-            "  async for i in x: yield i\n"
-            "  return [i async for i in y]",
-            "5838418f207d",
         ),
         (
             'try:\n  pass\nexcept* E as e:\n  "text"\nelse:\n  pass\nfinally:\n  "text"',
@@ -323,12 +312,9 @@ def test_what_a_module_does_counts_and_not_how_it_is_written(one, other, same):
             'x: int\ny: "str" = u"u"\nx = 1; del x; global_ = lambda *, k=None: (yield)',
             "610e481b8371",
         ),
-        ('class A(B, metaclass=C):\n  """doc"""\n  a = 1\n  """attribute"""', "a9e1a88f7d92"),
-        ("with (open(a) as b, open(c)): pass", "f11dc920127e"),
-        ("x[1:2, ::3, *a] = (b := 3) if not -1 ** 2 else ~x @ y", "7040b6ccc8eb"),
         ("@d\ndef f(x, *args: *Ts): pass", "e171e48a512b"),
     ],
-    ids=map(str, range(16)),
+    ids=map(str, range(8)),
 )
 def test_every_version_of_python_gives_the_same_digest(source, digest):
     """The digests were computed with Python 3.11, 3.12 and 3.13."""
