@@ -21,7 +21,7 @@ from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.reader import from_bundle
-from robo_genesis.pipeline.pages.book import Page, cell_sources
+from robo_genesis.pipeline.pages.book import Page
 
 PAGE = "page"
 """The name that pages give to the result of `rg.open_page`."""
@@ -104,7 +104,7 @@ def calls_of(page: Page) -> list[list[Shown]]:
     """
     names: dict[str, str] = {}
     found = []
-    for number, source in enumerate(cell_sources(page), start=1):
+    for number, source in enumerate(page.code.sources, start=1):
         try:
             tree = ast.parse(source)
         except SyntaxError:  # an expected error of the page

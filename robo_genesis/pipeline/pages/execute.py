@@ -13,7 +13,7 @@ from typing import Any
 from robo_genesis.core import project
 from robo_genesis.core.project import COMMAND
 from robo_genesis.pipeline.command import TIMEOUT
-from robo_genesis.pipeline.pages.book import Page, cell_sources
+from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, Record
 from robo_genesis.pipeline.pages.kernels import interrupts_blocked, kill_with_descendants
 from robo_genesis.pipeline.pages.progress import Lines, Underway
@@ -85,7 +85,7 @@ def execute_pages(
             while waiting or running:
                 while waiting and len(running) < (1 if waiting[0].alone else jobs):
                     page = waiting.pop(0)
-                    place, cells = places[page.docname], len(cell_sources(page))
+                    place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
                     run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
                     kept = log if logs else None
@@ -135,7 +135,7 @@ def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> l
     def sooner(page: Page) -> tuple[bool, float, int]:
         record = last[page.docname]
         seconds = -record.seconds if record else float("-inf")
-        return page.alone, seconds, -len(cell_sources(page))
+        return page.alone, seconds, -len(page.code.sources)
 
     return sorted(pages, key=sooner)
 

@@ -13,12 +13,10 @@ from robo_genesis.core.project import (
     installed_packages,
     lock_digest,
 )
-from robo_genesis.pipeline.pages.book import Page, cell_sources
+from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import Tree, import_closure, lesson_modules
 from robo_genesis.pipeline.pages.syntax import (
-    cell_digests,
     claims_in,
-    imports_of,
     sha256_of,
     syntax_digest,
 )
@@ -46,15 +44,15 @@ def page_fingerprint(
     Returns:
         20 hex digits.
     """
-    tree, cells = tree or Tree(root), cell_sources(page)
+    tree = tree or Tree(root)
     own = lesson_modules(page.lesson, root) if page.lesson else []
-    modules = import_closure([*imports_of(cells), *own], root, tree=tree)
+    modules = import_closure([*page.code.imports, *own], root, tree=tree)
     parts = {
         "lock": lock_digest(root),
         "installed": _installed(),
         "python": platform.python_version(),
         "environment": environment_contract(environment),
-        "cells": cell_digests(cells),
+        "cells": page.code.digests,
         "modules": {name: syntax_digest(tree.text(path)) for name, path in modules.items()},
         "claims": {name: claims_in(tree.text(path)) for name, path in modules.items()},
         "data": tree.data_for(page.lesson),

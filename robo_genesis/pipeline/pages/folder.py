@@ -22,9 +22,8 @@ from robo_genesis.core.files import replaced
 from robo_genesis.core.project import ENGINE, ProjectError, installed_version
 from robo_genesis.evidence.bundle import sha256
 from robo_genesis.evidence.fields import RunId, Sha256, Strict
-from robo_genesis.pipeline.pages.book import Page, code_digest, plain_python
+from robo_genesis.pipeline.pages.book import Page, code_digest, code_of
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle
-from robo_genesis.pipeline.pages.syntax import cell_digests
 
 RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
 SIZE_LIMIT = 64 * 2**20
@@ -211,8 +210,7 @@ def code_and_kernel(notebook: NotebookNode) -> tuple[list[str], str | None]:
 
     Comments and layout of the cells do not count.
     """
-    cells = cell_digests(plain_python(notebook))
-    return cells, notebook.metadata.get("kernelspec", {}).get("name")
+    return code_of(notebook).digests, notebook.metadata.get("kernelspec", {}).get("name")
 
 
 def stored_notebook(result: PageResult) -> NotebookNode:

@@ -5,10 +5,13 @@ import hashlib
 import io
 import json
 import tokenize
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib.util import resolve_name
 from typing import Any
+
+from IPython.core.inputtransformer2 import TransformerManager
 
 from robo_genesis.core.files import derived_value
 
@@ -39,10 +42,39 @@ def syntax_digest(source: str) -> str:
     return digest
 
 
-def cell_digests(cells: Sequence[str]) -> list[str]:
-    """Return the digest of each code cell of a page; see `cell_digest`."""
-    digests: list[str] = derived_value("cells", cells, lambda: [*map(cell_digest, cells)])
-    return digests
+@dataclass(frozen=True, slots=True)
+class Code:
+    """The code cells of a page.
+
+    `sources` are plain Python, in which magics of IPython are translated; `digests` has that of the
+    syntax of each cell; `imports` has the dotted names below the course package that they import.
+    """
+
+    sources: list[str]
+    digests: list[str]
+    imports: list[str]
+
+
+def read_code(cells: Iterable[str]) -> Code:
+    """Return what the code cells of a page do, from their texts."""
+    texts = list(cells)
+
+    def make() -> dict[str, list[str]]:
+        sources = [_plain_python(text) for text in texts]
+        return {
+            "sources": sources,
+            "digests": [cell_digest(source) for source in sources],
+            "imports": sorted({name for source in sources for name in _names(source, "")}),
+        }
+
+    return Code(**derived_value("code", texts, make))
+
+
+def _plain_python(cell: str) -> str:
+    try:
+        return TransformerManager().transform_cell(cell)
+    except SyntaxError:  # of indentation; the execution reports its line
+        return cell
 
 
 def cell_digest(source: str) -> str:
@@ -160,13 +192,3 @@ def _names(source: str, package: str) -> list[str]:
     except (SyntaxError, ValueError, ImportError):
         return []
     return [name for name in names if name.split(".")[0] == PACKAGE]
-
-
-def imports_of(cells: Sequence[str]) -> list[str]:
-    """Return the dotted names below the course package that the code cells of a page import."""
-
-    def make() -> list[str]:
-        return sorted({name for cell in cells for name in _names(cell, "")})
-
-    names: list[str] = derived_value("cell-imports", cells, make)
-    return names

@@ -4,12 +4,11 @@ from tiny_book import LAB_FRONT, cell, make_book, notebook
 from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline.pages.book import (
     PageError,
-    cell_sources,
     code_digest,
     find_pages,
 )
 from robo_genesis.pipeline.pages.sources import import_closure
-from robo_genesis.pipeline.pages.syntax import imports_of
+from robo_genesis.pipeline.pages.syntax import read_code
 
 
 def test_executed_pages_are_the_notebooks_of_the_table_of_contents(tmp_path):
@@ -74,7 +73,8 @@ def test_the_code_digest_ignores_prose_and_comments(tmp_path):
 
 
 def test_no_page_computes_with_modules_of_the_site():
-    sources = [source for page in find_pages(ROOT / "book") for source in cell_sources(page)]
-    packages = {".".join(name.split(".")[:2]) for name in import_closure(imports_of(sources))}
+    sources = [source for page in find_pages(ROOT / "book") for source in page.code.sources]
+    reached = import_closure(read_code(sources).imports)
+    packages = {".".join(name.split(".")[:2]) for name in reached}
     assert "robo_genesis.evidence" in packages
     assert not packages & {f"robo_genesis.{name}" for name in ("site", "maintain")}

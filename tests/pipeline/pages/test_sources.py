@@ -10,10 +10,10 @@ from tiny_book import LAB_FRONT, cell, make_book, notebook
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.pages import fingerprint, sources
-from robo_genesis.pipeline.pages.book import cell_sources, find_pages
+from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.fingerprint import page_fingerprint
 from robo_genesis.pipeline.pages.sources import import_closure, measures, measuring_modules
-from robo_genesis.pipeline.pages.syntax import cell_digest, cell_digests, imports_of, syntax_digest
+from robo_genesis.pipeline.pages.syntax import read_code, syntax_digest
 
 PACKAGE = ROOT / "robo_genesis"
 PAGES = find_pages(BOOK)
@@ -51,7 +51,7 @@ def page(root):
 
 
 def test_imports_are_followed_through_functions_and_relative_names(root, page):
-    assert sorted(import_closure(imports_of(cell_sources(page)), root)) == [
+    assert sorted(import_closure(page.code.imports, root)) == [
         "robo_genesis",
         "robo_genesis.evidence",
         "robo_genesis.evidence.deep",
@@ -63,7 +63,7 @@ def test_imports_are_followed_through_functions_and_relative_names(root, page):
 
 @pytest.mark.parametrize("source", ["def (", "from . import used", "import numpy", "\0"])
 def test_a_cell_that_cannot_run_or_needs_no_module_imports_nothing(source):
-    assert imports_of([source]) == []
+    assert read_code([source]).imports == []
 
 
 @pytest.mark.parametrize(
@@ -147,10 +147,7 @@ def test_a_page_that_runs_alone_records_elapsed_times():
 def keys(root, pages):
     """Return fingerprint and modules of the evidence key of some pages of the course."""
     fingerprints = {(p.lesson, p.page): page_fingerprint(p, root, {}) for p in pages}
-    modules = {
-        (p.lesson, p.page): measuring_modules(p.lesson, imports_of(cell_sources(p)), root)
-        for p in pages
-    }
+    modules = {(p.lesson, p.page): measuring_modules(p.lesson, p.code.imports, root) for p in pages}
     return fingerprints, modules
 
 
@@ -251,7 +248,7 @@ def test_a_module_that_computes_uses_none_that_presents(lesson):
     """Except the specification, whose values are parameters of the bundle or judge it."""
     for name in measuring_modules(lesson, []):
         file = PACKAGE.joinpath(*name.split(".")).with_suffix(".py")
-        names = imports_of([file.read_text("utf8")])
+        names = read_code([file.read_text("utf8")]).imports
         used = {each: path for each in names if (path := sources._module_file(ROOT, each))}
         shown = {
             each.rpartition(".")[2].rpartition("_")[2]
@@ -323,6 +320,4 @@ def test_every_version_of_python_gives_the_same_digest(source, digest):
 
 def test_output_that_a_cell_hides_or_shows_counts():
     cells = ["x", "x;", "x; # quiet", "x  # loud", "'x'", "", "x ("]
-    digests = cell_digests(cells)
-    assert len(set(digests)) == 5
-    assert digests == [cell_digest(cell) for cell in cells]
+    assert len(set(read_code(cells).digests)) == 5
