@@ -11,8 +11,6 @@ from functools import lru_cache
 from importlib.util import resolve_name
 from typing import Any
 
-from IPython.core.inputtransformer2 import TransformerManager
-
 from robo_genesis.core.files import derived_value
 
 PACKAGE = "robo_genesis"
@@ -71,6 +69,8 @@ def read_code(cells: Iterable[str]) -> Code:
 
 
 def _plain_python(cell: str) -> str:
+    from IPython.core.inputtransformer2 import TransformerManager  # which no verification loads
+
     try:
         return TransformerManager().transform_cell(cell)
     except SyntaxError:  # of indentation; the execution reports its line
