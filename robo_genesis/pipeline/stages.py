@@ -97,13 +97,10 @@ def run_build(build: Build) -> list[str]:
         build_lock(build.cache),
         staging_folder(build.cache) as staging,
     ):
-        target = build.to or build.book
-        settle(target / project.PUBLISHED)
-        bundle_store.recover(build.book / "evidence")
-        inputs = up_to_date.inputs_digest(build.root, build.book)
-        progress = Progress(build.say)
-        npm.require_published()
+        target, progress = build.to or build.book, Progress(build.say)
+        inputs = up_to_date.inputs_digest(build.root, build.book)  # before any is read
         engine, pages, into = _prepare(build)
+        npm.require_published()
         from_nothing = build.release or build.executed or site_address()
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
         if build.executed:
@@ -199,9 +196,14 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
 
 
 def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path]]:
-    """Return the engine's version, the pages of the book, and their places in the store."""
-    engine = project.require_pinned_engine(build.root)
+    """Return the engine's version, the pages of the book, and their places in the store.
+
+    What a killed build left is repaired first.
+    """
+    bundle_store.recover(build.book / "evidence")
+    settle((build.to or build.book) / project.PUBLISHED)
     project.remove_stale_kernel_lock(build.cache)
+    engine = project.require_pinned_engine(build.root)
     pages = find_pages(build.book)
     return engine, pages, places(pages, build.cache / project.STORE, build.root)
 

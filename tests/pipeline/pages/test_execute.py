@@ -62,11 +62,13 @@ def broken(tmp_path_factory):
     return folder, execute(folder, jobs=2, environment={"TMPDIR": "/tmp"})
 
 
-def test_all_pages_are_tried_and_the_good_one_is_executed(broken):
+def test_all_pages_are_tried_and_only_good_ones_are_stored(broken):
     results = broken[1]
     assert list(results) == list(BROKEN)
     assert {name for name in results if results[name].status == "executed"} == {"good", "twin"}
     assert {result.status for result in results.values()} == {"executed", "failed"}
+    stored = [path.parts[-3] for path in (broken[0] / "store").rglob("*.ipynb")]
+    assert sorted(stored) == ["good", "twin"]
 
 
 def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
@@ -102,11 +104,6 @@ def test_each_kind_of_failure_is_named(broken, name, error, said, cell):
 def test_a_dead_kernel_leaves_its_last_words_and_a_lost_bundle_its_run(broken):
     assert any("last words" in line for line in broken[1]["dead"].failure.log)
     assert broken[1]["bundle"].run_id in broken[1]["bundle"].failure.message
-
-
-def test_failed_pages_are_never_stored(broken):
-    stored = [path.parts[-3] for path in (broken[0] / "store").rglob("*.ipynb")]
-    assert sorted(stored) == ["good", "twin"]
 
 
 @pytest.fixture(scope="module")
