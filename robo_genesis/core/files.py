@@ -102,6 +102,11 @@ def beside(folder: Path, suffix: str, prefix: str = "") -> Path:
     return folder.with_name(f"{prefix}{folder.name}{suffix}")
 
 
+def json_digest(value: Any) -> str:
+    """Return the SHA-256 of a JSON value."""
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
 def derived_value(kind: str, inputs: Any, make: Callable[[], Any]) -> Any:
     """Return the result of `make`, a JSON value; see `derived`.
 

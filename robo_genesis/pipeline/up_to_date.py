@@ -14,6 +14,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from robo_genesis.core.files import json_digest
 from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import (
     ProjectError,
@@ -85,11 +86,6 @@ def other_inputs(
         "python": [platform.python_version(), sys.executable],
         "installed": installed(sys.path),
     }
-
-
-def json_digest(parts: Mapping[str, object]) -> str:
-    """Return the digest of a value as JSON."""
-    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 
 def files_digest(base: Path, files: Iterable[Path]) -> str:

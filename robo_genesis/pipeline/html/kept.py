@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
+from robo_genesis.core.files import json_digest
 from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline import up_to_date
 from robo_genesis.pipeline.html.sphinx_process import read_again
@@ -53,7 +54,7 @@ def read_state(book: Path, built: BuiltPages, root: Path = ROOT) -> State:
     }
     with suppress(up_to_date.UnseenError):
         others = up_to_date.other_inputs(root, book, set(sources.values()))
-        return State(up_to_date.json_digest(others | {"runs": _runs(built)}), pages)
+        return State(json_digest(others | {"runs": _runs(built)}), pages)
     return State(None, pages)
 
 

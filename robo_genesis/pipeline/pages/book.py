@@ -13,9 +13,9 @@ from myst_nb.core.read import is_myst_markdown_notebook, myst_nb_reader_plugin
 from nbformat import NotebookNode
 from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived, json_digest
 from robo_genesis.core.project import ProjectError
-from robo_genesis.pipeline.pages.syntax import PACKAGE, Code, read_code, sha256_of
+from robo_genesis.pipeline.pages.syntax import PACKAGE, Code, read_code
 
 
 class PageError(ProjectError):
@@ -163,4 +163,4 @@ def code_of(notebook: NotebookNode) -> Code:
 
 def code_digest(page: Page) -> str:
     """Return the sha256 of the syntax of a page's code cells; text and comments do not count."""
-    return sha256_of(page.code.digests)
+    return json_digest(page.code.digests)

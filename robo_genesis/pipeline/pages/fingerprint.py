@@ -1,12 +1,11 @@
 """The fingerprint of a page: a digest of everything that decides its outputs."""
 
-import json
 import platform
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived_value, json_digest
 from robo_genesis.core.project import (
     ROOT,
     environment_contract,
@@ -17,7 +16,6 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import Tree, import_closure, lesson_modules
 from robo_genesis.pipeline.pages.syntax import (
     claims_in,
-    sha256_of,
     syntax_digest,
 )
 
@@ -58,12 +56,10 @@ def page_fingerprint(
         "data": tree.data_for(page.lesson),
         "alone": page.alone,
     }
-    return sha256_of(parts)[:20]
+    return json_digest(parts)[:20]
 
 
 @lru_cache(maxsize=1)
 def _installed() -> list[str]:
-    names: list[str] = json.loads(
-        derived("packages", [], lambda: json.dumps(installed_packages()).encode())
-    )
+    names: list[str] = derived_value("packages", None, installed_packages)
     return names

@@ -1,9 +1,7 @@
 """What code does: a digest of its syntax tree, and what it imports. Nothing is imported or run."""
 
 import ast
-import hashlib
 import io
-import json
 import tokenize
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -11,7 +9,7 @@ from functools import lru_cache
 from importlib.util import resolve_name
 from typing import Any
 
-from robo_genesis.core.files import derived_value
+from robo_genesis.core.files import derived_value, json_digest
 
 PACKAGE = "robo_genesis"
 QUIET = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.ENDMARKER)
@@ -32,9 +30,9 @@ def syntax_digest(source: str) -> str:
 
     def make() -> str:
         try:
-            return sha256_of(_canonical(ast.parse(source)))
+            return json_digest(_canonical(ast.parse(source)))
         except (SyntaxError, ValueError):
-            return sha256_of(source)
+            return json_digest(source)
 
     digest: str = derived_value("syntax", source, make)
     return digest
@@ -86,9 +84,9 @@ def cell_digest(source: str) -> str:
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError):
-        return sha256_of(source)
+        return json_digest(source)
     statements = [_canonical(statement) for statement in tree.body]
-    return sha256_of([statements, _ends_with_semicolon(source)])
+    return json_digest([statements, _ends_with_semicolon(source)])
 
 
 def _canonical(node: Any) -> Any:
@@ -143,11 +141,6 @@ def _ends_with_semicolon(source: str) -> bool:
     tokens = tokenize.generate_tokens(io.StringIO(source).readline)
     words = [token.string for token in tokens if token.type not in QUIET and token.string]
     return words[-1:] == [";"]
-
-
-def sha256_of(value: Any) -> str:
-    """Return the sha256 of a JSON value."""
-    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
 
 
 @lru_cache(maxsize=1024)
