@@ -52,19 +52,13 @@ def read_state(book: Path, built: BuiltPages, root: Path = ROOT) -> State:
         for name, path in sources.items()
         if path.is_file()
     }
+    # A page's record has digests of all files that its run left.
+    records = [(folder / RECORD).read_bytes() for folder in built.folders.values()]
+    runs = [built.model_dump(mode="json"), [sha256(record).hexdigest() for record in records]]
     with suppress(up_to_date.UnseenError):
         others = up_to_date.other_inputs(root, book, set(sources.values()))
-        return State(json_digest(others | {"runs": _runs(built)}), pages)
+        return State(json_digest(others | {"runs": runs}), pages)
     return State(None, pages)
-
-
-def _runs(built: BuiltPages) -> dict[str, object]:
-    """Return the runs of a build; a page's record has digests of all files that its run left."""
-    records = {
-        name: [str(folder), sha256((folder / RECORD).read_bytes()).hexdigest()]
-        for name, folder in built.folders.items()
-    }
-    return {"records": records, "outputs": {name: str(p) for name, p in built.outputs.items()}}
 
 
 def prepare(folder: Path, state: State) -> bool:
