@@ -125,6 +125,14 @@ def test_imports_are_statements_or_have_a_known_name():
     assert [call for source in cells for call in made_imports(source)] == []
 
 
+@pytest.mark.parametrize("lesson", LESSONS)
+def test_a_lesson_loads_on_demand_from_its_own_folder(lesson):
+    tree = ast.parse((ROOT / PACKAGE / "lessons" / lesson / "__init__.py").read_text("utf8"))
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    loading = [call for call in calls if ast.unparse(call.func).endswith("on_demand")]
+    assert all(ast.unparse(call.args[0]) == "__name__" for call in loading)
+
+
 def made_imports(source):
     """Return what imports other than by a statement or by the name of a foreign module."""
     return [ast.unparse(node) for node in ast.walk(ast.parse(source)) if is_made(node)]

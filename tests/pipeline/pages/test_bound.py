@@ -189,9 +189,14 @@ def other_arguments(executed):
     output(executed, 1, 0).metadata["robo_genesis"]["arguments"] = ["G1"]
 
 
+def as_result(executed):
+    output(executed, 1, 0).output_type = "execute_result"
+
+
 @pytest.mark.parametrize(
     ("spoil", "message"),
     [
+        (as_result, "the bundle gives ['text"),
         (without_metadata, "code cell 2: its code shows 2 measured outputs, found are 1"),
         (another_output, "code cell 4: its code shows 0 measured outputs, found are 1"),
         (another_kind, "the output has text/html, text/markdown, the bundle gives ['text"),
