@@ -161,18 +161,9 @@ def wait_for(process: subprocess.Popen[str], *files: Path) -> None:
 
 def git(root: Path, *words: str) -> str:
     """Return what git prints in a folder, where it can commit."""
-    command = [
-        "git",
-        "-C",
-        str(root),
-        "-c",
-        "user.name=a",
-        "-c",
-        "user.email=a@b",
-        "-c",
-        "commit.gpgsign=false",
-        *words,
-    ]
+    settings = {"user.name": "a", "user.email": "a@b", "commit.gpgsign": "false"}
+    given = [word for item in settings.items() for word in ("-c", "=".join(item))]
+    command = ["git", "-C", str(root), *given, *words]
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from robo_genesis.core.project import CACHE, ProjectError, installed, lock_digest
 
@@ -99,6 +100,28 @@ def replaced(folder: Path, prefix: str = "") -> Iterator[Path]:
 def beside(folder: Path, suffix: str, prefix: str = "") -> Path:
     """Return the path of the next or the old state of a folder; a prefix `.` hides it."""
     return folder.with_name(f"{prefix}{folder.name}{suffix}")
+
+
+def json_digest(value: Any) -> str:
+    """Return the SHA-256 of a JSON value."""
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+def derived_value(kind: str, inputs: Any, make: Callable[[], Any]) -> Any:
+    """Return the result of `make`, a JSON value; see `derived`.
+
+    Args:
+        kind: name of the subfolder.
+        inputs: everything that decides the result, a JSON value.
+        make: a function or lambda; the module that defines it is one of the inputs.
+    """
+    given = [json.dumps(inputs).encode(), _source(make.__code__.co_filename)]
+    return json.loads(derived(kind, given, lambda: json.dumps(make()).encode()))
+
+
+@lru_cache
+def _source(file: str) -> bytes:
+    return Path(file).read_bytes()
 
 
 def derived(

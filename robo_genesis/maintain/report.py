@@ -18,7 +18,8 @@ from robo_genesis.evidence.rows import SEVERITY, worst
 from robo_genesis.maintain.pin import locked_versions
 from robo_genesis.pipeline.bundles.status import Status, recorded_folders, recorded_status
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.folder import read_record, recorded_bundle
+from robo_genesis.pipeline.pages.folder import OUTPUTS, read_record
+from robo_genesis.pipeline.pages.results import find_bundle
 from robo_genesis.pipeline.pages.store import folders
 
 Pair = tuple[str, str]
@@ -96,7 +97,7 @@ def read_build(root: Path, version: str, site: Path) -> EngineBuild:
     for page in find_pages(book):
         for folder in folders(root / ".cache" / STORE, page):
             record = read_record(folder)
-            bundle = recorded_bundle(folder, record)
+            bundle = find_bundle(folder / OUTPUTS, record.run_id)
             if bundle and record.engine == version:
                 bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle
                 break

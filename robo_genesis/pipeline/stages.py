@@ -97,21 +97,18 @@ def run_build(build: Build) -> list[str]:
         build_lock(build.cache),
         staging_folder(build.cache) as staging,
     ):
-        target = build.to or build.book
-        settle(target / project.PUBLISHED)
-        bundle_store.recover(build.book / "evidence")
-        inputs = up_to_date.inputs_digest(build.root, build.book)
-        progress = Progress(build.say)
-        npm.require_published()
+        target, progress = build.to or build.book, Progress(build.say)
+        inputs = up_to_date.inputs_digest(build.root, build.book)  # before any is read
         engine, pages, into = _prepare(build)
+        npm.require_published()
         from_nothing = build.release or build.executed or site_address()
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
-        if build.release:
-            _require_for_release(unclean(build.root))
         if build.executed:
-            for record in import_pages(build.executed, pages, into, verify):
-                progress("import", record.docname, f"run {record.run_id[:8]}")
-        results = _execute(build, pages, into, progress)
+            results = import_pages(build.executed, pages, into, verify)
+            for result in results:
+                progress("import", result.page.docname, f"run {result.run_id[:8]}")
+        else:
+            results = _execute(build, pages, into, progress)
         manifests: dict[str, Any] = {}
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
@@ -139,7 +136,7 @@ def run_build(build: Build) -> list[str]:
 
         def finish(published: Path) -> None:
             now = up_to_date.inputs_digest(build.root, build.book)
-            up_to_date.record(published, inputs, now, summary(executed=0), draft.digests)
+            up_to_date.record(published, inputs, now, summary(executed=0))
 
         html = publish(target, draft.folder, finish)  # last: after it, nothing may fail
         progress("publish", str(html))
@@ -199,17 +196,16 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
 
 
 def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path]]:
-    """Return the engine's version, the pages of the book, and their places in the store."""
-    engine = project.require_pinned_engine(build.root)
+    """Return the engine's version, the pages of the book, and their places in the store.
+
+    What a killed build left is repaired first.
+    """
+    bundle_store.recover(build.book / "evidence")
+    settle((build.to or build.book) / project.PUBLISHED)
     project.remove_stale_kernel_lock(build.cache)
+    engine = project.require_pinned_engine(build.root)
     pages = find_pages(build.book)
     return engine, pages, places(pages, build.cache / project.STORE, build.root)
-
-
-def _require_for_release(problems: Sequence[str]) -> None:
-    """Raise BuildError if there is a reason against a release."""
-    if problems:
-        raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
 
 
 def _labs(results: Sequence[PageResult]) -> dict[str, Path | None]:
@@ -257,8 +253,10 @@ def _accepted(
     if refused := refused + refused_records(build.book, _labs(results)):
         raise BuildError("\n".join(refused))
     if build.release:
-        problems = missing_for_release(build.book, _labs(results), manifests, build.root)
-        _require_for_release([*unclean(build.root), *problems])
+        problems = unclean(build.root)
+        problems += missing_for_release(build.book, _labs(results), manifests, build.root)
+        if problems:
+            raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
         progress("release", "clean tree, current evidence")
     return manifests
 

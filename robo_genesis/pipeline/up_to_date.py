@@ -13,8 +13,8 @@ import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from types import MappingProxyType
 
+from robo_genesis.core.files import json_digest
 from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import (
     ProjectError,
@@ -88,26 +88,16 @@ def other_inputs(
     }
 
 
-def json_digest(parts: Mapping[str, object]) -> str:
-    """Return the digest of a value as JSON."""
-    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
-
-
-def files_digest(
-    base: Path, files: Iterable[Path], known: Mapping[Path, str] = MappingProxyType({})
-) -> str:
+def files_digest(base: Path, files: Iterable[Path]) -> str:
     """Return the digest of names and contents of files; an absent one counts as such.
 
     Args:
         base: the names begin below it.
         files: their order does not matter.
-        known: the SHA-256 of some of them, which are not read.
     """
     found = hashlib.sha256()
     for path in sorted(files):
-        content = known.get(path) or (
-            hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "absent"
-        )
+        content = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "absent"
         found.update(os.fsencode(path.relative_to(base)) + f"\0{content}\n".encode())
     return found.hexdigest()
 
@@ -138,16 +128,9 @@ def history(book: Path) -> list[str | None]:
     ]
 
 
-def site_digest(published: Path, known: Mapping[str, str] = MappingProxyType({})) -> str:
-    """Return the digest of a published folder: the site and its bundles.
-
-    Args:
-        published: the folder.
-        known: the SHA-256 of some of the site's files by name, which are not read.
-    """
-    files = (path for name in PUBLISHED for path in _inside(published / name))
-    digests = {published / "html" / name: digest for name, digest in known.items()}
-    return files_digest(published, files, digests)
+def site_digest(published: Path) -> str:
+    """Return the digest of a published folder: the site and its bundles."""
+    return files_digest(published, (p for name in PUBLISHED for p in _inside(published / name)))
 
 
 def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
@@ -167,13 +150,7 @@ def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
     return lines and [*site, *lines]
 
 
-def record(
-    published: Path,
-    inputs: str | None,
-    now: str | None,
-    lines: Sequence[str],
-    known: Mapping[str, str] = MappingProxyType({}),
-) -> None:
+def record(published: Path, inputs: str | None, now: str | None, lines: Sequence[str]) -> None:
     """Write beside a site from which inputs it was made, and the last lines of its build.
 
     Nothing is written, and so the next build has work, if the inputs are unknown or have changed
@@ -184,12 +161,10 @@ def record(
         inputs: the digest of the inputs when the build began, None if it is unknown.
         now: the same at its end.
         lines: the last lines of a build without work.
-        known: see `site_digest`.
     """
     with suppress(UnseenError):
         if inputs is not None and inputs == now:
-            site = site_digest(published, known)
-            record = {"inputs": inputs, "site": site, "lines": list(lines)}
+            record = {"inputs": inputs, "site": site_digest(published), "lines": list(lines)}
             (published / RECORD).write_text(json.dumps(record, indent=1) + "\n", "utf8")
 
 

@@ -12,10 +12,10 @@ import pytest
 
 from robo_genesis.core.project import BOOK, CACHE, ROOT
 from robo_genesis.lessons import LESSONS
-from robo_genesis.pipeline.pages.book import cell_sources, find_pages
+from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import kernel_environment
 from robo_genesis.pipeline.pages.sources import import_closure, measures, measuring_modules
-from robo_genesis.pipeline.pages.syntax import PACKAGE, imports_of
+from robo_genesis.pipeline.pages.syntax import PACKAGE
 
 IMPORTING = {"__import__", "eval", "exec", "exec_module", "import_module", "run_module", "run_path"}
 MADE_NAMES = {
@@ -82,7 +82,7 @@ def loaded_modules(lab, tmp_path):
 @pytest.mark.engine
 def test_a_run_loads_only_modules_that_the_keys_know(lab, tmp_path):
     loaded = set(loaded_modules(lab, tmp_path))
-    imports = imports_of(cell_sources(lab))
+    imports = lab.code.imports
     reached = import_closure([f"{PACKAGE}.lessons.{lab.lesson}", *imports])
     assert loaded <= reached.keys()
     computing = computing_modules(lab.lesson, {name: reached[name] for name in loaded})
@@ -103,7 +103,7 @@ def computing_modules(lesson, modules):
 @pytest.mark.parametrize("page", find_pages(BOOK), ids=lambda page: f"{page.lesson}-{page.page}")
 def test_whatever_a_page_may_import_is_known_to_its_key(page):
     """Except what only judges a finished run: its functions import what some lessons need."""
-    imports = imports_of(cell_sources(page))
+    imports = page.code.imports
     reached = import_closure(
         [f"{PACKAGE}.lessons.{page.lesson}", *imports],
         enter=lambda name, path: not name.endswith("laws"),
@@ -121,7 +121,7 @@ def test_imports_are_statements_or_have_a_known_name():
         if (calls := made_imports(path.read_text("utf8")))
     }
     assert found == {file: [call] for file, call in MADE_NAMES.items()}
-    cells = [source for page in find_pages(BOOK) for source in cell_sources(page)]
+    cells = [source for page in find_pages(BOOK) for source in page.code.sources]
     assert [call for source in cells for call in made_imports(source)] == []
 
 
@@ -153,8 +153,6 @@ def is_made(node):
     ("source", "made"),
     [
         ("import_module(name)", True),
-        ("importlib.import_module('robo_genesis.sim.run')", True),
-        ("import_module('.run', __package__)", True),
         ("exec('from . import run')", True),
         ("from importlib import import_module as load", True),
         ("importlib.import_module('torch')", False),

@@ -109,10 +109,7 @@ def _read_codes(book: Path) -> bytes:
     from robo_genesis.pipeline.pages import book as pages
 
     found = [page for page in pages.find_pages(book) if page.declares_bundle]
-    codes = [
-        (p.lesson, p.page, pages.code_digest(p), syntax.imports_of(pages.cell_sources(p)))
-        for p in found
-    ]
+    codes = [(p.lesson, p.page, pages.code_digest(p), p.code.imports) for p in found]
     return json.dumps(codes).encode()
 
 

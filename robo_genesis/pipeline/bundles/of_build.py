@@ -56,7 +56,6 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> str:
         BundleRefused: `shown`.
     """
     folder, bundle = result.folder, result.bundle
-    assert folder is not None  # the page did not fail
     assert bundle is not None
     record = (folder / RECORD).read_bytes()
     code = [path.read_bytes() for path in import_closure([shown.__name__]).values()]

@@ -1,16 +1,16 @@
 """Checks on the built site that need no browser: links, alt texts, scripts, leftovers."""
 
-import json
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
+from typing import Any
 from urllib.parse import unquote, urldefrag, urlsplit
 
 from bs4 import BeautifulSoup, Tag
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived_value
 from robo_genesis.pipeline.html import scripts
 
 ADDRESSES = {"href", "src", "srcset", "poster", "data", "action"}
@@ -41,19 +41,16 @@ class SiteCheck:
 class PageFacts:
     """What the checks use of one page; a page is parsed again only when it or a check changed.
 
-    An address of `addresses` comes with whether the browser itself asks for it. The problems and
-    `leftovers` are whole lines without the name of the page.
+    `addresses` are those of links and files, `loaded` those that a browser asks for by itself.
+    `examined` and `problems` have, by the name of a check that needs no other page, how many things
+    it examined, and whole lines without the name of the page.
     """
 
     anchors: list[str]
-    addresses: list[tuple[str, bool]]
-    styles: list[str]
-    inline_addresses: list[str]
-    images: int
-    alt_problems: list[str]
-    scripts: int
-    script_problems: list[str]
-    leftovers: list[str]
+    addresses: list[str]
+    loaded: list[str]
+    examined: dict[str, int]
+    problems: dict[str, list[str]]
 
 
 class Site:
@@ -64,23 +61,21 @@ class Site:
         self.files: dict[str, Path | None] = {}
         self.pages = {path: self._facts(path) for path in sorted(self.root.rglob("*.html"))}
         self.anchors = {path: set(page.anchors) for path, page in self.pages.items()}
-        self.style_addresses = [
-            (path, url) for path, page in self.pages.items() for url in page.styles
+        self.in_style_sheets = [
+            (path, url)
+            for path in sorted(self.root.rglob("*.css"))
+            for url in _in_style(path.read_text("utf8"))
         ]
-        for path in sorted(self.root.rglob("*.css")):
-            self.style_addresses += [(path, url) for url in _in_style(path.read_text("utf8"))]
 
     def _facts(self, path: Path) -> PageFacts:
         text = path.read_text("utf8")
-        place = json.dumps([self.name(path), self.base]).encode()
-        sources = (Path(module).read_bytes() for module in (__file__, scripts.__file__))
+        inputs = [text, self.name(path), self.base, Path(scripts.__file__).read_text("utf8")]
 
-        def make() -> bytes:
+        def make() -> dict[str, Any]:
             parsed = BeautifulSoup(text, "html.parser")
-            page = scripts.Page(self.root, self.base, path, parsed, text)
-            return json.dumps(asdict(page_facts(page))).encode()
+            return asdict(page_facts(scripts.Page(self.root, self.base, path, parsed, text)))
 
-        return PageFacts(**json.loads(derived("checked", [text.encode(), place, *sources], make)))
+        return PageFacts(**derived_value("checked", inputs, make))
 
     def file(self, folder: Path, place: str) -> Path | None:
         """Return the file at a place relative to a folder, None if the site has no such file."""
@@ -104,21 +99,29 @@ def page_facts(page: scripts.Page) -> PageFacts:
     style = [tag.get_text() for tag in tags if tag.name == "style"]
     style += [str(tag["style"]) for tag in tags if tag.has_attr("style")]
     inline = page.parsed.find_all("script", src=False)
+    found = [(url, _is_loaded(tag)) for tag in tags for url in _addresses(tag)]
+    found += [(url, True) for text in style for url in _in_style(text)]
+    in_scripts = [url for tag in inline for url in SCRIPT_ADDRESS.findall(tag.get_text())]
+    images = _images(page.parsed)
     return PageFacts(
         anchors=sorted({str(name) for name in names if name}),
-        addresses=[(url, _is_loaded(tag)) for tag in tags for url in _addresses(tag)],
-        styles=[url for text in style for url in _in_style(text)],
-        inline_addresses=[url for tag in inline for url in SCRIPT_ADDRESS.findall(tag.get_text())],
-        images=len(_images(page.parsed)),
-        alt_problems=list(_alt_problems(page.parsed)),
-        scripts=len(page.parsed.find_all("script")),
-        script_problems=sorted(set(scripts.page_problems(page))),
-        leftovers=list(_leftovers(page.parsed)),
+        addresses=[url for url, _ in found],
+        loaded=[url for url, is_loaded in found if is_loaded] + in_scripts,
+        examined={
+            "alt texts": len(images),
+            "scripts": len(page.parsed.find_all("script")),
+            "leftovers": 1,
+        },
+        problems={
+            "alt texts": list(_alt_problems(images)),
+            "scripts": sorted(set(scripts.page_problems(page))),
+            "leftovers": list(_leftovers(page.parsed)),
+        },
     )
 
 
 def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
-    """Run all checks on a built site.
+    """Run all checks on a built site; see `run_checks`.
 
     Args:
         html: the folder with the site's `index.html`.
@@ -128,15 +131,38 @@ def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
 
 
 def run_checks(site: Site) -> list[SiteCheck]:
-    """Run all checks on a site whose pages were read."""
-    checks = (check_links, check_alt_texts, check_third_parties, check_scripts, check_leftovers)
-    return [check(site) for check in checks]
+    """Run all checks on a site whose pages were read.
+
+    | check | requirement |
+    |---|---|
+    | links | each address inside the site leads to a file, each fragment to an element |
+    | alt texts | each image has a text that is neither empty nor a file name nor a hash |
+    | third parties | nothing is loaded from another address; readers may follow links |
+    | scripts | the site runs the scripts of the theme and of the course only; see `scripts` |
+    | leftovers | no page shows unprocessed markup, or an error of the page generator |
+    """
+    return [
+        check_links(site),
+        _of_pages(site, "alt texts"),
+        check_third_parties(site),
+        _of_pages(site, "scripts", scripts.file_problems(site.root)),
+        _of_pages(site, "leftovers"),
+    ]
+
+
+def _of_pages(site: Site, check: str, more: Iterable[str] = ()) -> SiteCheck:
+    """Return a check that was made page by page, with further problems."""
+    pages = site.pages.items()
+    problems = [
+        f"{site.name(path)}: {line}" for path, page in pages for line in page.problems[check]
+    ]
+    return SiteCheck(check, sum(page.examined[check] for _, page in pages), (*problems, *more))
 
 
 def check_links(site: Site) -> SiteCheck:
-    """Every address inside the site leads to a file, and every fragment to an element."""
-    found = [(path, url) for path, page in site.pages.items() for url, _ in page.addresses]
-    found += site.style_addresses
+    """Check that every address inside the site leads to a file or an element."""
+    found = [(path, url) for path, page in site.pages.items() for url in page.addresses]
+    found += site.in_style_sheets
     inside = [(path, url) for path, url in found if not urlsplit(url).scheme and url[:2] != "//"]
     problems = {
         f"{site.name(path)}: {url!r} {reason}"
@@ -162,43 +188,12 @@ def _broken(site: Site, page: Path, url: str) -> str | None:
     return None
 
 
-def check_alt_texts(site: Site) -> SiteCheck:
-    """Every image has an alternative text that is neither empty nor a file name nor a hash."""
-    problems = _lines(site, {path: page.alt_problems for path, page in site.pages.items()})
-    return SiteCheck("alt texts", sum(page.images for page in site.pages.values()), problems)
-
-
 def check_third_parties(site: Site) -> SiteCheck:
-    """Nothing is loaded from another address; links that a reader may follow are allowed."""
-    found = [
-        (path, url)
-        for path, page in site.pages.items()
-        for url in [
-            *(url for url, is_loaded in page.addresses if is_loaded),
-            *page.inline_addresses,
-        ]
-    ]
-    found += site.style_addresses + _services(site)
+    """Check that nothing is loaded from another address."""
+    found = [(path, url) for path, page in site.pages.items() for url in page.loaded]
+    found += site.in_style_sheets + _services(site)
     problems = sorted({f"{site.name(path)}: {url}" for path, url in found if ELSEWHERE.match(url)})
     return SiteCheck("third parties", len(found), tuple(problems))
-
-
-def check_scripts(site: Site) -> SiteCheck:
-    """The site runs the scripts of the theme and of the course only; see `scripts`."""
-    problems = _lines(site, {path: page.script_problems for path, page in site.pages.items()})
-    number = sum(page.scripts for page in site.pages.values())
-    return SiteCheck("scripts", number, (*problems, *scripts.file_problems(site.root)))
-
-
-def check_leftovers(site: Site) -> SiteCheck:
-    """No page shows unprocessed markup, or an error of the page generator."""
-    problems = _lines(site, {path: page.leftovers for path, page in site.pages.items()})
-    return SiteCheck("leftovers", len(site.pages), problems)
-
-
-def _lines(site: Site, found: Mapping[Path, Sequence[str]]) -> tuple[str, ...]:
-    """Return problems with the names of their pages."""
-    return tuple(f"{site.name(path)}: {line}" for path in found for line in found[path])
 
 
 def _images(page: BeautifulSoup) -> list[Tag]:
@@ -206,8 +201,8 @@ def _images(page: BeautifulSoup) -> list[Tag]:
     return [*page.find_all("img"), *page.find_all("svg", class_="drawing")]
 
 
-def _alt_problems(page: BeautifulSoup) -> Iterator[str]:
-    for image in _images(page):
+def _alt_problems(images: Iterable[Tag]) -> Iterator[str]:
+    for image in images:
         names = ("alt", "src") if image.name == "img" else ("aria-label", "data-file")
         text, source = (str(image.get(name) or "").strip() for name in names)
         if not text or FILE_NAME.match(text) or text == PurePosixPath(urlsplit(source).path).stem:

@@ -7,14 +7,15 @@ next build empties: a warning is given only when a page is read.
 
 import json
 import shutil
-from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
+from robo_genesis.core.files import json_digest
 from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline import up_to_date
+from robo_genesis.pipeline.html.sphinx_process import read_again
 from robo_genesis.pipeline.pages.book import docnames
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import RECORD
@@ -22,7 +23,6 @@ from robo_genesis.pipeline.pages.folder import RECORD
 STATE = "state.json"
 UNFIT = "unfit"
 """Sphinx writes this file if the pages must not be kept; see `site.kept_pages`."""
-DOCTREES = "_build/.doctrees"
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,19 +52,13 @@ def read_state(book: Path, built: BuiltPages, root: Path = ROOT) -> State:
         for name, path in sources.items()
         if path.is_file()
     }
+    # A page's record has digests of all files that its run left.
+    records = [(folder / RECORD).read_bytes() for folder in built.folders.values()]
+    runs = [built.model_dump(mode="json"), [sha256(record).hexdigest() for record in records]]
     with suppress(up_to_date.UnseenError):
         others = up_to_date.other_inputs(root, book, set(sources.values()))
-        return State(up_to_date.json_digest(others | {"runs": _runs(built)}), pages)
+        return State(json_digest(others | {"runs": runs}), pages)
     return State(None, pages)
-
-
-def _runs(built: BuiltPages) -> dict[str, object]:
-    """Return the runs of a build; a page's record has digests of all files that its run left."""
-    records = {
-        name: [str(folder), sha256((folder / RECORD).read_bytes()).hexdigest()]
-        for name, folder in built.folders.items()
-    }
-    return {"records": records, "outputs": {name: str(p) for name, p in built.outputs.items()}}
 
 
 def prepare(folder: Path, state: State) -> bool:
@@ -86,12 +80,6 @@ def prepare(folder: Path, state: State) -> bool:
     folder.mkdir(parents=True, exist_ok=True)
     read_again(folder, {n for n, digest in state.pages.items() if last.pages.get(n) != digest})
     return usable
-
-
-def read_again(folder: Path, pages: Iterable[str]) -> None:
-    """Make Sphinx read some pages again, whatever the times of their files are."""
-    for name in pages:
-        (folder / DOCTREES / f"{name}.doctree").unlink(missing_ok=True)
 
 
 def fit(folder: Path) -> bool:

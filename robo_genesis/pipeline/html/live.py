@@ -1,10 +1,9 @@
 """`make live`: shows a book while it is written, and publishes nothing.
 
-A process with Sphinx loaded renders each changed page; see `live_sphinx`. The browser gets the last
-state without warnings and errors, and reloads when there is a new one; see `live_server`.
+A process with Sphinx loaded renders each changed page; see `sphinx_process`. The browser gets the
+last state without warnings and errors, and reloads when there is a new one; see `live_server`.
 """
 
-import json
 import os
 import shutil
 import signal
@@ -13,15 +12,14 @@ import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.pipeline.command import TIMEOUT, end_with_parent, say
 from robo_genesis.pipeline.html import kept
-from robo_genesis.pipeline.html.sphinx_process import HTML
+from robo_genesis.pipeline.html.sphinx_process import EXECUTED, HTML, SphinxProcess
 from robo_genesis.pipeline.pages.book import Page, code_digest, docnames, find_pages
 from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, BuiltPages
-from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, read_record
+from robo_genesis.pipeline.pages.folder import PageRefused, read_record
 from robo_genesis.pipeline.pages.store import folders, places
 
 FOLDER = "live"
@@ -59,7 +57,7 @@ class Live:
         self.work, self.site, self.log = (
             self.folder / name for name in ("work", "site", "sphinx.log")
         )
-        self.sphinx: subprocess.Popen[str] | None = None
+        self.sphinx: SphinxProcess | None = None
         self.started: list[subprocess.Popen[str]] = []
         self.is_ended = False
         self.named: set[str] = set()
@@ -91,9 +89,13 @@ class Live:
             built = self.built(pages)
             known = {name.removesuffix(".md") for name in docnames(self.book / "_toc.yml")}
             names = [name for name in known if self.book / f"{name}.md" in paths]
-            if self.sphinx is None or len(names) < len(paths) or self.runs_changed(built):
-                self.restart(built)
-            complaints = self.render(names)
+            runs = self.sphinx is not None and self.sphinx.process.poll() is None
+            if not runs or len(names) < len(paths) or self.runs_changed(built):
+                self.sphinx = self.restart(built)
+            assert self.sphinx is not None
+            variables = built.write(self.work / EXECUTED) | {LAST_OUTPUTS: "1"}
+            self.sphinx.order(self.work, variables, names)
+            complaints = self.sphinx.complaints()
             if not complaints:
                 self.show()
                 return True
@@ -113,9 +115,7 @@ class Live:
             if self.execute and not place.is_dir() and place not in self.failed:
                 self.run_page(page, place)
             if folder := self.last_run(page, place):
-                found.folders[page.docname] = folder
-                if page.declares_bundle:
-                    found.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
+                found.add(page, folder)
             if place.is_dir():
                 self.named.discard(page.docname)
             elif page.docname not in self.named and not self.execute:
@@ -156,13 +156,15 @@ class Live:
         command = [sys.executable, str(project.ROOT / "build_scripts" / "execute.py")]
         command += ["--book", str(self.book), "--cache", str(self.cache)]
         command += ["--timeout", str(self.timeout)]
-        running = self.start(
+        running = subprocess.Popen(
             command,
             env=os.environ | {"PAGE": page.docname, "TO": str(self.folder / "executed")},
             stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
+            text=True,
             preexec_fn=end_with_parent(signal.SIGTERM),
         )
+        self.note(running)
         _, report = running.communicate()
         if running.returncode and not self.is_ended:
             self.failed.add(place)
@@ -172,56 +174,30 @@ class Live:
                 "code changes, or code that it imports."
             )
 
-    def start(self, command: Sequence[str], **given: Any) -> subprocess.Popen[str]:
-        """Start a process that `stop` ends.
-
-        Args:
-            command: and its arguments.
-            **given: further arguments of Popen.
+    def note(self, process: subprocess.Popen[str]) -> None:
+        """Note a started process, which `stop` ends.
 
         Raises:
             LiveEndedError: `stop` was called meanwhile; the process was ended.
         """
-        process = subprocess.Popen(command, text=True, **given)
         self.started = [other for other in self.started if other.poll() is None] + [process]
         if self.is_ended:  # set before `stop` reads the list, so one of the two finds the process
             end(process)
             raise LiveEndedError
-        return process
 
     def runs_changed(self, built: BuiltPages) -> bool:
         """Return whether other runs are shown than those that Sphinx was started with."""
-        file = self.work / "executed-pages.json"
+        file = self.work / EXECUTED
         return not file.is_file() or file.read_text("utf8") != built.model_dump_json(indent=1)
 
-    def restart(self, built: BuiltPages) -> None:
+    def restart(self, built: BuiltPages) -> SphinxProcess:
         """Start Sphinx; what it kept is used if only pages changed since the last good state."""
-        self.end_sphinx()
+        if self.sphinx is not None:
+            end(self.sphinx.process)
         kept.prepare(self.work, kept.read_state(self.book, built))
-        given = os.environ | built.write(self.work / "executed-pages.json")
-        command = [sys.executable, "-m", "robo_genesis.pipeline.html.live_sphinx"]
-        with self.log.open("w") as log:
-            self.sphinx = self.start(
-                [*command, str(self.book), str(self.work)],
-                env=given | {"PYTHONPATH": str(project.ROOT), LAST_OUTPUTS: "1"},
-                stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log,
-                preexec_fn=end_with_parent(),
-            )  # fmt: skip
-
-    def render(self, names: Sequence[str]) -> list[str]:
-        """Read some pages again and write what depends on them; return warnings and errors."""
-        assert self.sphinx is not None
-        assert self.sphinx.stdin is not None
-        assert self.sphinx.stdout is not None
-        with suppress(BrokenPipeError):
-            print(json.dumps(names), file=self.sphinx.stdin, flush=True)
-        try:
-            answer = json.loads(self.sphinx.stdout.readline())
-        except ValueError:  # no line, or none of `live_sphinx`
-            answer = {"said": [f"Sphinx stopped. Log: {self.log}"], "ended": True}
-        if answer["ended"]:  # the next change starts it again
-            self.end_sphinx()
-        return list(answer["said"])
+        sphinx = SphinxProcess(self.book, self.log)
+        self.note(sphinx.process)
+        return sphinx
 
     def show(self) -> None:
         """Copy what changed to the folder that is served."""
@@ -245,16 +221,10 @@ class Live:
         Nothing is marked if a file cannot be read, for example while an editor replaces it.
         """
         with suppress(project.ProjectError, OSError, ValueError):
-            built = BuiltPages.model_validate_json((self.work / "executed-pages.json").read_bytes())
+            built = BuiltPages.model_validate_json((self.work / EXECUTED).read_bytes())
             state = kept.read_state(self.book, built)
             if self.look() == self.seen:
                 kept.keep(self.work, state, state)
-
-    def end_sphinx(self) -> None:
-        """End Sphinx if it runs."""
-        if self.sphinx is not None:
-            end(self.sphinx)
-            self.sphinx = None
 
     def stop(self) -> None:
         """End the processes that this one started; later ones are ended when they start."""

@@ -1,9 +1,9 @@
 """The server of `make live`: sends the pages to browsers, and makes them reload."""
 
 import asyncio
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,6 @@ from typing import Any
 from tornado.httpserver import HTTPServer
 from tornado.netutil import bind_sockets
 from tornado.web import Application, RequestHandler, StaticFileHandler
-from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from robo_genesis.core.files import locked
 from robo_genesis.core.project import ProjectError
@@ -21,36 +20,24 @@ from robo_genesis.pipeline.pages.kernels import described
 INTERVAL = 0.1
 """Seconds between two looks at the files; a look takes milliseconds."""
 RELOAD = b"""<script>(() => {
-  const connect = (again) => {
-    const socket = new WebSocket(`ws://${location.host}/live-reload`);
-    socket.onopen = () => again && location.reload();
-    socket.onmessage = () => location.reload();
-    socket.onclose = () => setTimeout(connect, 1000, true);
-  };
-  connect(false);
+  let seen;
+  setInterval(async () => {
+    const state = await (await fetch("/live-reload")).text();
+    if (seen !== undefined && seen !== state) location.reload();
+    seen = state;
+  }, 500);
 })()</script></body>"""
-"""A page also reloads when it is connected again: it may have missed a message."""
+"""A page asks for the name of the shown state, and reloads when it is another."""
 
 
-class Reload(WebSocketHandler):
-    """A connection to a page that is shown in a browser."""
+class State(RequestHandler):
+    """Answers with the name of the shown state: the time when it was rendered."""
 
-    connected: set["Reload"] = set()  # noqa: RUF012 - of all connections
+    shown = time.time_ns()
 
-    def open(self, *args: str, **kwargs: str) -> None:
-        """Enter the connection in the set of all."""
-        self.connected.add(self)
-
-    def on_close(self) -> None:
-        """Remove the connection from the set."""
-        self.connected.discard(self)
-
-    @classmethod
-    def reload_all(cls) -> None:
-        """Make all pages reload."""
-        for one in list(cls.connected):
-            with suppress(WebSocketClosedError):
-                one.write_message("reload")
+    def get(self) -> None:
+        """Send the name."""
+        self.write(str(State.shown))
 
 
 class LiveFile(StaticFileHandler):
@@ -90,8 +77,8 @@ async def serve(live: Live, port: int, opened: Callable[[int], None] = lambda po
     """
     with locked(live.folder / "lock", in_use):
         files = (r"/(.*)", LiveFile, {"path": str(live.site), "default_filename": "index.html"})
-        handlers: list[tuple[str, type[RequestHandler]] | Any] = [("/live-reload", Reload), files]
-        server = HTTPServer(Application(handlers, websocket_ping_interval=20))
+        handlers: list[Any] = [("/live-reload", State), files]
+        server = HTTPServer(Application(handlers))
         try:
             sockets = bind_sockets(port, "127.0.0.1")
         except OSError as error:
@@ -108,7 +95,7 @@ async def serve(live: Live, port: int, opened: Callable[[int], None] = lambda po
                     continue
                 is_new: bool = await loop.run_in_executor(thread, partial(live.update, paths))
                 if is_new:
-                    Reload.reload_all()
+                    State.shown = time.time_ns()
                     await loop.run_in_executor(thread, live.remember)
                     live.say(f"Shown: {', '.join(sorted(path.name for path in paths))}")
         finally:

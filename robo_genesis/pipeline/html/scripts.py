@@ -7,18 +7,19 @@ and a browser's from disagreeing: each `<script` of the text is an element, and 
 """
 
 import hashlib
+import io
 import json
 import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote, urlsplit
 
 from bs4 import BeautifulSoup, Comment, Tag
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived_value
 
 KNOWN = {
     "b08c20317fb3eb19": "light or dark before the page shows; the second half is page_weight's",
@@ -111,10 +112,8 @@ def file_problems(root: Path) -> Iterator[str]:
         elif name != "sitemap.xml" and (suffix in OTHER_PAGES or path.suffix in DISGUISED):
             yield f"{name}: a browser may run script in it. Valid: pages .html, drawings .svg."
         elif suffix == ".svg":
-            code = Path(__file__).read_bytes()
-            drawing = partial(_drawing_problems, path)
-            listed = json.loads(derived("drawing", [path.read_bytes(), code], drawing))
-            yield from (f"{name}: {found}" for found in listed)
+            text = path.read_bytes()
+            yield from (f"{name}: {found}" for found in _drawing_problems(text))
 
 
 def _script(page: Page, script: Tag) -> Iterator[str]:
@@ -172,17 +171,17 @@ def _element(tag: str, attributes: Mapping[str, str]) -> Iterator[str]:
             yield f"{what}, an address that can run script. Remove it."
 
 
-def _drawing_problems(path: Path) -> bytes:
-    return json.dumps(list(_drawing(path))).encode()
+def _drawing_problems(text: bytes) -> Any:
+    return derived_value("drawing", text.hex(), lambda: [*_drawing(text)])
 
 
-def _drawing(path: Path) -> Iterator[str]:
+def _drawing(text: bytes) -> Iterator[str]:
     """Yield what a drawing could run if a browser opens it as a page."""
-    if re.search(rb"<!ENTITY|<!DOCTYPE[^>]*\[|<\?xml-", path.read_bytes(), re.IGNORECASE):
+    if re.search(rb"<!ENTITY|<!DOCTYPE[^>]*\[|<\?xml-", text, re.IGNORECASE):
         yield "the drawing declares entities or a style sheet of XML. Remove the declaration."
         return
     try:
-        for _, element in ElementTree.iterparse(path):
+        for _, element in ElementTree.iterparse(io.BytesIO(text)):
             tag = _local(element.tag)
             if tag == "script":
                 yield "the drawing contains a script. Remove it."

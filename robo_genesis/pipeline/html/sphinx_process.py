@@ -1,17 +1,23 @@
-"""A process that loads Sphinx while the pages are executed, and then renders a book once."""
+"""A process that loads Sphinx while pages are executed or written, and then renders a book.
+
+Each line of its input is an order in JSON: the folder of the output, variables, the pages to read
+again, and whether it is the last. It answers with a line: the warnings and errors, none if the
+render succeeded, and whether it ends, because Sphinx cannot build again after an exception.
+"""
 
 import importlib
+import io
 import json
 import multiprocessing
 import os
-import re
 import subprocess
 import sys
-from collections.abc import Callable
+import traceback
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.pipeline.command import ANSI, collect_rarely, end_with_parent
@@ -19,12 +25,13 @@ from robo_genesis.pipeline.command import ANSI, collect_rarely, end_with_parent
 if TYPE_CHECKING:  # the process is started before the packages of Jupyter are loaded
     from robo_genesis.pipeline.pages.built import BuiltPages
 
-COMPLAINT = re.compile(r"WARNING|ERROR|CRITICAL|[Ee]rror:")
 LOG = "render.log"
 """Its name in the folder of the caches."""
 HTML = "_build/html"
 """The folder of the pages in the folder that Sphinx gets."""
-OPTIONS = ("-n", "-W", "--keep-going", "--builder", "html")
+DOCTREES = "_build/.doctrees"
+EXECUTED = "executed-pages.json"
+"""The file in that folder which lists the executed pages."""
 
 
 class RenderError(ProjectError):
@@ -39,14 +46,14 @@ class SphinxProcess:
 
         Args:
             book: folder with `_config.yml`, `_toc.yml` and the pages.
-            log: file for the output of Sphinx; it is written only during the render, so that a
+            log: file for the output of Sphinx; it is written only during a render, so that a
                 process which waits for nothing does not disturb another build.
         """
         self.book, self.log = book, log
         self.process = subprocess.Popen(
-            [sys.executable, "-m", __name__, str(book)],
+            [sys.executable, "-m", __name__, str(book), str(log)],
             env={**os.environ, "PYTHONPATH": str(ROOT)},
-            stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True,
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
             preexec_fn=end_with_parent(),
         )  # fmt: skip
 
@@ -65,7 +72,7 @@ class SphinxProcess:
     def render(
         self, folder: Path, built: "BuiltPages", meanwhile: Callable[[], None] = lambda: None
     ) -> None:
-        """Render the book; this can be done once.
+        """Render the book, and end the process.
 
         Args:
             folder: of Sphinx's output; its folder `HTML` gets the pages. What is there is taken
@@ -76,53 +83,118 @@ class SphinxProcess:
         Raises:
             RenderError: Sphinx failed or gave a warning.
         """
-        arguments = ["build", str(self.book), "--path-output", str(folder), *OPTIONS]
-        variables = built.write(folder / "executed-pages.json")
-        self.log.parent.mkdir(parents=True, exist_ok=True)
-        self.log.write_text("Sphinx ended before it began.\n", "utf8")
-        assert self.process.stdin is not None
-        with suppress(BrokenPipeError), self.process.stdin as order:  # its status is reported below
-            order.write(json.dumps([str(self.log), arguments, variables]))
+        self.order(folder, built.write(folder / EXECUTED), last=True)
         with self:  # nothing writes into the folder after an interrupt, or a refusal meanwhile
             meanwhile()
+            said = self.complaints()
             self.process.wait()
-        if self.process.returncode != 0 or not (folder / HTML / "index.html").is_file():
-            raise RenderError(f"{complaints(self.log)}\nThe complete log is in {self.log}")
+        if not said and not (folder / HTML / "index.html").is_file():
+            said = ["Sphinx wrote no home page."]
+        if said:
+            raise RenderError("\n".join([*said, f"The complete log is in {self.log}"]))
+
+    def order(
+        self,
+        folder: Path,
+        variables: Mapping[str, str],
+        again: Iterable[str] = (),
+        last: bool = False,
+    ) -> None:
+        """Begin to render what changed.
+
+        Args:
+            folder: of Sphinx's output.
+            variables: for its environment.
+            again: pages that are read again, whatever the times of their files are.
+            last: whether the process ends after it.
+        """
+        assert self.process.stdin is not None
+        self.log.parent.mkdir(parents=True, exist_ok=True)
+        self.log.write_text("Sphinx ended before it began.\n", "utf8")
+        order = [str(folder), dict(variables), [*again], last]
+        with suppress(BrokenPipeError):  # reported below
+            print(json.dumps(order), file=self.process.stdin, flush=True)
+
+    def complaints(self) -> list[str]:
+        """Wait for the end of the render; return its warnings and errors."""
+        assert self.process.stdout is not None
+        said, ended = [f"Sphinx stopped. Log: {self.log}"], True
+        if line := self.process.stdout.readline():
+            said, ended = json.loads(line)
+        if ended:
+            self.process.wait()
+        return said
 
 
-def complaints(log: Path) -> str:
-    """Return the warnings and errors of a log, or its end where it names none."""
-    lines = ANSI.sub("", log.read_text("utf8", errors="replace")).splitlines()
-    found = list(dict.fromkeys(line for line in lines if COMPLAINT.search(line)))
-    return "\n".join(found or lines[-20:])
+def read_again(folder: Path, pages: Iterable[str]) -> None:
+    """Make Sphinx read some pages again, whatever the times of their files are."""
+    for name in pages:
+        (folder / DOCTREES / f"{name}.doctree").unlink(missing_ok=True)
+
+
+def load(book: Path, folder: Path, warnings: io.StringIO) -> Any:
+    """Return Sphinx with the book's configuration, as Jupyter Book loads it."""
+    from jupyter_book.config import get_final_config
+    from sphinx.application import Sphinx
+
+    toc = str(book / "_toc.yml")
+    given = {"external_toc_path": toc, "nitpicky": True, "latex_individualpages": False}
+    config, _ = get_final_config(
+        user_yaml=book / "_config.yml", cli_config=given, sourcedir=book, use_external_toc=True
+    )
+    return Sphinx(
+        book, None, folder / HTML, folder / DOCTREES, "html", config,
+        status=sys.stdout, warning=warnings, keep_going=True,
+    )  # fmt: skip
 
 
 def main() -> None:
-    """Load Jupyter Book and the book's extensions, then wait for arguments and variables."""
+    """Load Jupyter Book and the book's extensions, then render once for each order."""
     collect_rarely()
+    book, log = map(Path, sys.argv[1:])
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
     import yaml
-    from jupyter_book.cli.main import main as jupyter_book
 
-    with suppress(Exception):  # Jupyter Book reports it
-        config = yaml.safe_load(Path(sys.argv[1], "_config.yml").read_text("utf8"))
+    with suppress(Exception):  # reported by the render
+        importlib.import_module("jupyter_book.config")
+        importlib.import_module("sphinx.application")
+        config = yaml.safe_load((book / "_config.yml").read_text("utf8"))
         for extension in config["sphinx"]["config"]["extensions"]:
             importlib.import_module(extension)
-    if order := sys.stdin.readline():
-        log, arguments, variables = json.loads(order)
+    warnings, again, app = io.StringIO(), set[str](), None
+    for line in sys.stdin:
+        place, variables, pages, last = json.loads(line)
+        folder = Path(place)
+        again |= set(pages)
+        os.environ.update(variables)
         with open(log, "w") as stream:
             for output in (1, 2):
                 os.dup2(stream.fileno(), output)
-        os.environ.update(variables)
-        status: object = 0
+        warnings.seek(0)
+        warnings.truncate()
+        failed = []
         try:
-            jupyter_book(arguments)
-        except SystemExit as end:
-            status = end.code
-        sys.stdout.flush()
-        sys.stderr.flush()
-        for child in multiprocessing.active_children():  # the sitemap's, which ends at a usual exit
-            child.kill()
-        os._exit(0 if status in (None, 0) else 1)  # freeing all doctrees takes half a second
+            app = app or load(book, folder, warnings)
+            read_again(folder, again)
+            vars(app.env)["_pickled_doctree_cache"].clear()
+            vars(app.env).pop("master_doctree", None)
+            app.build()
+        except Exception as error:  # an extension, or the author's page, may raise anything
+            traceback.print_exc()
+            failed = [f"{type(error).__name__}: {error}"]
+        said = [line for line in ANSI.sub("", warnings.getvalue()).splitlines() if line.strip()]
+        print(warnings.getvalue(), end="", flush=True)
+        if said and app:  # what was not written correctly is written again
+            vars(app.env).pop("robo_genesis_shown", None)
+        again = again if said else set()
+        answer = [[*dict.fromkeys(said), *failed], bool(failed) or last]
+        print(json.dumps(answer), file=answers, flush=True)
+        if failed or last:
+            break
+    for child in multiprocessing.active_children():  # the sitemap's, which ends at a usual exit
+        child.kill()
+    os._exit(0)  # freeing all doctrees takes half a second
 
 
 if __name__ == "__main__":

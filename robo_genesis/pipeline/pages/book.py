@@ -1,7 +1,5 @@
 """The executed pages of the book and their code cells."""
 
-import hashlib
-import json
 import pickle
 from collections.abc import Iterator
 from copy import deepcopy
@@ -11,14 +9,13 @@ from pathlib import Path
 from typing import cast
 
 import yaml
-from IPython.core.inputtransformer2 import TransformerManager
 from myst_nb.core.read import is_myst_markdown_notebook, myst_nb_reader_plugin
 from nbformat import NotebookNode
 from sphinx_external_toc.parsing import MalformedError, parse_toc_yaml
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived, json_digest
 from robo_genesis.core.project import ProjectError
-from robo_genesis.pipeline.pages.syntax import PACKAGE, cell_digests
+from robo_genesis.pipeline.pages.syntax import PACKAGE, Code, read_code
 
 
 class PageError(ProjectError):
@@ -45,6 +42,11 @@ class Page:
     def declares_bundle(self) -> bool:
         """Whether the page must leave an evidence bundle."""
         return self.lesson is not None
+
+    @property
+    def code(self) -> Code:
+        """What its code cells do."""
+        return code_of(self.notebook)
 
 
 def find_pages(book: Path) -> list[Page]:
@@ -154,28 +156,11 @@ def _declared(name: str, notebook: NotebookNode) -> tuple[str | None, str | None
     return parts[0], parts[1], alone
 
 
-def cell_sources(page: Page) -> list[str]:
-    """Return the code cells of a page as plain Python; magics of IPython are translated."""
-    return plain_python(page.notebook)
-
-
-def plain_python(notebook: NotebookNode) -> list[str]:
-    """Return the code cells of a notebook as plain Python; magics of IPython are translated."""
-    cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
-    inputs = [json.dumps(cells).encode(), Path(__file__).read_bytes()]
-    made = derived("plain", inputs, lambda: json.dumps([*map(_plain_python, cells)]).encode())
-    plain: list[str] = json.loads(made)
-    return plain
-
-
-def _plain_python(cell: str) -> str:
-    try:
-        return TransformerManager().transform_cell(cell)
-    except SyntaxError:  # of indentation; the execution reports its line
-        return cell
+def code_of(notebook: NotebookNode) -> Code:
+    """Return what the code cells of a notebook do."""
+    return read_code(cell.source for cell in notebook.cells if cell.cell_type == "code")
 
 
 def code_digest(page: Page) -> str:
     """Return the sha256 of the syntax of a page's code cells; text and comments do not count."""
-    cells = cell_digests(cell_sources(page))
-    return hashlib.sha256(json.dumps(cells).encode()).hexdigest()
+    return json_digest(page.code.digests)

@@ -12,6 +12,7 @@ from pydantic import Field
 
 from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.evidence.fields import Strict
+from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import NOTEBOOK, OUTPUTS, Record, read_record
 from robo_genesis.pipeline.pages.results import PageResult
 
@@ -36,12 +37,14 @@ class BuiltPages(Strict):
         """Return the pages of a build from their results, of which none failed."""
         found = cls()
         for result in results:
-            page, folder = result.page, result.folder
-            assert folder is not None  # only a failed page has none
-            found.folders[page.docname] = folder
-            if page.declares_bundle:
-                found.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
+            found.add(result.page, result.folder)
         return found
+
+    def add(self, page: Page, folder: Path) -> None:
+        """Add a page with its folder in the store."""
+        self.folders[page.docname] = folder
+        if page.declares_bundle:
+            self.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
 
     def keeping(self, states: Path) -> Self:
         """Return these pages with a folder for the states of their runs."""

@@ -13,11 +13,11 @@ from typing import Any
 from robo_genesis.core import project
 from robo_genesis.core.project import COMMAND
 from robo_genesis.pipeline.command import TIMEOUT
-from robo_genesis.pipeline.pages.book import Page, cell_sources
+from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, Record
 from robo_genesis.pipeline.pages.kernels import interrupts_blocked, kill_with_descendants
 from robo_genesis.pipeline.pages.progress import Lines, Underway
-from robo_genesis.pipeline.pages.results import Failure, PageResult, find_bundle
+from robo_genesis.pipeline.pages.results import Failure, PageResult, Status, find_bundle
 from robo_genesis.pipeline.pages.store import last_record, stored_result
 from robo_genesis.pipeline.pages.worker import PageRun, work
 
@@ -85,7 +85,7 @@ def execute_pages(
             while waiting or running:
                 while waiting and len(running) < (1 if waiting[0].alone else jobs):
                     page = waiting.pop(0)
-                    place, cells = places[page.docname], len(cell_sources(page))
+                    place, cells = places[page.docname], len(page.code.sources)
                     log = (logs or own) / f"{place.parent.name}.log"
                     run = PageRun(page, uuid.uuid4().hex, place, own, log, timeout, environment)
                     kept = log if logs else None
@@ -135,7 +135,7 @@ def longest_first(pages: Iterable[Page], last: Mapping[str, Record | None]) -> l
     def sooner(page: Page) -> tuple[bool, float, int]:
         record = last[page.docname]
         seconds = -record.seconds if record else float("-inf")
-        return page.alone, seconds, -len(cell_sources(page))
+        return page.alone, seconds, -len(page.code.sources)
 
     return sorted(pages, key=sooner)
 
@@ -185,12 +185,11 @@ def _receive(connection: Any, worker: Worker) -> PageResult | None:
     except EOFError:
         worker.process.join()
         cell = f" in cell {worker.underway.cell}" if worker.underway.cell else ""
-        status = worker.process.exitcode
-        message = f"the worker process ended{cell} with status {status}; out of memory?"
+        code = worker.process.exitcode
+        message = f"the worker process ended{cell} with status {code}; out of memory?"
         seconds, failure = 0.0, Failure("WorkerDied", message)
     worker.process.join()
     connection.close()
-    if failure:
-        return PageResult(run.page, "failed", seconds, run.run_id, failure=failure, log=log)
-    bundle = find_bundle(run.place / OUTPUTS, run.run_id) if run.page.declares_bundle else None
-    return PageResult(run.page, "executed", seconds, run.run_id, bundle, folder=run.place, log=log)
+    status: Status = "failed" if failure else "executed"
+    bundle = None if failure else find_bundle(run.place / OUTPUTS, run.run_id)
+    return PageResult(run.page, status, seconds, run.run_id, bundle, failure, run.place, log)

@@ -1,25 +1,21 @@
 """The fingerprint of a page: a digest of everything that decides its outputs."""
 
-import json
 import platform
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived_value, json_digest
 from robo_genesis.core.project import (
     ROOT,
     environment_contract,
     installed_packages,
     lock_digest,
 )
-from robo_genesis.pipeline.pages.book import Page, cell_sources
+from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import Tree, import_closure, lesson_modules
 from robo_genesis.pipeline.pages.syntax import (
-    cell_digests,
     claims_in,
-    imports_of,
-    sha256_of,
     syntax_digest,
 )
 
@@ -46,26 +42,24 @@ def page_fingerprint(
     Returns:
         20 hex digits.
     """
-    tree, cells = tree or Tree(root), cell_sources(page)
+    tree = tree or Tree(root)
     own = lesson_modules(page.lesson, root) if page.lesson else []
-    modules = import_closure([*imports_of(cells), *own], root, tree=tree)
+    modules = import_closure([*page.code.imports, *own], root, tree=tree)
     parts = {
         "lock": lock_digest(root),
         "installed": _installed(),
         "python": platform.python_version(),
         "environment": environment_contract(environment),
-        "cells": cell_digests(cells),
+        "cells": page.code.digests,
         "modules": {name: syntax_digest(tree.text(path)) for name, path in modules.items()},
         "claims": {name: claims_in(tree.text(path)) for name, path in modules.items()},
         "data": tree.data_for(page.lesson),
         "alone": page.alone,
     }
-    return sha256_of(parts)[:20]
+    return json_digest(parts)[:20]
 
 
 @lru_cache(maxsize=1)
 def _installed() -> list[str]:
-    names: list[str] = json.loads(
-        derived("packages", [], lambda: json.dumps(installed_packages()).encode())
-    )
+    names: list[str] = derived_value("packages", None, installed_packages)
     return names

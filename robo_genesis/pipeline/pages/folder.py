@@ -22,9 +22,8 @@ from robo_genesis.core.files import replaced
 from robo_genesis.core.project import ENGINE, ProjectError, installed_version
 from robo_genesis.evidence.bundle import sha256
 from robo_genesis.evidence.fields import RunId, Sha256, Strict
-from robo_genesis.pipeline.pages.book import Page, code_digest, plain_python
+from robo_genesis.pipeline.pages.book import Page, code_digest, code_of
 from robo_genesis.pipeline.pages.results import PageResult, find_bundle
-from robo_genesis.pipeline.pages.syntax import cell_digests
 
 RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
 SIZE_LIMIT = 64 * 2**20
@@ -144,11 +143,6 @@ def plain_files(folder: Path) -> list[str]:
     return names
 
 
-def recorded_bundle(place: Path, record: Record) -> Path | None:
-    """Return the folder of the bundle of the recorded run."""
-    return find_bundle(place / OUTPUTS, record.run_id) if record.lesson else None
-
-
 def read_record(place: Path) -> Record:
     """Return what the record of an executed page says.
 
@@ -206,7 +200,7 @@ def require_this_page(place: Path, record: Record, page: Page, fingerprint: str)
     run_id = metadata.get("run_id") if isinstance(metadata, dict) else None
     if run_id != record.run_id:
         raise PageRefused("run", f"{NOTEBOOK} is of run {run_id}, {RECORD} of {record.run_id}.")
-    if page.declares_bundle and recorded_bundle(place, record) is None:
+    if page.declares_bundle and find_bundle(place / OUTPUTS, record.run_id) is None:
         raise PageRefused("bundle", f"it has no evidence bundle of run {record.run_id}.")
     return notebook
 
@@ -216,11 +210,9 @@ def code_and_kernel(notebook: NotebookNode) -> tuple[list[str], str | None]:
 
     Comments and layout of the cells do not count.
     """
-    cells = cell_digests(plain_python(notebook))
-    return cells, notebook.metadata.get("kernelspec", {}).get("name")
+    return code_of(notebook).digests, notebook.metadata.get("kernelspec", {}).get("name")
 
 
 def stored_notebook(result: PageResult) -> NotebookNode:
     """Return the code cells of a page that was executed, with their outputs."""
-    assert result.folder is not None  # only a failed page has none
     return nbformat.read(result.folder / NOTEBOOK, as_version=4)

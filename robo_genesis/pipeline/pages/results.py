@@ -43,9 +43,9 @@ class Failure:
 class PageResult:
     """The result of one page in one build.
 
-    `bundle` is None if the page declares none. `folder` is the page's folder in the store; a failed
-    page may have none. `log` is the file with all that an executed page wrote, None if that is not
-    kept.
+    `bundle` is None if the page declares none. `folder` is the page's folder in the store, where a
+    failed page may be absent. `log` is the file with all that an executed page wrote, None if that
+    is not kept.
     """
 
     page: Page
@@ -54,7 +54,7 @@ class PageResult:
     run_id: str
     bundle: Path | None = None
     failure: Failure | None = None
-    folder: Path | None = None
+    folder: Path = Path()
     log: Path | None = None
 
 

@@ -118,7 +118,7 @@ def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) ->
 
     Args:
         lesson: the name of its folder.
-        imports: what the cells of the page import, see `imports_of`.
+        imports: what the cells of the page import, see `Code`.
         root: the checkout.
 
     Returns:

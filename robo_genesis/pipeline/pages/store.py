@@ -16,16 +16,21 @@ from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.fingerprint import page_fingerprint
 from robo_genesis.pipeline.pages.folder import (
     HIDDEN,
+    OUTPUTS,
     RECORD,
     PageRefused,
     Record,
     StoreError,
     plain_files,
     read_record,
-    recorded_bundle,
     require_this_page,
 )
-from robo_genesis.pipeline.pages.results import PageResult, Status, unexpected_outcome
+from robo_genesis.pipeline.pages.results import (
+    PageResult,
+    Status,
+    find_bundle,
+    unexpected_outcome,
+)
 from robo_genesis.pipeline.pages.sources import Tree
 
 Verify = Callable[[Path, str], Any]
@@ -33,7 +38,7 @@ Verify = Callable[[Path, str], Any]
 
 KEPT = 3
 """Folders that are kept of each page; RENDER=0 and RENDER=1 have one each."""
-AGAIN = "Execute the page again, from this commit and this lock: make execute PAGE={} TO=folder"
+AGAIN = "Execute these pages again, from this commit and this lock: make execute PAGE=… TO=folder"
 
 
 def places(
@@ -66,23 +71,31 @@ def stored_result(page: Page, place: Path) -> PageResult | None:
     """Return the result of a page that needs no run, None if the store does not have it.
 
     Args:
-        page: the page now. Its tags and expected exceptions are compared with the stored outputs;
-            where they contradict each other, the page has failed.
+        page: the page now.
         place: the page's folder.
 
     Raises:
         PageRefused: the folder is there, but has changed since it was written.
     """
     settle(place, HIDDEN)
-    if not place.is_dir():
-        return None
+    return result_of(page, place, place.name) if place.is_dir() else None
+
+
+def result_of(page: Page, place: Path, fingerprint: str) -> PageResult:
+    """Return the result of a page from a folder that holds it as this checkout executes it.
+
+    The tags and expected exceptions of the page are compared with the outputs; where they
+    contradict each other, the page has failed.
+
+    Raises:
+        PageRefused: the folder is not this page.
+    """
     record = read_record(place)
-    notebook = require_this_page(place, record, page, place.name)
+    notebook = require_this_page(place, record, page, fingerprint)
     outcome = unexpected_outcome(page, notebook)
+    bundle = find_bundle(place / OUTPUTS, record.run_id)
     status: Status = "failed" if outcome else "reused"
-    return PageResult(
-        page, status, 0.0, record.run_id, recorded_bundle(place, record), outcome, place
-    )
+    return PageResult(page, status, 0.0, record.run_id, bundle, outcome, place)
 
 
 def folders(store: Path, page: Page) -> list[Path]:
@@ -109,9 +122,8 @@ def forget(store: Path, results: Iterable[PageResult]) -> None:
     """
     kept: set[Path] = set()
     for result in results:
-        if result.folder is not None:
-            result.folder.touch()
-            kept |= {*folders(store, result.page)[:KEPT]}
+        result.folder.touch()
+        kept |= {*folders(store, result.page)[:KEPT]}
     kept |= {place.parent for place in kept}
     for path in [*store.glob("*/"), *store.glob("*/*/")]:
         if path not in kept and path.exists():
@@ -147,23 +159,17 @@ def export_page(result: PageResult, to: Path) -> Path:
         StoreError: the folder holds something else.
         OSError: it cannot be written.
     """
-    assert result.folder is not None  # only a failed page has none
     require_export_folder(to)
-    place = to / _folder(result.page)
-    if place.exists() and not (place / RECORD).is_file():
-        raise StoreError(
-            f"{place} is not an executed page. Move it away, or name another TO=folder."
-        )
     to.mkdir(parents=True, exist_ok=True)
-    with replaced(place) as fresh:
+    with replaced(to / _folder(result.page)) as fresh:
         shutil.copytree(result.folder, fresh)
-    return place
+    return to / _folder(result.page)
 
 
 def import_pages(
     source: Path, pages: Sequence[Page], into: Mapping[str, Path], verify: Verify
-) -> list[Record]:
-    """Put executed pages into the store, where the build then finds every page of the book.
+) -> list[PageResult]:
+    """Put executed pages into the store, and return them as results of a build.
 
     All of them are compared with this checkout first. The names and paths that they state are
     compared, never followed, and their bundles are verified as any other.
@@ -174,9 +180,6 @@ def import_pages(
         into: where the store will have each page; see `places`.
         verify: verifies the bundles.
 
-    Returns:
-        What was imported, in the order of `pages`.
-
     Raises:
         StoreError: it names each page that is missing, or each refused one with code and reason.
     """
@@ -185,27 +188,37 @@ def import_pages(
             f"EXECUTED={source} is not a folder. Name the one that `make execute TO=folder` filled."
         )
     known = {page.docname: page for page in pages}
-    found: dict[str, tuple[Path, Record]] = {}
+    found: dict[str, Path] = {}
     problems = []
     for place in exported_folders(source):
         try:
-            record = _accepted(place, known, into, verify)
-            if record.docname in found:
-                other = found[record.docname][0]
-                raise PageRefused("twice", f"{record.docname} is in {other} as well. Remove one.")
-            found[record.docname] = place, record
+            plain_files(place)  # before any is read
+            name = read_record(place).docname
+            if name not in known:
+                valid = ", ".join(known)
+                raise PageRefused("page", f"its page is {name!r}. Pages of this book: {valid}.")
+            result = result_of(known[name], place, into[name].name)
+            if result.failure:
+                raise PageRefused("outcome", f"{result.failure.error}: {result.failure.message}")
+            if result.bundle:
+                verify(result.bundle, result.run_id)
+            if name in found:
+                raise PageRefused("twice", f"{name} is in {found[name]} as well. Remove one.")
+            found[name] = place
         except PageRefused as error:
             problems.append(f"{place}: {error}")
+        except BundleRefused as error:
+            problems.append(f"{place}: bundle: its bundle is refused: {error}")
     if not problems:  # a refused page would be reported as missing as well
-        missing = [docname for docname in known if docname not in found]
-        problems = [f"{name} is not among them. {AGAIN.format(name)}" for name in missing]
+        problems = [f"{name} is not among them." for name in known if name not in found]
     if problems:
-        raise StoreError("\n".join([f"The executed pages in {source} are refused.", *problems]))
-    for docname in known:
-        into[docname].parent.mkdir(parents=True, exist_ok=True)
-        with replaced(into[docname], HIDDEN) as fresh:
-            shutil.copytree(found[docname][0], fresh)
-    return [found[docname][1] for docname in known]
+        first = f"The executed pages in {source} are refused."
+        raise StoreError("\n".join([first, *problems, AGAIN]))
+    for name, place in found.items():
+        into[name].parent.mkdir(parents=True, exist_ok=True)
+        with replaced(into[name], HIDDEN) as fresh:
+            shutil.copytree(place, fresh)
+    return [result_of(page, into[name], into[name].name) for name, page in known.items()]
 
 
 def exported_folders(source: Path) -> list[Path]:
@@ -221,33 +234,3 @@ def exported_folders(source: Path) -> list[Path]:
         if not left_out and not any(place in path.parents for place in found):
             found.append(path.parent)
     return sorted(found)
-
-
-def _accepted(
-    place: Path, known: Mapping[str, Page], into: Mapping[str, Path], verify: Verify
-) -> Record:
-    """Return the record of one handed-over page that fits this checkout.
-
-    Raises:
-        PageRefused: it says what was found, what is valid and what to do.
-    """
-    plain_files(place)
-    record = read_record(place)
-    page = known.get(record.docname)
-    if page is None:
-        raise PageRefused(
-            "page",
-            f"its page is {record.docname!r}. Pages of this book: {', '.join(known)}. Remove it.",
-        )
-    again = AGAIN.format(page.docname)
-    try:
-        notebook = require_this_page(place, record, page, into[page.docname].name)
-        if failure := unexpected_outcome(page, notebook):
-            raise PageRefused("outcome", f"{failure.error}: {failure.message}")
-        if bundle := recorded_bundle(place, record):
-            verify(bundle, record.run_id)
-    except BundleRefused as error:
-        raise PageRefused("bundle", f"its bundle is refused: {error} {again}") from error
-    except PageRefused as error:
-        raise PageRefused(error.code, f"{str(error).partition(': ')[2]} {again}") from error
-    return record

@@ -1,17 +1,15 @@
 """What code does: a digest of its syntax tree, and what it imports. Nothing is imported or run."""
 
 import ast
-import hashlib
 import io
-import json
 import tokenize
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib.util import resolve_name
-from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived_value, json_digest
 
 PACKAGE = "robo_genesis"
 QUIET = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.ENDMARKER)
@@ -30,22 +28,51 @@ def syntax_digest(source: str) -> str:
         source: Python. One that does not parse counts by its text.
     """
 
-    def make() -> bytes:
+    def make() -> str:
         try:
-            tree = ast.parse(source)
+            return json_digest(_canonical(ast.parse(source)))
         except (SyntaxError, ValueError):
-            return sha256_of(source).encode()
-        return sha256_of(_canonical(tree)).encode()
+            return json_digest(source)
 
-    return derived("syntax", [source.encode(), _own_source()], make).decode()
+    digest: str = derived_value("syntax", source, make)
+    return digest
 
 
-def cell_digests(cells: Sequence[str]) -> list[str]:
-    """Return the digest of each code cell of a page; see `cell_digest`."""
-    inputs = [json.dumps(cells).encode(), _own_source()]
-    made = derived("cells", inputs, lambda: json.dumps([*map(cell_digest, cells)]).encode())
-    digests: list[str] = json.loads(made)
-    return digests
+@dataclass(frozen=True, slots=True)
+class Code:
+    """The code cells of a page.
+
+    `sources` are plain Python, in which magics of IPython are translated; `digests` has that of the
+    syntax of each cell; `imports` has the dotted names below the course package that they import.
+    """
+
+    sources: list[str]
+    digests: list[str]
+    imports: list[str]
+
+
+def read_code(cells: Iterable[str]) -> Code:
+    """Return what the code cells of a page do, from their texts."""
+    texts = list(cells)
+
+    def make() -> dict[str, list[str]]:
+        sources = [_plain_python(text) for text in texts]
+        return {
+            "sources": sources,
+            "digests": [cell_digest(source) for source in sources],
+            "imports": sorted({name for source in sources for name in _names(source, "")}),
+        }
+
+    return Code(**derived_value("code", texts, make))
+
+
+def _plain_python(cell: str) -> str:
+    from IPython.core.inputtransformer2 import TransformerManager  # which no verification loads
+
+    try:
+        return TransformerManager().transform_cell(cell)
+    except SyntaxError:  # of indentation; the execution reports its line
+        return cell
 
 
 def cell_digest(source: str) -> str:
@@ -57,9 +84,9 @@ def cell_digest(source: str) -> str:
     try:
         tree = ast.parse(source)
     except (SyntaxError, ValueError):
-        return sha256_of(source)
+        return json_digest(source)
     statements = [_canonical(statement) for statement in tree.body]
-    return sha256_of([statements, _ends_with_semicolon(source)])
+    return json_digest([statements, _ends_with_semicolon(source)])
 
 
 def _canonical(node: Any) -> Any:
@@ -116,11 +143,6 @@ def _ends_with_semicolon(source: str) -> bool:
     return words[-1:] == [";"]
 
 
-def sha256_of(value: Any) -> str:
-    """Return the sha256 of a JSON value."""
-    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
-
-
 @lru_cache(maxsize=1024)
 def claims_in(source: str) -> dict[str, str]:
     """Return the claims of the checks in a module: docstrings, by name, of what yields findings."""
@@ -145,9 +167,7 @@ def imported_names(source: str, package: str = "") -> tuple[str, ...]:
         source: Python. One that does not parse imports nothing: its page fails when it is executed.
         package: the package of the source, to which relative imports refer.
     """
-    inputs = [source.encode(), package.encode(), _own_source()]
-    made = derived("imports", inputs, lambda: " ".join(_names(source, package)).encode())
-    return tuple(made.decode().split())
+    return tuple(derived_value("imports", [source, package], lambda: _names(source, package)))
 
 
 def _names(source: str, package: str) -> list[str]:
@@ -165,18 +185,3 @@ def _names(source: str, package: str) -> list[str]:
     except (SyntaxError, ValueError, ImportError):
         return []
     return [name for name in names if name.split(".")[0] == PACKAGE]
-
-
-def imports_of(cells: Sequence[str]) -> list[str]:
-    """Return the dotted names below the course package that the code cells of a page import."""
-    found = derived(
-        "cell-imports",
-        [json.dumps(cells).encode(), _own_source()],
-        lambda: " ".join(sorted({n for cell in cells for n in _names(cell, "")})).encode(),
-    )
-    return found.decode().split()
-
-
-@lru_cache(maxsize=1)
-def _own_source() -> bytes:
-    return Path(__file__).read_bytes()

@@ -14,7 +14,7 @@ from nbclient.exceptions import CellExecutionError, CellTimeoutError
 from nbformat import NotebookNode
 
 from robo_genesis.core.project import COMMAND, OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, ROOT, RUN_ID
-from robo_genesis.pipeline.pages.book import Page, cell_sources, code_digest
+from robo_genesis.pipeline.pages.book import Page, code_digest
 from robo_genesis.pipeline.pages.folder import StoreError, write_page
 from robo_genesis.pipeline.pages.kernels import (
     ARGUMENTS,
@@ -29,7 +29,6 @@ from robo_genesis.pipeline.pages.results import (
     missing_bundle,
     unexpected_outcome,
 )
-from robo_genesis.pipeline.pages.syntax import imports_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +73,7 @@ def work(run: PageRun, connection: Connection) -> None:
         RUN_ID: run.run_id,
         OUTPUTS_DIR: str(run.outputs),
         PAGE_SHA256: code_digest(run.page),
-        PAGE_IMPORTS: " ".join(imports_of(cell_sources(run.page))),
+        PAGE_IMPORTS: " ".join(run.page.code.imports),
     }
     environment = clean_environment(runtime / "home", runtime, ROOT, {**run.environment, **own})
     os.environ.clear()

@@ -48,16 +48,14 @@ def test_another_page_is_refused_and_the_valid_ones_are_listed(folder, name):
         export(folder, name, folder / "to")
 
 
-def test_a_place_that_cannot_be_written_is_refused_before_the_run(folder, no_file):
-    with pytest.raises(ProjectError, match="is not a folder that you may write"):
-        export(folder, "broken", no_file)
-    with pytest.raises(BuildError, match="TO is not set"):
-        export(folder, "broken", None)
-
-
-def test_a_folder_with_other_content_is_refused_before_the_run(folder):
-    with pytest.raises(ProjectError, match=r"TO=.*/book holds .*, which is not an executed page"):
-        export(folder, "broken", folder / "book")
+def test_a_place_that_cannot_be_used_is_refused_before_the_run(folder, no_file):
+    for to, said in (
+        (no_file, "is not a folder that you may write"),
+        (None, "TO is not set"),
+        (folder / "book", r"TO=.*/book holds .*, which is not an executed page"),
+    ):
+        with pytest.raises(ProjectError, match=said):
+            export(folder, "broken", to)
 
 
 def test_a_failed_page_is_status_1_its_report_and_no_export(folder, tmp_path):
