@@ -17,8 +17,8 @@ from IPython.display import Markdown, display
 
 from robo_genesis.core import checks, plotting, shown, tables
 from robo_genesis.core.checks import Check
+from robo_genesis.core.exercises import Mistake
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.mistakes import Failure
 from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages import sources
@@ -151,7 +151,7 @@ class LessonPage:
         """
         print(checks.require(f"{self._lesson} {what}", found))
 
-    def glue(self, failures: Sequence[Failure]) -> None:
+    def glue(self, failures: Sequence[Mistake]) -> None:
         """Keep evidence and curves of deliberate mistakes for the panels of a page of the site."""
         from myst_nb import glue  # the site alone needs it
 

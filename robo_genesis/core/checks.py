@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from robo_genesis.core.check_spec import MASS_SHARE, TIME_TOLERANCE
-from robo_genesis.core.quantities import quoted
+from robo_genesis.core.text import quoted
 from robo_genesis.core.trace import TimeSeries
 
 Subject = TypeVar("Subject")

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.quantities import six_digits
+from robo_genesis.core.text import six_digits
 from robo_genesis.core.trace import TimeSeries
 
 HELD, WITHIN_MARGIN, BROKEN = "held", "within the margin", "broken"

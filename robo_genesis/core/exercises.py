@@ -1,11 +1,10 @@
-"""Tests of the functions that a student writes.
+"""What students practise: functions that they write, and mistakes made on purpose.
 
-A lesson's `exercises` module has one test for each function. It takes the function and calls it, so
-it can be run again after every change, and returns a list with one `Check`, as `page.require` takes
-it.
+A test of a student's function judges what the function returns; a mistake is judged by its symptom.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import wraps
 from inspect import signature
 from typing import Any, ParamSpec
@@ -13,8 +12,48 @@ from typing import Any, ParamSpec
 import numpy as np
 
 from robo_genesis.core.checks import Check, Finding, at_most, equal, evaluate
+from robo_genesis.core.scene import FloatArray
 
 MEASURES = False
+
+Curves = Mapping[str, tuple[FloatArray, FloatArray]]
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """The result of one deliberate mistake.
+
+    `shown` is whether its symptom appeared; `evidence` describes the measurement in either case;
+    `curves` by label are two arrays (n,); `axis` and `quantity` name what is drawn to the right and
+    what is drawn upwards, with their units.
+    """
+
+    name: str
+    shown: bool
+    evidence: str
+    curves: Curves = field(default_factory=dict)
+    quantity: str = "position [m]"
+    axis: str = "time [s]"
+
+    @property
+    def check(self) -> Check:
+        """The named check that fails if the symptom did not appear."""
+        return Check(f"gallery_{self.name}", self.shown, self.evidence)
+
+
+def refused(call: Callable[[], Any]) -> Exception | None:
+    """Return the exception that a call raises, None if it raises none."""
+    try:
+        call()
+    except Exception as error:  # the caller checks its type
+        return error
+    return None
+
+
+def quoted(error: Exception | None) -> str:
+    """Quote an exception by type and message, or say that there was none."""
+    return f"`{type(error).__name__}`: {error}" if error else "No exception was raised."
+
 
 CLAIM = "The function does what its docstring says."
 

@@ -3,7 +3,7 @@
 A refusal has a stable code, and a message with found, expected and what to do.
 """
 
-from robo_genesis.core.quantities import quoted
+from robo_genesis.core.text import quoted
 
 AGAIN = "Record the bundle again."
 

@@ -3,11 +3,10 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from robo_genesis.core import quantities
+from robo_genesis.core import text as quantities
 from robo_genesis.core.checks import Check
 from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import decimal
+from robo_genesis.core.text import decimal, format_value
 
 MEASURES = False
 

@@ -1,12 +1,75 @@
-"""Generated sentences and their parts: lists, numbers with signs and units, two cases compared."""
+"""Measured values and lists as text, with the digits of each unit."""
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from robo_genesis.core.comparison import HELD_BY, Comparison
-from robo_genesis.core.quantities import format_value
 
 MEASURES = False
+
+NOT_OBSERVED = "not observed"
+LONGEST_SHOWN = 160
+
+DIGITS = {
+    "s": 2, "rad": 4, "m": 4, "rad/s": 3, "m/s": 3, "N·m": 2, "N": 2, "kg": 3, "J": 4, "%": 1,
+}  # fmt: skip
+"""Digits after the point by unit, in texts for readers."""
+
+SCALED = {"m": "mm", "s": "ms", "rad": "mrad", "m/s": "mm/s", "rad/s": "mrad/s", "J": "mJ"}
+"""The thousandth of a unit, in which small values are easier to read."""
+
+
+MICRO = {"m": "µm", "s": "µs", "rad": "µrad", "1": "%"}
+"""A smaller unit still, and the hundredth of a share."""
+
+SCALES = dict.fromkeys(SCALED.values(), 1e3) | dict.fromkeys(MICRO.values(), 1e6) | {"%": 100.0}
+"""By unit of a text, the factor from the unit in which a value is kept."""
+
+
+def scaled_value(value: float, unit: str) -> str:
+    """Return a value in another unit with three significant digits: `4.47 mm`, `1.2 %`.
+
+    Raises:
+        LookupError: the unit is not one of `SCALES` and `DIGITS`; the message lists them.
+    """
+    if unit not in SCALES | DIGITS:
+        raise LookupError(f"No text has the unit {unit!r}. Valid: {', '.join(SCALES | DIGITS)}.")
+    text = f"{SCALES.get(unit, 1.0) * value:#.3g}".removesuffix(".")
+    return f"{text if 'e' not in text else f'{float(text):.0f}'} {unit}"
+
+
+def format_value(value: float | None, unit: str) -> str:
+    """Return a metric as text for readers: `0.0447 rad`, `19 samples`, `not observed`."""
+    if value is None:
+        return NOT_OBSERVED
+    if unit == "1":
+        return f"{value} sample" if value == 1 else f"{value} samples"
+    digits = DIGITS[unit]
+    text = f"{value:.{digits}f}"
+    return f"{text.removeprefix('-') if float(text) == 0 else text} {unit}"
+
+
+def six_digits(value: float | None, unit: str) -> str:
+    """Return a value with up to six significant digits and its unit."""
+    if value is None:
+        return NOT_OBSERVED
+    text = str(value) if isinstance(value, int) else f"{value:.6g}"
+    return text if unit == "1" else f"{text} {unit}"
+
+
+def quoted(value: object) -> str:
+    """Return any value as text for a message: a float with six digits, long text shortened."""
+    if value is None:
+        return NOT_OBSERVED
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, list | tuple):
+        value = ", ".join(str(item) for item in value)
+    text = str(value) or "none"
+    if re.fullmatch("[0-9a-f]{64}", text):
+        return f"{text[:12]}…"
+    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
 
 
 @dataclass(frozen=True, slots=True)

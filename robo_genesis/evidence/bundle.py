@@ -18,8 +18,8 @@ from typing import Any, Literal
 import rfc8785
 from pydantic import Field, TypeAdapter, ValidationError
 
-from robo_genesis.core.quantities import LONGEST_SHOWN
 from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
+from robo_genesis.core.text import LONGEST_SHOWN
 from robo_genesis.evidence.fields import (
     Found,
     Index,

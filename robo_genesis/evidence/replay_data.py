@@ -4,7 +4,7 @@ from pathlib import Path
 
 from robo_genesis.core.channels import Runs, farthest_link
 from robo_genesis.core.declaration import Compared, Moving
-from robo_genesis.core.quantities import format_value
+from robo_genesis.core.text import format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import any_bodies, read_joints, read_trace
 from robo_genesis.sim.arm import channels as joint_channels

@@ -13,7 +13,7 @@ from robo_genesis.core.comparison import (
     allowed,
     outcome,
 )
-from robo_genesis.core.quantities import six_digits
+from robo_genesis.core.text import six_digits
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence.bundle import Arrays, JointRecord, Manifest, Metric, by_full_name
 from robo_genesis.evidence.trace_files import fields_of

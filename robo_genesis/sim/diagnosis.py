@@ -13,7 +13,7 @@ import numpy as np
 
 from robo_genesis.core import project, scene
 from robo_genesis.core.project import RENDER
-from robo_genesis.core.quantities import format_value
+from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import TraceError
 from robo_genesis.sim import session
 from robo_genesis.sim.arm import franka, joint_control

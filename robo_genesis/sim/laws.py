@@ -12,8 +12,8 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.comparison import same_arrays
-from robo_genesis.core.quantities import quoted
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.text import quoted
 from robo_genesis.core.trace import TimeSeries
 
 MEASURES = False

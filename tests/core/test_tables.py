@@ -2,7 +2,7 @@ import pytest
 
 from robo_genesis.core import tables
 from robo_genesis.core.checks import Check
-from robo_genesis.core.quantities import NOT_OBSERVED
+from robo_genesis.core.text import NOT_OBSERVED
 from robo_genesis.lessons.l04.metrics import step_metrics
 
 

@@ -17,7 +17,7 @@ from without_sphinx import Panel
 
 from robo_genesis.core import project
 from robo_genesis.core.declaration import Filmed
-from robo_genesis.core.quantities import format_value, six_digits
+from robo_genesis.core.text import format_value, six_digits
 from robo_genesis.evidence import bundle, recorder, replay_data, report
 from robo_genesis.evidence.bundle_store import put
 from robo_genesis.evidence.compare import compare

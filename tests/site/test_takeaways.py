@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from sphinx.errors import ConfigError
 
-from robo_genesis.core import project, quantities, trace
+from robo_genesis.core import project, trace
+from robo_genesis.core import text as quantities
 from robo_genesis.evidence import bundle, fields, npz_archive, trace_files
 from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import write_traces

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from robo_genesis.core.exercises import Mistake, quoted, refused
 from robo_genesis.core.free_fall import continuous_drop
-from robo_genesis.core.mistakes import Failure, quoted, refused
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.sim.bodies.rigid_bodies import Drop, read_body
 from robo_genesis.sim.camera.frames import FrameError, require_frame
@@ -22,14 +22,14 @@ FALL_STEPS = 60
 """Steps in which a box without collision geometry falls past the ground."""
 
 
-def second_init(gs: Any) -> Failure:
+def second_init(gs: Any) -> Mistake:
     """Initialise the engine a second time."""
     error = refused(lambda: gs.init(backend=gs.cpu))
     text = f"The second call of `gs.init` in the process of this page: {quoted(error)}"
-    return Failure("second_init", type(error).__name__ == "GenesisException", text)
+    return Mistake("second_init", type(error).__name__ == "GenesisException", text)
 
 
-def late_entity(scene: Any, morph: Any) -> Failure:
+def late_entity(scene: Any, morph: Any) -> Mistake:
     """Add an entity to a built scene."""
     before = len(scene.entities)
     error = refused(lambda: scene.add_entity(morph))
@@ -38,7 +38,7 @@ def late_entity(scene: Any, morph: Any) -> Failure:
         f"The call after `build`: {quoted(error)} The scene had {before} entities before the call "
         f"and has {len(scene.entities)} now."
     )
-    return Failure("late_entity", shown, text)
+    return Mistake("late_entity", shown, text)
 
 
 def heights(
@@ -55,7 +55,7 @@ def heights(
     return t, {name: np.array(values, dtype=np.float64) for name, values in found.items()}
 
 
-def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
+def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Mistake:
     """Drop a free box and a box whose morph has `fixed=True`."""
     t, z = heights(scene, case, case.steps, fixed=fixed, free=free)
     moved, fell = (float(z[name][0] - z[name][-1]) for name in ("fixed", "free"))
@@ -66,10 +66,10 @@ def fixed_body(scene: Any, fixed: Any, free: Any, case: Drop) -> Failure:
         f"{dofs[0]} and {dofs[1]} DOFs."
     )
     curves = {"this box": (t, z["fixed"]), "the other one": (t, z["free"])}
-    return Failure("fixed_body", moved == 0 and falls and dofs == (0, 6), text, curves)
+    return Mistake("fixed_body", moved == 0 and falls and dofs == (0, 6), text, curves)
 
 
-def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
+def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Mistake:
     """Place a box 'on' the ground with a height of its centre of zero."""
     t, found = heights(scene, case, case.steps, sunken=sunken)
     z = found["sunken"]
@@ -80,10 +80,10 @@ def centre_for_underside(scene: Any, sunken: Any, case: Drop) -> Failure:
         f"centre rose to {z.max():.3f} m; the largest upward speed between two samples was "
         f"{speed:.2f} m/s."
     )
-    return Failure("centre_for_underside", shown, text, {"centre of the box": (t, z)})
+    return Mistake("centre_for_underside", shown, text, {"centre of the box": (t, z)})
 
 
-def no_collision(scene: Any, ghost: Any, solid: Any, case: Drop) -> Failure:
+def no_collision(scene: Any, ghost: Any, solid: Any, case: Drop) -> Mistake:
     """Drop a box whose morph has `collision=False`, beside an ordinary one."""
     t, z = heights(scene, case, FALL_STEPS, ghost=ghost, solid=solid)
     fallen, landed = (float(z[name][-1]) for name in ("ghost", "solid"))
@@ -94,14 +94,14 @@ def no_collision(scene: Any, ghost: Any, solid: Any, case: Drop) -> Failure:
     )
     curves = {"this box": (t, z["ghost"]), "the other one": (t, z["solid"])}
     shown = fallen < -case.size and 0 < landed < case.size
-    return Failure("no_collision", shown, text, curves)
+    return Mistake("no_collision", shown, text, curves)
 
 
-def picture_of_nothing(camera: Any) -> Failure:
+def picture_of_nothing(camera: Any) -> Mistake:
     """Turn the camera away from all bodies of the scene, and render; None means no camera."""
     if camera is None:
         skipped = "SKIP: rendering is off, so no picture was taken."
-        return Failure("picture_of_nothing", True, skipped)
+        return Mistake("picture_of_nothing", True, skipped)
     pose = np.array(camera.transform)
     x, y, z = (float(value) for value in np.asarray(camera.pos).reshape(-1)[:3])
     camera.set_pose(pos=(x, y, z), lookat=(2 * x, 2 * y, z + 2.0))
@@ -113,10 +113,10 @@ def picture_of_nothing(camera: Any) -> Failure:
         f"{np.asarray(rgb).dtype}, and raised nothing. The course's test of it: {quoted(error)}"
     )
     shown = isinstance(error, FrameError) and "empty picture" in str(error)
-    return Failure("picture_of_nothing", shown, text)
+    return Mistake("picture_of_nothing", shown, text)
 
 
-def kept_reading(scene: Any, box: Any, case: Drop) -> Failure:
+def kept_reading(scene: Any, box: Any, case: Drop) -> Mistake:
     """Read the state once before the loop and use that value afterwards."""
     scene.reset()
     kept = box.get_pos()
@@ -127,4 +127,4 @@ def kept_reading(scene: Any, box: Any, case: Drop) -> Failure:
         f"`z = box.get_pos()[2]` from before the loop is still {old:.4f} m after {case.steps} "
         f"steps; a new reading is {new:.4f} m."
     )
-    return Failure("kept_reading", old != new, text)
+    return Mistake("kept_reading", old != new, text)

@@ -3,8 +3,7 @@
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.free_fall import continuous_drop, summed_drop
-from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import bullets, signed
+from robo_genesis.core.text import bullets, format_value, signed
 from robo_genesis.lessons.l02 import spec, study, trials
 
 MEASURES = False

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.mistakes import Failure
+from robo_genesis.core.exercises import Mistake
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03.metrics import STOP_SPEED, clearance, slide_metrics, stopped_at
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase, build_world, run_world, time_constant
@@ -19,7 +19,7 @@ INSIDE = 1e-3
 """Depth below the surface from which a body counts as inside [m]."""
 
 
-def equal_steps(fine: ContactTrace, coarse: ContactTrace) -> Failure:
+def equal_steps(fine: ContactTrace, coarse: ContactTrace) -> Mistake:
     """Compare two runs of one motion by the number of the step, not by time.
 
     Args:
@@ -32,7 +32,7 @@ def equal_steps(fine: ContactTrace, coarse: ContactTrace) -> Failure:
     by_number = np.abs(z[:n] - z_coarse[:n]).max()
     by_time = np.abs(z[::every][:n] - z_coarse[:n]).max()
     numbers = np.arange(n, dtype=float)
-    return Failure(
+    return Mistake(
         "equal_steps",
         shown=bool(by_number > 0.01 and by_time < 1e-5),
         evidence=(
@@ -48,12 +48,12 @@ def equal_steps(fine: ContactTrace, coarse: ContactTrace) -> Failure:
     )
 
 
-def no_contact_inside(trace: ContactTrace, case: ContactCase) -> Failure:
+def no_contact_inside(trace: ContactTrace, case: ContactCase) -> Mistake:
     """Conclude from a contact count of zero that a body touches nothing."""
     clear = clearance(trace, case)
     empty = np.flatnonzero((trace.contacts[:, 0] == 0) & (clear < -INSIDE))
     k = int(empty[np.argmin(clear[empty])]) if len(empty) else 0
-    return Failure(
+    return Mistake(
         "no_contact_inside",
         shown=bool(len(empty)),
         evidence=(
@@ -63,7 +63,7 @@ def no_contact_inside(trace: ContactTrace, case: ContactCase) -> Failure:
     )
 
 
-def single_sample_stop(trace: ContactTrace, case: ContactCase) -> Failure:
+def single_sample_stop(trace: ContactTrace, case: ContactCase) -> Mistake:
     """Take the first slow sample of a cube for its stop."""
     speed = trace.link_vel[:, 0, 0].astype(np.float64)
     slow, stop = np.flatnonzero(np.abs(speed) < STOP_SPEED), stopped_at(speed, trace.dt)
@@ -71,7 +71,7 @@ def single_sample_stop(trace: ContactTrace, case: ContactCase) -> Failure:
     later = float(np.abs(speed[first:]).max())
     when = "never" if stop is None else f"at {trace.t[stop]:.2f} s"
     above = float(trace.link_pos[first, 0, 2]) - case.rest_height
-    return Failure(
+    return Mistake(
         "single_sample_stop",
         shown=bool(len(slow) and first != stop and later > 10 * STOP_SPEED),
         evidence=(
@@ -84,7 +84,7 @@ def single_sample_stop(trace: ContactTrace, case: ContactCase) -> Failure:
     )
 
 
-def unused_stiffness(gs: Any, case: ContactCase, seconds: float, default: ContactTrace) -> Failure:
+def unused_stiffness(gs: Any, case: ContactCase, seconds: float, default: ContactTrace) -> Mistake:
     """Set a time constant of a contact that is shorter than the solver allows.
 
     Args:
@@ -97,7 +97,7 @@ def unused_stiffness(gs: Any, case: ContactCase, seconds: float, default: Contac
     world = build_world(gs, {"stiff": stiff})
     found = time_constant(world)
     difference = np.abs(run_world(world)["stiff"].link_pos - default.link_pos).max()
-    return Failure(
+    return Mistake(
         "unused_stiffness",
         shown=bool(difference < 1e-6 and abs(found - seconds) < 1e-9),
         evidence=(
@@ -108,7 +108,7 @@ def unused_stiffness(gs: Any, case: ContactCase, seconds: float, default: Contac
     )
 
 
-def smaller_friction(gs: Any, case: ContactCase, friction: float, before: ContactTrace) -> Failure:
+def smaller_friction(gs: Any, case: ContactCase, friction: float, before: ContactTrace) -> Mistake:
     """Change the smaller of two coefficients of friction and expect another slide.
 
     Args:
@@ -120,7 +120,7 @@ def smaller_friction(gs: Any, case: ContactCase, friction: float, before: Contac
     world = build_world(gs, {"changed": replace(case, friction=friction)})
     trace = run_world(world)["changed"]
     was, now = (slide_metrics(of, case).final_distance for of in (before, trace))
-    return Failure(
+    return Mistake(
         "smaller_friction",
         shown=bool(abs(now - was) < 1e-3),
         evidence=(
@@ -131,13 +131,13 @@ def smaller_friction(gs: Any, case: ContactCase, friction: float, before: Contac
     )
 
 
-def tunnel(gs: Any, case: ContactCase) -> Failure:
+def tunnel(gs: Any, case: ContactCase) -> Mistake:
     """Let a body fall so fast that it passes the surface within one solver step."""
     trace = run_world(build_world(gs, {"fast": case}))["fast"]
     z = trace.link_pos[:, 0, 2].astype(np.float64)
     above = np.flatnonzero(z > TOP + case.size / 2)
     speed = float(np.abs(trace.link_vel[above[-1], 0, 2]))
-    return Failure(
+    return Mistake(
         "tunnel",
         shown=bool(z[-1] < TOP - case.size and trace.contacts.max() == 0),
         evidence=(

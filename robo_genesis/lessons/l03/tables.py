@@ -9,7 +9,7 @@ import numpy as np
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.quantities import NOT_OBSERVED, format_value
+from robo_genesis.core.text import NOT_OBSERVED, format_value
 from robo_genesis.lessons.l03 import checks, spec, study, study_deeper, study_spec, theory
 from robo_genesis.lessons.l03.metrics import CLEAR, BounceMetrics, LandingMetrics, SlideMetrics
 from robo_genesis.lessons.l03.text import millimetres, milliseconds, readable

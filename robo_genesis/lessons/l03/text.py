@@ -3,8 +3,7 @@
 from types import SimpleNamespace
 
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.quantities import NOT_OBSERVED, format_value
-from robo_genesis.core.text import Block
+from robo_genesis.core.text import NOT_OBSERVED, Block, format_value
 
 MEASURES = False
 

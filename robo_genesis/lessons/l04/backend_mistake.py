@@ -4,7 +4,7 @@ import json
 import subprocess
 import sys
 
-from robo_genesis.core.mistakes import Failure
+from robo_genesis.core.exercises import Mistake
 
 MEASURES = False
 
@@ -31,7 +31,7 @@ print(json.dumps({"raised": raised, "found": found, "warnings": kept}))
 can be initialised only once in a process."""
 
 
-def absent_backend(hip_version: str | None) -> Failure:
+def absent_backend(hip_version: str | None) -> Mistake:
     """Request the accelerator whose Torch is not installed here, then any accelerator.
 
     Args:
@@ -51,7 +51,7 @@ def absent_backend(hip_version: str | None) -> Failure:
 
 def absent_backend_failure(
     name: str, raised: list[str] | None, found: str | None, warnings: list[list[str]]
-) -> Failure:
+) -> Mistake:
     """Return the failure from the results of the two requests.
 
     Args:
@@ -61,11 +61,11 @@ def absent_backend_failure(
         warnings: level and message of each line that the engine logged at this request.
     """
     if raised is None:
-        return Failure("absent_backend", False, f"`gs.init(backend=gs.{name})` raised nothing.")
+        return Mistake("absent_backend", False, f"`gs.init(backend=gs.{name})` raised nothing.")
     plain = [text.replace("~", "") for _, text in warnings]
     fell_back = found != "cpu" or (len(plain) == 1 and "Falling back to CPU" in plain[0])
     refused = raised[0] == "GenesisException" and "not available" in raised[1]
-    return Failure(
+    return Mistake(
         "absent_backend",
         shown=refused and fell_back,
         evidence=(

@@ -8,9 +8,8 @@ import numpy as np
 from robo_genesis.core import tables
 from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.text import bullets, listed
+from robo_genesis.core.text import bullets, format_value, listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding, at_most, equal
-from robo_genesis.core.exercises import as_test, compared, same_array
-from robo_genesis.core.mistakes import refused
+from robo_genesis.core.exercises import as_test, compared, refused, same_array
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY

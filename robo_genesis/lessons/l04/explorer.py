@@ -13,8 +13,8 @@ import numpy as np
 from robo_genesis.core import tables
 from robo_genesis.core.checks import evaluate
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.text import format_value
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, RESOLUTION, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_checks import GRID_CHECKS

@@ -9,8 +9,7 @@ import numpy as np
 from robo_genesis.core import tables
 from robo_genesis.core.comparison import HELD_BY, compare, order
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import bullets, listed
+from robo_genesis.core.text import bullets, format_value, listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study, study_spec, text
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, StepMetrics, is_saturated

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.mistakes import Failure, quoted, refused
-from robo_genesis.core.quantities import format_value
+from robo_genesis.core.exercises import Mistake, quoted, refused
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import is_saturated, step_metrics
 from robo_genesis.sim.arm.joint_control import CaseError, ControlCase, reset, run_case, validate
@@ -37,7 +37,7 @@ def positions(
     return np.stack(q)  # (steps + 1, d)
 
 
-def wrong_index(scene: Any, robot: Any, joints: JointMap, case: ControlCase, joint: str) -> Failure:
+def wrong_index(scene: Any, robot: Any, joints: JointMap, case: ControlCase, joint: str) -> Mistake:
     """Command one joint by its solver-level index, where an entity-local one is required."""
     k, dofs = joints.entry(joint), joints.dofs_idx_local.tolist()
     wrong = list(robot.get_joint(joint).dofs_idx)  # the mistake: counted over the whole scene
@@ -48,7 +48,7 @@ def wrong_index(scene: Any, robot: Any, joints: JointMap, case: ControlCase, joi
     moved = np.abs(q[-1] - q[0])
     other = int(moved.argmax())
     t = np.arange(len(q)) * case.dt
-    return Failure(
+    return Mistake(
         "wrong_index",
         shown=bool(dofs[other] == wrong[0] and moved[other] > 10 * moved[k]),
         evidence=(
@@ -67,7 +67,7 @@ def wrong_index(scene: Any, robot: Any, joints: JointMap, case: ControlCase, joi
 
 def past_a_limit(
     scene: Any, robot: Any, joints: JointMap, case: ControlCase, joint: str, beyond: float
-) -> Failure:
+) -> Mistake:
     """Command a target that lies `beyond` [rad or m] past the joint's upper limit."""
     k, dofs = joints.entry(joint), joints.dofs_idx_local.tolist()
     q_target = np.array(case.q_target)
@@ -78,7 +78,7 @@ def past_a_limit(
     q = positions(scene, robot, joints, case.steps)[:, k]
     effort = float(to_numpy(robot.get_dofs_control_force(dofs))[k])
     short = abs(q_target[k] - q[-1])
-    return Failure(
+    return Mistake(
         "past_a_limit",
         shown=bool(
             isinstance(refusal, CaseError)
@@ -100,7 +100,7 @@ def past_a_limit(
 
 def lengths_differ(
     scene: Any, robot: Any, joints: JointMap, case: ControlCase, joint: str
-) -> Failure:
+) -> Mistake:
     """Command all joints with too few values: one for each arm joint, then a single one."""
     k, dofs = joints.entry(joint), joints.dofs_idx_local.tolist()
     few = case.q_target[:7].copy()
@@ -111,7 +111,7 @@ def lengths_differ(
     refusal = refused(lambda: validate(replace(case, q_target=case.q_target[[k]]), joints))
     moved = np.abs(q[-1] - q[0]) > 10 * SMALL * abs(case.q_target[k] - case.q_start[k])
     others = [joints.names[n] for n in np.flatnonzero(moved) if n != k]
-    return Failure(
+    return Mistake(
         "lengths_differ",
         shown=type(seven).__name__ == "GenesisException"
         and one is None
@@ -128,7 +128,7 @@ def lengths_differ(
 
 def fingers_without_gains(
     scene: Any, robot: Any, joints: JointMap, case: ControlCase, opening: float
-) -> Failure:
+) -> Mistake:
     """Command an opening [m] of the fingers of a fresh robot, before gains are set and after."""
     dofs = joints.dofs_idx_local.tolist()
     q_target = np.array(case.q_start)
@@ -145,7 +145,7 @@ def fingers_without_gains(
     robot.set_dofs_kv(case.kv.copy(), dofs)
     own = run()
     t, last = np.arange(len(own)) * case.dt, len(joints.names) - 1
-    return Failure(
+    return Mistake(
         "fingers_without_gains",
         shown=bool(abs(unset[-1] - opening) > 0.5 * opening)
         and bool(abs(own[-1] - opening) < SMALL * opening),
@@ -160,7 +160,7 @@ def fingers_without_gains(
 
 def assigned_each_step(
     scene: Any, robot: Any, joints: JointMap, case: ControlCase, joint: str
-) -> Failure:
+) -> Mistake:
     """Write the target into the state before each step, where a command was meant."""
     k, dofs = joints.entry(joint), joints.dofs_idx_local.tolist()
     reset(scene, robot, joints, case)
@@ -174,7 +174,7 @@ def assigned_each_step(
     q = np.append(first, rest[1:])
     step, left = case.q_target[k] - case.q_start[k], abs(case.q_target[k] - q[1])
     needed, unit = (q[1] - q[0]) / case.dt, f"{joints.position_units[k]}/s"
-    return Failure(
+    return Mistake(
         "assigned_each_step",
         shown=bool(left < SMALL * abs(step) and abs(read) < SMALL * abs(needed)),
         evidence=(
@@ -189,7 +189,7 @@ def assigned_each_step(
 
 def stale_target(
     scene: Any, robot: Any, joints: JointMap, case: ControlCase, joint: str
-) -> Failure:
+) -> Mistake:
     """After a run, restore only the position, then step without a command."""
     k, dofs = joints.entry(joint), joints.dofs_idx_local.tolist()
     run_case(scene, robot, joints, case)
@@ -200,7 +200,7 @@ def stale_target(
     fresh = positions(scene, robot, joints, case.steps)[:, k]
     t, step = np.arange(len(stale)) * case.dt, abs(case.q_target[k] - case.q_start[k])
     drift, kept = abs(stale[-1] - stale[0]), abs(fresh[-1] - fresh[0])
-    return Failure(
+    return Mistake(
         "stale_target",
         shown=bool(drift > 0.5 * step and kept < SMALL * step),
         evidence=(
@@ -216,7 +216,7 @@ def stale_target(
 
 def gains_without_reset(
     scene: Any, robot: Any, joints: JointMap, cases: Sequence[ControlCase], joint: str
-) -> Failure:
+) -> Mistake:
     """Run the second case where the first one ended: new gains, but no reset."""
     k, dofs = joints.entry(joint), joints.dofs_idx_local.tolist()
     first, second = cases
@@ -227,7 +227,7 @@ def gains_without_reset(
     robot.control_dofs_position(second.q_target.copy(), dofs)
     q = positions(scene, robot, joints, second.steps)[:, k]
     step, found = (abs(second.q_target[k] - start) for start in (second.q_start[k], q[0]))
-    return Failure(
+    return Mistake(
         "gains_without_reset",
         shown=bool(found < SMALL * step and np.ptp(q) < SMALL * np.ptp(fair.q[:, k])),
         evidence=(
@@ -244,12 +244,12 @@ def gains_without_reset(
     )
 
 
-def wrong_getter(trace: Trace, joints: JointMap, joint: str) -> Failure:
+def wrong_getter(trace: Trace, joints: JointMap, joint: str) -> Mistake:
     """Read the net force at the end of a run as the motor's effort."""
     k = joints.entry(joint)
     net, control = float(trace.internal_force[-1, k]), float(trace.control_force[-1, k])
     unit = joints.effort_units[k]
-    return Failure(
+    return Mistake(
         "wrong_getter",
         shown=abs(net) < SMALL * abs(control),
         evidence=(
@@ -259,7 +259,7 @@ def wrong_getter(trace: Trace, joints: JointMap, joint: str) -> Failure:
     )
 
 
-def time_shift(trace: Trace, joints: JointMap, joint: str) -> Failure:
+def time_shift(trace: Trace, joints: JointMap, joint: str) -> Mistake:
     """Label the first state after a step as t = 0, and measure again."""
     k = joints.entry(joint)
     names = ("q", "link_pos", "link_quat", "qd", "target", "control_force", "internal_force")
@@ -275,7 +275,7 @@ def time_shift(trace: Trace, joints: JointMap, joint: str) -> Failure:
         for name, (early, time) in pairs.items()
     ]
     gaps = [b - a for a, b in pairs.values() if a is not None and b is not None]
-    return Failure(
+    return Mistake(
         "time_shift",
         shown=bool(gaps) and np.allclose(gaps, trace.dt, rtol=0, atol=1e-9),
         evidence=f"From the same curve, the shifted times give {' and '.join(texts)}.",

@@ -11,8 +11,8 @@ from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import marks_of
 from robo_genesis.core.plotting import BAND, LIMIT, LINE, look
-from robo_genesis.core.quantities import format_value
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 from robo_genesis.lessons.l04.spec import CASE_MARKS, ENTRY, STEPPED_JOINT

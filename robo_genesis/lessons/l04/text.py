@@ -10,8 +10,7 @@ import numpy as np
 from robo_genesis.core import tables
 from robo_genesis.core.comparison import compare
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import Block, comparison_sentence, prediction_sentence
+from robo_genesis.core.text import Block, comparison_sentence, format_value, prediction_sentence
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import (

@@ -4,8 +4,7 @@ from typing import Any
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import bullets
+from robo_genesis.core.text import bullets, format_value
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.theory import IdealJoint, Parting, overshoot_share, parting
 from robo_genesis.sim.arm.joint_control import differences

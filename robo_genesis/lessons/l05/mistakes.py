@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.mistakes import Failure, quoted, refused
+from robo_genesis.core.exercises import Mistake, quoted, refused
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l05.run import ReachCase, ask, control_case
 from robo_genesis.sim.arm import kinematics
@@ -29,7 +29,7 @@ def written(answer: IkAnswer, case: ReachCase) -> str:
     return f"{verdict} with a residual of {1000 * apart:.2f} mm and {1000 * angle:.2f} mrad"
 
 
-def swapped_quaternion(robot: Any, joints: JointMap, case: ReachCase) -> Failure:
+def swapped_quaternion(robot: Any, joints: JointMap, case: ReachCase) -> Mistake:
     """Give the orientation as (x, y, z, w)."""
     wrong = replace(case, quat=np.roll(case.quat, -1))  # the mistake
     answer = ask(robot, joints, wrong)
@@ -39,10 +39,10 @@ def swapped_quaternion(robot: Any, joints: JointMap, case: ReachCase) -> Failure
         f"The answer is {written(answer, wrong)}. At the answer the axis from the hand to the "
         f"fingers has the vertical component {fingers[2]:+.3f}; down is −1."
     )
-    return Failure("swapped_quaternion", shown, text)
+    return Mistake("swapped_quaternion", shown, text)
 
 
-def other_frame(robot: Any, joints: JointMap, case: ReachCase, base: FloatArray) -> Failure:
+def other_frame(robot: Any, joints: JointMap, case: ReachCase, base: FloatArray) -> Mistake:
     """Give a target in the frame of a base that is at `base` (3,) in the world [m]."""
     answer = ask(robot, joints, case)  # the mistake: the solver expects a pose in the world
     (reached,), _ = link_poses_at(robot, joints, [END_EFFECTOR], answer.q)
@@ -53,10 +53,10 @@ def other_frame(robot: Any, joints: JointMap, case: ReachCase, base: FloatArray)
         f"the intended place; the base is {1000 * np.linalg.norm(base):.1f} mm from the "
         "world's origin."
     )
-    return Failure("other_frame", shown, text)
+    return Mistake("other_frame", shown, text)
 
 
-def unaccepted_answer(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Failure:
+def unaccepted_answer(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Mistake:
     """Command an answer that the acceptance rule refuses."""
     answer = ask(robot, joints, case)
     trace = run_case(scene, robot, joints, case.commanding(answer.q.astype(float)))  # the mistake
@@ -69,10 +69,10 @@ def unaccepted_answer(scene: Any, robot: Any, joints: JointMap, case: ReachCase)
         f"target and ends {apart[-1]:.2f} m from it."
     )
     curves = {"hand to target": (trace.t, apart)}
-    return Failure("unaccepted_answer", shown, text, curves, "distance [m]")
+    return Mistake("unaccepted_answer", shown, text, curves, "distance [m]")
 
 
-def degrees(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Failure:
+def degrees(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Mistake:
     """Command an accepted answer, converted to degrees."""
     right = control_case(case, ask(robot, joints, case))
     wrong = replace(right, q_target=np.rad2deg(right.q_target))
@@ -90,10 +90,10 @@ def degrees(scene: Any, robot: Any, joints: JointMap, case: ReachCase) -> Failur
         f"end at a limit, and the hand ends {1000 * apart:.0f} mm from its target. "
         f"The course's validation before a run: {quoted(refusal)}"
     )
-    return Failure("degrees", shown, text)
+    return Mistake("degrees", shown, text)
 
 
-def rows_first(meant: Any, given: Any, point: FloatArray) -> Failure:
+def rows_first(meant: Any, given: Any, point: FloatArray) -> Mistake:
     """Give `res` as (H, W): two cameras of one pose, the second with the mistake."""
     K, other = read_intrinsics(meant), read_intrinsics(given)
     shapes = [tuple(map(int, camera.res[::-1])) for camera in (meant, given)]
@@ -106,10 +106,10 @@ def rows_first(meant: Any, given: Any, point: FloatArray) -> Failure:
         f"field of view is {fields[1]:.1f}° instead of {fields[0]:.1f}°. With the camera matrix of "
         f"the intended picture, the target is expected {apart:.0f} pixels from its place."
     )
-    return Failure("rows_first", shown, text)
+    return Mistake("rows_first", shown, text)
 
 
-def stale_extrinsics(camera: Any, moved_to: Mapping[str, Any], point: FloatArray) -> Failure:
+def stale_extrinsics(camera: Any, moved_to: Mapping[str, Any], point: FloatArray) -> Mistake:
     """Keep the extrinsics of a camera that has moved since."""
     kept = to_numpy(camera.extrinsics).astype(float).copy()
     camera.set_pose(**moved_to)
@@ -121,13 +121,13 @@ def stale_extrinsics(camera: Any, moved_to: Mapping[str, Any], point: FloatArray
         f"With the matrix read before the move, the target is expected {apart:.0f} pixels from its "
         f"place in the picture. Read again after the move, `camera.extrinsics` is {now}."
     )
-    return Failure("stale_extrinsics", bool(apart > 10), text)
+    return Mistake("stale_extrinsics", bool(apart > 10), text)
 
 
-def beyond_far(depth: FloatArray | None, camera: Any) -> Failure:
+def beyond_far(depth: FloatArray | None, camera: Any) -> Mistake:
     """Back-project every depth (H, W) [m] that is smaller than `far`, None without pictures."""
     if depth is None:
-        return Failure("beyond_far", True, "SKIP: this run has no camera.")
+        return Mistake("beyond_far", True, "SKIP: this run has no camera.")
     heights = cameras.back_project(depth, read_intrinsics(camera), read_transform(camera))[..., 2]
     nothing = depth > 0.999 * camera.far
     kept = nothing & (depth < camera.far)  # the mistake: depths are rounded
@@ -138,4 +138,4 @@ def beyond_far(depth: FloatArray | None, camera: Any) -> Failure:
         f"{kept.sum()} of them. Back-projected, they are up to {heights[nothing].max():.1f} m "
         "above the floor."
     )
-    return Failure("beyond_far", shown, text)
+    return Mistake("beyond_far", shown, text)

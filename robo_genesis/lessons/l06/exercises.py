@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding, equal, within
-from robo_genesis.core.exercises import as_test
-from robo_genesis.core.mistakes import refused
+from robo_genesis.core.exercises import as_test, refused
 from robo_genesis.lessons.l06 import spec
 
 MEASURES = False

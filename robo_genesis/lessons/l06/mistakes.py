@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.mistakes import Failure, quoted, refused
+from robo_genesis.core.exercises import Mistake, quoted, refused
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
@@ -46,7 +46,7 @@ def distances(trace: Trace, target: FloatArray) -> FloatArray:
 def one_value_each(
     scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment],
     *openings: Mapping[int, float],
-) -> Failure:  # fmt: skip
+) -> Mistake:  # fmt: skip
     """Give one opening for each environment [m] to both fingers, for several lists of environments.
 
     The symptom is expected of the first list alone.
@@ -61,12 +61,12 @@ def one_value_each(
         apart.append(np.abs(found - meant).max())
         ends = listed([f"{1000 * end:.1f} mm in {k}" for k, end in zip(envs, found, strict=True)])
         text.append(f"With the environments {envs}, the fingers end at {ends}.")
-    return Failure("one_value_each", bool(apart[0] > 1e-3 > max(apart[1:])), " ".join(text))
+    return Mistake("one_value_each", bool(apart[0] > 1e-3 > max(apart[1:])), " ".join(text))
 
 
 def numbers_as_rows(
     scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment], envs: Sequence[int]
-) -> Failure:
+) -> Mistake:
     """Ask for some environments, and take the row with the number of the first of them."""
     batch, first = begin(scene, robot, joints, worlds), envs[0]
     q = commands([worlds[k] for k in envs], ask(robot, joints, [worlds[k] for k in envs], 1, envs))
@@ -79,12 +79,12 @@ def numbers_as_rows(
         f"{1000 * theirs:.1f} mm from the target of environment {envs[-1]}. The line for "
         f"environment {envs[-1]}: {quoted(refused(lambda: q[envs[-1]]))}"
     )
-    return Failure("numbers_as_rows", bool(own > 0.05 and theirs < spec.REACHED[0]), text)
+    return Mistake("numbers_as_rows", bool(own > 0.05 and theirs < spec.REACHED[0]), text)
 
 
 def mean_of_rows(
     scene: Any, robot: Any, joints: JointMap, worlds: Sequence[Environment], row: int, position: Any
-) -> Failure:
+) -> Mistake:
     """Give one environment a target beyond its reach, and judge the mean over all environments."""
     worlds = [replace(world, settings=spec.ONE_START) for world in worlds]
     worlds[row] = replace(worlds[row], positions=np.array([position], dtype=float))
@@ -101,14 +101,14 @@ def mean_of_rows(
         f"rule for each row says: {quoted(refused(lambda: commands(worlds, answer)))}"
     )
     curves = {"mean of all": (t, mean), f"environment {row}": (t, apart[row])}
-    return Failure(
+    return Mistake(
         "mean_of_rows", bool(mean[-1] < limit < ends[row]), text, curves, "distance [mm]"
     )
 
 
 def timed_with_building(
     build: Build, lines: Sequence[Any], sizes: Sequence[int], steps: int
-) -> Failure:
+) -> Mistake:
     """Start the clock before the scene is built. No time decides whether the symptom appeared.
 
     Args:
@@ -133,4 +133,4 @@ def timed_with_building(
         f"{wrong[1] / wrong[0]:.2f} times as much. Timed after building and a warm-up, a step "
         f"takes {right[0]:.2f} ms and {right[1]:.2f} ms, {right[1] / right[0]:.2f} times as much."
     )
-    return Failure("timed_with_building", all(compiled), text)
+    return Mistake("timed_with_building", all(compiled), text)

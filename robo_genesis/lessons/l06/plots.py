@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator, ScalarFormatter
 
 from robo_genesis.core import plotting
+from robo_genesis.core.exercises import Curves
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.mistakes import Curves
 from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l06 import spec

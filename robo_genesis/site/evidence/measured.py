@@ -31,7 +31,7 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 from robo_genesis.core import project
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.quantities import MICRO, SCALED, format_value, quoted, scaled_value
+from robo_genesis.core.text import MICRO, SCALED, format_value, quoted, scaled_value
 from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,

@@ -18,8 +18,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
 from robo_genesis.core.declaration import Compared, Filmed, Moving
-from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import listed
+from robo_genesis.core.text import format_value, listed
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison, compare, specification

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core.checks import evaluate
 from robo_genesis.core.experiment import Run
-from robo_genesis.core.quantities import format_value
+from robo_genesis.core.text import format_value
 from robo_genesis.lessons.l04 import (
     explorer,
     spec,

@@ -10,7 +10,7 @@ from playwright.sync_api import Page
 from watching import errors
 
 from robo_genesis.core.comparison import order
-from robo_genesis.core.quantities import format_value
+from robo_genesis.core.text import format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons.l04.metrics import StepMetrics

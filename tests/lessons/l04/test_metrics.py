@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robo_genesis.core.quantities import NOT_OBSERVED, format_value
+from robo_genesis.core.text import NOT_OBSERVED, format_value
 from robo_genesis.core.trace import first_time, settled_from
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.core import checks
-from robo_genesis.core.mistakes import Failure
+from robo_genesis.core.exercises import Mistake
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l04 import mistakes, spec
 from robo_genesis.lessons.l04.backend_mistake import absent_backend, absent_backend_failure
@@ -151,6 +151,6 @@ def test_a_shift_by_one_sample_shifts_both_times_by_dt(joints, traces):
 
 
 def test_a_symptom_that_did_not_appear_fails_by_name():
-    outcome = Failure("time_shift", False, "Both are equal.").check
+    outcome = Mistake("time_shift", False, "Both are equal.").check
     with pytest.raises(checks.CheckFailed, match=r"\[gallery_time_shift\] Both are equal\."):
         checks.require("l04 gallery", [outcome])

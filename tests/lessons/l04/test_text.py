@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robo_genesis.core.comparison import compare
-from robo_genesis.core.quantities import format_value
-from robo_genesis.core.text import Block, comparison_sentence, prediction_sentence
+from robo_genesis.core.text import Block, comparison_sentence, format_value, prediction_sentence
 from robo_genesis.lessons.l04 import text as l04
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import MARGINS, ONE_FACTOR, PREDICTIONS, RESOLUTION
