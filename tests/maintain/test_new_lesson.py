@@ -20,7 +20,7 @@ ADDED = """
 from pathlib import Path
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.lessons import LESSONS
-from robo_genesis.site.course_map import read_map
+from robo_genesis.site.course.course_map import read_map
 print(list(LESSONS), [m.page for m in read_map(Path("book")) if m.id == "L99"])
 print([(p.lesson, p.page) for p in find_pages(Path("book")) if p.lesson == "l99"])
 """

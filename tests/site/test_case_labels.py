@@ -6,7 +6,7 @@ import numpy as np
 
 from robo_genesis.core import palette
 from robo_genesis.core.channels import Channel, Level, Runs, View
-from robo_genesis.site.case_labels import MARKS, label, labelled
+from robo_genesis.site.figures.case_labels import MARKS, label, labelled
 
 CASES = ("dt10_sub1", "baseline")
 WORDS = ["one step in 10 ms", "two steps in 10 ms"]

@@ -12,7 +12,7 @@ from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.site.course_map import FILE, CourseMapError, Lesson, read_map
+from robo_genesis.site.course.course_map import FILE, CourseMapError, Lesson, read_map
 
 MAP = [
     {"id": "L01", "title": "One"},

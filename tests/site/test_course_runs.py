@@ -9,7 +9,7 @@ from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.site.evidence.course_runs import measured_line
-from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.evidence.ledger_data import PageRun
 
 
 @pytest.fixture
@@ -17,12 +17,14 @@ def accepted(outputs):
     """Return a run as the build accepted it, with another version, start or backend."""
     manifest = read_manifest(page_outputs("l04/lab") / "cpu")
 
-    def run(version="1.4.5", started="2026-11-22T10:00:00", backend="cpu", recorded=False) -> Run:
+    def run(
+        version="1.4.5", started="2026-11-22T10:00:00", backend="cpu", recorded=False
+    ) -> PageRun:
         engine = manifest.predicate.engine.model_copy(update={"version": version})
         changed = {"engine": engine, "started": started}
         predicate = manifest.predicate.model_copy(update=changed)
         shown = manifest.model_copy(update={"predicate": predicate})
-        return Run("l04/lab", Path(), Status("verified", backend, "", shown), recorded)
+        return PageRun("l04/lab", Path(), Status("verified", backend, "", shown), recorded)
 
     return run
 

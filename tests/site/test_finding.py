@@ -15,7 +15,7 @@ from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import BOOK
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.lessons import LESSONS
-from robo_genesis.site.course_map import read_map
+from robo_genesis.site.course.course_map import read_map
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 

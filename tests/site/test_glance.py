@@ -5,7 +5,7 @@ import pytest
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, page_outputs
 from robo_genesis.site.evidence.glance import shown_predicate
-from robo_genesis.site.evidence.ledger_data import Run, provenance
+from robo_genesis.site.evidence.ledger_data import PageRun, provenance
 
 
 @pytest.mark.parametrize(
@@ -18,6 +18,6 @@ def test_a_stale_run_is_shown_with_the_outputs_of_last_runs_alone(
     if last_outputs:
         monkeypatch.setenv(LAST_OUTPUTS, "1")
     status = Status(code, "cpu", "a reason", None, code)
-    run = Run("l04/lab", page_outputs("l04/lab") / "cpu", status)
+    run = PageRun("l04/lab", page_outputs("l04/lab") / "cpu", status)
     assert (shown_predicate(run) is not None) == is_shown
     assert provenance("figure", [run]) == f"No accepted evidence: cpu-{code}."

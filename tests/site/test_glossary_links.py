@@ -7,7 +7,7 @@ from tiny_book import make_book
 from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.site import glossary
+from robo_genesis.site.text import glossary
 
 GLOSSARY = """\
 # Glossary

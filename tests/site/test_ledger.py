@@ -7,7 +7,7 @@ from docutils import nodes
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger import run_block
-from robo_genesis.site.evidence.ledger_data import Item, Run
+from robo_genesis.site.evidence.ledger_data import Item, PageRun
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_a_picture_of_pixels_is_a_camera_frame(tmp_path, name, content, kind):
 
 
 def test_without_an_accepted_bundle_nothing_is_called_measured(tmp_path):
-    run = Run("l04/lab", tmp_path, Status("refused", "cpu", "files: gone", None, "files"))
+    run = PageRun("l04/lab", tmp_path, Status("refused", "cpu", "files: gone", None, "files"))
     assert ledger_data.provenance("table", [run]) == "No accepted evidence: cpu-refused."
     assert ledger_data.provenance("figure", [run, run]).endswith(": cpu-refused, cpu-refused.")
     assert ledger_data.provenance("illustration", []) == "Illustration, not measured."
@@ -63,7 +63,7 @@ def test_without_an_accepted_bundle_nothing_is_called_measured(tmp_path):
     ],
 )
 def test_a_recorded_run_has_its_own_key_and_command(tmp_path, recorded, key, command):
-    run = Run("l04/lab", tmp_path, Status("stale", "cpu", "old", None), recorded)
+    run = PageRun("l04/lab", tmp_path, Status("stale", "cpu", "old", None), recorded)
     assert run.key == key
     block = run_block("", run)
     assert [code.astext() for code in block.findall(nodes.literal_block)] == [command]

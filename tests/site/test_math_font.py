@@ -8,8 +8,8 @@ from fontTools.ttLib import TTFont
 from PIL import Image
 
 from robo_genesis.pipeline import npm
-from robo_genesis.site import math_font
-from robo_genesis.site.mathml import to_mathml
+from robo_genesis.site.text import math_font
+from robo_genesis.site.text.formulas import to_mathml
 
 HEAVIEST = 50_000  # bytes, a ninth of what a first visit may cost
 

@@ -1,6 +1,6 @@
 import pytest
 
-from robo_genesis.site.mathml import to_mathml
+from robo_genesis.site.text.formulas import to_mathml
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ import pytest
 from robo_genesis.core.comparison import compare_values
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.site import multiple_choice
-from robo_genesis.site.multiple_choice import (
+from robo_genesis.site.text import questions
+from robo_genesis.site.text.questions import (
     JUDGED,
     LOWER,
     UNDECIDED,
@@ -121,17 +121,17 @@ def test_a_cause_without_a_valid_key_is_refused_with_the_valid_ones(line):
 
 
 def test_a_tolerance_is_a_share_in_percent():
-    assert [multiple_choice.percents(text) for text in ("20", "0.5")] == [20, 0.5]
+    assert [questions.percents(text) for text in ("20", "0.5")] == [20, 0.5]
     for text in ("0", "-1", "100", "nan", "much", "20 %"):
         with pytest.raises(ValueError, match=f"'{text}' is not a tolerance. Give percents above 0"):
-            multiple_choice.percents(text)
+            questions.percents(text)
 
 
 def written(node):
     page = SimpleNamespace(body=[])
-    multiple_choice.visit_question(page, node)
-    numeric = isinstance(node, multiple_choice.number)
-    (multiple_choice.depart_number if numeric else multiple_choice.depart_choice)(page, node)
+    questions.visit_question(page, node)
+    numeric = isinstance(node, questions.number)
+    (questions.depart_number if numeric else questions.depart_choice)(page, node)
     return "".join(page.body)
 
 
@@ -139,9 +139,7 @@ SHOWN = {"number": 3, "answer": "G1 < G2", "origin": "Measured"}
 
 
 def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
-    node = multiple_choice.choice(
-        "", options=options("s", "higher", "5 ms", {"lower": "F < 9"}), **SHOWN
-    )
+    node = questions.choice("", options=options("s", "higher", "5 ms", {"lower": "F < 9"}), **SHOWN)
     html = written(node)
     assert re.findall(r'feedback (\w+)">(\w+)\. (.*?)</p>', html) == [
         ("wrong", "No", "F &lt; 9 G1 &lt; G2"),
@@ -180,11 +178,9 @@ FEEDBACK += [("x57.3", "No. In degrees.")]
 @pytest.fixture
 def asked(browser):
     """A page with a choice and a number, and the course's script and style."""
-    first = multiple_choice.choice(
-        "", options=options("s", None, "5 ms", {"lower": "Why"}), **SHOWN
-    )
+    first = questions.choice("", options=options("s", None, "5 ms", {"lower": "Why"}), **SHOWN)
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
-    second = multiple_choice.number("", **SHOWN | {"number": 4}, **given)
+    second = questions.number("", **SHOWN | {"number": 4}, **given)
     script, style = (BOOK / "_static" / name for name in ("choice.js", "course.css"))
     page = browser.new_page()
     page.set_content(

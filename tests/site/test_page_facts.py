@@ -11,7 +11,7 @@ from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.site import page_facts as facts
-from robo_genesis.site.multiple_choice import choice
+from robo_genesis.site.text.questions import choice
 
 
 def commit(folder, text, subject):

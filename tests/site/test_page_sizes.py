@@ -5,7 +5,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from robo_genesis.core.project import BOOK
 from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.site.page_sizes import LIMITS, Size, excess, prose, report, size
+from robo_genesis.site.course.sizes import LIMITS, Size, excess, prose, report, size
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from docutils import nodes
 from docutils.utils import new_document
 
 from robo_genesis.core.palette import MARKS, PARTS, css_name
-from robo_genesis.site import palette_css
+from robo_genesis.site.figures import palette_css
 
 
 def rules() -> dict[str, list[dict[str, str]]]:

@@ -30,7 +30,7 @@ from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.evidence import ledger as sphinx_ledger
 from robo_genesis.site.evidence import ledger_data, measured, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
-from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.evidence.ledger_data import PageRun
 
 FILMED = Filmed("the box", "the first run")
 
@@ -108,7 +108,7 @@ def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(
 def test_the_reason_of_a_missing_run_is_never_markup(tmp_path, attack):
     folder, status = tmp_path / attack[:3], Status("stale", attack, "", None, "stale", attack)
     block = nodes.container(
-        "", *sphinx_panel.withheld(Run("l04/lab", folder, status, recorded=True))
+        "", *sphinx_panel.withheld(PageRun("l04/lab", folder, status, recorded=True))
     )
     assert block.astext().count(attack) == 4
     made = {n.tagname for n in block.findall(nodes.Element)}
@@ -260,10 +260,10 @@ def test_runs_that_cannot_be_compared_have_the_reason(folder, there):
     assert rows == []
 
 
-def accepted(page, folder, **more) -> Run:
+def accepted(page, folder, **more) -> PageRun:
     """An accepted run whose bundle is in a folder that is named after its backend."""
     status = Status("verified", folder.name, "", bundle.read_manifest(folder))
-    return Run(page, folder, status, **more)
+    return PageRun(page, folder, status, **more)
 
 
 @pytest.fixture
@@ -275,7 +275,7 @@ def record(folder, tmp_path, built, courses_pages):
     parts = [Part(link, (9, 9, 9), box.vertices.astype(np.float32), box.faces) for link in links]
     visual_shape.write_shape(tmp_path / "l04" / "lecture", parts)
 
-    def run(backend="amdgpu", lesson="l04") -> Run:
+    def run(backend="amdgpu", lesson="l04") -> PageRun:
         copy = shutil.copytree(folder, tmp_path / "book" / "evidence" / lesson / "cpu")
         return accepted(f"{lesson}/lab", on(backend)(copy), recorded=True)
 
@@ -333,7 +333,7 @@ def test_what_the_recorder_writes_on_each_backend_is_accepted_shown_and_compared
     place = put(left, tmp_path / "book" / "evidence" / "l04")
     status = recorded_status(tmp_path / "book", "l04", actual)
     assert (status.badge, place.name) == (f"{actual}-verified", actual)
-    panel = Panel(tmp_path / "book").panel(Run("l04/lab", place, status, recorded=True))
+    panel = Panel(tmp_path / "book").panel(PageRun("l04/lab", place, status, recorded=True))
     shown = dict(row for row in rows_of([panel]) if len(row) == 2)
     facts |= {"device": there.backend.device_name, "driver": f"the driver of {actual}"}
     facts["backend requested, actual"] = f"{there.backend.requested}, {actual}"
@@ -374,7 +374,7 @@ def test_a_lecture_shows_the_compared_metrics_and_no_picture(tmp_path, record, m
 @pytest.mark.parametrize("options", [{}, {"table": None}])
 def test_a_backend_without_a_run_is_one_sentence(tmp_path, record, options):
     status = Status("missing", "cuda", "Nothing is recorded.", None)
-    run = Run("l04/lab", record().folder, status, True)
+    run = PageRun("l04/lab", record().folder, status, True)
     panel = Panel(tmp_path / "book", **options).panel(run)
     (paragraph,) = panel.children
     assert paragraph.astext().startswith("No run on CUDA GPU is recorded for Genesis")
@@ -386,7 +386,7 @@ def test_a_run_that_is_not_verified_shows_its_state_alone(tmp_path, record, stat
     run = record()
     manifest = run.status.manifest if state == "inconclusive" else None
     status = Status(state, "amdgpu", "Found a, expected b.", manifest, summary="Why.")
-    panel = Panel(tmp_path / "book", **options).panel(Run("l04/lab", run.folder, status, True))
+    panel = Panel(tmp_path / "book", **options).panel(PageRun("l04/lab", run.folder, status, True))
     text = f"No figures from amdgpu for Genesis {project.engine_pin()} (amdgpu-{state}). Why."
     assert panel.astext().startswith(text)
     shown = (nodes.image, nodes.table, nodes.raw, nodes.bullet_list)

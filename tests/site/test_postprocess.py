@@ -4,8 +4,9 @@ import pytest
 from bs4 import BeautifulSoup
 from PIL import Image
 
-from robo_genesis.site import page_weight
-from robo_genesis.site.postprocess import finish_page
+from robo_genesis.site.figures import drawings
+from robo_genesis.site.frame import weight
+from robo_genesis.site.frame.postprocess import finish_page
 
 HEAD = """\
 <script data-cfasync="false">document.documentElement.dataset.mode = "auto";</script>
@@ -92,12 +93,12 @@ def test_images_get_their_size_and_wait_until_they_are_in_sight(tmp_path):
     ],
 )
 def test_the_size_of_a_drawing_is_read(tmp_path, attributes, size):
-    assert page_weight.image_size(drawing(tmp_path, attributes)) == size
+    assert drawings.image_size(drawing(tmp_path, attributes)) == size
 
 
 def test_a_drawing_without_size_is_refused(tmp_path):
     with pytest.raises(ValueError, match=r"x\.svg states no size\. Give its root element a viewB"):
-        page_weight.image_size(drawing(tmp_path, ""))
+        drawings.image_size(drawing(tmp_path, ""))
 
 
 def drawing(folder, attributes):
@@ -139,6 +140,6 @@ def test_unused_files_of_the_theme_go_and_others_stay(tmp_path):
     for name in gone + kept:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
-    page_weight.drop_unused_files(tmp_path)
+    weight.drop_unused_files(tmp_path)
     assert [name for name in gone if (tmp_path / name).exists()] == []
     assert [name for name in kept if not (tmp_path / name).exists()] == []

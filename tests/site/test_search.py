@@ -1,6 +1,6 @@
 import pytest
 
-from robo_genesis.site.search import SearchNames, ends
+from robo_genesis.site.frame.search import SearchNames, ends
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import pytest
 from bs4 import BeautifulSoup
 
-from robo_genesis.site import style_sheets
+from robo_genesis.site.frame import style_sheets
 
 SHEET = """\
 .used > a, .unused > a { color: red }

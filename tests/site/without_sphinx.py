@@ -11,9 +11,9 @@ from docutils.utils import new_document
 from myst_parser.parsers.docutils_ import Parser
 
 from robo_genesis.core.project import BOOK
-from robo_genesis.site import palette_css
 from robo_genesis.site.evidence import panel
 from robo_genesis.site.evidence.ledger import scroll_box
+from robo_genesis.site.figures import palette_css
 from robo_genesis.site.replay import viewer
 
 

@@ -14,8 +14,8 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core.text import listed
-from robo_genesis.site.course_map import MapDirective, page_link
-from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.course.course_map import MapDirective, page_link
+from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, status_list
 from robo_genesis.site.evidence.provenance import all_runs
 
@@ -36,7 +36,7 @@ class CourseMeasured(SphinxDirective):
         return [line]
 
 
-def measured_line(runs: Iterable[Run]) -> str:
+def measured_line(runs: Iterable[PageRun]) -> str:
     """Return backend, engine version and dates of the accepted runs that were not recorded.
 
     Args:

@@ -16,7 +16,7 @@ from robo_genesis.evidence.bundle import Predicate, read_manifest
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons import compared_cases, course_marks, filmed
 from robo_genesis.pipeline.pages.built import LAST_OUTPUTS
-from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import page_run
 from robo_genesis.site.evidence.panel import Picture, figure, frames
 
@@ -51,7 +51,7 @@ class Glance(SphinxDirective):
         return [box]
 
 
-def shown_predicate(run: Run) -> Predicate | None:
+def shown_predicate(run: PageRun) -> Predicate | None:
     """Return what the manifest of a run that may be shown states, None for another run.
 
     With the outputs of last runs, a stale run is shown. The lines of provenance give its state.

@@ -16,7 +16,7 @@ from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
 from robo_genesis.site.evidence import ledger_data
-from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import badge_node
 from robo_genesis.site.evidence.plain_nodes import table
 from robo_genesis.site.evidence.provenance import all_items, all_runs, measured_pages
@@ -70,7 +70,7 @@ def fill_in(app: Sphinx, doctree: nodes.document, docname: str) -> None:
             part.replace_self(item_table(app, docname))
 
 
-def run_block(docname: str, run: Run) -> nodes.Node:
+def run_block(docname: str, run: PageRun) -> nodes.Node:
     """Return a run's facts and its bundle, or why it is missing and the command that creates it."""
     block = nodes.container(ids=[run_anchor(run.key)], classes=["run-block"])
     title = nodes.strong("", run.page)
@@ -115,14 +115,14 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
     return scroll("Figures and tables", COLUMNS, rows, anchors)
 
 
-def _of_runs(runs: Sequence[Run]) -> list[list[nodes.Node]]:
+def _of_runs(runs: Sequence[PageRun]) -> list[list[nodes.Node]]:
     """Return five cells with a paragraph for each run."""
     if not runs:
         return [[nodes.Text(text)] for text in ("no run", *"––––")]
     return [list(cell) for cell in zip(*map(_of_run, runs), strict=True)]
 
 
-def _of_run(run: Run) -> list[nodes.Node]:
+def _of_run(run: PageRun) -> list[nodes.Node]:
     badge, predicate = badge_node(run.status), run.predicate
     if predicate is None:
         return [nodes.Text("–"), badge, *map(nodes.Text, "–––")]

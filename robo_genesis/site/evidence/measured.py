@@ -42,7 +42,7 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_status,
 )
 from robo_genesis.pipeline.pages.built import built_pages, page_outputs
-from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.evidence.ledger_data import PageRun
 
 T = TypeVar("T")
 BACKEND = project.BUILD_BACKEND
@@ -148,7 +148,7 @@ def stored(name: str, compute: Callable[[], T]) -> T:
 
 
 @lru_cache(maxsize=64)
-def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> Run:
+def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> PageRun:
     """Return a page's run of this build; it does not change while Sphinx runs.
 
     A stored state is shown; the build verifies the bundle itself each time.
@@ -156,24 +156,24 @@ def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> Run:
     folder = page_outputs(f"{lesson}/{page}") / BACKEND
     absent = f"No bundle was recorded for {lesson}/{page}."
 
-    def run() -> Run:
+    def run() -> PageRun:
         status = bundle_status(folder, lesson, page, absent, book, once=True)
-        return Run(f"{lesson}/{page}", folder, status)
+        return PageRun(f"{lesson}/{page}", folder, status)
 
     return stored(f"{lesson}/{page}", run)
 
 
 @lru_cache(maxsize=64)
-def recorded_runs(book: Path, lesson: str) -> tuple[Run, ...]:
+def recorded_runs(book: Path, lesson: str) -> tuple[PageRun, ...]:
     """Return the recorded runs of a lesson's lab, the reference first, recorded or not."""
     folder, name = book / "evidence" / lesson, f"{lesson}/{RECORDED_PAGE}"
     recorded = (path.name for path in recorded_folders(book) if path.parent == folder)
     labs = {lesson: page_run(book, lesson).folder}
 
-    def run(backend: str) -> Run:
+    def run(backend: str) -> PageRun:
         runs = cpu_runs(folder / backend, labs)
         status = recorded_status(book, lesson, backend, cpu_runs=runs)
-        return Run(name, folder / backend, status, recorded=True)
+        return PageRun(name, folder / backend, status, recorded=True)
 
     backends = dict.fromkeys((REFERENCE, *recorded))
     return stored(f"{lesson}, recorded", lambda: tuple(run(backend) for backend in backends))

@@ -27,7 +27,7 @@ from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.rows import DIFFERS
 from robo_genesis.lessons import compared_cases, course_marks, filmed, find_lesson
 from robo_genesis.site.evidence import measured
-from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import BACKEND, READABLE
 from robo_genesis.site.evidence.plain_nodes import image, marked, text_table
 from robo_genesis.site.replay.directive import replay_block
@@ -59,7 +59,7 @@ class Evidence(SphinxDirective):
         runs = measured.recorded_runs(Path(self.env.srcdir), self.arguments[0])
         return [self.panel(run) for run in runs]
 
-    def panel(self, run: Run) -> nodes.Node:
+    def panel(self, run: PageRun) -> nodes.Node:
         """Return the panel of one backend."""
         lesson, folder, status = run.lesson, run.folder, run.status
         panel = nodes.container(classes=["evidence-panel", f"status-{status.state}"])
@@ -95,7 +95,7 @@ def figure(directive: SphinxDirective, anchor: str, picture: Picture) -> nodes.N
     return nodes.figure("", shown, nodes.caption("", picture.caption), ids=[anchor])
 
 
-def not_recorded(run: Run) -> nodes.Node:
+def not_recorded(run: PageRun) -> nodes.Node:
     """Return one sentence for a backend without a run, with the command that records one."""
     backend = READABLE.get(run.status.backend, run.status.backend)
     what = f"No run on {backend} is recorded for Genesis {project.engine_pin()} yet; this command "
@@ -104,7 +104,7 @@ def not_recorded(run: Run) -> nodes.Node:
     return nodes.paragraph("", "", nodes.Text(what), where, command, nodes.Text("."))
 
 
-def withheld(run: Run) -> list[nodes.Node]:
+def withheld(run: PageRun) -> list[nodes.Node]:
     """Return the state of a run that is not shown, the reason, and the command that records one."""
     status = run.status
     what = f"No figures from {status.backend} for Genesis {project.engine_pin()} ({status.badge})."

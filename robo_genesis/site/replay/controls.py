@@ -10,7 +10,7 @@ from robo_genesis.core import tables
 from robo_genesis.core.channels import Runs
 from robo_genesis.core.palette import css_name, marks_of
 from robo_genesis.core.text import time_digits
-from robo_genesis.site.case_labels import MARKS
+from robo_genesis.site.figures.case_labels import MARKS
 
 if TYPE_CHECKING:
     from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
@@ -107,7 +107,7 @@ def panel(name: str, runs: Runs, weight: int) -> str:
         f'<p><label for="{name}-time">Time</label><input type="range" id="{name}-time" min="0" '
         f'max="{len(runs.t) - 1}" step="1" value="0"></p>'
         f'<p><label for="{name}-speed">Speed</label><select id="{name}-speed">{speeds}</select></p>'
-        f"</div><dl>{''.join(map(_term, terms))}</dl>"
+        f"</div><dl>{''.join(map(term, terms))}</dl>"
         f'<div class="plots">{PLOT * len(runs.channels)}</div>'
         f'<p class="legend">{escape(_legend(runs))}</p></div></div>'
     )
@@ -170,7 +170,7 @@ def as_json(content: Any) -> str:
     return json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
 
-def _term(name: str) -> str:
+def term(name: str) -> str:
     """Return a line of the readout; it has its final height before the script fills it."""
     return f"<div><dt>{escape(name)}</dt><dd>&nbsp;</dd></div>"
 

@@ -27,11 +27,11 @@ from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons import drawn_cases
 from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.sim import visual_shape
-from robo_genesis.site.case_labels import labelled
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import image, marked
-from robo_genesis.site.page_files import note_files
+from robo_genesis.site.figures.case_labels import labelled
+from robo_genesis.site.frame.incremental import note_files
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
 
@@ -51,11 +51,20 @@ class ReplayDirective(SphinxDirective):
         Errors: the page has no bundle, or the lesson compares no such cases.
         """
         lesson_page, *further = self.arguments
-        folder = page_outputs(lesson_page) / BACKEND
-        if not (folder / "manifest.json").is_file():
-            raise self.error(f"replay: {lesson_page} has no bundle on {BACKEND}.")
-        key = f"{lesson_page}/{BACKEND}"
-        return [replay_block(self, key, folder, *further, brief="brief" in self.options)]
+        folder, brief = bundle_of(self, lesson_page), "brief" in self.options
+        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *further, brief=brief)]
+
+
+def bundle_of(directive: SphinxDirective, lesson_page: str) -> Path:
+    """Return the folder of the bundle that a page wrote in this build.
+
+    Raises:
+        DirectiveError: it has none.
+    """
+    folder = page_outputs(lesson_page) / BACKEND
+    if not (folder / "manifest.json").is_file():
+        raise directive.error(f"{directive.name}: {lesson_page} has no bundle on {BACKEND}.")
+    return folder
 
 
 def replay_block(
@@ -103,8 +112,8 @@ def replay_block(
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     block += nodes.raw("", opening, format="html")
-    captions = controls.alt(runs), controls.caption(runs, around)
-    block += stage(env, name, still, *captions, controls.over_the_picture("Play"))
+    poster, over = still_picture(env, name, still, controls.alt(runs)), controls.over_the_picture
+    block += stage(poster, over("Play"), controls.caption(runs, around), f"{name}-model")
     block += nodes.raw("", controls.panel(name, shown, weight), format="html")
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
     if shown.moves:
@@ -134,14 +143,17 @@ def leave_model(env: BuildEnvironment, name: str, model: bytes) -> tuple[control
     return controls.Files(f"{up}/{name}.js", f"{up}/{VIEWER}"), weight
 
 
-def stage(
-    env: BuildEnvironment, name: str, still: bytes, alt: str, caption: str, over: str
-) -> nodes.figure:
-    """Return the figure in which the model replaces its still picture; `over` is on top of it."""
-    poster = image(env, f"{name}.jpg", still, alt)
-    poster["kind"], poster["classes"] = "model", ["still"]
-    content = nodes.container("", poster, nodes.raw("", over, format="html"), classes=["stage"])
-    return nodes.figure("", content, nodes.caption("", caption), ids=[f"{name}-model"])
+def still_picture(env: BuildEnvironment, name: str, still: bytes, alt: str) -> nodes.image:
+    """Return the picture that a model replaces."""
+    picture = image(env, f"{name}.jpg", still, alt)
+    picture["kind"], picture["classes"] = "model", ["still"]
+    return picture
+
+
+def stage(picture: nodes.image, over: str, caption: str, anchor: str) -> nodes.figure:
+    """Return a figure with some markup on top of its picture."""
+    content = nodes.container("", picture, nodes.raw("", over, format="html"), classes=["stage"])
+    return nodes.figure("", content, nodes.caption("", caption), ids=[anchor])
 
 
 def first_channel(runs: Runs) -> Runs:

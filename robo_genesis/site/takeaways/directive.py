@@ -19,7 +19,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import executed_notebook, page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, measured
-from robo_genesis.site.page_files import TAKEAWAYS, note_files
+from robo_genesis.site.frame.incremental import TAKEAWAYS, note_files
 from robo_genesis.site.takeaways.files import Takeaways, run_commands, system, write_takeaways
 from robo_genesis.site.takeaways.notebooks import Course
 from robo_genesis.site.takeaways.plain_markdown import ProseError

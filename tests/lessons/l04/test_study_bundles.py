@@ -17,7 +17,7 @@ from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare
 from robo_genesis.lessons.l04 import LESSON, spec, study_spec
 from robo_genesis.pipeline.bundles.verify import verify_bundle
-from robo_genesis.site.explorer import explorer_html
+from robo_genesis.site.figures.explorer import explorer_html
 
 
 @pytest.fixture(scope="module")

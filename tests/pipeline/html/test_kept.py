@@ -24,7 +24,7 @@ from robo_genesis.pipeline.html.sphinx_process import RenderError, SphinxProcess
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK, RECORD
-from robo_genesis.site.kept_pages import forget_own_pictures, outlines, setup
+from robo_genesis.site.frame.incremental import forget_own_pictures, outlines, setup
 
 GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
 LAW = "# Law\n\n(spring)=\n## The spring\n\nA gain of two, and a rareword.\n\n{ref}`text <there>`\n"

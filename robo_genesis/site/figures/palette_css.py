@@ -15,7 +15,7 @@ from sphinx.transforms.post_transforms import SphinxPostTransform
 
 from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, Mark, css_name
 from robo_genesis.lessons import course_marks
-from robo_genesis.site import case_labels
+from robo_genesis.site.figures import case_labels
 
 THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
 """Paper has the light theme."""

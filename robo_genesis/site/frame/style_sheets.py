@@ -19,6 +19,7 @@ from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.pipeline import npm
 from robo_genesis.pipeline.command import end_with_parent
 
+PARTS = ("print", "calm", "course", "explorer", "replay", "look", "plot")
 SHEETS = (
     "_static/basic.css",
     "_static/styles/pydata-sphinx-theme.css",
@@ -29,7 +30,7 @@ SHEETS = (
     "_static/copybutton.css",
     "_static/mystnb.*.css",
     "_static/sphinx-design.min.css",
-    *(f"_static/{name}.css" for name in ("print", "calm", "course", "replay", "look", "plot")),
+    *(f"_static/{name}.css" for name in PARTS),
     "_static/home.css",
 )
 """The sheets of all pages in their order, relative to the site. `math.css` contains a font, so only

@@ -6,15 +6,16 @@ in the site as the run produced it, and the ledger has its digest.
 """
 
 import re
+import xml.etree.ElementTree as ElementTree
 from html import escape
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 from bs4 import BeautifulSoup
 from bs4.element import PreformattedString
+from PIL import Image
 
 from robo_genesis.core.palette import MARKS, PARTS, css_name
-from robo_genesis.site.page_weight import image_size
 
 VARIABLES = {
     **{mark.light: f"var(--{css_name(name)}, {mark.light})" for name, mark in MARKS.items()},
@@ -35,6 +36,11 @@ FRACTION = re.compile(r"\b([1-9]\d*\.\d\d)\d+")
 SIZE = re.compile(r'\s(?:width|height|version|role)="[^"]*"')
 LINES = "stroke-linejoin: round; stroke-linecap: butt"
 """Matplotlib's own style sheet, which would apply to the whole page."""
+
+
+PIXELS = {"": 1.0, "px": 1.0, "pt": 4 / 3, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
+"""CSS pixels in one unit of length."""
+LENGTH = re.compile(rf"([\d.]+)({'|'.join(PIXELS)})")
 
 
 def inline_drawings(page: BeautifulSoup, folder: Path) -> None:
@@ -69,6 +75,25 @@ def inline_drawings(page: BeautifulSoup, folder: Path) -> None:
             (link or image).replace_with(
                 PreformattedString(element(text, f"drawing-{number}-", attributes))
             )
+
+
+def image_size(file: Path) -> tuple[int, int]:
+    """Return an image's width and height [CSS px].
+
+    Raises:
+        ValueError: an SVG states neither its size nor a view box.
+    """
+    if file.suffix != ".svg":
+        with Image.open(file) as image:
+            return image.size
+    _, root = next(ElementTree.iterparse(file, events=["start"]))
+    stated = [root.get("width", ""), root.get("height", "")]
+    for lengths in (stated, root.get("viewBox", "").split()[2:]):
+        sizes = [match.groups() for length in lengths if (match := LENGTH.fullmatch(length))]
+        if len(sizes) == 2:
+            width, height = (round(float(number) * PIXELS[unit]) for number, unit in sizes)
+            return width, height
+    raise ValueError(f"{file.name} states no size. Give its root element a viewBox.")
 
 
 def element(drawing: str, prefix: str, attributes: dict[str, str]) -> str:

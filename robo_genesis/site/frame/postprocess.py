@@ -11,14 +11,10 @@ from sphinx.application import Sphinx
 
 from robo_genesis.core import palette
 from robo_genesis.core.files import derived
-from robo_genesis.site import accessibility, drawings, page_weight, stacked_tables, style_sheets
-from robo_genesis.site.accessibility import make_accessible
-from robo_genesis.site.drawings import inline_drawings
-from robo_genesis.site.page_weight import drop_unused_files, reduce_weight
-from robo_genesis.site.stacked_tables import stack_tables
-from robo_genesis.site.style_sheets import join_sheets, link_joined
+from robo_genesis.site.figures import drawings
+from robo_genesis.site.frame import accessibility, style_sheets, weight
 
-CHANGES = (accessibility, stacked_tables, drawings, page_weight, style_sheets, palette)
+CHANGES = (accessibility, drawings, weight, style_sheets, palette)
 """The modules that change a page, and the colours that they use."""
 IMAGE = re.compile(r"""<img\b[^>]*?\bsrc="([^"]+)\"""")
 """A picture of a page; a finished page contains its size."""
@@ -38,11 +34,11 @@ def written(app: Sphinx) -> set[str]:
 def finish_site(app: Sphinx, error: Exception | None) -> None:
     """Finish the pages that Sphinx has written."""
     if error is None and app.builder.name == "html":
-        drop_unused_files(Path(app.outdir))
+        weight.drop_unused_files(Path(app.outdir))
         for page in sorted(written(app)):
             path = Path(app.builder.get_outfilename(page))  # type: ignore[attr-defined]
             path.write_text(finish_page(path.read_text("utf8"), path.parent), "utf8")
-        join_sheets(Path(app.outdir))  # it looks for the names in all finished pages
+        style_sheets.join_sheets(Path(app.outdir))  # it looks for the names in all finished pages
     written(app).clear()
 
 
@@ -56,11 +52,11 @@ def finish_page(html: str, folder: Path) -> str:
 
     def make() -> bytes:
         page = BeautifulSoup(html, "html.parser")
-        make_accessible(page)
-        stack_tables(page)
-        inline_drawings(page, folder)
-        reduce_weight(page, folder)
-        link_joined(page)
+        accessibility.make_accessible(page)
+        accessibility.stack_tables(page)
+        drawings.inline_drawings(page, folder)
+        weight.reduce_weight(page, folder)
+        style_sheets.link_joined(page)
         return str(page).encode()
 
     images = [folder / unquote(urlsplit(unescape(src)).path) for src in IMAGE.findall(html)]

@@ -1,4 +1,4 @@
-"""Sphinx reads executed pages and runs nothing; math is MathML; pages load no third-party files."""
+"""Sphinx reads executed pages and runs nothing; pages load no third-party files."""
 
 import os
 import re
@@ -14,7 +14,6 @@ from sphinx.errors import ExtensionError
 from robo_genesis.core.project import EXECUTED_PAGES
 from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.pipeline.pages.folder import code_and_kernel
-from robo_genesis.site import mathml
 
 ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
 
@@ -92,5 +91,3 @@ def setup(app: Sphinx) -> None:
     # Jupyter Book always sets this value, also where sphinx_comments is not an extension.
     app.add_config_value("comments_config", None, "html")
     app.connect("html-page-context", drop_third_parties, priority=900)
-    inline, block = (mathml.visit_inline, None), (mathml.visit_block, None)
-    app.add_html_math_renderer("mathml", inline, block)  # html_math_renderer chooses it

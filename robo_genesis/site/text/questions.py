@@ -43,8 +43,8 @@ from robo_genesis.core.text import comparison_sentence
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
 from robo_genesis.pipeline.pages.built import page_outputs
-from robo_genesis.site.case_labels import label
 from robo_genesis.site.evidence.measured import BACKEND, measured
+from robo_genesis.site.figures.case_labels import label
 
 EARLIER = {"lower": "earlier", "equal": "at the same time", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same (to {})", "higher": "more"}

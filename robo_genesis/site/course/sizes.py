@@ -12,14 +12,14 @@ from sphinx.config import Config
 from sphinx.directives.code import LiteralIncludeReader
 
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.site.excerpts import without_docstrings
-from robo_genesis.site.page_facts import (
+from robo_genesis.site.course.facts import (
     HIDDEN,
     STUB,
     WORDS_A_MINUTE,
     Work,
     has_sheet,
 )
+from robo_genesis.site.text.left_out import without_docstrings
 
 COLUMN = 80
 """Most characters in a line of an excerpt that the column shows without scrolling."""

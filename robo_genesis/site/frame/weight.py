@@ -2,12 +2,12 @@
 
 import re
 import shutil
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 from bs4 import BeautifulSoup
-from PIL import Image
+
+from robo_genesis.site.figures.drawings import image_size
 
 # Jupyter Book and the theme load every script on all pages; these are needed only where a selector
 # matches. No page needs `fontawesome.js`: the icons come from a font.
@@ -16,12 +16,9 @@ NEEDED_BY = {
     ".sd-tab-set": {"design-tabs.js"},
     "fieldset.choice": {"choice.js"},
     ".explorer": {"explorer.js"},
-    ".explorer, .replay": {"plot.js"},
+    ".explorer .plots, .replay": {"plot.js"},
     ".replay": {"replay.js"},
-    ".posture-map": {"posture-map.js"},
-    ".picture-reader": {"picture-reader.js"},
-    ".explorer, .posture-map": {"cell-map.js"},
-    ".replay, .posture-map": {"stage.js"},
+    ".explorer .play, .replay": {"stage.js"},
     "#search-results": {
         "language_data.js", "search-from-disk.js", "searchindex.js", "searchtools.js",
     },
@@ -52,10 +49,6 @@ CHOOSE_THEME = """
 
 TITLE = "page-title"
 """The anchor of a title that has no other."""
-
-PIXELS = {"": 1.0, "px": 1.0, "pt": 4 / 3, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
-"""CSS pixels in one unit of length."""
-LENGTH = re.compile(rf"([\d.]+)({'|'.join(PIXELS)})")
 
 
 def reduce_weight(page: BeautifulSoup, folder: Path) -> None:
@@ -137,25 +130,6 @@ def place_images(page: BeautifulSoup, folder: Path) -> None:
             width, height = image_size(file)
             image["width"], image["height"] = str(width), str(height)
         image["loading"], image["decoding"] = "lazy", "async"
-
-
-def image_size(file: Path) -> tuple[int, int]:
-    """Return an image's width and height [CSS px].
-
-    Raises:
-        ValueError: an SVG states neither its size nor a view box.
-    """
-    if file.suffix != ".svg":
-        with Image.open(file) as image:
-            return image.size
-    _, root = next(ElementTree.iterparse(file, events=["start"]))
-    stated = [root.get("width", ""), root.get("height", "")]
-    for lengths in (stated, root.get("viewBox", "").split()[2:]):
-        sizes = [match.groups() for length in lengths if (match := LENGTH.fullmatch(length))]
-        if len(sizes) == 2:
-            width, height = (round(float(number) * PIXELS[unit]) for number, unit in sizes)
-            return width, height
-    raise ValueError(f"{file.name} states no size. Give its root element a viewBox.")
 
 
 def drop_unused_files(html: Path) -> None:
