@@ -11,7 +11,7 @@ from browsers import SOFTWARE, launched
 from closed_views import plane_depth, sphere_depth
 from docutils import nodes
 from playwright.sync_api import Browser, Page
-from test_body_replay import HEIGHT, falling
+from test_replay import HEIGHT, falling
 from watching import errors, violations
 from without_sphinx import Panel, page_of
 
@@ -76,8 +76,8 @@ def cell(k: int, place: str, **more) -> dict:
     state = "refused" if k == 1 else "accepted"
     return {
         "answer": k, "name": f"{place}, {state}", "state": state, "tag": "×" * (k == 1),
-        "opens": k != 1, "sentence": f"Answer {k}, {state}.", "values": [f"{10 * k}", f"{1 / k:.3f}"],
-        "numbers": [10.0 * k, 1 / k], "texts": [f"{10 * k}", f"{1 / k:.2f}"],
+        "opens": k != 1, "sentence": f"Answer {k}, {state}.", "numbers": [10.0 * k, 1 / k],
+        "values": [f"{10 * k}", f"{1 / k:.3f}"], "texts": [f"{10 * k}", f"{1 / k:.2f}"],
     } | more  # fmt: skip
 
 
@@ -193,7 +193,8 @@ def test_a_run_is_predicted_then_drawn_over_the_last_one(open_block, folder, tmp
     verdict = "No. The left [mm]: later, first 20, now 30. Answer 3, accepted."
     assert texts(page, "output") == [verdict]
     assert texts(page, "dd.last") == ["last run: 20", "last run: 0.500"]
-    assert texts(page, ".ghost-label") == ["last run: z 0, x 0.2, accepted"]
+    label = page.locator(".ghost-label").text_content()
+    assert label == "last run: z 0, x 0.2, accepted"
     assert page.evaluate("document.activeElement.ariaSelected") == "true"
     page.get_by_label("Predict first").uncheck()
     page.get_by_role("gridcell", name="z 1, x 0.1, accepted").tap()

@@ -1,37 +1,55 @@
-"""The replay in a real browser: it shows the record, by keyboard and from disk."""
+"""The replay in a real browser: it shows the record, by keyboard and from disk.
 
-import re
+A page with two falling boxes shows what every replay does; the built lecture has a robot.
+"""
+
+import shutil
 from collections.abc import Iterator
-from functools import partial
+from dataclasses import replace
 from io import BytesIO
-from pathlib import Path
 
 import numpy as np
+import pygltflib
 import pytest
+import trimesh
 from browsers import SOFTWARE, chromium, launched
-from built_site import PAGES, parsed
-from gltf import report
+from built_site import PAGES
+from docutils import nodes
+from docutils.parsers.rst import DirectiveError
 from PIL import Image
 from playwright.sync_api import Browser, Page
 from watching import errors, violations
+from without_sphinx import Panel, page_of
 
+from robo_genesis import lessons as registry
+from robo_genesis.core.declaration import Filmed, Lesson, Moving
 from robo_genesis.core.project import BOOK
+from robo_genesis.core.trace import BodyTrace
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.trace_files import read_joints, read_trace
-from robo_genesis.lessons import LESSONS
-from robo_genesis.lessons.l04.spec import STEPPED_JOINT
+from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.evidence.trace_files import read_any_trace, read_trace, write_traces
 from robo_genesis.lessons.l04.study_spec import ASSIGNED
+from robo_genesis.sim import visual_shape
+from robo_genesis.site.evidence import glance as sphinx_glance
+from robo_genesis.site.evidence.panel import response
 from robo_genesis.site.replay import directive as sphinx_replay
+from robo_genesis.site.replay.directive import replay_block
 from robo_genesis.site.replay.model import rotations
 
-pytestmark = [pytest.mark.engine, pytest.mark.browser]
+LESSON, KEY = "l99", "l99/lecture/cpu"
+NAME = "replay-l99-lecture-cpu"
+DROPPED = Moving(("high", "low"), link="box", thing="box")
+STEPS, DT, G = 40, 0.01, 10.0
 
-LECTURE = "lessons/l04-joint-control/lecture"
-MODEL = "replay-l04-lecture-cpu"
-REPLAY = f".replay[data-name={MODEL}]"
-"""The replay of this build's run; a recorded run has its own on the same page."""
+HEIGHT = """() => {
+  const viewer = document.querySelector("model-viewer");
+  const symbols = Object.getOwnPropertySymbols(viewer);
+  const scene = viewer[symbols.find(symbol => symbol.description === "scene")];
+  let box;
+  scene.traverse(node => { if (node.name === "box") box ??= node; });
+  return box.position.z;
+}"""
 
-BLOCK = f".replay-block:has({REPLAY})"
 POSES = """() => {
   const viewer = document.querySelector("model-viewer");
   const scene = viewer[Object.getOwnPropertySymbols(viewer).find(s => s.description === "scene")];
@@ -49,17 +67,6 @@ POSES = """() => {
   }));
 }"""
 """How the links stand in the running viewer, in the frame of the record: [m] and (x, y, z, w)."""
-
-TURNED = """() => {
-  const viewer = document.querySelector("model-viewer");
-  const key = viewer && Object.getOwnPropertySymbols(viewer).find(s => s.description === "scene");
-  let hand;
-  if (key) viewer[key].traverse(node => { if (node.name === "hand") hand ??= node; });
-  if (!hand) return false;
-  globalThis.first ??= hand.position.z;
-  return Math.abs(hand.position.z - globalThis.first) > 1e-4;
-}"""
-"""Whether the hand has moved since it was first seen."""
 
 POSED = """([name, time]) => {
   const viewer = document.querySelector("model-viewer");
@@ -79,11 +86,15 @@ FRAMES_ASKED = """async () => {
 }"""
 """How often the replay asks to draw while ten frames pass."""
 
-
-PLAYING = [name for name in PAGES if "{replay}" in (BOOK / f"{name}.md").read_text()]
+LECTURE = "lessons/l04-joint-control/lecture"
+REPLAY = ".replay[data-name=replay-l04-lecture-cpu]"
+FIRST_SCREEN = (LECTURE, "lessons/l01-ready/lecture")
+"""Pages that begin with their replay."""
 
 BELOW = ("link4", "link5", "link6", "link7", "hand", "left_finger", "right_finger")
 """The links that joint4 turns."""
+
+PLAYING = [name for name in PAGES if "{replay}" in (BOOK / f"{name}.md").read_text()]
 
 TOO_WIDE = """() => [...document.querySelectorAll(".replay")].flatMap(root => {
   const edge = root.getBoundingClientRect().right, slider = root.querySelector("input[type=range]");
@@ -108,93 +119,128 @@ TOO_WIDE = """() => [...document.querySelectorAll(".replay")].flatMap(root => {
 """What of the replays is cut off, or reaches into the place beside it."""
 
 
+def falling(height: float) -> BodyTrace:
+    """A box that falls from a height [m] and turns about x while it does."""
+    t = np.arange(STEPS + 1) * DT
+    pos, vel, spin = np.zeros((3, STEPS + 1, 1, 3), np.float32)
+    pos[:, 0, 2], vel[:, 0, 2], spin[..., 0] = height - G * t**2 / 2, -G * t, 1.0
+    quat = np.zeros((STEPS + 1, 1, 4), np.float32)
+    quat[:, 0, 0], quat[:, 0, 1] = np.cos(t / 2), np.sin(t / 2)
+    return BodyTrace(t=t, link_pos=pos, link_quat=quat, link_vel=vel, link_ang=spin)
+
+
+@pytest.fixture
+def dropped(folder, monkeypatch, tmp_path, built):
+    """A bundle of two falls, of a lesson that declares them and wrote its shape."""
+    shutil.rmtree(folder / "arrays")
+    traces = {"high": falling(2.0), "low": falling(1.0)}
+    arrays = write_traces(folder, traces, None, ["box"])
+    (folder / "arrays.json").write_text(arrays.model_dump_json(by_alias=True))
+    spec = registry.LESSONS["l04"].spec
+    lesson = Lesson(spec, {}, {}, Filmed("the box"), DROPPED)
+    monkeypatch.setitem(registry.LESSONS.found, LESSON, lesson)
+    built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
+    box = trimesh.creation.box((0.2, 0.2, 0.2))
+    part = visual_shape.Part("box", (200, 80, 0), box.vertices.astype(np.float32), box.faces)
+    visual_shape.write_shape(tmp_path / LESSON / "lecture", [part, visual_shape.floor(1.0)])
+    return folder
+
+
+@pytest.fixture
+def block(dropped, tmp_path) -> nodes.Node:
+    return replay_block(Panel(tmp_path / "book"), KEY, dropped)
+
+
+def test_runs_of_joints_are_not_read_as_bodies_nor_the_other_way(dropped, pristine):
+    with pytest.raises(bundle.BundleRefused, match="joints of free bodies"):
+        read_runs(pristine, Moving(("G1",), link="hand", thing="hand"))
+    with pytest.raises(bundle.BundleRefused):
+        read_runs(dropped, replace(registry.LESSONS["l04"].compared, cases=("high", "low")))
+
+
+def test_pictures_draw_what_the_bundle_holds(dropped):
+    glance, panel = sphinx_glance.response(dropped, DROPPED), response(dropped, DROPPED, "cpu")
+    assert glance.alt == "Height of the box over time: high and low."
+    assert glance.caption == "Height of the box, from get_links_pos."
+    both = "Height and vertical velocity of the box over time on cpu"
+    assert panel.alt == f"{both}, with the cases high and low drawn over each other."
+    other = Moving(("low", "high"), link="box", thing="box")
+    assert sphinx_glance.response(dropped, other).content != glance.content
+
+
+def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, tmp_path):
+    assert block["evidence_runs"] == (KEY,)
+    rows = [[cell.astext() for cell in row] for row in block.findall(nodes.row)]
+    assert len(rows) == 1 + STEPS + 1
+    assert rows[21] == ["0.2", "1.8", "−2", "0.8", "−2"]  # height and velocity: high, low
+    text = block.astext()
+    assert "the box starts at a height of 2.0000 m" in text
+    written = tmp_path / "book" / "_build" / "html" / "replay"
+    model = pygltflib.GLTF2.load_binary(written / f"{NAME}.glb")
+    assert [animation.name for animation in model.animations] == ["high", "low"]
+    recorded = read_any_trace(dropped, bundle.read_arrays(dropped), "low")
+    assert recorded.link_pos[:, 0].tobytes() in model.binary_blob()
+    assert model.asset.copyright is None
+    assert "Franka" not in text
+    assert ">licence</a>" in text  # the viewer's
+
+
+def test_a_brief_replay_has_the_same_model_one_channel_and_no_sentences(dropped, tmp_path):
+    written = tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.glb"
+    replay_block(Panel(tmp_path / "book"), KEY, dropped)
+    model = written.read_bytes()
+    block = replay_block(Panel(tmp_path / "book"), KEY, dropped, brief=True)
+    assert written.read_bytes() == model
+    rows = [[cell.astext() for cell in row] for row in block.findall(nodes.row)]
+    assert rows[21] == ["0.2", "1.8", "0.8"]  # heights: high, low
+    assert not list(block.findall(nodes.list_item))
+    opening = next(iter(block.findall(nodes.raw))).astext()
+    assert "height" in opening
+    assert "velocity" not in opening
+
+
+def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_path):
+    (tmp_path / LESSON / "lecture" / visual_shape.FILE).unlink()
+    with pytest.raises(DirectiveError) as caught:
+        replay_block(Panel(tmp_path / "book"), KEY, dropped)
+    assert "l99 wrote no shape of its box" in caught.value.msg
+    assert "page.write_shape(l99.read_shape(entity)) after scene.build()" in caught.value.msg
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with launched(*SOFTWARE) as browser:
         yield browser
 
 
-@pytest.fixture(scope="module")
-def record(site):
-    """Traces by case, joint map and link names, of the accepted bundle of the lecture."""
-    folder = site.parent / "pages" / "l04" / "lecture" / "cpu"
-    arrays = bundle.read_arrays(folder)
-    traces = {case: read_trace(folder, arrays, case) for case in LESSONS["l04"].compared.cases}
-    return traces, read_joints(arrays), arrays.coords["link"]
+@pytest.fixture
+def opened(block, tmp_path, browser):
+    """Return a function that opens the replay alone from disk, in some kind of window.
 
-
-@pytest.fixture(scope="module")
-def files(site) -> Path:
-    return site / sphinx_replay.FOLDER
-
-
-def give(text, route) -> None:
-    kind = "text/html" if route.request.url.endswith(".html") else "text/javascript"
-    route.fulfill(body=text, content_type=kind)
-
-
-def open_lecture(browser, base, requests=None, served=None, **context) -> Page:
-    """Open the lecture; what it asks for goes to `requests`, errors to its `problems`.
-
-    `served` is address → text, given in the place of the site's own files.
+    What the page asks for is its `asked`, errors of its scripts are its `problems`.
     """
-    page = browser.new_page(**{"viewport": {"width": 480, "height": 700}, **context})
-    page.problems = errors(page)
-    for pattern, text in (served or {}).items():
-        page.route(pattern, partial(give, text))
-    if requests is not None:
-        page.on("request", lambda request: requests.append(request.url))
-    page.goto(f"{base}/{LECTURE}.html")
-    return page
+    file = page_of(block, tmp_path, ("plot", "stage", "replay"), ("plot", "replay"))
+
+    def open_it(of: Browser = browser, address: str = file.as_uri(), **context) -> Page:
+        page = of.new_page(**{"viewport": {"width": 480, "height": 700}, **context})
+        page.problems, page.asked = errors(page), []
+        page.on("request", lambda request: page.asked.append(request.url.rpartition("/replay/")[2]))
+        page.goto(address)
+        return page
+
+    return open_it
 
 
-@pytest.fixture(scope="module")
-def page(browser, address) -> Iterator[Page]:
-    page = open_lecture(browser, address, viewport={"width": 320, "height": 800})
+@pytest.fixture
+def page(opened) -> Iterator[Page]:
+    page = opened()
     yield page
     assert page.problems == []
     page.close()
 
 
-@pytest.fixture(scope="module", params=["served", "from disk"])
-def shown(request, browser, address, site) -> Iterator[Page]:
-    """The lecture with the robot loaded: served in the light, from disk in the dark."""
-    base, scheme = {"served": (address, "light"), "from disk": (site.as_uri(), "dark")}[
-        request.param
-    ]
-    asked: list[str] = []
-    page = open_lecture(browser, base, asked, color_scheme=scheme)
-    assert readout(page)["time"] == "0.00 s, before the first step"  # nothing plays by itself
-    assert page.locator(f"{REPLAY} .shown").inner_text() == "at the start"
-    page.locator(REPLAY).scroll_into_view_if_needed()
-    choose(page, "G2", 30)
-    page.wait_for_load_state("networkidle")
-    page.base, page.before, page.asked = base, [*asked], asked
-    show_robot(page)
-    yield page
-    assert page.problems == []
-    page.close()
-
-
-def choose(page, case, sample):
-    """Bring the replay to a sample, as a reader does: picker, then slider."""
-    page.locator(f"{REPLAY} input[value={case}]").check()
-    slider = page.locator(f"{REPLAY} input[type=range]")
-    slider.fill(str(sample))
-    return slider
-
-
-def readout(page):
-    terms, values = (page.locator(f"{REPLAY} {tag}").all_inner_texts() for tag in ("dt", "dd"))
-    return dict(zip(terms, values, strict=True))
-
-
-def number(text):
-    return float(re.match(r"−?[\d.]+", text).group().replace("−", "-"))
-
-
-def show_robot(page, replay=REPLAY):
-    """Load the robot with the first Play, and pause if it still plays."""
+def show_model(page: Page, replay: str = ".replay") -> None:
+    """Load the model with the first Play, and pause if it still plays."""
     play = page.locator(f"{replay} .play")
     play.click()
     page.locator(replay).get_by_text("Turn the view").wait_for(timeout=120_000)
@@ -202,14 +248,164 @@ def show_robot(page, replay=REPLAY):
     assert play.inner_text() == "Play"
 
 
-def test_links_stand_where_the_record_says(shown, record):
-    """In each case at several samples, the first and the last among them."""
-    page, (traces, _, links) = shown, record
-    for case, trace in traces.items():
+def choose(page: Page, case: str, sample: int, replay: str = ".replay"):
+    """Bring a replay to a sample, as a reader does: picker, then slider."""
+    page.locator(f"{replay} input[value={case}]").check()
+    slider = page.locator(f"{replay} input[type=range]")
+    slider.fill(str(sample))
+    return slider
+
+
+def readout(page: Page) -> dict[str, str]:
+    terms, values = (page.locator(f".replay {tag}").all_inner_texts() for tag in ("dt", "dd"))
+    return dict(zip(terms, values, strict=True))
+
+
+@pytest.mark.browser
+def test_keys_read_the_record_out_and_the_plots_draw_it(page):
+    assert readout(page)["time"] == "0.00 s, before the first step"  # nothing plays by itself
+    slider = choose(page, "low", 19)
+    slider.press("ArrowRight")
+    fallen = {"time": "0.20 s", "height": "0.8000 m", "vertical velocity": "−2.0000 m/s"}
+    assert readout(page) == fallen
+    spoken = "low: time 0.20 s; height 0.8000 m; vertical velocity −2.0000 m/s"
+    assert slider.get_attribute("aria-valuetext") == spoken
+    labels = page.locator(".replay svg").evaluate_all("all => all.map(e => e.ariaLabel)")
+    assert labels == [
+        "Height [m] of the box over time; low is drawn bold.",
+        "Vertical velocity [m/s] of the box over time; low is drawn bold.",
+    ]
+    chosen = page.locator(".replay svg").first.locator(".chosen").get_attribute("points")
+    heights = [float(pair.split(",")[1]) for pair in chosen.split()]
+    fallen = (np.array(heights) - heights[0]) / (heights[-1] - heights[0])
+    assert fallen == pytest.approx(np.linspace(0, 1, STEPS + 1) ** 2, abs=0.01)
+    assert page.locator(".replay .dot.case-g2").count() == 2
+    cursor = page.locator(".replay .cursor").first
+    places = [slider.press(key) or cursor.get_attribute("x1") for key in ("End", "Home")]
+    assert float(places[0]) > float(places[1])
+    page.locator("input[value=low]").press("ArrowUp")
+    assert page.locator(".chosen").first.get_attribute("class").split()[1] == "case-g1"
+
+
+@pytest.mark.browser
+def test_the_box_falls_in_3d_in_the_place_of_its_picture(page):
+    stage, picture = page.locator(".stage"), page.locator(".still")
+    page.wait_for_function("document.querySelector('.still').naturalWidth > 0")
+    place = stage.bounding_box()
+    assert page.asked.count(f"{NAME}.js") == 0
+    assert page.locator(".shown").inner_text() == "at the start"
+    show_model(page)
+    assert {sphinx_replay.VIEWER, f"{NAME}.js"} <= {*page.asked}
+    assert not picture.is_visible()
+    assert stage.bounding_box() == place
+    model = page.locator("model-viewer")
+    assert model.get_attribute("alt").startswith("The box in 3D, where it is")
+    choose(page, "high", 30)
+    assert page.locator(".shown").inner_text() == "high"
+    page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.29")
+    height = page.evaluate(HEIGHT)
+    assert height == pytest.approx(2.0 - G * 0.3**2 / 2, abs=1e-5)
+    assert violations(page, ".replay", preload=False) == []
+
+
+@pytest.mark.browser
+def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
+    show_model(page)
+    slider = choose(page, "low", 0)
+    speed, play = page.locator("select"), page.locator(".play")
+    speed.select_option("0.1")  # slow enough to be paused before the end
+    play.press("Space")
+    page.wait_for_function("document.querySelector('input[type=range]').value > 2")
+    play.press("Space")
+    paused = slider.input_value()
+    assert play.inner_text() == "Play"
+    assert page.evaluate(FRAMES_ASKED) == 0  # it does not play on
+    assert slider.input_value() == paused
+    press_often = "for (const press of ['play', 'pause', 'play']) play.click();"
+    play.evaluate(f"play => {{ {press_often} }}")
+    assert 0 < page.evaluate(FRAMES_ASKED) <= 11  # two loops would ask twice in each of ten frames
+    speed.select_option("1")
+    page.wait_for_function("document.querySelector('input[type=range]').value === '40'")
+    assert play.inner_text() == "Play"
+
+
+@pytest.mark.browser
+def test_reduced_motion_goes_by_steps(opened):
+    page = opened(reduced_motion="reduce")
+    play = page.locator(".play")
+    assert play.inner_text() == "Next 0.05 s"
+    play.click()
+    page.get_by_text("Turn the view").wait_for(timeout=120_000)
+    assert page.evaluate(FRAMES_ASKED) == 0  # it stands still
+    assert readout(page)["time"] == "0.05 s"
+    assert page.problems == []
+    page.close()
+
+
+@pytest.mark.browser
+def test_without_3d_or_with_a_missing_file_the_plots_play_and_it_is_said(opened, browser, tmp_path):
+    arguments = ["--no-sandbox", "--disable-3d-apis"]
+    blind = browser.browser_type.launch(executable_path=chromium(), args=arguments)
+    page = opened(blind)
+    page.locator(".play").click()
+    page.get_by_text("This browser draws no 3D").wait_for()
+    page.wait_for_function("document.querySelector('input[type=range]').value > 0")
+    assert f"{NAME}.js" not in page.asked
+    assert page.locator(".still").is_visible()
+    assert page.problems == []
+    blind.close()
+    (tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.js").unlink()
+    page = opened()
+    page.locator(".play").click()
+    page.get_by_text("cannot be shown").wait_for()
+    assert page.locator("model-viewer").count() == 0
+    assert page.locator(".play").inner_text() == "Pause"
+    page.close()
+
+
+@pytest.mark.browser
+def test_two_replays_of_a_page_are_two(block, dropped, tmp_path, opened):
+    other = replay_block(Panel(tmp_path / "book"), "l99/lab/cpu", dropped)
+    both = nodes.container("", block, other)
+    page = opened(
+        address=page_of(both, tmp_path, ("plot", "stage", "replay"), ("plot", "replay")).as_uri()
+    )
+    first, second = (f".replay[data-name=replay-l99-{name}-cpu]" for name in ("lecture", "lab"))
+    choose(page, "low", 7, second)
+    assert page.locator(f"{first} input:checked").input_value() == "high"
+    assert page.locator(f"{first} input[type=range]").input_value() == "0"
+    for replay in (first, second):
+        show_model(page, replay)
+    assert page.locator("model-viewer").count() == 2
+    assert page.problems == []
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def lecture(browser, site) -> Iterator[Page]:
+    """The lecture from disk with the robot loaded."""
+    page = browser.new_page(viewport={"width": 480, "height": 700}, color_scheme="dark")
+    problems = errors(page)
+    page.goto((site / f"{LECTURE}.html").as_uri())
+    show_model(page, REPLAY)
+    yield page
+    assert problems == []
+    page.close()
+
+
+@pytest.mark.engine
+@pytest.mark.browser
+def test_links_and_their_copies_are_where_the_record_says(lecture, site):
+    """In each case at several samples. The lecture also assigns the states up to the target."""
+    folder = site.parent / "pages" / "l04" / "lecture" / "cpu"
+    arrays = bundle.read_arrays(folder)
+    links = arrays.coords["link"]
+    for case in registry.LESSONS["l04"].compared.cases:
+        trace = read_trace(folder, arrays, case)
         for sample in (0, 9, trace.steps):
-            choose(page, case, sample)
-            page.wait_for_function(POSED, arg=[case, float(trace.t[sample])])
-            found = page.evaluate(POSES)
+            choose(lecture, case, sample, REPLAY)
+            lecture.wait_for_function(POSED, arg=[case, float(trace.t[sample])])
+            found = lecture.evaluate(POSES)
             added = [f"target_{link}" for link in BELOW]
             assert sorted(found) == sorted([*links, *added, "still", "target"])
             places, turns = (
@@ -219,57 +415,24 @@ def test_links_stand_where_the_record_says(shown, record):
             turns *= np.sign((turns * recorded).sum(axis=1))[:, None]  # q and −q turn alike
             assert places == pytest.approx(trace.link_pos[sample], abs=1e-6), (case, sample)
             assert turns == pytest.approx(recorded, abs=1e-6), (case, sample)
-    for moved in (traces["G2"].link_pos, traces["G2"].link_quat):
-        assert np.abs(moved[9] - moved[0]).max() > 1e-2
-
-
-def test_the_copy_stands_where_the_engine_puts_the_links_at_the_target(shown, site):
-    """The lecture also assigns the states of a straight line that ends at the target."""
-    folder = site.parent / "pages" / "l04" / "lecture" / "cpu"
-    arrays = bundle.read_arrays(folder)
-    assigned, links = read_trace(folder, arrays, ASSIGNED), arrays.coords["link"]
-    found = shown.evaluate(POSES)
+        assert np.abs(trace.link_pos[9] - trace.link_pos[0]).max() > 1e-3
+    assigned = read_trace(folder, arrays, ASSIGNED)
     for link in BELOW:
         copy, k = found[f"target_{link}"], links.index(link)
         assert copy["position"] == pytest.approx(assigned.link_pos[-1, k], abs=2e-6), link
         turned = abs(np.dot(copy["rotation"], rotations(assigned.link_quat[-1:, k])[0]))
         assert turned == pytest.approx(1, abs=1e-6), link
-        assert np.abs(assigned.link_quat[-1, k] - assigned.link_quat[0, k]).max() > 0.01
 
 
-def test_one_click_plays_in_the_place_of_the_picture(browser, address):
-    page = open_lecture(browser, address, viewport={"width": 1280, "height": 900})
-    stage, below = page.locator(f"{REPLAY} .stage"), page.locator(f"{REPLAY} .controls")
-    places = stage.bounding_box(), below.bounding_box()
-    picture = page.locator(f"{REPLAY} .still")
-    loaded = "([selector]) => document.querySelector(selector).naturalWidth > 0"
-    page.wait_for_function(loaded, arg=[f"{REPLAY} .still"])
-    page.locator(f"{REPLAY} .play").click()
-    page.wait_for_function(TURNED, timeout=60_000)  # an idle machine takes less than 3 s
-    assert page.locator(f"{REPLAY} .play").inner_text() == "Pause"
-    assert not picture.is_visible()
-    assert (stage.bounding_box(), below.bounding_box()) == places
-    assert page.problems == []
-    page.close()
-
-
-@pytest.mark.parametrize("lecture", [LECTURE, "lessons/l01-ready/lecture"])
-@pytest.mark.parametrize("size", [(1280, 900), (390, 844)])
-def test_play_is_on_the_first_screen(browser, address, lecture, size):
-    page = browser.new_page(viewport=dict(zip(("width", "height"), size, strict=True)))
-    page.goto(f"{address}/{lecture}.html")
-    play = page.locator(".replay .play").first.bounding_box()
-    assert play["y"] + play["height"] < size[1]
-    page.close()
-
-
-def test_the_picture_is_that_of_the_model(shown):
+@pytest.mark.engine
+@pytest.mark.browser
+def test_the_picture_is_that_of_the_model(lecture):
     """Both show the robot in one place: most points of one are in the other."""
-    choose(shown, "G1", 0)
-    shown.wait_for_function(POSED, arg=["G1", 0.0])
-    stage = shown.locator(f"{REPLAY} .stage")
-    model = lightness(shown, stage, "model-viewer")
-    picture = lightness(shown, stage, ".still")
+    choose(lecture, "G1", 0, REPLAY)
+    lecture.wait_for_function(POSED, arg=["G1", 0.0])
+    stage = lecture.locator(f"{REPLAY} .stage")
+    model = lightness(lecture, stage, "model-viewer")
+    picture = lightness(lecture, stage, ".still")
     above = np.s_[: int(0.7 * len(model))]  # the floor is below; its light differs
     robot, drawn = (np.abs(image - image[20, -20])[above] > 15 for image in (model, picture))
     assert 0.15 < robot.mean() < 0.5
@@ -286,218 +449,18 @@ def lightness(page, stage, part) -> np.ndarray:
     return found
 
 
-def test_sample_0_is_the_state_before_the_first_step(page, record):
-    traces, joints, _ = record
-    k = joints.entry(STEPPED_JOINT)
-    for case, trace in traces.items():
-        slider = choose(page, case, 0)
-        shown = readout(page)
-        assert shown["time"] == "0.00 s, before the first step"
-        assert number(shown["position"]) == pytest.approx(trace.q[0, k], abs=6e-5)
-        assert number(shown["velocity"]) == pytest.approx(trace.start_qd[k], abs=6e-5)
-        start = trace.start_control_force[k]
-        assert number(shown["control force"]) == pytest.approx(start, abs=6e-3)
-        assert "before the first step" in slider.get_attribute("aria-valuetext")
-
-
-def test_keys_move_through_time_and_all_follows(shown, record):
-    page, (traces, joints, _) = shown, record
-    k, trace = joints.entry(STEPPED_JOINT), traces["G2"]
-    slider = choose(page, "G2", 0)
-    slider.focus()
-    for _ in range(9):
-        page.keyboard.press("ArrowRight")
-    shown = readout(page)
-    assert shown["time"] == "0.09 s"
-    assert number(shown["velocity"]) == pytest.approx(trace.qd[8, k], abs=6e-5)
-    assert number(shown["force limit"][1:]) == trace.effort_limit[k]
-    spoken = slider.get_attribute("aria-valuetext")
-    assert spoken.startswith("G2: time 0.09 s; position ")
-    assert shown["control force"] in spoken
-    page.keyboard.press("End")
-    assert readout(page)["time"] == "1.20 s"
-    before = page.locator(f"{REPLAY} .cursor").first.get_attribute("x1")
-    page.keyboard.press("Home")
-    assert page.locator(f"{REPLAY} .cursor").first.get_attribute("x1") != before
-
-
-def test_arrow_keys_pick_a_case_and_its_curve_is_bold(page):
-    choose(page, "G1", 20)
-    page.locator(f"{REPLAY} input[value=G1]").focus()
-    page.keyboard.press("ArrowDown")
-    assert page.locator(f"{REPLAY} .chosen").evaluate_all(
-        "all => all.map(e => e.classList.item(1))"
-    ) == (["case-g2"] * 3)
-    names = page.locator(f"{REPLAY} svg").evaluate_all("all => all.map(e => e.ariaLabel)")
-    assert all("G2 is drawn bold" in name for name in names)
-
-
-def test_the_curve_is_drawn_to_scale(page, record):
-    traces, joints, _ = record
-    k = joints.entry(STEPPED_JOINT)
-    drawn = (
-        page.locator(f"{REPLAY} svg")
-        .nth(2)
-        .evaluate("""svg => ({
-        y: svg.querySelector(".case-g2").getAttribute("points").split(" ")
-          .map(pair => Number(pair.split(",")[1])),
-        limits: [...svg.querySelectorAll("line.limit")].map(l => Number(l.getAttribute("y1")))
-    })""")
-    )
-    low, high = drawn["limits"]
-    limit = traces["G2"].effort_limit[k]
-    force = [(y - low) / (high - low) * 2 * limit - limit for y in drawn["y"]]
-    recorded = [traces["G2"].start_control_force[k], *traces["G2"].control_force[:, k]]
-    assert force == pytest.approx(recorded, abs=0.2)  # coordinates have one decimal
-
-
-def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
-    show_robot(page)
-    choose(page, "G2", 0)
-    speed = page.locator(f"{REPLAY} select")
-    speed.select_option("0.1")  # slow enough to be paused before the end
-    play = page.locator(f"{REPLAY} .play")
-    play.focus()
-    page.keyboard.press("Space")
-    assert play.inner_text() == "Pause"
-    page.wait_for_function(f"document.querySelector('{REPLAY} input[type=range]').value > 5")
-    page.keyboard.press("Space")
-    paused = page.locator(f"{REPLAY} input[type=range]").input_value()
-    assert play.inner_text() == "Play"
-    assert page.evaluate(FRAMES_ASKED) == 0  # it does not play on
-    assert page.locator(f"{REPLAY} input[type=range]").input_value() == paused
-    speed.select_option("1")
-    play.press("Space")
-    page.wait_for_function(f"document.querySelector('{REPLAY} input[type=range]').value === '120'")
-    assert play.inner_text() == "Play"
-
-
-def test_play_after_a_pause_in_one_frame_is_still_one_loop(page):
-    choose(page, "G2", 0)
-    press_often = "for (const press of ['play', 'pause', 'play']) play.click();"
-    page.locator(f"{REPLAY} .play").evaluate(f"play => {{ {press_often} }}")
-    assert 0 < page.evaluate(FRAMES_ASKED) <= 11  # two loops would ask twice in each of ten frames
-    page.locator(f"{REPLAY} .play").click()
-
-
-def test_reduced_motion_goes_by_steps(browser, address):
-    page = open_lecture(browser, address, reduced_motion="reduce")
-    play = page.locator(f"{REPLAY} .play")
-    assert play.inner_text() == "Next 0.05 s"
-    play.click()
-    page.locator(REPLAY).get_by_text("Turn the view").wait_for(timeout=120_000)
-    assert readout(page)["time"] == "0.05 s"
-    assert page.evaluate(FRAMES_ASKED) == 0  # it stands still
-    assert readout(page)["time"] == "0.05 s"
-    assert page.problems == []
-    page.close()
-
-
-def of_replay(urls) -> list[str]:
-    """Return the names of the files in the replay's folder."""
-    found = (re.search(rf"/{sphinx_replay.FOLDER}/([^/]+)$", url) for url in urls)
-    return sorted(match[1] for match in found if match)
-
-
-def test_viewer_and_model_are_asked_for_on_request_alone(shown):
-    assert of_replay(shown.before) == []
-    assert of_replay(shown.asked) == [sphinx_replay.VIEWER, f"{MODEL}.js"]
-    own = (shown.base, "data:", "blob:")
-    assert [url for url in shown.asked if not url.startswith(own)] == []
-
-
-def test_axe_finds_nothing_with_the_robot_shown(shown):
-    shown.locator(f"{BLOCK} summary").click()
-    assert violations(shown, BLOCK, preload=False) == []
-
-
-def test_the_case_is_named_beside_the_robot(shown):
-    lines = {}
-    for case in LESSONS["l04"].compared.cases:
-        choose(shown, case, 5)
-        assert shown.locator(f"{REPLAY} .shown").inner_text() == case
-        line, picked = (
-            shown.locator(selector).evaluate("e => getComputedStyle(e, '::before').background")
-            for selector in (f"{REPLAY} .shown", f"{REPLAY} label.case-{case.lower()}")
-        )
-        assert line == picked
-        lines[line] = case
-    assert list(lines.values()) == list(LESSONS["l04"].compared.cases)
-
-
-def test_a_browser_without_3d_says_so_and_loads_nothing(browser, address):
-    arguments = ["--no-sandbox", "--disable-3d-apis"]
-    blind = browser.browser_type.launch(executable_path=chromium(), args=arguments)
-    asked: list[str] = []
-    page = open_lecture(blind, address, asked)
-    page.locator(f"{REPLAY} .play").click()
-    page.locator(REPLAY).get_by_text("This browser draws no 3D").wait_for()
-    page.wait_for_function(f"document.querySelector('{REPLAY} input[type=range]').value > 0")
-    page.wait_for_load_state("networkidle")
-    assert of_replay(asked) == []
-    assert page.locator("model-viewer").count() == 0
-    assert page.locator(f"{REPLAY} .still").is_visible()
-    assert page.problems == []
-    blind.close()
-
-
-def test_a_file_that_is_missing_is_said(browser, address):
-    page = open_lecture(browser, address)
-    page.route(f"**/{MODEL}.js", lambda route: route.abort())
-    page.locator(f"{REPLAY} .play").click()
-    page.locator(f"{REPLAY} [role=status]").get_by_text("cannot be shown").wait_for()
-    assert page.locator("model-viewer").count() == 0
-    assert page.locator(f"{REPLAY} .play").inner_text() == "Pause"  # the plots play
-    page.close()
-
-
-def test_two_replays_of_a_page_are_two(browser, address, site, files):
-    """A recorded run brings its own: other names, another model, the same viewer."""
-    other, html = "replay-l04-lab-other-recorded", (site / f"{LECTURE}.html").read_text()
-    block = str(parsed(site, LECTURE).select_one(BLOCK)).replace(MODEL, other)
-    block = block.replace(f"{other}.jpg", f"{MODEL}.jpg")
-    html = html.replace("</article>", f"{block}</article>", 1)
-    script = sphinx_replay.script_of(other, (files / f"{MODEL}.glb").read_bytes())
-    served = {f"**/{LECTURE}.html": html, f"**/{other}.js": script}
-    page = open_lecture(browser, address, served=served)
-    first, second = page.locator(REPLAY), page.locator(f".replay[data-name={other}]")
-    second.locator("input[value=G3]").check()
-    second.locator("input[type=range]").fill("7")
-    assert first.locator("input:checked").input_value() == "G1"
-    assert first.locator("input[type=range]").input_value() == "0"
-    for replay in (REPLAY, f".replay[data-name={other}]"):
-        show_robot(page, replay)
-    assert page.locator("model-viewer").count() == 2
-    assert page.problems == []
-    page.close()
-
-
-@pytest.mark.parametrize("width", [320, 390, 1280])
+@pytest.mark.engine
+@pytest.mark.browser
 @pytest.mark.parametrize("name", PLAYING)
-def test_nothing_is_cut_off_or_collides(browser, address, name, width):
+def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(browser, address, name):
     """At each sample of each run of each replay of a page."""
-    page = browser.new_page(viewport={"width": width, "height": 800})
+    page = browser.new_page(viewport={"width": 390, "height": 844})
     page.goto(f"{address}/{name}.html")
-    assert page.evaluate(TOO_WIDE) == []
+    play = page.locator(".replay .play").first.bounding_box()
+    assert play["y"] + play["height"] < 844 or not name.endswith(
+        ("l04-joint-control/lecture", "l01-ready/lecture")
+    )
+    for width in (1280, 320):
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate(TOO_WIDE) == []
     page.close()
-
-
-def test_the_validator_finds_nothing_in_the_site_s_model(files, tmp_path):
-    found = report((files / f"{MODEL}.glb").read_bytes(), tmp_path)
-    assert found["issues"]["messages"] == []
-    assert found["info"]["animationCount"] == 3
-
-
-def test_script_and_download_hold_one_model_with_its_licence(files):
-    text = (files / f"{MODEL}.js").read_text()
-    assert sphinx_replay.script_of(MODEL, (files / f"{MODEL}.glb").read_bytes()) == text.encode()
-    assert "Franka Robotics GmbH" in (files / sphinx_replay.NOTICE).read_text()
-    assert "Apache License" in (files / sphinx_replay.VIEWER_LICENCE).read_text()
-
-
-def test_the_script_is_deferred_and_on_no_other_page(site):
-    (script,) = parsed(site, LECTURE).select("script[src*='replay.js']")
-    assert script.has_attr("defer")
-    found = [path for path in site.rglob("*.html") if "_static/replay.js" in path.read_text()]
-    playing = {path.relative_to(site).with_suffix("").as_posix() for path in found}
-    assert playing == set(PLAYING)
