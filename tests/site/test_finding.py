@@ -1,20 +1,15 @@
 """Finding a page, a name or a place again: search, 404, anchors, neighbours, facts."""
 
 import itertools
-import json
 import os
 import re
-from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
-from built_site import MEASURING_PAGES, PAGES, QuietHandler, parsed, served
+from built_site import PAGES, QuietHandler, parsed, served
 from watching import errors
 
-from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import BOOK
-from robo_genesis.evidence.bundle import read_manifest
-from robo_genesis.lessons import LESSONS
 from robo_genesis.site.course.course_map import read_map
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
@@ -64,11 +59,6 @@ def test_search_finds_what_a_student_types_into_the_field(page, address):
     found = results(page)
     for name in (LECTURE, LAB, "glossary"):
         assert [url for url in found if f"/{name}.html" in url], name
-
-
-def test_search_says_when_there_is_nothing(page, address):
-    page.goto(f"{address}/search.html?q=zzyzx")
-    assert results(page) == []
 
 
 class WithNotFound(QuietHandler):
@@ -145,81 +135,6 @@ def test_each_page_leads_to_the_one_before_and_after(site):
         assert neighbour(after, "a.left-prev") == f"{before}.html"
 
 
-def test_pages_tell_their_reading_time_and_history(site):
-    page = parsed(site, LECTURE)
-    facts = page.select_one(".page-facts").get_text()
-    assert all(int(minutes) > 10 for minutes in re.findall(r"\d+", facts))
-    assert re.fullmatch(r"About \d+ min \(\d+ to read, \d+ for code and questions\)\.", facts)
-    history = [item.get_text() for item in page.select("details.page-history li")]
-    if git_or_none(BOOK, "rev-parse", "--is-shallow-repository") == "false\n":
-        last = git_or_none(BOOK, "log", "-n1", "--format=%cs %s", "--", f"{LECTURE}.md")
-        assert history[:1] == (last or "").splitlines()
-    else:  # a shallow clone, or a copy without its history
-        assert history == []
-
-
-def test_the_home_page_maps_the_course(site):
-    home = parsed(site, "index")
-    cards = {card["id"]: card for card in home.select("ul.course-map > li")}
-    planned = home.select("ul.planned-lessons > li")
-    assert list(cards) == [f"lesson-{lesson}" for lesson in LESSONS]
-    for lesson in read_map(BOOK):
-        if lesson.page:
-            card = cards[f"lesson-{lesson.id.lower()}"]
-            assert len(card.select("ul > li")) == len(lesson.outcomes) > 0
-            assert card.a["href"] == f"{lesson.page}.html"
-            for name in ("lecture", "lab"):
-                address = (Path(lesson.page).parent / name).as_posix()
-                facts = parsed(site, address).select_one(".page-facts").get_text()
-                time = facts.removeprefix("About ").removesuffix(".")
-                (line,) = (p for p in card.select("p.time") if p.a and name in p.a["href"])
-                assert line.get_text() == f"{name.capitalize()}: {time}"
-    names = [f"{lesson.id} {lesson.title}" for lesson in read_map(BOOK) if not lesson.page]
-    assert [item.get_text().strip() for item in planned] == names
-    assert not home.select("ul.planned-lessons a")
-
-
-def test_the_home_page_plays_the_featured_lesson_before_its_first_heading(site):
-    home = parsed(site, "index")
-    (featured,) = (lesson.id.lower() for lesson in read_map(BOOK) if lesson.featured)
-    (replay,) = home.select(".replay")
-    assert replay["data-name"] == f"replay-{featured}-lecture-cpu"
-    assert replay.select_one("img.still")
-    assert not [title for title in replay.find_all_previous("h2") if title.find_parent("section")]
-    lecture = parsed(site, {lesson.id.lower(): lesson.page for lesson in read_map(BOOK)}[featured])
-    same = lecture.select_one(f"[data-name={replay['data-name']}]")
-    assert len(json.loads(replay["data-channels"])) == 1 < len(json.loads(same["data-channels"]))
-    assert [Path(tag["data-model"]).name for tag in (replay, same)] == 2 * [
-        f"{replay['data-name']}.js"
-    ]
-    assert not replay.parent.select(":scope > ul")
-
-
-def test_the_home_page_states_engine_and_dates_of_the_bundles_and_no_states(site):
-    home = parsed(site, "index")
-    line = home.select_one(".course-measured")
-    folders = [*site.parent.glob("evidence/*/cpu"), *site.parent.glob("pages/*/*/cpu")]
-    assert len(folders) == len(MEASURING_PAGES)
-    predicates = [read_manifest(folder).predicate for folder in folders]
-    (engine,) = {predicate.engine.version for predicate in predicates}
-    dates = sorted({predicate.started[:10] for predicate in predicates})
-    assert f"Measured on CPU with Genesis {engine}" in line.get_text()
-    assert re.findall(r"\d{4}-\d\d-\d\d", line.get_text()) == sorted({dates[0], dates[-1]})
-    assert line.a["href"] == "evidence/index.html"
-    assert not home.select(".evidence-badge")
-
-
-def test_the_home_page_has_the_commands_that_a_lab_gives(site):
-    (home,) = (pre.get_text() for pre in parsed(site, "index").select("article pre"))
-    for lesson in LESSONS:
-        (page,) = (
-            name for name in PAGES if name.startswith(f"lessons/{lesson}-") and "/lab" in name
-        )
-        lab = parsed(site, page).select_one(".run-it-yourself pre").get_text()
-        for line, pattern in zip(lab.splitlines(), home.splitlines(), strict=True):
-            assert fnmatch(line, f"{pattern}*")
-
-
 def test_the_page_on_evidence_shows_a_measurement_and_leads_to_its_three_pages(site):
     page = parsed(site, "evidence/index")
     (featured,) = (lesson.id.lower() for lesson in read_map(BOOK) if lesson.featured)
@@ -229,13 +144,3 @@ def test_the_page_on_evidence_shows_a_measurement_and_leads_to_its_three_pages(s
     assert all("Measured on cpu" in figure.get_text() for figure in figures)
     links = {a["href"] for a in page.select("article a[href]")}
     assert {"ledger.html", "trust.html", "recording.html"} <= links
-
-
-def test_terms_are_linked_where_they_first_stand(site):
-    page = parsed(site, LECTURE)
-    links = page.select("a.term-link")
-    terms = [link["href"].partition("#")[2] for link in links]
-    assert len(terms) == len(set(terms)) > 40
-    assert {"term-qpos", "term-saturation", "term-one-factor-at-a-time"} < {*terms}
-    assert all(link["title"] for link in links)
-    assert not page.select("h1 a.term-link, h2 a.term-link, a a, summary a.term-link")

@@ -109,33 +109,6 @@ def test_the_palette_s_colours_reach_the_page(page, theme):
     assert found == {name: getattr(mark, theme) for name, mark in MARKS.items()}
 
 
-def test_each_case_has_its_line_in_the_tables(page):
-    marks = page.eval_on_selector_all(
-        "article :is(th, td) .case-mark",
-        """nodes => nodes.map(node => {
-          const line = getComputedStyle(node, "::before");
-          return [node.textContent, line.background, parseFloat(line.width)];
-        })""",
-    )
-    assert {name for name, *_ in marks} == {*CASES}
-    assert len({ground for _, ground, _ in marks}) == len(CASES)
-    assert all(width > 10 for *_, width in marks)
-
-
-def test_a_case_s_name_in_running_text_has_its_colour(page, theme):
-    names = page.eval_on_selector_all(
-        "article p .case-name",
-        """names => names.map(name => {
-          const { color, fontWeight } = getComputedStyle(name);
-          return [name.textContent, color, fontWeight];
-        })""",
-    )
-    assert {name for name, *_ in names} == {*CASES} - {"baseline"}
-    for name, colour, weight in names:
-        assert hexadecimal(colour) == getattr(MARKS[CASES[name]], theme), name
-        assert weight == "600"
-
-
 def test_a_figure_has_the_colours_of_the_theme(page, theme):
     drawn = page.locator("#fig-l04-gains svg.drawing")
     found = drawn.evaluate(

@@ -202,12 +202,6 @@ def test_feedback_is_announced_by_keyboard_too(asked):
 
 
 @pytest.mark.browser
-def test_the_field_of_a_number_has_a_name_with_its_unit(asked):
-    field = asked.get_by_label("Your number in rad")
-    assert field.get_attribute("inputmode") == "decimal"
-
-
-@pytest.mark.browser
 def test_a_number_is_right_within_its_tolerance(asked):
     for typed, text in (
         ("0.041", "Yes."),

@@ -206,9 +206,3 @@ def test_notes_of_the_compiler_are_dropped_and_warnings_stay(page, tmp_path):
     assert [[output.text for output in cell.outputs] for cell in cells] == [
         [], [f"UserWarning: x\n{warning}"], [note],
     ]  # fmt: skip
-
-
-def test_the_same_page_gives_the_same_bytes(page, tmp_path):
-    writer = Writer(tmp_path, str)
-    first, second = (nbformat.writes(student_notebook(page, ORIGIN, writer)) for _ in "ab")
-    assert first == second

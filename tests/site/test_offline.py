@@ -67,12 +67,3 @@ def test_links_inside_the_site_name_files_so_that_they_work_from_disk(site):
         if url and ":" not in url and path.name not in SERVED_ONLY and not leads:
             wrong.append(f"{path}: {url}")
     assert wrong == []
-
-
-def test_the_home_page_offers_the_archive(browser, address):
-    page = browser.new_page()
-    page.goto(f"{address}/index.html")
-    with page.expect_download() as download:
-        page.get_by_role("link", name="Read offline").click()
-    assert download.value.suggested_filename == Path(ARCHIVE).name
-    page.close()

@@ -125,20 +125,6 @@ def test_levels_are_given_to_the_script_and_explained(joint):
     assert "Dotted: the target. Short dashes, at the edges of the control force" in legend
 
 
-def test_bodies_have_no_levels_and_no_words_of_a_robot(box):
-    root = parsed(box)
-    assert [run["data-levels"] for run in root.select("input[type=radio]")] == ["[]", "[]"]
-    assert not re.search("robot|joint", str(root))
-
-
-def test_the_controls_are_hidden_until_the_script_shows_them(joint):
-    (panel,) = parsed(joint).select("[hidden]")
-    assert panel["class"] == ["panel"]
-    over = BeautifulSoup(controls.over_the_picture("Play"), "html.parser")
-    assert over.button.has_attr("hidden")
-    assert over.get_text() == "at the startPlay"
-
-
 def test_a_joint_s_motion_ends_with_its_quality(joint, traces):
     hand = traces["G2"].link_pos[:, 2]
     far = 100 * np.linalg.norm(hand - hand[0], axis=1).max()

@@ -19,11 +19,6 @@ def test_the_viewer_is_the_package_s_without_other_hosts():
     assert script.startswith("/* See NOTICE.txt. */")
 
 
-def test_addresses_are_taken_out_and_nothing_beside_them():
-    text = b'a("https://www.gstatic.com/draco/1/",b);c=`https://cdn.jsdelivr.net/npm/x.js`'
-    assert viewer.ELSEWHERE.sub(b"", text) == b'a("",b);c=``'
-
-
 def test_a_model_is_written_twice_and_weighed(tmp_path):
     weight = sphinx_replay.write_model(tmp_path / "replay", "replay-x", b"glTF\0model")
     script = (tmp_path / "replay" / "replay-x.js").read_bytes()

@@ -137,13 +137,6 @@ def test_colours_are_those_of_the_model_in_linear_light(model):
     assert factors["[64, 0, 0]"] == pytest.approx([0.0513, 0, 0, 1], abs=1e-4)
 
 
-def test_the_model_names_its_origin_unless_it_has_the_scene_s_own_shapes(model, shape, turning):
-    assert "© Franka Robotics GmbH" in model.asset.copyright
-    assert "decimated and converted" in model.asset.copyright
-    content = drawn(shape, turning)
-    assert pygltflib.GLTF2.load_from_bytes(content).asset.copyright is None
-
-
 def test_a_shape_of_another_robot_is_refused(shape):
     with pytest.raises(ValueError, match="parts of hand; the record knows link0, link4"):
         visual_shape.check_links(shape, LINKS[:2])
