@@ -38,5 +38,5 @@ def test_of_the_replay_picture_figures_and_table_remain(page):
 
 
 def test_of_the_explorer_a_sentence_remains(page):
-    assert not page.locator(".explorer").is_visible()
+    assert not page.locator(".explorer .panel").is_visible()
     assert page.get_by_text("The explorer needs JavaScript").is_visible()
