@@ -4,7 +4,7 @@ import pytest
 
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, page_outputs
-from robo_genesis.site.evidence.glance import shown_predicate
+from robo_genesis.site.evidence.course_runs import shown_predicate
 from robo_genesis.site.evidence.ledger_data import PageRun, provenance
 
 

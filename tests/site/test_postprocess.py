@@ -5,8 +5,7 @@ from bs4 import BeautifulSoup
 from PIL import Image
 
 from robo_genesis.site.figures import drawings
-from robo_genesis.site.frame import weight
-from robo_genesis.site.frame.postprocess import finish_page
+from robo_genesis.site.frame.postprocess import drop_unused_files, finish_page
 
 HEAD = """\
 <script data-cfasync="false">document.documentElement.dataset.mode = "auto";</script>
@@ -140,6 +139,6 @@ def test_unused_files_of_the_theme_go_and_others_stay(tmp_path):
     for name in gone + kept:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
-    weight.drop_unused_files(tmp_path)
+    drop_unused_files(tmp_path)
     assert [name for name in gone if (tmp_path / name).exists()] == []
     assert [name for name in kept if not (tmp_path / name).exists()] == []

@@ -30,7 +30,7 @@ from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.trace_files import read_any_trace, read_trace, write_traces
 from robo_genesis.lessons.l04.study_spec import ASSIGNED
 from robo_genesis.sim import visual_shape
-from robo_genesis.site.evidence import glance as sphinx_glance
+from robo_genesis.site.evidence import course_runs as sphinx_glance
 from robo_genesis.site.evidence.panel import response
 from robo_genesis.site.replay import directive as sphinx_replay
 from robo_genesis.site.replay.directive import replay_block

@@ -19,8 +19,8 @@ from robo_genesis.evidence import bundle, fields, npz_archive, trace_files
 from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.site.takeaways import files
+from robo_genesis.site.takeaways.directive import codespace, require_address
 from robo_genesis.site.takeaways.files import csv_text, package_facts, run_commands, without_places
-from robo_genesis.site.takeaways.repository import codespace, require_address
 from robo_genesis.site.takeaways.wheel import build_wheel, built_wheel
 
 LINKS = ["link0", "link4", "hand"]

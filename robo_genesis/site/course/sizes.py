@@ -12,13 +12,8 @@ from sphinx.config import Config
 from sphinx.directives.code import LiteralIncludeReader
 
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.site.course.facts import (
-    HIDDEN,
-    STUB,
-    WORDS_A_MINUTE,
-    Work,
-    has_sheet,
-)
+from robo_genesis.site.course.facts import HIDDEN, STUB, WORDS_A_MINUTE, Work, has_sheet
+from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER
 from robo_genesis.site.text.left_out import without_docstrings
 
 COLUMN = 80
@@ -39,11 +34,7 @@ LIMITS = {
 }
 """The largest numbers by kind of page: the first word of its name."""
 
-FENCE = re.compile(r"\s*(?P<marks>`{3,}|:{3,}|~{3,})(?:\{(?P<name>[\w:-]+)\})?(?P<rest>.*)")
-SHOWN_AS_PROSE = {"admonition", "note", "tip", "important", "warning", "caution", "hint", "seealso"}
-FOLDED = re.compile(r":class:.*\bdropdown\b")
-OPTION = re.compile(r"\s*:[\w-]+:( |$)")
-NOT_PROSE = re.compile(r"\s*(\||\(.+\)=$|<)")
+SHOWN_AS_PROSE = {*ADMONITIONS, "admonition", "seealso"}
 INCLUDE = re.compile(r"^ *```\{literalinclude\} *(\S+)\n(.*?)^ *```", re.MULTILINE | re.DOTALL)
 PLOT = re.compile(r"\bplots?\.\w+|_plots\.\w+|\bsubplots\(")
 QUESTION = re.compile(r"^ *[`:]{3,}\{(?:choice|number)\}", re.MULTILINE)
@@ -73,7 +64,7 @@ def size(notebook: NotebookNode, file: Path) -> Size:
     visible = [c for c in code if not HIDDEN.intersection(c.metadata.get("tags", ()))]
     lines = [sum(bool(line.strip()) for line in cell.source.splitlines()) for cell in visible]
     widths = (0, *(len(line) for cell in visible for line in cell.source.splitlines()))
-    words = sum(len(line.split()) for text in texts for line in prose(text))
+    words = sum(map(count_words, texts))
     questions = sum(len(QUESTION.findall(text)) for text in texts)
     functions = sum(STUB in cell.source for cell in visible)
     work = Work(sum(lines), questions, functions, has_sheet(file))
@@ -87,23 +78,20 @@ def size(notebook: NotebookNode, file: Path) -> Size:
     )
 
 
-def prose(text: str) -> Iterator[str]:
-    """Yield the lines of running text: no folds, tables, captions, code, formulas or targets."""
-    lines = text.splitlines()
-    open_fences: list[tuple[str, bool]] = []  # the marks, and whether what is inside is prose
-    for number, line in enumerate(lines):
-        fence = FENCE.match(line)
-        if fence and not fence["name"] and not fence["rest"].strip() and open_fences:
-            if fence["marks"].startswith(open_fences[-1][0]):
-                open_fences.pop()
-        elif fence:
-            options = [o for o in lines[number + 1 : number + 5] if OPTION.match(o)]
-            inside = fence["name"] in SHOWN_AS_PROSE and not any(map(FOLDED.search, options))
-            open_fences.append((fence["marks"], inside))
-        elif all(inside for _, inside in open_fences) and not (
-            NOT_PROSE.match(line) or (open_fences and OPTION.match(line))
-        ):
-            yield line
+def count_words(text: str) -> int:
+    """Return the number of words of running text: no folds, tables, captions, code or formulas."""
+    words, in_table = 0, False
+    for token in PARSER.parse(text):
+        directive = DIRECTIVE.match(token.info.strip())
+        if token.type in ("table_open", "table_close"):
+            in_table = token.type == "table_open"
+        elif token.type == "inline" and not in_table:
+            words += len(token.content.split())
+        elif directive and directive[1] in SHOWN_AS_PROSE:
+            inside = parse_directive_text(TestDirective, directive[2], token.content)
+            if "dropdown" not in inside.options.get("class", ""):
+                words += count_words("\n".join(inside.body))
+    return words
 
 
 def excerpt_widths(text: str, folder: Path) -> Iterator[int]:

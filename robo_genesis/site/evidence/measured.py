@@ -11,7 +11,6 @@ Roles and a directive, as pages write them:
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
 | {engine-package}`some words` | its page on PyPI |
-| {lesson-state}`l04` | a badge for each backend of a lesson: backend and state |
 | {lesson-status} l04 (directive) | one line with the states of a lesson's runs, details in a fold |
 """
 
@@ -193,12 +192,6 @@ def badge_node(status: Status) -> nodes.Node:
     return evidence_badge("", status.badge, classes=["evidence-badge", f"state-{status.state}"])
 
 
-def lesson_badges(book: Path, lesson: str) -> list[nodes.Node]:
-    """Return the badges of a lesson's lab with spaces between them."""
-    badges = [badge_node(status) for status in lesson_statuses(book, lesson)]
-    return [node for badge in badges for node in (badge, nodes.Text(" "))][:-1]
-
-
 class status_fold(nodes.General, nodes.Element):  # noqa: N801
     """A fold whose line gives the state of each run; `line` holds (state, words) of each."""
 
@@ -234,14 +227,6 @@ def status_list(statuses: Sequence[Status]) -> nodes.bullet_list:
         line = nodes.paragraph("", "", badge_node(status), nodes.Text(f" {status.sentence}"))
         lines += nodes.list_item("", line)
     return lines
-
-
-class LessonState(SphinxRole):
-    """Show the badges of a lesson."""
-
-    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        """Return one badge per backend."""
-        return lesson_badges(Path(self.env.srcdir), self.text), []
 
 
 class EngineSource(SphinxRole):
@@ -293,7 +278,6 @@ def visit_status(self: Any, node: status_fold) -> None:
 def setup(app: Sphinx) -> None:
     """Register roles, directive and writer."""
     app.add_role("measured", Measured())
-    app.add_role("lesson-state", LessonState())
     app.add_role("engine-source", EngineSource())
     app.add_role("engine-release", EngineRelease(f"{REPOSITORY}/releases/tag/v{{}}"))
     app.add_role("engine-package", EngineRelease(f"{PACKAGES}/{{}}/"))

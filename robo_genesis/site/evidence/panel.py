@@ -18,14 +18,12 @@ from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
 from robo_genesis.core.declaration import Compared, Filmed, Moving
-from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import listed
-from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Predicate
-from robo_genesis.evidence.compare import BundleComparison, compare, specification
-from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.rows import DIFFERS
-from robo_genesis.lessons import compared_cases, course_marks, filmed, find_lesson
+from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.lessons import compared_cases, course_marks, filmed
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import BACKEND, READABLE
@@ -198,57 +196,41 @@ def comparison(here: Path, folder: Path) -> list[nodes.Node]:
         f"**Compared with this build's run on {BACKEND}: {found.state}.**{more} The lesson's "
         "specification declares tolerances and orderings; counts must be equal."
     )
-    shown = [
-        nodes.paragraph("", "", *marked(intro)),
-        text_table(value_rows(found, both, (here, folder))),
-    ]
-    rows = ordering_rows(found, both)
-    if not rows:
-        return [*shown, nodes.paragraph("", "The lesson claims no ordering between cases.")]
-    claimed = nodes.paragraph("", "The orderings that the lesson claims, in both runs:")
-    return [*shown, claimed, text_table(rows)]
-
-
-def value_rows(
-    found: BundleComparison, both: tuple[str, str], folders: tuple[Path, Path]
-) -> list[dict[str, str]]:
-    """Return a row for each metric of each case, in the lesson's order, with values as in prose."""
-    spec = specification(found.new.lesson, found.new.page)
-    ours, theirs = (bundle.read_metrics(folder) for folder in folders)
-    rows = {f.what: f for s in found.sections if s.title in VALUES for f in s.rows}
-    labels = find_lesson(found.new.lesson).about_metrics("label")
+    claimed = "The orderings that the lesson claims, in both runs:"
+    orderings = compared_table(found, (RELATIONS,), "claim", both)
     return [
-        {
-            "metric": f"{case} {labels[name]}",
-            both[0]: format_value(ours[case][name].value, ours[case][name].unit),
-            both[1]: format_value(theirs[case][name].value, theirs[case][name].unit),
-            "difference": row.delta or "–",
-            "allowed": row.allowed or "–",
-            "verdict": row.state,
-        }
-        for case, names in spec.metrics.items()
-        for name in names
-        if (row := rows.get(f"{case}.{name}"))
+        nodes.paragraph("", "", *marked(intro)),
+        *compared_table(found, VALUES, "metric", both),
+        nodes.paragraph("", claimed if orderings else "The lesson claims no ordering."),
+        *orderings,
     ]
 
 
-def ordering_rows(found: BundleComparison, both: tuple[str, str]) -> list[dict[str, str]]:
-    """Return a row for each ordering that the lesson claims, with the result in each run."""
-    rows = []
-    labels = find_lesson(found.new.lesson).about_metrics("label")
-    for f in (f for s in found.sections if s.title == RELATIONS for f in s.rows):
-        claim, _, verdict = f.what.partition(", ")
-        metric, _, order = claim.partition(": ")
-        rows.append(
-            {
-                "claim": f"{labels[metric]}: {order}",
-                both[0]: f.old,
-                both[1]: f.new,
-                "margin": f.allowed.removeprefix("margin "),
-                "verdict": verdict,
-            }
-        )
-    return rows
+def compared_table(
+    found: BundleComparison, titles: Sequence[str], what: str, both: tuple[str, str]
+) -> list[nodes.Node]:
+    """Return the findings of some sections as a table, nothing if there are none.
+
+    Args:
+        found: the comparison.
+        titles: of the sections.
+        what: the name of the first column.
+        both: the names of the runs.
+    """
+    rows = [
+        {
+            what: finding.what,
+            both[0]: finding.old,
+            both[1]: finding.new,
+            "difference": finding.delta or "–",
+            "allowed": finding.allowed or "–",
+            "verdict": finding.state,
+        }
+        for section in found.sections
+        if section.title in titles
+        for finding in section.rows
+    ]
+    return [text_table(rows)] if rows else []
 
 
 def warnings_html(warnings: Sequence[str]) -> str:

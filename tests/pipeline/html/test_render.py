@@ -13,7 +13,7 @@ from robo_genesis.pipeline.pages.store import places
 
 CLAIMS = "status: amdgpu-verified\nbadge: cpu-verified\n"
 LAB = "robo_genesis: {lesson: l04, page: lab}\n"
-BADGES = "\n```{lesson-status} l04\n```\n\n{lesson-state}`l04`\n"
+BADGES = "\n```{lesson-status} l04\n```\n"
 TEXT = f"""\
 ---
 {CLAIMS}---
