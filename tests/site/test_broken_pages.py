@@ -14,7 +14,8 @@ from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.folder import write_page
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.store import places
-from robo_genesis.site import course_map, glossary
+from robo_genesis.site.course import course_map
+from robo_genesis.site.text import glossary
 
 TEXT = {
     r"$\foo{x}$": r"uses \\foo, which latex2mathml does not know",

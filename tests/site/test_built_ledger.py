@@ -3,15 +3,12 @@
 import hashlib
 import io
 import posixpath
-import re
 import zipfile
-from copy import deepcopy
 
 import pytest
 from bs4 import BeautifulSoup
 from built_site import PAGES, parsed
 
-from robo_genesis.core.project import BOOK
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.site.evidence.ledger_data import UNMEASURED
@@ -22,7 +19,6 @@ SHOWN = (
     "article :is(img, svg.drawing), .cell_output table, .glued table, figure table, "
     ".evidence-panel table, .replay-block table"
 )
-TEXTS = [(BOOK / f"{name}.md").read_text() for name in PAGES]
 
 
 def shown(pages) -> set[tuple[str, str]]:
@@ -63,16 +59,6 @@ def test_each_figure_and_measured_table_has_one_row_and_each_row_its_place(pages
     assert len(listed(pages)) == len(set(listed(pages))) >= 25
 
 
-def test_what_is_left_out_or_leads_nowhere_would_be_found(pages):
-    spoiled = pages | {LEDGER: deepcopy(pages[LEDGER])}
-    rows = spoiled[LEDGER].select("#figures-and-tables tbody tr")
-    rows[4].decompose()
-    rows[6].select_one("td a")["href"] += "-gone"
-    missing, nowhere = differences(spoiled)
-    assert len(missing) == 2
-    assert len(nowhere) == 1
-
-
 def test_each_line_of_provenance_leads_to_the_row_that_leads_back(pages):
     rows = {row["id"]: row for row in pages[LEDGER].select("tr[id]")}
     for name, page in pages.items():
@@ -90,24 +76,6 @@ def test_each_line_of_provenance_leads_to_the_row_that_leads_back(pages):
     assert sum(len(page.select(".provenance")) for page in pages.values()) == len(rows)
 
 
-def test_illustrations_say_so_and_nothing_else_does(pages):
-    sources = sorted(
-        line.find_parent("figure").svg["data-file"].rpartition("/")[2]
-        for page in pages.values()
-        for line in page.select(".provenance")
-        if "Illustration, not measured." in line.text
-    )
-    drawn = [path for text in TEXTS for path in re.findall(r"^```\{figure\} (\S+)", text, re.M)]
-    assert sources == sorted(path.rpartition("/")[2] for path in drawn)
-
-
-def test_tables_of_chosen_values_are_called_so(pages):
-    rows = pages[LEDGER].select("#figures-and-tables tbody tr")
-    chosen = [row for row in rows if row.select("td")[1].text == "settings"]
-    tagged = [line for text in TEXTS for line in re.findall(r"^tags: \[.*\binputs\]$", text, re.M)]
-    assert len(chosen) == len(tagged)
-
-
 def test_digests_are_those_of_the_files(site, pages):
     for row in pages[LEDGER].select("#figures-and-tables tbody tr"):
         file = (site / LEDGER).parent / row.select("td")[-1].a["href"]
@@ -123,10 +91,3 @@ def test_a_downloaded_bundle_is_accepted_and_has_the_digest_that_is_given(site, 
         folder = tmp_path / block["id"] / "cpu"
         zipfile.ZipFile(io.BytesIO(data)).extractall(folder)
         assert verify_bundle(folder).predicate.run_id[:8] in block.text
-
-
-def test_what_is_missing_is_named_with_its_command(pages):
-    blocks = pages[LEDGER].select(".run-block:has(.state-missing)")
-    for block, lesson in zip(blocks, LESSONS, strict=True):
-        assert "amdgpu-missing" in block.text
-        assert f"make evidence LESSON={lesson} BACKEND=amdgpu" in block.text

@@ -8,9 +8,8 @@ from bs4 import BeautifulSoup
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import MARKS, PARTS
 from robo_genesis.core.project import BOOK, ROOT
-from robo_genesis.site.figures.drawings import WIDE, element, inline_drawings
+from robo_genesis.site.figures.drawings import WIDE, element, image_size, inline_drawings
 from robo_genesis.site.frame.accessibility import stack_tables
-from robo_genesis.site.frame.weight import image_size
 
 SVG = """<?xml version="1.0"?><svg width="90pt" height="60pt" viewBox="0 0 90 60">
 <metadata><b/></metadata><title>No</title><!-- a note --><defs><style>*{x: y}</style>

@@ -1,7 +1,5 @@
 """Finding a page, a name or a place again: search, 404, anchors, neighbours, facts."""
 
-import itertools
-import os
 import re
 from pathlib import Path
 
@@ -122,17 +120,6 @@ def test_anchors_that_were_published_stay(anchors):
 def test_new_anchors_are_kept_from_now_on(anchors):
     new = sorted(anchors - published_anchors())
     assert new == [], "Add these lines to anchors.txt in tests/lessons/lNN or tests/site."
-
-
-def test_each_page_leads_to_the_one_before_and_after(site):
-    pages = {name: parsed(site, name) for name in PAGES}
-
-    def neighbour(name: str, link: str) -> str:
-        return os.path.normpath(Path(name).parent / pages[name].select_one(link)["href"])
-
-    for before, after in itertools.pairwise(PAGES):
-        assert neighbour(before, "a.right-next") == f"{after}.html"
-        assert neighbour(after, "a.left-prev") == f"{before}.html"
 
 
 def test_the_page_on_evidence_shows_a_measurement_and_leads_to_its_three_pages(site):

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 import matplotlib as mpl
 import pytest
-from built_site import LESSON_PAGES
 from playwright.sync_api import Page
 
 from robo_genesis.core import plotting
@@ -56,14 +55,6 @@ def page(browser, address, theme) -> Iterator[Page]:
     page.goto(f"{address}/{LECTURE}")
     page.wait_for_function(f"document.documentElement.dataset.theme === {theme!r}")
     yield page
-    page.close()
-
-
-def test_light_or_dark_waits_for_no_script_file(browser, address, theme):
-    page = browser.new_page(color_scheme=theme)
-    page.route("**/*.js*", lambda route: route.abort())
-    page.goto(f"{address}/{LECTURE}")
-    assert page.evaluate("document.documentElement.dataset.theme") == theme
     page.close()
 
 
@@ -146,20 +137,6 @@ def test_on_a_phone_no_figure_is_cut_off_and_its_letters_can_be_read(browser, ad
     page.close()
 
 
-STACKED = """tables => tables.map(one =>
-  [one.parentElement.clientWidth, Math.max(one.scrollWidth, one.parentElement.scrollWidth)])"""
-
-
-@pytest.mark.parametrize("lab", [name for (_, page), name in LESSON_PAGES.items() if page == "lab"])
-def test_on_a_phone_a_stacked_table_fits_its_column(browser, address, lab):
-    page = browser.new_page(viewport={"width": 390, "height": 800})
-    page.goto(f"{address}/{lab}.html")
-    widths = page.eval_on_selector_all("article table.stacks", STACKED)
-    assert widths
-    assert [needed for column, needed in widths if needed > column] == []
-    page.close()
-
-
 def lines(page: Page, selector: str) -> list[list]:
     """Return class, colour and dashes of each drawn line."""
     found = page.eval_on_selector_all(
@@ -176,17 +153,6 @@ def look(name: str, theme: str) -> list:
     """Return colour and dashes of a mark, for lines two units wide."""
     mark = MARKS[name]
     return [getattr(mark, theme), [2 * length for length in mark.dashes]]
-
-
-def test_a_run_of_a_case_has_that_case_s_colour_in_the_explorer_and_a_solid_line(page, theme):
-    output = page.locator(".explorer output").inner_text()
-    name = re.search(r"the case (G\d)", output).group(1)
-    solid = [getattr(MARKS[CASES[name]], theme), []]
-    assert lines(page, ".explorer svg .curve")[0][1:] == solid
-    page.get_by_label("Predict first").uncheck()
-    page.locator(".explorer [aria-selected=true]").press("ArrowDown")  # between the cases
-    between = [getattr(MARKS["further"], theme), []]
-    assert lines(page, ".explorer svg .curve.chosen")[0][1:] == between
 
 
 def test_each_run_of_the_replay_has_its_case_s_line(page, theme):

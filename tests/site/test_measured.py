@@ -60,17 +60,6 @@ def test_a_state_is_computed_once_for_a_kept_folder(tmp_path, monkeypatch, spoil
     assert calls == ([1] if spoiled is None else [1, 2])
 
 
-def test_without_a_kept_folder_a_state_is_computed_each_time(monkeypatch):
-    monkeypatch.setattr(measured, "built_pages", BuiltPages)
-    assert [measured.stored("name", lambda k=k: k) for k in (1, 2)] == [1, 2]
-
-
-@pytest.mark.parametrize("state", ["stale", "refused", "failed", "inconclusive", "missing"])
-def test_the_line_names_each_state_and_calls_no_such_run_measured(state):
-    assert state_words(Status(state, "cpu", "why", None)) == f"CPU run: {state}"
-    assert state_words(Status(state, "x<y", "why", None)) == f"x<y run: {state}"
-
-
 def test_the_line_of_an_accepted_run_has_its_engine():
     predicate = SimpleNamespace(engine=SimpleNamespace(version="9.8.7"))
     manifest = SimpleNamespace(predicate=predicate)
@@ -78,6 +67,7 @@ def test_the_line_of_an_accepted_run_has_its_engine():
     assert state_words(accepted) == "Measured on AMD GPU with Genesis 9.8.7"
     unclear = Status("inconclusive", "amdgpu", "", manifest)
     assert state_words(unclear) == "AMD GPU run: inconclusive"
+    assert state_words(Status("stale", "x<y", "why", None)) == "x<y run: stale"
 
 
 def test_the_words_of_the_line_are_text_and_not_markup():

@@ -10,7 +10,7 @@ from tiny_book import git, make_book
 from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.site import page_facts as facts
+from robo_genesis.site.course import facts
 from robo_genesis.site.text.questions import choice
 
 

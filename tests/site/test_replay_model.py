@@ -99,28 +99,11 @@ def test_every_key_is_a_sample_of_the_record(model, turning):
         assert np.abs((turns * xyzw).sum(axis=1)) == pytest.approx(1, abs=1e-6)
 
 
-def test_a_link_starts_in_the_state_before_the_first_step(model, turning):
-    times, places = keys(model, "G1", "hand", "translation")
-    assert times[0] == 0
-    assert not np.array_equal(places[0], places[5])
-    hand = next(node for node in model.nodes if node.name == "hand")
-    assert np.array_equal(np.float32(hand.translation), places[0])
-
-
 def test_a_sign_flip_of_the_record_turns_nothing_the_long_way(model, turning):
     recorded = turning["G1"].link_quat[:, 1]
     assert (recorded[1:] * recorded[:-1]).sum(axis=1).min() < 0
     _, turns = keys(model, "G1", "link4", "rotation")
     assert (turns[1:] * turns[:-1]).sum(axis=1).min() > 0.99
-
-
-def test_links_stand_below_a_node_that_turns_z_up(model):
-    root = model.nodes[model.scenes[0].nodes[0]]
-    assert root.name == replay_model.WORLD
-    assert [model.nodes[k].name for k in root.children] == list(LINKS)
-    x, y, z, w = root.rotation
-    up = visual_shape.rotate(np.array([w, x, y, z]), np.array([[0.0, 0.0, 1.0]]))
-    assert up[0] == pytest.approx([0, 1, 0], abs=1e-12)
 
 
 def test_many_triangles_become_few_near_the_surface_and_few_stay(shape):

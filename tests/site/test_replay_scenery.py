@@ -5,15 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
+from falling import LINKS as BOXES
 from falling import falling
 from trimesh.transformations import quaternion_from_matrix, rotation_matrix, translation_matrix
 
 from robo_genesis.core.channels import Channel, Level, Runs, View
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.bodies import channels as body_channels
-from robo_genesis.sim.visual_shape import WORLD, Part, slab
+from robo_genesis.sim.visual_shape import WORLD, Part, floor, slab
 from robo_genesis.site.replay import scenery
 from robo_genesis.site.replay.scenery import ROOM, Camera, find_hinge, fitted, floor_of
+from robo_genesis.site.replay.side_by_side import side_by_side
 
 AXIS = np.array([0.48, -0.6, 0.64])
 POINT = np.array([0.1, 0.2, 0.3])
@@ -144,3 +146,37 @@ def test_the_camera_is_given_in_the_notation_of_the_viewer():
     assert (camera.orbit, camera.target) == ("30deg 78deg 1.5000m", "0.1000m 0.2500m -1.0000m")
     assert camera.axes @ camera.axes.T == pytest.approx(np.eye(3))
     assert np.linalg.det(camera.axes) == pytest.approx(1)
+
+
+PLACES = ((-0.5, 0.0), (0.5, 0.25))
+SHAPE = [Part("box", (1, 2, 3), np.eye(3), np.array([[0, 1, 2]])), floor(2.0)]
+
+
+@pytest.fixture(scope="module")
+def runs():
+    one = falling(1.0)
+    other = replace(one, link_pos=one.link_pos * 2)
+    return body_channels.runs({"one": one, "other": other}, BOXES, "box", "box")
+
+
+def test_each_case_moves_all_links_and_keeps_its_curve(runs):
+    found, parts = side_by_side(runs, SHAPE, PLACES)
+    assert found.links == [f"{run}: {link}" for run in ("one", "other") for link in BOXES]
+    assert [part.link for part in parts] == ["one: box", "other: box", WORLD]
+    for trace in found.traces.values():
+        for k, (source, (x, y)) in enumerate(zip(runs.traces.values(), PLACES, strict=True)):
+            moved = trace.link_pos[:, 2 * k + 1] - source.link_pos[:, 1]
+            assert moved == pytest.approx(np.tile([x, y, 0], (len(moved), 1)), abs=1e-6)
+    assert found.channels == runs.channels
+
+
+def test_the_view_has_neither_axis_nor_followed_link(runs):
+    found, parts = side_by_side(runs, SHAPE, PLACES)
+    around = scenery.scenery(parts, found, hinged=False)
+    assert not around.axis
+    assert around.followed is None
+
+
+def test_a_run_without_a_place_is_refused(runs):
+    with pytest.raises(ValueError, match="1 places given for 2 runs: one, other"):
+        side_by_side(runs, SHAPE, PLACES[:1])

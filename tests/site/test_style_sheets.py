@@ -53,16 +53,6 @@ def test_a_page_has_one_link_and_keeps_the_sheets_that_are_not_joined():
     ]  # fmt: skip
 
 
-def test_pages_with_other_sheets_have_the_same_link():
-    def address(*names):
-        links = "".join(f'<link rel="stylesheet" href="../{name}?v=1"/>' for name in names)
-        page = BeautifulSoup(links, "html.parser")
-        style_sheets.link_joined(page)
-        return page.link["href"]
-
-    assert address(OWN) == address(OWN, "_static/basic.css") == f"../{style_sheets.JOINED}"
-
-
 def test_a_failing_tool_is_named_with_its_output(tmp_path, monkeypatch):
     (tmp_path / "_static").mkdir()
     (tmp_path / "_static/sphinx-design.min.css").write_text(".a { color: red }")
