@@ -1,38 +1,26 @@
-"""A lecture by keyboard: what the sweep of all pages only looks at is used here."""
+"""A lecture by keyboard and without scripts, which the sweep of all pages only looks at."""
 
 from collections.abc import Iterator
 
 import pytest
 from built_site import LESSON_PAGES
 from playwright.sync_api import Page, expect
-from watching import MOVING, settle
+from watching import MOVING
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 LECTURE = "lessons/l02-life-cycle/lecture.html"
+MEASURED = "lessons/l04-joint-control/lecture.html"
+REPLAY = ".replay[data-name=replay-l04-lecture-cpu]"
+BLOCK = f".replay-block:has({REPLAY})"
 
 
 @pytest.fixture(scope="module")
-def page(browser) -> Iterator[Page]:
-    page = browser.new_page(viewport={"width": 320, "height": 700})
-    page.clock.install()  # it runs as ever, and can be put forward
+def lecture(browser, address) -> Iterator[Page]:
+    page = browser.new_page(viewport={"width": 1280, "height": 700})
+    page.goto(f"{address}/{LECTURE}")
     yield page
     page.close()
-
-
-def test_a_box_scrolls_by_keyboard(page, address):
-    page.goto(f"{address}/evidence/ledger.html")
-    settle(page)
-    page.locator("#figures-and-tables .scroll-box").first.focus()
-    page.keyboard.press("ArrowRight")
-    page.wait_for_function("document.activeElement.scrollLeft > 0")
-
-
-@pytest.fixture(scope="module")
-def lecture(page, address) -> Page:
-    page.set_viewport_size({"width": 1280, "height": 700})
-    page.goto(f"{address}/{LECTURE}")
-    return page
 
 
 def test_the_skip_link_leads_past_the_menu(lecture):
@@ -42,22 +30,9 @@ def test_the_skip_link_leads_past_the_menu(lecture):
     assert lecture.evaluate("document.activeElement.closest('main') !== null")
 
 
-def test_every_fold_opens_by_keyboard(lecture):
-    folds = lecture.query_selector_all("article details > summary:visible")
-    is_open = "fold => fold.parentElement.open"
-    before = [fold.evaluate(is_open) for fold in folds]
-    for fold in reversed(folds):  # a fold inside of another comes after it
-        fold.focus()
-        lecture.keyboard.press("Enter")
-    assert [fold.evaluate(is_open) for fold in folds] == [not was for was in before]
-    assert len(folds) > 20
-
-
 def test_motion_remains_without_the_request(lecture):
     assert lecture.evaluate(MOVING)
 
-
-pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 MOST = 150
 STOPS = """() => new Set([...document.querySelectorAll(
@@ -93,3 +68,57 @@ def test_code_can_be_copied_where_the_pointer_or_the_focus_is(browser, address):
     block.locator("pre").evaluate("code => { code.tabIndex = 0; code.focus(); }")
     expect(button).to_be_visible()
     page.close()
+
+
+def wide(locator) -> bool:
+    return locator.bounding_box()["width"] > 100
+
+
+def test_the_words_come_with_mouse_and_focus_and_stay_for_what_was_not_measured(browser, address):
+    page = browser.new_page()
+    page.goto(f"{address}/{MEASURED}")
+    measured = page.locator("article .provenance.as-icon:visible").first
+    words, icon = measured.locator(".provenance-text"), measured.locator("a")
+    expect(words).to_contain_text("Measured on cpu · Genesis")
+    assert not wide(words)
+    assert icon.bounding_box()["width"] == icon.bounding_box()["height"] >= 24
+    icon.hover()
+    assert wide(words)
+    page.mouse.move(0, 0)
+    assert not wide(words)
+    icon.focus()
+    assert wide(words)
+    for other in page.locator("article .provenance:not(.as-icon):visible").all():
+        assert "Measured" not in other.inner_text()
+        assert wide(other)
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def bare(browser, address) -> Iterator[Page]:
+    page = browser.new_page(java_script_enabled=False)
+    page.goto(f"{address}/{MEASURED}")
+    yield page
+    page.close()
+
+
+def test_the_page_has_its_colours(bare):
+    expect(bare.locator("article h2").first).to_have_css("border-top-width", "1px")
+
+
+def test_of_the_replay_picture_figures_and_table_remain(bare):
+    assert bare.locator(f"{REPLAY} .still").is_visible()
+    assert bare.locator(f"{REPLAY} .shown").inner_text() == "at the start"
+    assert not bare.locator(f"{REPLAY} button").is_visible()
+    assert not bare.locator(f"{REPLAY} .panel").is_visible()
+    assert bare.locator("#fig-l04-gains svg").is_visible()
+    assert bare.locator("#fig-l04-posture img").is_visible()
+    bare.locator(f"{BLOCK} summary").click()
+    assert bare.get_by_text("moves farthest").first.is_visible()
+    assert bare.locator(f"{BLOCK} tbody tr").count() == 121
+    assert bare.locator(f"{BLOCK} table").is_visible()
+
+
+def test_of_the_explorer_a_sentence_remains(bare):
+    assert not bare.locator(".explorer .panel").is_visible()
+    assert bare.get_by_text("The explorer needs JavaScript").is_visible()

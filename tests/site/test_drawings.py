@@ -118,16 +118,6 @@ def test_a_table_that_a_phone_cannot_show_is_stacked(cells, rows, stacks):
     assert len(page.select("[role=cell]")) == (rows * len(cells) if stacks else 0)
 
 
-def test_a_table_whose_columns_are_cases_does_not_break():
-    head = '<th>metric</th><th><p class="case-mark">G1</p></th><th>G2</th>'
-    row = f"<td>a metric of it</td><td>{WORD}</td><td>{WORD}</td>"
-    table = f"<table><thead><tr>{head}</tr></thead><tbody><tr>{row}</tr></tbody></table>"
-    page = BeautifulSoup(f"<article>{table}</article>", "html.parser")
-    stack_tables(page)
-    assert page.select("table.stacks")
-    assert page.select("tbody td")[1]["data-head"] == "G1"
-
-
 @pytest.mark.parametrize("file", sorted(BOOK.glob("lessons/*/*.svg")), ids=lambda file: file.name)
 def test_an_illustration_fits_on_a_phone_with_letters_that_can_be_read(file):
     width, _ = image_size(file)

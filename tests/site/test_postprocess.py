@@ -65,11 +65,6 @@ def test_a_page_with_a_title_is_first_shown_with_it(tmp_path, body, anchors):
     assert [title["id"] for title in found.select("h1")] == anchors
 
 
-def test_scripts_of_data_are_left_alone(tmp_path):
-    data = '<script type="application/json">{"a": "DOCUMENTATION_OPTIONS < b"}</script>'
-    assert str(page(tmp_path, data).select_one("script")) == data
-
-
 def test_images_get_their_size_and_wait_until_they_are_in_sight(tmp_path):
     Image.new("RGB", (30, 20)).save(tmp_path / "a b.png")
     frame = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 6"><image/></svg>'

@@ -9,7 +9,7 @@ from falling import falling
 from PIL import Image
 from trimesh.transformations import translation_matrix
 
-from robo_genesis.sim.visual_shape import Part, floor
+from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.replay import model, poster
 from robo_genesis.site.replay.scenery import Camera, Scenery
 
@@ -66,10 +66,3 @@ def test_the_copy_at_the_target_is_translucent():
     shade = above[(rows.min() + rows.max()) // 2, poster.WIDTH // 2]
     opacity, dark = model.GHOST[3], 30
     assert shade.tolist() == pytest.approx(opacity * dark + (1 - opacity) * GROUND, abs=10)
-
-
-def test_a_floor_that_reaches_behind_the_camera_is_cut():
-    image = drawn(floor(20.0))
-    blue = image[..., 2] - image[..., 0]  # of the ground, not of the floor
-    assert blue[-1].max() < 8
-    assert blue[0].min() > 14
