@@ -5,33 +5,11 @@ import re
 import pytest
 import yaml
 from built_site import LESSON_PAGES, parsed
-from tiny_book import make_book
+from small_book import MAP
 
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons import LESSONS
-from robo_genesis.pipeline.html.render import render
-from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
-from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.site.course.course_map import FILE, CourseMapError, read_map
-
-MAP = [
-    {"id": "L01", "title": "One"},
-    {"id": "L02", "title": "Two", "needs": []},
-    {
-        "id": "L04",
-        "title": "Four",
-        "needs": ["L01", "L02"],
-        "page": "page",
-        "outcomes": ["read a `qpos`", "stop"],
-        "featured": True,
-    },
-    {
-        "id": "L06",
-        "title": "Six",
-        "page": "lessons/l06-six/lecture",
-        "outcomes": ["walk"],
-    },
-]
 
 
 def write(book, rows):
@@ -93,48 +71,8 @@ def test_a_map_that_cannot_be_right_is_refused(tmp_path, rows, said):
         read_map(tmp_path)
 
 
-CARDS = "```{course-map}\n```\n"
-FEATURED = """
-{lesson}`The second <l02/lecture>` and {lesson}`the
-third <l03/lab>`.
-
-:::{featured} L04
-Four was measured.
-:::
-
-:::{featured} L05
-```{glance} l05
-```
-:::
-
-```{course-status}
-```
-
-```{course-measured}
-```
-"""
-WORDS = "word " * 600
-"""Three minutes to read."""
-
-
-@pytest.fixture(scope="module")
-def html(tmp_path_factory):
-    """A book with this map, shown on one page, and lessons of it featured on another."""
-    folder = tmp_path_factory.mktemp("map")
-    for name in ("l02-two", "l06-six"):
-        (folder / "book" / "lessons" / name).mkdir(parents=True)
-    (folder / "book" / "lessons" / "l06-six" / "worksheet.md").touch()
-    pages = {"page": "Page", "lessons/l02-two/lecture": "Two", "cards": f"Map\n\n{CARDS}"}
-    pages |= {"featured": f"Map\n\n{FEATURED}", "lessons/l06-six/lecture": f"Six\n\n{WORDS}"}
-    pages |= {f"lessons/l06-six/{name}": f"Six\n\n{WORDS}" for name in ("lab", "deeper", "more")}
-    book = make_book(folder, **{name: f"# {text}\n\nText.\n" for name, text in pages.items()})
-    write(book, MAP)
-    sphinx = SphinxProcess(book, folder / "render.log")
-    return render(sphinx, folder / "staging", BuiltPages()).html
-
-
-def test_a_published_lesson_is_a_card_with_outcomes_prerequisites_and_minutes(html):
-    cards = parsed(html, "cards").select("ul.course-map > li")
+def test_a_published_lesson_is_a_card_with_outcomes_prerequisites_and_minutes(small_site):
+    cards = parsed(small_site, "cards").select("ul.course-map > li")
     assert [[p.get_text() for p in card.select("p")] for card in cards] == [
         ["L04 Four", "read a qpos", "stop", "Builds on L01 and L02.", "Lecture: 1 min to read"],
         [
@@ -149,15 +87,15 @@ def test_a_published_lesson_is_a_card_with_outcomes_prerequisites_and_minutes(ht
     assert cards[0].code.get_text() == "qpos"
 
 
-def test_a_planned_lesson_is_a_title_without_a_link(html):
-    planned = parsed(html, "cards").select_one("ul.planned-lessons")
+def test_a_planned_lesson_is_a_title_without_a_link(small_site):
+    planned = parsed(small_site, "cards").select_one("ul.planned-lessons")
     lines = {item["id"]: item.get_text().strip() for item in planned.select("li")}
     assert lines == {"lesson-l01": "L01 One", "lesson-l02": "L02 Two"}
     assert not planned.select("a")
 
 
-def test_lessons_that_are_absent_leave_words_and_no_content(html):
-    article = parsed(html, "featured").article
+def test_lessons_that_are_absent_leave_words_and_no_content(small_site):
+    article = parsed(small_site, "featured").article
     _, first, second, *_ = article.select("section > p")
     assert first.get_text() == "The second and the third."
     assert [a["href"] for a in first.select("a")] == ["lessons/l02-two/lecture.html"]

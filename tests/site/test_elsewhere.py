@@ -5,21 +5,15 @@ The address is below a server's root: it decides links, sitemap, cards and the 4
 
 import re
 from contextlib import suppress
-from copy import deepcopy
 from pathlib import Path
 
 import pytest
 from built_site import parsed
 from PIL import Image
+from small_book import render_with
 from tiny_book import cell, make_book, notebook
 
 from robo_genesis.pipeline.html.checks import check_site
-from robo_genesis.pipeline.html.render import render
-from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
-from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.pipeline.pages.folder import write_page
-from robo_genesis.pipeline.pages.results import PageResult
 
 ADDRESS = "https://example.org/robot/course/"
 PUBLIC, SECRET = "public_line = 1", "secret_line = 2"
@@ -35,17 +29,7 @@ def rendered(folder: Path) -> Path:
     """Render a book whose pages are taken as executed, pack it, and return its folder."""
     pages = {"solved": notebook(*SOLVED), "deep/page": "# A page\n\nAbout joint4.\n"}
     (folder / "book" / "deep").mkdir(parents=True)
-    book, results = make_book(folder, **pages), []
-    for found in find_pages(book):
-        ran, place = deepcopy(found.notebook), folder / "store" / found.docname
-        ran.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
-        run = {"run_id": "0" * 32, "command": None, "seconds": 1.0, "cell_seconds": [1.0, 1.0]}
-        write_page(place, found, ran, folder, **run)
-        results.append(PageResult(found, "reused", 0.0, "0" * 32, folder=place))
-    sphinx = SphinxProcess(book, folder / "render.log")
-    draft = render(sphinx, folder / "staging", BuiltPages.of(results))
-    draft.pack()
-    return draft.html
+    return render_with(make_book(folder, **pages), folder, {"solved": [1.0, 1.0]})
 
 
 @pytest.fixture(scope="module")

@@ -5,11 +5,8 @@ from bs4 import BeautifulSoup
 from built_site import parsed
 from docutils import nodes
 from docutils.core import publish_doctree
-from tiny_book import git, make_book
+from tiny_book import git
 
-from robo_genesis.pipeline.html.render import render
-from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
-from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.site.course import facts
 from robo_genesis.site.text.questions import choice
 
@@ -99,12 +96,8 @@ def test_an_unknown_history_has_its_reason(checkout, tmp_path):
         assert not history(file).select("li")
 
 
-def test_a_page_has_all_three_and_the_home_page_no_time(tmp_path):
-    text = "# Page\n\n- no paragraph\n\nA joint's *step* & more. " + "word " * 100
-    book = make_book(tmp_path, page=text)
-    sphinx = SphinxProcess(book, tmp_path / "render.log")
-    html = render(sphinx, tmp_path / "staging", BuiltPages()).html
-    page, home = parsed(html, "page"), parsed(html, "index")
+def test_a_page_has_all_three_and_the_home_page_no_time(small_site):
+    page, home = parsed(small_site, "described"), parsed(small_site, "index")
     assert "About 1 min to read." in page.select_one("h1 + p.page-facts").get_text()
     assert not home.select(".page-facts")
     for found in (page, home):
@@ -113,3 +106,12 @@ def test_a_page_has_all_three_and_the_home_page_no_time(tmp_path):
     assert tag["content"].startswith("A joint’s step & more. word")
     assert tag["content"].endswith("word …")
     assert len(tag["content"]) <= facts.DESCRIPTION
+
+
+def test_a_row_shows_rounded_times_and_the_slowest_cell(small_site):
+    table = parsed(small_site, "times").select_one("tbody")
+    assert [[c.get_text(strip=True) for c in row.select("td")] for row in table.select("tr")] == [
+        ["Page", "3", "15.6", "2", "12.3"],
+        ["Other", "1", "2.0", "1", "2.0"],
+    ]
+    assert [a["href"] for a in table.select("a")] == ["timed.html", "other.html"]
