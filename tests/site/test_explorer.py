@@ -62,7 +62,7 @@ def open_block(browser, tmp_path):
 
 def block_of(tmp_path, folder, data, *name, **experiment) -> nodes.Node:
     recorded = SimpleNamespace(
-        lesson="l99", folder=folder, inputs=lambda: [], experiment=SimpleNamespace(**experiment),
+        lesson="l99", folder=folder, experiment=SimpleNamespace(**experiment),
         explored=lambda *_: data,
     )  # fmt: skip
     return explorer.explorer_block(Panel(tmp_path / "book"), "l99/answers/cpu", recorded, *name)

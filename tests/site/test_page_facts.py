@@ -39,15 +39,13 @@ def test_words_of_code_tables_and_formulas_do_not_count():
 @pytest.mark.parametrize(
     ("counted", "shown"),
     [
-        ((0, facts.Work()), "1 min to read"),
-        ((500, facts.Work()), "2 min to read"),
-        ((9000, facts.Work(104, 3)), "61 min (45 to read, 16 for code and questions)"),
-        ((1200, facts.Work(60, 0, 4)), "57 min (6 to read, 51 for code and questions)"),
-        ((1200, facts.Work(60, 0, 4, sheet=True)), "65 min with the work sheet"),
+        ((1, 0), "1 min to read"),
+        ((45, 16), "61 min (45 to read, 16 for code and questions)"),
+        ((6, 61, True), "65 min with the work sheet"),
     ],
 )
-def test_minutes_follow_from_words_code_and_questions(counted, shown):
-    assert str(facts.minutes(*counted)) == shown
+def test_minutes_are_shown_with_their_parts(counted, shown):
+    assert str(facts.Minutes(*counted)) == shown
 
 
 def code(text, *tags):
@@ -62,11 +60,13 @@ def test_work_is_in_visible_code_questions_functions_and_a_lab_s_work_sheet(tmp_
     document = publish_doctree("Text.\n\n::\n\n  typed = 1\n")
     document += [code("a\n\nb"), code("c", "hide-input"), code("d", "inputs"), choice()]
     document += code("def f():\n    raise NotImplementedError")
-    lab = tmp_path / "lab.md"
-    assert facts.count_work(document, lab) == facts.Work(5, 1, 1)
+    lab, work = tmp_path / "lab.md", facts.work_minutes(5, 1, 1, sheet=False)
+    assert work == 0.5 + facts.MINUTES_A_QUESTION + facts.MINUTES_A_FUNCTION + facts.MINUTES_A_RUN
+    assert facts.count_minutes(document, lab) == facts.Minutes(1, round(work))
     (tmp_path / "worksheet.md").touch()
-    assert facts.count_work(document, lab) == facts.Work(5, 1, 1, sheet=True)
-    assert not facts.count_work(document, tmp_path / "lecture.md").sheet
+    sheet = facts.Minutes(1, round(work + facts.MINUTES_A_SHEET), sheet=True)
+    assert facts.count_minutes(document, lab) == sheet
+    assert not facts.count_minutes(document, tmp_path / "lecture.md").sheet
 
 
 def test_history_lists_the_latest_commits_newest_first_and_uncommitted_changes(checkout):

@@ -56,48 +56,23 @@ def count_words(document: nodes.document) -> int:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Work:
-    """What a reader does on a page besides reading it.
+def work_minutes(lines: int, questions: int, functions: int, sheet: bool) -> float:
+    """Return the time for what a reader does on a page besides reading it [min].
 
-    `lines` are visible lines of code, which a reader runs and changes; `functions` those that a
-    reader writes. `sheet` is true for a page with a work sheet.
+    Args:
+        lines: visible lines of code, which a reader runs and changes.
+        questions: to answer.
+        functions: to write; a page with any is also run.
+        sheet: whether the page has a work sheet.
     """
-
-    lines: int = 0
-    questions: int = 0
-    functions: int = 0
-    sheet: bool = False
-
-    @property
-    def minutes(self) -> float:
-        """The time that this takes; a page with functions to write is also run."""
-        written = self.functions * MINUTES_A_FUNCTION + bool(self.functions) * MINUTES_A_RUN
-        asked = self.questions * MINUTES_A_QUESTION + self.sheet * MINUTES_A_SHEET
-        return self.lines / LINES_A_MINUTE + written + asked
+    written = functions * MINUTES_A_FUNCTION + bool(functions) * MINUTES_A_RUN
+    asked = questions * MINUTES_A_QUESTION + sheet * MINUTES_A_SHEET
+    return lines / LINES_A_MINUTE + written + asked
 
 
 def has_sheet(page: Path) -> bool:
     """Return whether a page is a lab with a work sheet in its folder."""
     return page.stem == LAB and page.with_name(WORK_SHEET).is_file()
-
-
-def count_work(document: nodes.document, page: Path) -> Work:
-    """Return what there is to do on a page.
-
-    Args:
-        document: the page as it was read.
-        page: its source file.
-    """
-    lines = functions = 0
-    for part in document.findall(nodes.container):
-        if part.get("nb_element") != SOURCE:
-            continue
-        cells = (node for node in above(part) if "cell_metadata" in node)
-        if not any(HIDDEN.intersection(cell["cell_metadata"].get("tags", ())) for cell in cells):
-            lines += sum(bool(line.strip()) for line in part.astext().splitlines())
-            functions += STUB in part.astext()
-    return Work(lines, len(list(document.findall(choice))), functions, has_sheet(page))
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,15 +95,24 @@ class Minutes:
         return f"{total} min to read"
 
 
-def minutes(words: int, work: Work) -> Minutes:
+def count_minutes(document: nodes.document, page: Path) -> Minutes:
     """Return the time that a page takes.
 
     Args:
-        words: of running text.
-        work: what there is to do.
+        document: the page as it was read.
+        page: its source file.
     """
-    read = max(1, round(words / WORDS_A_MINUTE))
-    return Minutes(read, round(work.minutes), work.sheet)
+    lines = functions = 0
+    for part in document.findall(nodes.container):
+        if part.get("nb_element") != SOURCE:
+            continue
+        cells = (node for node in above(part) if "cell_metadata" in node)
+        if not any(HIDDEN.intersection(cell["cell_metadata"].get("tags", ())) for cell in cells):
+            lines += sum(bool(line.strip()) for line in part.astext().splitlines())
+            functions += STUB in part.astext()
+    questions, sheet = len(list(document.findall(choice))), has_sheet(page)
+    read = max(1, round(count_words(document) / WORDS_A_MINUTE))
+    return Minutes(read, round(work_minutes(lines, questions, functions, sheet)), sheet)
 
 
 def minutes_of(env: BuildEnvironment, docname: str) -> Minutes:
@@ -180,8 +164,7 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
 
 def keep_minutes(app: Sphinx, document: nodes.document) -> None:
     """Keep the time that a page takes, before lines of provenance are added to its text."""
-    work = count_work(document, Path(app.env.doc2path(app.env.docname)))
-    counted = minutes(count_words(document), work)
+    counted = count_minutes(document, Path(app.env.doc2path(app.env.docname)))
     app.env.metadata[app.env.docname][MINUTES] = counted
 
 

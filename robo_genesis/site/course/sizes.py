@@ -12,7 +12,7 @@ from sphinx.config import Config
 from sphinx.directives.code import LiteralIncludeReader
 
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.site.course.facts import HIDDEN, STUB, WORDS_A_MINUTE, Work, has_sheet
+from robo_genesis.site.course.facts import HIDDEN, STUB, WORDS_A_MINUTE, has_sheet, work_minutes
 from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER
 from robo_genesis.site.text.left_out import without_docstrings
 
@@ -67,13 +67,13 @@ def size(notebook: NotebookNode, file: Path) -> Size:
     words = sum(map(count_words, texts))
     questions = sum(len(QUESTION.findall(text)) for text in texts)
     functions = sum(STUB in cell.source for cell in visible)
-    work = Work(sum(lines), questions, functions, has_sheet(file))
+    work = work_minutes(sum(lines), questions, functions, has_sheet(file))
     return Size(
         words=words,
         cells=len(visible),
         longest=max(lines, default=0),
         plots=sum(bool(PLOT.search(cell.source)) for cell in code),
-        minutes=round(words / WORDS_A_MINUTE + work.minutes),
+        minutes=round(words / WORDS_A_MINUTE + work),
         widest=max((*widths, *(width for t in texts for width in excerpt_widths(t, file.parent)))),
     )
 

@@ -7,10 +7,10 @@
 | {glance} l04 (directive) | a plot of this build's lab and its last camera frame |
 """
 
-import io
 import os
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -25,8 +25,11 @@ from robo_genesis.pipeline.pages.built import LAST_OUTPUTS
 from robo_genesis.site.course.course_map import MapDirective, page_link
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, page_run, status_list
-from robo_genesis.site.evidence.panel import Picture, figure, frames
+from robo_genesis.site.evidence.panel import Picture, drawn_picture, figure, frames
 from robo_genesis.site.evidence.provenance import all_runs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 EVIDENCE = "evidence/index"
 """The page that explains the evidence."""
@@ -122,13 +125,11 @@ def shown_predicate(run: PageRun) -> Predicate | None:
 
 def response(folder: Path, compared: Compared | Moving) -> Picture:
     """Return the first channel of the compared cases, drawn from a bundle's arrays."""
+    from robo_genesis.core import plotting  # it loads slowly
+
     runs = read_runs(folder, compared)
-    stream = io.BytesIO()
 
-    from robo_genesis.core import plotting
-
-    with plotting.course_style():
-        drawing = plotting.figure(3.2)
+    def draw(drawing: "Figure") -> None:
         ax = drawing.subplots()
         plotting.first_channel(ax, runs, course_marks())
         ax.set_xlim(0, compared.until)
@@ -136,8 +137,8 @@ def response(folder: Path, compared: Compared | Moving) -> Picture:
         fall = sum(last < first for first, last in ends) > len(ends) / 2
         ax.set_title(ax.get_title(loc="left"), loc="left", pad=6)
         ax.legend(loc="upper right" if fall else "lower right")
-        drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    return Picture("response", ".svg", stream.getvalue(), runs.alt, runs.caption)
+
+    return drawn_picture(3.2, draw, runs.alt, runs.caption)
 
 
 def setup(app: Sphinx) -> None:

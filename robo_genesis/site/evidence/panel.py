@@ -6,10 +6,11 @@ gives the state, the reason and the command that records a new one.
 """
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from docutils import nodes
 from docutils.parsers.rst.directives import flag
@@ -29,6 +30,9 @@ from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import BACKEND, READABLE
 from robo_genesis.site.evidence.plain_nodes import image, marked, text_table
 from robo_genesis.site.replay.directive import replay_block
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,23 +145,35 @@ def backend_facts(predicate: Predicate) -> nodes.Node:
 def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture:
     """Return every channel of the compared cases, drawn from the bundle's arrays."""
     runs = read_runs(folder, compared)
-    stream, count = io.BytesIO(), len(runs.channels)
 
-    from robo_genesis.core import plotting
-
-    with plotting.course_style():
-        drawing = plotting.figure(0.5 + 3 * count)
-        axes = drawing.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+    def draw(drawing: "Figure") -> None:
+        axes = drawing.subplots(len(runs.channels), 1, sharex=True, squeeze=False)[:, 0]
         for ax, drawn in zip(axes, runs.channels, strict=True):
             levels = runs.levels_of(drawn)
             plotting.channel(ax, runs.t, drawn, runs.subject, course_marks(), levels)
             ax.label_outer()
-        drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+
+    from robo_genesis.core import plotting  # it loads slowly
+
     names = listed([channel.name for channel in runs.channels])
     what = f"{names.capitalize()} of {runs.subject}"
     several = f", with the cases {compared.names} drawn over each other"
     alt = f"{what} over time on {backend}{several if len(runs.traces) > 1 else ''}."
     caption = f"{what} on {backend}, drawn from the arrays of the recorded run."
+    return drawn_picture(0.5 + 3 * len(runs.channels), draw, alt, caption)
+
+
+def drawn_picture(
+    height: float, draw: Callable[["Figure"], None], alt: str, caption: str
+) -> Picture:
+    """Return a figure of a height [in] in the course's style as a picture."""
+    from robo_genesis.core import plotting  # it loads slowly
+
+    stream = io.BytesIO()
+    with plotting.course_style():
+        drawing = plotting.figure(height)
+        draw(drawing)
+        drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return Picture("response", ".svg", stream.getvalue(), alt, caption)
 
 

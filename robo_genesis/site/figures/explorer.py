@@ -23,7 +23,7 @@ may have a `tag` and a `state`, and one cell `opens`.
 
 import base64
 import pickle
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from html import escape
@@ -37,7 +37,7 @@ from PIL import Image
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.core import project, tables
+from robo_genesis.core import tables
 from robo_genesis.core.declaration import Compared
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
@@ -53,6 +53,7 @@ from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import image
 from robo_genesis.site.replay import controls
 from robo_genesis.site.replay.directive import (
+    bundle_inputs,
     bundle_of,
     leave_model,
     origin_html,
@@ -101,13 +102,6 @@ class Recorded:
         """The experiment of the accepted bundle."""
         return accepted_experiment(self.folder, bundle.read_manifest(self.folder))
 
-    def inputs(self) -> Iterator[bytes]:
-        """Yield everything that determines what is made of the bundle."""
-        sources = (project.ROOT / "robo_genesis").rglob("*.py")
-        files = (path for path in self.folder.rglob("*") if path.is_file())
-        for path in sorted([*files, *sources]):
-            yield path.read_bytes()
-
     def explored(self, *name: str) -> dict[str, Any]:
         """Return the data of an explorer of the lesson; see the module's table.
 
@@ -115,7 +109,7 @@ class Recorded:
             ShownError: the lesson has no explorer.
         """
         found = find(f"robo_genesis.lessons.{self.lesson}.explorer.explored")
-        inputs = [repr((self.lesson, name)).encode(), *self.inputs()]
+        inputs = [repr((self.lesson, name)).encode(), *bundle_inputs(self.folder)]
         made = derived("explorer", inputs, lambda: pickle.dumps(found(self.experiment, *name)))
         data: dict[str, Any] = pickle.loads(made)
         return data
@@ -261,7 +255,7 @@ class Postures:
             for run, of in targets.items()
         }
         camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
-        inputs = [self.name.encode(), self.shape.read_bytes(), *self.recorded.inputs()]
+        inputs = [self.name.encode(), self.shape.read_bytes(), *bundle_inputs(self.recorded.folder)]
         model = derived("replay", inputs, lambda: self.model(traces, camera))
         still = derived("poster", inputs, lambda: drawn(model, camera))
         files, weight = leave_model(self.env, self.name, model)

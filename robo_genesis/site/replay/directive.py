@@ -98,7 +98,8 @@ def replay_block(
         if drawn.places:
             runs, parts = side_by_side(runs, parts, drawn.places)
         around = scenery(parts, runs, hinged=not drawn.places)
-        inputs = [*model_inputs(shape, folder, runs)]
+        drawn_by = repr((list(runs.traces), list(runs.links), runs.view.credit)).encode()
+        inputs = [drawn_by, shape.read_bytes(), *bundle_inputs(folder)]
         what = around, runs.links, runs.traces, runs.view.credit
         model = derived("replay", inputs, lambda: replay_model.glb(*what))
         still = derived("poster", inputs, lambda: picture(model, around.camera))
@@ -177,11 +178,11 @@ def shape_file(lesson: str, thing: str) -> Path:
     return shape
 
 
-def model_inputs(shape: Path, folder: Path, runs: Runs) -> Iterator[bytes]:
-    """Yield everything that determines the GLB of a replay and its picture."""
-    yield repr((list(runs.traces), list(runs.links), runs.view.credit)).encode()
+def bundle_inputs(folder: Path) -> Iterator[bytes]:
+    """Yield everything that determines what is made of a bundle."""
     sources = (project.ROOT / "robo_genesis").rglob("*.py")
-    for path in (shape, folder / "arrays.json", *sorted(folder.glob("arrays/*")), *sorted(sources)):
+    files = (path for path in folder.rglob("*") if path.is_file())
+    for path in sorted([*files, *sources]):
         yield path.read_bytes()
 
 
