@@ -8,7 +8,7 @@ can have curves of the chosen run, or the chosen posture in 3D. The data come fr
 |---|---|
 | `columns` | names of the values that are read |
 | `maps` | each a `label`, a `caption`, labels of `columns`, and `rows` of a `label` and `cells` |
-| `measures` | each a `label`; with a `noun`, the reader is asked what the next run will show |
+| `measures` | each a `label`; a `noun` makes questions about the next run |
 | `choices` | labels of the choice of a map and of a measure |
 | `notes` | the meaning of signs in the cells |
 | `curves` | what is drawn of a run; each map has the axes, each cell the packed values |
