@@ -25,31 +25,22 @@ from robo_genesis.site.text.questions import (
 
 
 @pytest.mark.parametrize(
-    ("unit", "order", "text"),
+    ("unit", "order", "metric", "text"),
     [
-        ("s", "lower", "earlier"),
-        ("s", "higher", "later"),
-        ("rad", "higher", "more"),
-        ("rad/s", "lower", "less"),
-        ("1", None, UNDECIDED),
-        ("m", "equal", "the same (to 0.1 mm)"),
-        ("1", "equal", "the same"),
+        ("s", "lower", "", "earlier"),
+        ("s", "higher", "", "later"),
+        ("rad", "higher", "", "more"),
+        ("rad/s", "lower", "", "less"),
+        ("1", None, "", UNDECIDED),
+        ("m", "equal", "", "the same (to 0.1 mm)"),
+        ("1", "equal", "", "the same"),
+        ("s", "equal", "settling_time", "at the same time"),
+        ("s", "equal", "rise_time", "about the same (less than 15 ms apart)"),
+        ("1", "equal", "saturation_samples", "about the same (less than 1.5 samples apart)"),
     ],
 )
-def test_exactly_the_measured_option_is_right(unit, order, text):
-    assert [name for name, right, _ in options(unit, order, "0.1 mm") if right] == [text]
-
-
-@pytest.mark.parametrize(
-    ("metric", "unit", "text"),
-    [
-        ("rise_time", "s", "about the same (less than 15 ms apart)"),
-        ("saturation_samples", "1", "about the same (less than 1.5 samples apart)"),
-        ("settling_time", "s", "at the same time"),
-    ],
-)
-def test_a_difference_within_the_declared_margin_is_about_the_same(metric, unit, text):
-    shown = options(unit, "equal", "0.1 mm", margin=declared_margin("l04", metric))
+def test_exactly_the_measured_option_is_right(unit, order, metric, text):
+    shown = options(unit, order, "0.1 mm", margin=declared_margin("l04", metric))
     assert [name for name, right, _ in shown if right] == [text]
 
 

@@ -5,7 +5,6 @@ import shutil
 from types import SimpleNamespace
 
 import numpy as np
-import pygltflib
 import pytest
 import trimesh
 from bundles import engine_on, written
@@ -32,17 +31,6 @@ from robo_genesis.site.evidence import panel as sphinx_panel
 from robo_genesis.site.evidence.ledger_data import PageRun
 
 FILMED = Filmed("the box", "the first run")
-
-
-def test_backend_facts_are_the_manifest_s(folder):
-    predicate(environment={"GS_ENABLE_ZEROCOPY": "0", "EGL_LOG": "a|b`c"})(folder)
-    facts = bundle.read_manifest(folder).predicate
-    table = sphinx_panel.backend_facts(facts)
-    found = dict(rows_of([table]))
-    assert found["device"] == facts.backend.device_name
-    assert found["run"] == facts.run_id[:8]
-    assert found["renderer"] == facts.render.renderer
-    assert found["engine switches"] == "GS_ENABLE_ZEROCOPY=0\n\nEGL_LOG=a|b`c"
 
 
 ATTACKS = (
@@ -114,17 +102,6 @@ def test_a_panel_with_text_that_is_no_markup(folder, tmp_path, record, monkeypat
     assert f"The link {attack} moves farthest" in panel.astext()
     assert not [text for text in said if attack in text]
     assert attack not in "".join(raw.astext() for raw in panel.findall(nodes.raw))
-
-
-def test_the_figure_changes_with_the_bundle_s_arrays(folder, monkeypatch):
-    shown = {"G1": "G1", "G2": "G2", "G3": "G3"}
-    monkeypatch.setattr(replay_data, "read_trace", lambda f, a, case: read_trace(f, a, shown[case]))
-    first, same = (sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu") for _ in "ab")
-    assert first.content.startswith(b"<?xml")
-    assert "joint4 over time on cpu" in first.alt
-    assert same == first
-    shown |= {"G1": "G2", "G2": "G1"}
-    assert sphinx_panel.response(folder, LESSONS["l04"].compared, "cpu") != first
 
 
 def test_frames_are_the_bundle_s_files_and_only_where_there_are_any(folder):
@@ -297,13 +274,6 @@ def test_a_recorded_run_replays_from_its_own_record(tmp_path, record):
     assert block["evidence_runs"] == ("l04/lab/amdgpu/recorded",)
     name = "replay-l04-lab-amdgpu-recorded"
     assert f'data-model="../replay/{name}.js"' in block[0].astext()
-    written = tmp_path / "book" / "_build" / "html" / "replay"
-    assert (written / f"{name}.js").read_bytes().startswith(b"(globalThis.replayModels ??= {})")
-    trace = read_trace(run.folder, bundle.read_arrays(run.folder), "G2")
-    model = pygltflib.GLTF2.load_binary(written / f"{name}.glb")
-    assert [animation.name for animation in model.animations] == ["G1", "G2", "G3"]
-    assert trace.link_pos[:, 2].astype(np.float32).tobytes() in model.binary_blob()
-    assert len(list(block.findall(nodes.row))) == 1 + len(trace.t)
 
 
 def test_a_lecture_shows_the_compared_metrics_and_no_picture(tmp_path, record, monkeypatch):
