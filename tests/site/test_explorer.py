@@ -11,7 +11,7 @@ from browsers import SOFTWARE, launched
 from closed_views import plane_depth, sphere_depth
 from docutils import nodes
 from playwright.sync_api import Browser, Page
-from test_replay import HEIGHT, falling
+from test_replay import POSES, falling
 from watching import errors, violations
 from without_sphinx import Panel, page_of
 
@@ -160,7 +160,8 @@ def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(postures,
     page.get_by_text("Turn the view").wait_for(timeout=120_000)
     page.get_by_role("gridcell", name="0.20 margin [rad]: z 1, x 0.2, accepted").tap()
     page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.049")
-    assert page.evaluate(HEIGHT) == pytest.approx(falling(2.0).link_pos[5, 0, 2], abs=1e-5)
+    place = page.evaluate(POSES)["box"]["position"]
+    assert place == pytest.approx(falling(2.0).link_pos[5, 0], abs=1e-5)
     assert texts(page, ".shown") == ["Answer 5, accepted."]
     assert violations(page, ".explorer", preload=False) == []
 

@@ -11,13 +11,11 @@ import numpy as np
 import pygltflib as gltf
 import pytest
 from bs4 import BeautifulSoup
-from falling import LINKS, falling
 
 from robo_genesis.core.channels import Runs
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.html.checks import SERVICES
-from robo_genesis.sim.bodies import channels as body_channels
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay import directive as sphinx_replay
 from robo_genesis.site.replay.scenery import Camera, Scenery
@@ -28,95 +26,50 @@ def joint(pristine) -> Runs:
     return read_runs(pristine, LESSONS["l04"].compared)
 
 
-@pytest.fixture(scope="module")
-def box() -> Runs:
-    traces = {"high": falling(2.0, dt=0.0025), "low": falling(1.0, dt=0.0025)}
-    return body_channels.runs(traces, LINKS, "box", "box")
-
-
 CAMERA = Camera(np.array([0.2, 0.5, 0.0]), 1.5)
-AROUND = {
-    "robot": Scenery([], CAMERA, axis=True, target={"hand": np.eye(4)}),
-    "box": Scenery([], CAMERA, followed=0),
-}
+AROUND = Scenery([], CAMERA, axis=True, target={"hand": np.eye(4)})
 FILES = controls.Files("replay/a.js", "replay/viewer.js")
 
 
 def parsed(runs: Runs) -> BeautifulSoup:
-    camera = AROUND[runs.view.thing].camera
-    text = controls.opening("replay-x", runs, camera, FILES) + controls.panel("replay-x", runs, 560)
+    text = controls.opening("replay-x", runs, CAMERA, FILES) + controls.panel("replay-x", runs, 560)
     return BeautifulSoup(text, "html.parser").div
 
 
-SHOWN = {
-    "joint": {
-        "legend": "Run of joint4",
-        "weight": "Play loads the robot in 3D: 560 kB.",
-        "picture": "The robot at the start of G1, drawn from the recorded poses.",
-        "caption": "Recorded poses of the robot. Yellow rod: the axis of joint4. "
-        "Dark and translucent: joint4 at its target, other joints at rest.",
-        "alt": "The robot in 3D, in the posture of the sample that is shown. joint4 moves.",
-        "channels": [("position", "rad", 4), ("velocity", "rad/s", 4), ("control force", "N·m", 2)],
-        "time digits": "2",
-        "last sample": "120",
-        "readout": ["time", "position", "velocity", "control force", "target", "force limit"],
-        "runs": {"G1": "case-g1", "G2": "case-g2", "G3": "case-g3"},
-    },
-    "box": {
-        "legend": "Run of the box",
-        "weight": "Play loads the box in 3D: 560 kB.",
-        "picture": "The box at the start of high, drawn from the recorded poses.",
-        "caption": "Recorded poses of the box. The view follows the box horizontally.",
-        "alt": "The box in 3D, where it is at the sample that is shown.",
-        "channels": [("height", "m", 4), ("vertical velocity", "m/s", 4)],
-        "time digits": "4",
-        "last sample": "30",
-        "readout": ["time", "height", "vertical velocity"],
-        "runs": {"high": "case-g1", "low": "case-g2"},
-    },
-}  # fmt: skip
-
-
-HEADS = {"joint": ["q [rad]", "q̇ [rad/s]", "force [N·m]"], "box": ["z [m]", "ż [m/s]"]}
-
-
-@pytest.mark.parametrize("kind", HEADS)
-def test_the_table_has_every_sample_of_each_channel(request, kind):
-    runs = request.getfixturevalue(kind)
-    lines = [line.strip("| ").split(" | ") for line in controls.samples(runs).splitlines()]
-    assert lines[0] == [
-        "t [s]",
-        *(f"{case} {head}" for case in runs.traces for head in HEADS[kind]),
-    ]
+def test_the_table_has_every_sample_of_each_channel(joint):
+    lines = [line.strip("| ").split(" | ") for line in controls.samples(joint).splitlines()]
+    heads = ["q [rad]", "q̇ [rad/s]", "force [N·m]"]
+    assert lines[0] == ["t [s]", *(f"{case} {head}" for case in joint.traces for head in heads)]
     numbers = np.array([[float(c.replace("−", "-")) for c in row] for row in lines[2:]])
-    recorded = [channel.values[case] for case in runs.traces for channel in runs.channels]
-    assert numbers == pytest.approx(np.column_stack([runs.t, *recorded]), abs=6e-5)
+    recorded = [channel.values[case] for case in joint.traces for channel in joint.channels]
+    assert numbers == pytest.approx(np.column_stack([joint.t, *recorded]), abs=6e-5)
 
 
-@pytest.mark.parametrize("kind", SHOWN)
-def test_the_controls_name_their_parts_and_have_the_script_s_data(request, kind):
-    runs = request.getfixturevalue(kind)
-    root = parsed(runs)
+def test_the_controls_name_their_parts_and_have_the_script_s_data(joint):
+    root = parsed(joint)
     slider = root.select_one("input[type=range]")
-    assert {
-        "legend": root.legend.get_text(),
-        "weight": root.select_one("[role=status]").get_text(),
-        "picture": controls.alt(runs),
-        "caption": controls.caption(runs, AROUND[runs.view.thing]),
-        "alt": root["data-alt"],
-        "channels": [
-            (c["name"], c["unit"], c["digits"]) for c in json.loads(root["data-channels"])
-        ],
-        "time digits": root["data-time-digits"],
-        "last sample": slider["max"],
-        "readout": [term.get_text() for term in root.select("dt")],
-        "runs": {one["value"]: one["data-mark"] for one in root.select("input[type=radio]")},
-    } == SHOWN[kind]
-    assert root["class"] == ["replay"]
+    assert root.legend.get_text() == "Run of joint4"
+    assert root.select_one("[role=status]").get_text() == "Play loads the robot in 3D: 560 kB."
+    picture = "The robot at the start of G1, drawn from the recorded poses."
+    assert controls.alt(joint) == picture
+    assert controls.caption(joint, AROUND) == (
+        "Recorded poses of the robot. Yellow rod: the axis of joint4. Dark and translucent: joint4 "
+        "at its target, other joints at rest."
+    )
+    assert json.loads(root["data-channels"]) == [
+        {"name": "position", "unit": "rad", "digits": 4},
+        {"name": "velocity", "unit": "rad/s", "digits": 4},
+        {"name": "control force", "unit": "N·m", "digits": 2},
+    ]
+    assert (root["data-time-digits"], slider["max"]) == ("2", "120")
+    terms = ["time", "position", "velocity", "control force", "target", "force limit"]
+    assert [term.get_text() for term in root.select("dt")] == terms
+    runs = {one["value"]: one["data-mark"] for one in root.select("input[type=radio]")}
+    assert runs == {"G1": "case-g1", "G2": "case-g2", "G3": "case-g3"}
     assert (root["data-orbit"], root["data-target"]) == (CAMERA.orbit, CAMERA.target)
     assert (root["data-model"], root["data-viewer"]) == (FILES.model, FILES.viewer)
     assert root.select_one(f"label[for={slider['id']}]").get_text() == "Time"
-    assert len(root.select(".plots > .plot")) == len(SHOWN[kind]["channels"])
+    assert len(root.select(".plots > .plot")) == 3
 
 
 def test_levels_are_given_to_the_script_and_explained(joint):
