@@ -28,11 +28,12 @@ def joint(pristine) -> Runs:
 
 CAMERA = Camera(np.array([0.2, 0.5, 0.0]), 1.5)
 AROUND = Scenery([], CAMERA, axis=True, target={"hand": np.eye(4)})
-FILES = controls.Files("replay/a.js", "replay/viewer.js")
+FILES = {"model": "replay/a.js", "viewer": "replay/viewer.js"}
 
 
 def parsed(runs: Runs) -> BeautifulSoup:
-    text = controls.opening("replay-x", runs, CAMERA, FILES) + controls.panel("replay-x", runs, 560)
+    words = FILES | controls.data(runs, CAMERA)
+    text = controls.opening("replay", words) + controls.panel("replay-x", runs, 560)
     return BeautifulSoup(text, "html.parser").div
 
 
@@ -67,7 +68,7 @@ def test_the_controls_name_their_parts_and_have_the_script_s_data(joint):
     runs = {one["value"]: one["data-mark"] for one in root.select("input[type=radio]")}
     assert runs == {"G1": "case-g1", "G2": "case-g2", "G3": "case-g3"}
     assert (root["data-orbit"], root["data-target"]) == (CAMERA.orbit, CAMERA.target)
-    assert (root["data-model"], root["data-viewer"]) == (FILES.model, FILES.viewer)
+    assert (root["data-model"], root["data-viewer"]) == (*FILES.values(),)
     assert root.select_one(f"label[for={slider['id']}]").get_text() == "Time"
     assert len(root.select(".plots > .plot")) == 3
 
@@ -97,7 +98,7 @@ def test_a_joint_s_motion_ends_with_its_quality(joint, traces):
 
 def test_words_are_escaped(joint):
     runs = replace(joint, subject='a"<b')
-    text = controls.opening("x", runs, CAMERA, FILES) + controls.panel("x", runs, 560)
+    text = controls.opening("replay", controls.data(runs, CAMERA)) + controls.panel("x", runs, 560)
     assert 'a"<b' not in text
     assert html.unescape(re.search('data-subject="([^"]*)"', text)[1]) == 'a"<b'
 

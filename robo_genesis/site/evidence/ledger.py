@@ -37,10 +37,6 @@ class scroll_box(nodes.container):  # noqa: N801
     """A box that scrolls a wide table and accepts the keyboard's focus."""
 
 
-class digest_text(nodes.inline):  # noqa: N801
-    """A sha256 whose first digits are visible, and all of them on hover or focus."""
-
-
 class Ledger(SphinxDirective):
     """List all runs, or all figures and tables of the site."""
 
@@ -149,7 +145,8 @@ def _reading_order(env: BuildEnvironment) -> list[str]:
 
 
 def _digest(value: str) -> nodes.Node:
-    return digest_text("", value, classes=["digest"])
+    """Return a sha256 whose first digits are visible, and all of them on hover or focus."""
+    return nodes.raw("", f'<code class="digest" tabindex="0">{value}</code>', format="html")
 
 
 def _link(text: str, address: str) -> nodes.Node:
@@ -186,16 +183,10 @@ def visit_scroll_box(self: Any, node: scroll_box) -> None:
     self.body.append(self.starttag(node, "div", CLASS="scroll-box", **given))
 
 
-def visit_digest(self: Any, node: digest_text) -> None:
-    """Open a digest, which becomes wider when it has the focus."""
-    self.body.append(self.starttag(node, "code", "", tabindex="0"))
-
-
 def setup(app: Sphinx) -> None:
     """Register the directive, its nodes and the two later steps."""
     app.add_directive("ledger", Ledger)
     app.add_node(ledger_part)
     app.add_node(scroll_box, html=(visit_scroll_box, lambda self, _: self.body.append("</div>\n")))
-    app.add_node(digest_text, html=(visit_digest, lambda self, _: self.body.append("</code>")))
     app.connect("doctree-resolved", fill_in)
     app.connect("build-finished", write_downloads)

@@ -154,11 +154,11 @@ def html(text: str) -> nodes.Node:
 
 def opening(kind: str, data: Mapping[str, Any], **words: str) -> nodes.Node:
     """Return the start of an explorer, with what `_static/explorer.js` needs to know."""
-    attributes = {"explorer": controls.as_json(data)} | words
-    given = " ".join(f'data-{name}="{escape(text)}"' for name, text in attributes.items())
+    start = controls.opening(
+        f"explorer {kind}".strip(), {"explorer": controls.as_json(data)} | words
+    )
     sentence = data.get("without_script")
-    needs = f'<p class="without-script">{escape(sentence)}</p>' if sentence else ""
-    return html(f'<div class="{f"explorer {kind}".strip()}" {given}>{needs}')
+    return html(start + (f'<p class="without-script">{escape(sentence)}</p>' if sentence else ""))
 
 
 def panel(data: Mapping[str, Any], first: str = "") -> nodes.Node:
@@ -261,11 +261,8 @@ class Postures:
         files, weight = leave_model(self.env, self.name, model)
         thing = self.view.thing
         alt = f"The {thing} at the start, drawn from the recorded poses."
-        words = {
-            "name": self.name, "alt": f"The {thing} in 3D, in the chosen posture.",
-            "orbit": camera.orbit, "target": camera.target,
-            "model": files.model, "viewer": files.viewer,
-        }  # fmt: skip
+        words = files | {"orbit": camera.orbit, "target": camera.target}
+        words["alt"] = f"The {thing} in 3D, in the chosen posture."
         loads = f'<p role="status">Show in 3D loads the {escape(thing)}: {weight} kB.</p>'
         return [
             opening("with-model", data, **words),

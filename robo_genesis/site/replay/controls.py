@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -23,14 +22,6 @@ runs of more than `LONG` seconds."""
 LONG = 3.0
 
 
-@dataclass(frozen=True, slots=True)
-class Files:
-    """Addresses of the scripts that hold the model and the viewer of a replay."""
-
-    model: str
-    viewer: str
-
-
 PLOT = '<div class="plot"></div>'
 """The script draws a channel here; a page may have no picture that is not in the ledger."""
 
@@ -49,17 +40,10 @@ def samples(runs: Runs) -> str:
     return tables.markdown([dict(zip(columns, row, strict=True)) for row in rows])
 
 
-def opening(name: str, runs: Runs, camera: "Camera", files: Files) -> str:
-    """Return the start of a replay as HTML, with what `_static/replay.js` needs to know.
-
-    Args:
-        name: of the replay, unique on the site.
-        runs: the runs to play.
-        camera: of the model.
-        files: what loads with the first Play.
-    """
-    model, viewer = f'data-model="{escape(files.model)}"', f'data-viewer="{escape(files.viewer)}"'
-    return f'<div class="replay" {_data(name, runs, camera)} {model} {viewer}>'
+def opening(kind: str, words: Mapping[str, str]) -> str:
+    """Return the start of a replay or an explorer as HTML, with the data for its script."""
+    data = " ".join(f'data-{key}="{escape(text)}"' for key, text in words.items())
+    return f'<div class="{kind}" {data}>'
 
 
 def over_the_picture(button: str) -> str:
@@ -113,12 +97,11 @@ def panel(name: str, runs: Runs, weight: int) -> str:
     )
 
 
-def _data(name: str, runs: Runs, camera: "Camera") -> str:
-    """Return the data of all cases for the script as attributes, the channels as JSON."""
+def data(runs: Runs, camera: "Camera") -> dict[str, str]:
+    """Return the data of all cases for `_static/replay.js`, the channels as JSON."""
     view = runs.view
     channels = [{"name": c.name, "unit": c.unit, "digits": c.digits} for c in runs.channels]
-    words = {
-        "name": name,
+    return {
         "subject": runs.subject,
         "channels": as_json(channels),
         "time-digits": str(time_digits(next(iter(runs.traces.values())).dt)),
@@ -127,7 +110,6 @@ def _data(name: str, runs: Runs, camera: "Camera") -> str:
         "orbit": camera.orbit,
         "target": camera.target,
     }
-    return " ".join(f'data-{key}="{escape(text)}"' for key, text in words.items())
 
 
 def _cases(name: str, runs: Runs) -> str:

@@ -105,7 +105,7 @@ def replay_block(
         still = derived("poster", inputs, lambda: picture(model, around.camera))
         files, weight = leave_model(env, name, model)
         shown = first_channel(runs) if brief else runs  # the model is the same
-        opening = controls.opening(name, shown, around.camera, files)
+        opening = controls.opening("replay", files | controls.data(shown, around.camera))
     except (LookupError, ValueError) as error:
         raise directive.error(f"replay: {key}: {error}") from error
     samples = f"samples of {', '.join(runs.traces)} as a table"
@@ -131,17 +131,17 @@ def replay_folder(env: BuildEnvironment) -> str:
     return "../" * env.docname.count("/") + FOLDER
 
 
-def leave_model(env: BuildEnvironment, name: str, model: bytes) -> tuple[controls.Files, int]:
+def leave_model(env: BuildEnvironment, name: str, model: bytes) -> tuple[dict[str, str], int]:
     """Write a model for the page that is read.
 
     Returns:
-        What loads on a reader's request, and its compressed size [kB].
+        Name and addresses of what loads on a reader's request, and its compressed size [kB].
     """
     files_of, up = Path(env.app.outdir) / FOLDER, replay_folder(env)
     written = write_model(files_of, name, model)
     note_files(env, files_of / f"{name}.glb", files_of / f"{name}.js")
     weight = round((written + len(gzip.compress(viewer.viewer()))) / 1000)
-    return controls.Files(f"{up}/{name}.js", f"{up}/{VIEWER}"), weight
+    return {"name": name, "model": f"{up}/{name}.js", "viewer": f"{up}/{VIEWER}"}, weight
 
 
 def still_picture(env: BuildEnvironment, name: str, still: bytes, alt: str) -> nodes.image:
