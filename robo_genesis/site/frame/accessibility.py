@@ -1,6 +1,6 @@
 """Corrects markup for a keyboard, a screen reader, speech input and a narrow screen.
 
-`tests/site/test_accessible.py` checks the result with axe-core. In a table that is wider than a
+`tests/site/sweep.py` checks the result with axe-core. In a table that is wider than a
 phone, each row becomes a block of named values there: the style sheet stacks its cells and shows
 each column's head beside its value. A table that fits, or that has too many rows to be read as
 blocks, stays a table.

@@ -14,7 +14,7 @@ pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
 LECTURE = "lessons/l04-joint-control/lecture"
 LAB = "lessons/l04-joint-control/lab"
-TESTS = Path(__file__).parents[1]
+TESTS = Path(__file__).parents[2]
 ANCHORS = [TESTS / "site" / "anchors.txt", *sorted(TESTS.glob("lessons/*/anchors.txt"))]
 """The anchors of each lesson's pages are a file beside the lesson's tests."""
 

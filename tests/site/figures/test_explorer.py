@@ -11,9 +11,8 @@ from browsers import SOFTWARE, launched
 from closed_views import plane_depth, sphere_depth
 from docutils import nodes
 from playwright.sync_api import Browser, Page
-from test_replay import POSES, falling
-from watching import errors, violations
-from without_sphinx import Panel, page_of
+from watching import POSES, errors, violations
+from without_sphinx import Panel, falling, page_of
 
 from robo_genesis.core.channels import View as BodyView
 from robo_genesis.core.declaration import Compared
