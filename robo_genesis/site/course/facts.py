@@ -17,7 +17,7 @@ from sphinx.environment import BuildEnvironment
 
 from robo_genesis.core.git import git_or_none
 from robo_genesis.site.evidence.origin import above
-from robo_genesis.site.text.questions import choice
+from robo_genesis.site.text.question_nodes import choice
 
 WORDS_A_MINUTE = 200
 """A slow pace, for technical prose; code, tables and formulas are not counted."""

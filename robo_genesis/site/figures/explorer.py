@@ -24,12 +24,11 @@ may have a `tag` and a `state`, and one cell `opens`.
 import base64
 import pickle
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from html import escape
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from docutils import nodes
@@ -43,14 +42,13 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.shown import ShownError, find
-from robo_genesis.core.trace import Trace
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import drawn_cases
 from robo_genesis.pipeline.pages.bound import accepted_experiment
-from robo_genesis.sim.visual_shape import WORLD, Part, load_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import image
+from robo_genesis.site.figures.posture_model import glb, with_target
 from robo_genesis.site.replay import controls
 from robo_genesis.site.replay.directive import (
     bundle_inputs,
@@ -62,13 +60,6 @@ from robo_genesis.site.replay.directive import (
     stage,
     still_picture,
 )
-
-if TYPE_CHECKING:
-    from robo_genesis.site.replay.scenery import Camera  # loads slowly
-
-CROSS, CROSS_LENGTH, CROSS_RADIUS = "target", 0.3, 0.006
-"""Name of the cross at the target, which moves like a link, length and radius of its rods [m]. They
-are longer than the hand, which hides the target when it is there."""
 
 
 class ExplorerDirective(SphinxDirective):
@@ -256,7 +247,10 @@ class Postures:
         }
         camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
         inputs = [self.name.encode(), self.shape.read_bytes(), *bundle_inputs(self.recorded.folder)]
-        model = derived("replay", inputs, lambda: self.model(traces, camera))
+        links = self.recorded.experiment.links
+        model = derived(
+            "replay", inputs, lambda: glb(self.shape, links, traces, camera, self.view.credit)
+        )
         still = derived("poster", inputs, lambda: drawn(model, camera))
         files, weight = leave_model(self.env, self.name, model)
         thing = self.view.thing
@@ -275,41 +269,10 @@ class Postures:
             panel(data, loads),
         ]
 
-    def model(self, traces: Mapping[str, Trace], camera: "Camera") -> bytes:
-        """Return the model of all answers, one animation a map, with the cross and a floor."""
-        import trimesh  # these load slowly
-
-        from robo_genesis.site.replay import model
-        from robo_genesis.site.replay.scenery import AXIS_RGB, Scenery, floor_of
-
-        parts = [part for part in load_shape(self.shape) if part.link != WORLD]
-        half = CROSS_LENGTH / 2 * np.eye(3)
-        rods = [trimesh.creation.cylinder(CROSS_RADIUS, segment=[-end, end]) for end in half]
-        cross = [Part(CROSS, AXIS_RGB, rod.vertices, rod.faces) for rod in rods]
-        scenery = Scenery([*parts, *cross, *floor_of(parts)], camera)
-        links = [*self.recorded.experiment.links, CROSS]
-        return model.glb(scenery, links, traces, self.view.credit)
-
     def origin(self) -> nodes.Node:
         """Return the line that names the run and the origin of the shape."""
         up = replay_folder(self.env)
         return html(origin_html(self.name, self.recorded.folder, up, self.view.credit))
-
-
-def with_target(trace: Trace, targets: FloatArray) -> Trace:
-    """Return answers with one more link, the target of each; before the first, that of the first.
-
-    Args:
-        trace: a start and m answers.
-        targets: (m, 3) [m].
-    """
-    places = np.vstack([targets[:1], targets])[:, None]
-    turns = np.broadcast_to([1.0, 0.0, 0.0, 0.0], (len(places), 1, 4))
-    return replace(
-        trace,
-        link_pos=np.concatenate([trace.link_pos, places], axis=1),
-        link_quat=np.concatenate([trace.link_quat, turns], axis=1),
-    )
 
 
 def setup(app: Sphinx) -> None:

@@ -8,7 +8,7 @@ from docutils.core import publish_doctree
 from tiny_book import git
 
 from robo_genesis.site.course import facts
-from robo_genesis.site.text.questions import choice
+from robo_genesis.site.text.question_nodes import choice
 
 
 def commit(folder, text, subject):

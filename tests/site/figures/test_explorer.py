@@ -24,6 +24,7 @@ from robo_genesis.sim.camera import record as view_record
 from robo_genesis.sim.camera.geometry import intrinsics, rays
 from robo_genesis.sim.camera.views import View
 from robo_genesis.site.figures import explorer
+from robo_genesis.site.figures.posture_model import CROSS
 
 NAME = "postures-l99-answers-cpu-reach"
 TARGETS = np.array([[0.1 * k, 0.0, 0.5] for k in range(40)])
@@ -130,7 +131,7 @@ def test_every_answer_is_in_a_table_and_in_the_model_with_its_target(postures, t
     file = tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.glb"
     model = pygltflib.GLTF2.load_binary(file)
     assert [animation.name for animation in model.animations] == ["upright", "level"]
-    assert {"box", explorer.CROSS} <= {node.name for node in model.nodes}
+    assert {"box", CROSS} <= {node.name for node in model.nodes}
     assert np.vstack([TARGETS[:1], TARGETS]).astype(np.float32).tobytes() in model.binary_blob()
 
 

@@ -8,7 +8,7 @@ import pytest
 from robo_genesis.core.comparison import compare_values
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.site.text import questions
+from robo_genesis.site.text import question_nodes, questions
 from robo_genesis.site.text.questions import (
     JUDGED,
     LOWER,
@@ -114,9 +114,9 @@ def test_a_tolerance_is_a_share_in_percent():
 
 def written(node):
     page = SimpleNamespace(body=[])
-    questions.visit_question(page, node)
-    numeric = isinstance(node, questions.number)
-    (questions.depart_number if numeric else questions.depart_choice)(page, node)
+    question_nodes.visit_question(page, node)
+    numeric = isinstance(node, question_nodes.number)
+    (question_nodes.depart_number if numeric else question_nodes.depart_choice)(page, node)
     return "".join(page.body)
 
 
@@ -124,7 +124,9 @@ SHOWN = {"number": 3, "answer": "G1 < G2", "origin": "Measured"}
 
 
 def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
-    node = questions.choice("", options=options("s", "higher", "5 ms", {"lower": "F < 9"}), **SHOWN)
+    node = question_nodes.choice(
+        "", options=options("s", "higher", "5 ms", {"lower": "F < 9"}), **SHOWN
+    )
     html = written(node)
     assert re.findall(r'feedback (\w+)">(\w+)\. (.*?)</p>', html) == [
         ("wrong", "No", "F &lt; 9 G1 &lt; G2"),
@@ -163,9 +165,9 @@ FEEDBACK += [("x57.3", "No. In degrees.")]
 @pytest.fixture
 def asked(browser):
     """A page with a choice and a number, and the course's script and style."""
-    first = questions.choice("", options=options("s", None, "5 ms", {"lower": "Why"}), **SHOWN)
+    first = question_nodes.choice("", options=options("s", None, "5 ms", {"lower": "Why"}), **SHOWN)
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
-    second = questions.number("", **SHOWN | {"number": 4}, **given)
+    second = question_nodes.number("", **SHOWN | {"number": 4}, **given)
     script, style = (BOOK / "_static" / name for name in ("choice.js", "course.css"))
     page = browser.new_page()
     page.set_content(
