@@ -22,8 +22,8 @@ from robo_genesis.core.declaration import Compared, Filmed, Moving
 from robo_genesis.core.text import listed
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison, compare
-from robo_genesis.evidence.rows import DIFFERS
 from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.evidence.rows import DIFFERS
 from robo_genesis.lessons import compared_cases, course_marks, filmed
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import PageRun

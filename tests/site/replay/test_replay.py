@@ -22,6 +22,7 @@ from robo_genesis import lessons as registry
 from robo_genesis.core.declaration import Filmed, Lesson, Moving
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import read_any_trace, write_traces
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence import course_runs as sphinx_glance
@@ -55,7 +56,7 @@ def dropped(folder, monkeypatch, tmp_path, built):
     shutil.rmtree(folder / "arrays")
     traces = {"high": falling(2.0), "low": falling(1.0)}
     arrays = write_traces(folder, traces, None, ["box"])
-    (folder / "arrays.json").write_text(arrays.model_dump_json(by_alias=True))
+    write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
     spec = registry.LESSONS["l04"].spec
     lesson = Lesson(spec, {}, {}, Filmed("the box"), DROPPED)
     monkeypatch.setitem(registry.LESSONS.found, LESSON, lesson)
