@@ -58,7 +58,7 @@ NBCLIENT = "import nbclient, nbformat, sys; nbclient.execute(nbformat.read(sys.a
 BARE_CONFIG = """\
 import yaml
 extensions = ["myst_nb", "sphinx_external_toc", "sphinx_design", "sphinx_book_theme"]
-extensions += ["robo_genesis.site.executed_pages"]  # reads the executed pages
+extensions += ["robo_genesis.site.frame.executed"]  # reads the executed pages
 html_theme = "sphinx_book_theme"
 external_toc_path, external_toc_exclude_missing = "_toc.yml", True
 exclude_patterns = ["_build*", "_decisions"]

@@ -7,7 +7,7 @@ import sys
 
 from robo_genesis.core.project import BOOK, ProjectError
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.site.page_sizes import report
+from robo_genesis.site.course.sizes import report
 
 
 def main() -> int | str:

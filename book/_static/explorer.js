@@ -1,219 +1,367 @@
-/* Shows runs of the lecture's grid: a map to choose from, a question before each run, and the run
-   itself over the last one. The page contains all runs as JSON. */
+/* Recorded results to choose from: cells of a map, or pixels of a picture. A map can have curves, which
+   a question precedes, or the chosen posture in 3D. The page contains all data as JSON. */
 "use strict";
 
-/* plot.js and cell-map.js have loaded by then, in whatever order the page lists the scripts. */
+/* plot.js and stage.js have loaded by then, in whatever order the page lists the scripts. */
 document.addEventListener("DOMContentLoaded", () => {
-  const { add, draw, write } = globalThis.timePlot;
-  const { fill, make, mark } = globalThis.cellMap;
-  const HEIGHT = 210;
+  const KEYS = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
   const UNKNOWN = "these runs cannot show it";
+  const HEIGHT = 210;
 
-  function start(root) {
-    const data = JSON.parse(root.dataset.grid);
-    const [STEPS, KPS, KVS] = data.axes.map((axis) => axis.values);
-    const SIZE = KPS.length * KVS.length;
-    const find = (name) => root.querySelector(name);
-    const [step, measure, predict] = ["step", "measure", "predict"].map((n) => find(`[name=${n}]`));
-    const [question, output, plots] = [".question", "output", ".plots"].map(find);
-    const map = make(find(".map-of-runs"), "table", "", { class: "map" });
-    const svgs = Object.fromEntries(
-      plots.dataset.curves.split(" ").map((curve) => [
-        curve, add(plots, "svg", { role: "img", "data-curve": curve }),
-      ]),
+  function make(parent, name, text = "", attributes = {}) {
+    const element = document.createElement(name);
+    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+    element.textContent = text;
+    parent.append(element);
+    return element;
+  }
+
+  /* Writes the values beside their names, and those of the last choice if there are any. */
+  function writeValues(root, values, last) {
+    root.querySelectorAll("dl div").forEach((row, k) => {
+      row.replaceChildren(row.firstElementChild);
+      make(row, "dd", values[k]);
+      if (last) make(row, "dd", `last run: ${last[k]}`, { class: "last" });
+    });
+  }
+
+  const cellsOf = (map) => map.rows.flatMap((row) => row.cells);
+
+  /* A table of cells, one stop for the Tab key. Rows begin at the top, columns have labels below. */
+  function fill(table, map, choose) {
+    const found = new Map();
+    table.replaceChildren();
+    table.setAttribute("role", "grid");
+    table.createCaption();
+    map.rows.forEach(({ label, cells }, row) => {
+      const line = make(table, "tr");
+      make(line, "th", label, { scope: "row" });
+      cells.forEach((cell, column) => {
+        const place = make(line, "td", "", { role: "gridcell" });
+        found.set(cell, place);
+        place.addEventListener("click", () => choose(cell));
+        place.addEventListener("keydown", (event) => {
+          const [down, right] = KEYS[event.key] ?? [];
+          if (down === undefined || event.ctrlKey || event.altKey || event.metaKey) return;
+          event.preventDefault();
+          const next = map.rows[row + down]?.cells[column + right];
+          if (next) choose(next);
+        });
+      });
+    });
+    const foot = make(table, "tr");
+    make(foot, "td");
+    for (const label of map.columns) make(foot, "th", label, { scope: "col" });
+    return found;
+  }
+
+  /* The curves of a run over those of the last one. */
+  function curvesOf(root, { of, dt, until, drawn }) {
+    const { add, draw } = globalThis.timePlot;
+    const plots = root.querySelector(".plots");
+    const svgs = drawn.map(({ key }) => add(plots, "svg", { role: "img", "data-curve": key }));
+    let pair = [];
+
+    /* Draws one curve; the label of the last run is where the two differ most. */
+    function drawOne({ key, name, title, unit, zero, first }, svg) {
+      const [run, last] = pair;
+      const line = (cell, mark) => ({
+        times: cell[key].map((_, k) => (k + first) * dt),
+        values: cell[key].map((value) => zero + value * unit),
+        mark,
+      });
+      const ghost = last && line(last, "ghost");
+      const now = {
+        ...line(run, run.tag ? `case-${run.tag.toLowerCase()}` : "further"), chosen: true,
+      };
+      const axes = pair.filter(Boolean).map((cell) => cell.map.axes[key]);
+      const { x, y, top, floor } = draw(svg, {
+        title, height: HEIGHT, end: until, curves: ghost ? [ghost, now] : [now],
+        ticks: axes[0].ticks, levels: axes[0].levels,
+        low: Math.min(...axes.map(({ low }) => low)), high: Math.max(...axes.map(({ high }) => high)),
+      });
+      const grey = last ? ` Grey: the last run, ${last.name}, ${last.map.setting}.` : "";
+      svg.setAttribute("aria-label", `${name} of ${of} over time. ${run.sentence}${grey}`);
+      if (!last) return;
+      const apart = now.values.map((value, k) => Math.abs(value - ghost.values[k]));
+      const at = apart.indexOf(Math.max(...apart));
+      const late = ghost.times[at] > until / 3;
+      const beside = y(ghost.values[at]) + (ghost.values[at] > now.values[at] ? -6 : 14);
+      add(svg, "text", {
+        class: late ? "ghost-label end" : "ghost-label",
+        x: x(ghost.times[at]) + (late ? -6 : 6),
+        y: Math.min(Math.max(beside, top + 26), floor - 16), // clear of the limits
+      }, `last run: ${last.name}`);
+    }
+
+    const redraw = () => drawn.forEach((curve, k) => drawOne(curve, svgs[k]));
+    new ResizeObserver(() => pair.length && redraw()).observe(plots);
+    return (run, last) => {
+      pair = [run, last];
+      redraw();
+    };
+  }
+
+  /* The chosen posture in 3D, once a reader asks for it. Where that fails, map and values remain. */
+  function modelOf(root, dt) {
+    const { Scene, draws3D } = globalThis.stage;
+    const [button, status, shown] = [".play", "[role=status]", ".shown"].map((name) =>
+      root.querySelector(name),
     );
-    let shown = data.opens; // the run whose curves are drawn
-    let chosen = shown; // the cell of the map; it differs from `shown` while a question is open
+    const scene = new Scene(root);
+    let chosen;
+
+    function pose(cell) {
+      chosen = cell;
+      if (!scene.viewer) return;
+      scene.pose(cell.map.run, cell.answer * dt);
+      shown.textContent = cell.sentence;
+    }
+
+    button.addEventListener("click", async () => {
+      if (!draws3D()) {
+        status.textContent = "This browser draws no 3D: its WebGL 2 is missing or turned off. The map and its values do not need it.";
+        return;
+      }
+      button.disabled = true;
+      button.textContent = status.textContent = "Loading …";
+      try {
+        await scene.load();
+        button.hidden = true;
+        status.textContent = "Turn the view with the mouse, a finger or the arrow keys. The yellow cross is at the target.";
+        pose(chosen);
+      } catch {
+        button.textContent = "Show in 3D";
+        status.textContent = "The robot cannot be shown: a file is missing or cannot be read. The map and its values do not need it.";
+      }
+      button.disabled = false;
+    });
+    button.hidden = false;
+    return pose;
+  }
+
+  function startMap(root, data) {
+    const find = (name) => root.querySelector(name);
+    const [which, measure, predict] = ["map", "measure", "predict"].map((n) => find(`[name=${n}]`));
+    const [question, output] = [".question", "output"].map(find);
+    const table = make(find(".cells"), "table", "", { class: "map" });
+    const view = data.curves ? curvesOf(root, data.curves) : modelOf(root, data.dt);
+    for (const map of data.maps) for (const cell of cellsOf(map)) cell.map = map;
+    const all = data.maps.flatMap(cellsOf);
+    let open; // the map that the table shows
+    let places; // its cells in the table
+    let chosen = all.find((cell) => cell.opens) ?? all[0];
+    let shown = chosen; // it differs from `chosen` while a question is open
     let last = null; // the run before, drawn as a ghost
     let asked = 0; // how many questions were answered or skipped
 
-    /* Numbers of runs: the last axis changes fastest. */
-    const stepOf = (n) => STEPS[Math.floor(n / SIZE)];
-    const kpOf = (n) => KPS[Math.floor(n / KVS.length) % KPS.length];
-    const kvOf = (n) => KVS[n % KVS.length];
-    const gains = (n) => `KP ${kpOf(n)}, KV ${kvOf(n)}`;
-    const setting = (n) => `${gains(n)}, step ${stepOf(n)} rad`;
-    const written = ({ label }, n) => data.points[n].metrics[label];
-    const positions = (n) => data.points[n].q.map((q) => data.start + q * data.resolution.q);
-    const forces = (n) => data.points[n].force.map((force) => force * data.resolution.force);
-
-    /* The map: KP upwards, KV to the right. A cell's key is the number of its gains. */
-    const rows = KPS.map((kp, row) => ({
-      label: kp, cells: KVS.map((_, column) => row * KVS.length + column),
-    })).reverse();
-    const cells = fill(map, rows, KVS, (k) => choose(Number(step.value) * SIZE + k));
-
     function writeMap() {
-      const { label, noun, values, cell: format } = data.measures[measure.value];
-      const seen = values.filter((value) => value !== null);
+      if (open !== chosen.map) {
+        open = chosen.map;
+        which.value = data.maps.indexOf(open);
+        places = fill(table, open, choose);
+      }
+      const k = Number(measure.value);
+      const seen = all.map(({ numbers }) => numbers[k]).filter((value) => value !== null);
       const [low, high] = [Math.min(...seen), Math.max(...seen)];
-      const compared = chosen === shown ? last : shown;
-      step.value = Math.floor(chosen / SIZE);
-      const here = values.slice(step.value * SIZE, (Number(step.value) + 1) * SIZE);
-      map.caption.textContent =
-        `Map of the runs: ${data.labels[label]} [${format.unit}]. KP upwards, KV to the right.` +
-        (here.includes(null) ? " A dash: not observed." : "");
-      cells.forEach((cell, k) => {
-        const n = Number(step.value) * SIZE + k;
-        const [value, name] = [values[n], data.points[n].case];
-        const number = value === null ? "–" : write(value * format.factor, format.digits);
-        cell.textContent = number;
-        if (name) cell.prepend(make(cell, "b", name), " ");
-        const state = n === compared ? ", the last run" : "";
-        const said = value === null ? "not observed" : format.unit;
-        cell.setAttribute( // it begins with the text of the cell
-          "aria-label", `${name ? `${name} ` : ""}${number} ${said}: ${noun}, ${gains(n)}${state}`,
+      const compared = predict && (chosen === shown ? last : shown);
+      const inside = table.contains(document.activeElement);
+      places.forEach((place, cell) => {
+        const { name, tag, state, texts, numbers } = cell;
+        const before = cell === compared;
+        place.textContent = texts[k];
+        if (tag) place.prepend(make(place, "b", tag), " ");
+        place.setAttribute( // it begins with the text of the cell
+          "aria-label",
+          `${tag ? `${tag} ` : ""}${texts[k]} ${data.measures[k].label}` +
+            `${numbers[k] === null ? " not observed" : ""}: ${name}${before ? ", the last run" : ""}`,
         );
-        cell.classList.toggle("last", n === compared);
-        cell.style.setProperty("--share", value === null ? 0 : (value - low) / (high - low || 1));
+        place.classList.toggle("refused", state === "refused");
+        place.classList.toggle("last", before);
+        place.style.setProperty("--share", ((numbers[k] ?? low) - low) / (high - low || 1));
+        place.setAttribute("aria-selected", cell === chosen);
+        place.tabIndex = cell === chosen ? 0 : -1;
       });
-      mark(map, cells, chosen % SIZE);
+      const text = [...places.values()].map((place) => place.textContent).join("");
+      const notes = Object.entries(data.notes).filter(([sign]) => text.includes(sign));
+      table.caption.textContent = [
+        `${open.caption} Numbers: ${data.measures[k].label}.`, ...notes.map(([, note]) => note),
+      ].join(" ");
+      if (inside) places.get(chosen).focus();
     }
 
-    function choose(n) {
-      chosen = n;
+    function choose(cell) {
+      chosen = cell;
       writeMap();
       question.hidden = true;
-      if (n === shown) output.textContent = data.points[n].sentence;
-      else if (predict.checked) ask();
+      if (cell === shown) output.textContent = cell.sentence;
+      else if (predict?.checked) ask();
       else show("");
     }
 
-    /* The order of the run `n` relative to the run `from`, as the lesson judges it. A time that the
-       window did not reach is later than any in it. */
-    function order({ values, margin }, from, n) {
-      const [a, b] = [values[from] ?? Infinity, values[n] ?? Infinity];
+    /* The order of two runs, as the lesson judges it. A time that the window did not reach is later
+       than any in it. */
+    function order({ margin }, [first, second]) {
+      const [a, b] = [first ?? Infinity, second ?? Infinity];
       if (a === b) return a === Infinity ? UNKNOWN : "equal";
       if (Math.abs(b - a) <= margin) return "equal";
       return b > a ? "higher" : "lower";
     }
 
-    /* Questions are about metrics in turn, except the one that the map shows. */
+    /* Questions are about measures in turn, except the one that the map shows. */
     function ask() {
       const others = data.measures.filter((_, k) => k !== Number(measure.value));
       const about = others[asked % others.length];
+      const at = data.measures.indexOf(about);
       const words = { lower: about.lower, equal: "too close to call", higher: about.higher };
-      if (about.values.includes(null)) words[UNKNOWN] = UNKNOWN;
-      const text =
-        `From ${setting(shown)} to ${setting(chosen)}: what happens to the ${about.noun}?`;
+      if (all.some(({ numbers }) => numbers[at] === null)) words[UNKNOWN] = UNKNOWN;
+      const [from, to] = [shown, chosen].map(({ name, map }) => `${name}, ${map.setting}`);
       const [legend] = question.children;
-      legend.textContent = text;
+      legend.textContent = `From ${from} to ${to}: what happens to the ${about.noun}?`;
       question.replaceChildren(legend);
       for (const [key, word] of [...Object.entries(words), ["", "Skip"]]) {
         make(question, "button", word, { type: "button" }).addEventListener("click", () => {
-          answer(about, key, words);
+          answer(about, at, key, words);
         });
       }
       question.hidden = false;
-      output.textContent = text;
+      output.textContent = legend.textContent;
     }
 
-    function answer(about, key, words) {
-      const right = order(about, shown, chosen);
+    function answer(about, at, key, words) {
+      const right = order(about, [shown, chosen].map(({ numbers }) => numbers[at]));
       const margin = right === "equal" ? ` The margin is ${about.within}.` : "";
       const verdict = key ? (key === right ? "Yes" : "No") : "Skipped";
-      const [before, now] = [shown, chosen].map((n) => written(about, n));
+      const [before, now] = [shown, chosen].map(({ values }) => values[about.column]);
       asked += 1;
       show(
         `${verdict}. The ${about.noun}: ${words[right]}, first ${before}, now ${now}.${margin} `,
       );
-      cells.get(chosen % SIZE).focus({ preventScroll: true }); // the button has gone
+      places.get(chosen).focus({ preventScroll: true }); // the button has gone
     }
 
     function show(feedback) {
-      [last, shown] = [shown, chosen];
+      if (predict) last = shown;
+      shown = chosen;
       question.hidden = true;
       writeMap();
-      output.textContent = feedback + data.points[shown].sentence;
-      writeMetrics();
-      drawRuns();
+      output.textContent = feedback + shown.sentence;
+      writeShown();
     }
 
-    function writeMetrics() {
-      const rows = data.points[shown].metrics.map((value, k) => {
-        const row = document.createElement("div");
-        make(row, "dt", data.labels[k]);
-        make(row, "dd", value);
-        if (last !== null) {
-          make(row, "dd", `last run: ${data.points[last].metrics[k]}`, { class: "last" });
-        }
-        return row;
-      });
-      find("dl").replaceChildren(...rows);
+    function writeShown() {
+      writeValues(root, shown.values, last?.values);
+      view(shown, last);
     }
 
-    /* Position axis: wide enough for every run of the steps, so that gains can be compared. */
-    function range(steps) {
-      const runs = data.points.map((_, n) => n).filter((n) => steps.includes(stepOf(n)));
-      const room = 0.08 * Math.max(...steps);
-      const highest = Math.max(...runs.flatMap(positions), data.start + Math.max(...steps));
-      return [data.start - room, highest + room];
-    }
-
-    /* Draws a quantity of the run over that of the last one, whose label is where the two differ
-       most. `offset` is the number of the first sample. */
-    function drawRun(curve, of, offset, plot) {
-      const svg = svgs[curve];
-      const own = data.points[shown].case;
-      const mark = own ? `case-${own.toLowerCase()}` : "further";
-      const time = (_, k) => (k + offset) * data.dt;
-      const [now, before] = [of(shown), last === null ? null : of(last)];
-      const ghost = before ? [{ times: before.map(time), values: before, mark: "ghost" }] : [];
-      const run = { times: now.map(time), values: now, mark, chosen: true };
-      const end = data.until;
-      const curves = [...ghost, run];
-      const { x, y, top, floor } = draw(svg, { ...plot, height: HEIGHT, end, curves });
-      const name = `${plot.name} of joint4 over time. ${data.points[shown].sentence}`;
-      const grey = before ? ` Grey: the last run, ${setting(last)}.` : "";
-      svg.setAttribute("aria-label", name + grey);
-      if (!before) return;
-      const apart = now.map((value, k) => Math.abs(value - before[k]));
-      const at = apart.indexOf(Math.max(...apart));
-      const late = time(0, at) > end / 3;
-      const beside = y(before[at]) + (before[at] > now[at] ? -6 : 14);
-      add(svg, "text", {
-        class: late ? "ghost-label end" : "ghost-label",
-        x: x(time(0, at)) + (late ? -6 : 6),
-        y: Math.min(Math.max(beside, top + 26), floor - 16), // clear of the limits
-      }, `last run: ${gains(last)}`);
-    }
-
-    function drawRuns() {
-      const steps = [shown, last ?? shown].map(stepOf);
-      const target = data.start + steps[0];
-      const [low, high] = range(steps);
-      drawRun("q", positions, 0, {
-        name: "Position", low, high,
-        title: "Position [rad], target dotted",
-        ticks: [data.start, data.start + steps[0] / 2, target].map((value) => ({
-          value, label: write(value, 3),
-        })),
-        levels: [{ value: target, mark: "target" }],
-      });
-      drawRun("force", forces, 1, {
-        name: "Control force", low: -1.15 * data.limit, high: 1.15 * data.limit,
-        title: "Control force [N·m], limits dashed",
-        ticks: [-data.limit, 0, data.limit].map((value) => ({ value, label: write(value, 0) })),
-        levels: [-data.limit, data.limit].map((value) => ({ value, mark: "limit" })),
-      });
-    }
-
-    root.hidden = false;
-    root.nextElementSibling.remove(); // the sentence that a script is needed
-    step.addEventListener("change", () => choose(Number(step.value) * SIZE + (chosen % SIZE)));
+    which.addEventListener("change", () => {
+      const cells = cellsOf(data.maps[which.value]);
+      choose(cells[cellsOf(open).indexOf(chosen)] ?? cells[0]); // the same place
+    });
     measure.addEventListener("change", () => {
       writeMap();
       if (!question.hidden) ask();
     });
-    predict.addEventListener("change", () => {
+    predict?.addEventListener("change", () => {
       if (!question.hidden) show("");
     });
-    new ResizeObserver(drawRuns).observe(plots);
     writeMap();
-    output.textContent = data.points[shown].sentence;
-    writeMetrics();
-    drawRuns();
+    output.textContent = shown.sentence;
+    writeShown();
   }
 
-  document.querySelectorAll(".explorer").forEach(start);
+  /* Bytes of a PNG, four for each pixel. */
+  async function decode(text) {
+    const image = new Image();
+    image.src = `data:image/png;base64,${text}`;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+    const brush = canvas.getContext("2d", { willReadFrequently: true });
+    brush.drawImage(image, 0, 0);
+    return brush.getImageData(0, 0, canvas.width, canvas.height).data;
+  }
+
+  const dot = (a, b) => a.reduce((sum, value, k) => sum + value * b[k], 0);
+  const write = (value, digits) => {
+    const rounded = Number(value.toFixed(digits)) + 0; // without the sign of a negative zero
+    return rounded.toFixed(digits).replace("-", "−");
+  };
+
+  /* Reads depth, point and closed form of a pixel from the arrays of a recorded view. */
+  async function startPicture(root, { size, K, pose, unit, names, planes, spheres, frames }) {
+    const [depths, numbers] = await Promise.all(
+      [frames.depth, frames.segmentation].map(decode),
+    );
+    const [width, height] = size;
+    const find = (name) => root.querySelector(name);
+    const [column, row] = ["column", "row"].map((name) => find(`[name=${name}]`));
+    const [stage, cross] = [".stage", ".cross"].map(find);
+    const centre = pose.map((line) => line[3]);
+
+    /* From the camera through the middle of a pixel, with 1 along the optical axis. */
+    function ray(u, v) {
+      const seen = [(u + 0.5 - K[0][2]) / K[0][0], (v + 0.5 - K[1][2]) / K[1][1], 1];
+      return pose.map((line) => dot(line.slice(0, 3), seen));
+    }
+
+    /* The depth in closed form, NaN where the ray misses, undefined for other shapes. */
+    function closedForm(number, direction) {
+      if (number in planes) return (planes[number] - centre[2]) / direction[2];
+      if (!(number in spheres)) return undefined;
+      const [middle, radius] = [spheres[number].slice(0, 3), spheres[number][3]];
+      const away = centre.map((value, k) => value - middle[k]);
+      const [a, b] = [dot(direction, direction), dot(direction, away)];
+      return (-b - Math.sqrt(b * b - a * (dot(away, away) - radius * radius))) / a;
+    }
+
+    function valuesAt(u, v) {
+      const at = 4 * (v * width + u);
+      const number = numbers[at];
+      const depth = (65536 * depths[at] + 256 * depths[at + 1] + depths[at + 2]) * unit;
+      if (number === 0) return [names[0], `${write(depth, 3)} m: no surface`, "–", "–", "–"];
+      const direction = ray(u, v);
+      const point = centre.map((value, k) => write(value + depth * direction[k], 4)).join(", ");
+      const expected = closedForm(number, direction);
+      const found = [names[number], `${write(depth, 4)} m`, `${point} m`];
+      if (expected === undefined) return [...found, "none for this shape", "–"];
+      if (Number.isNaN(expected)) return [...found, "this ray misses the ideal sphere", "–"];
+      return [...found, `${write(expected, 4)} m`, `${write(1000 * (depth - expected), 2)} mm`];
+    }
+
+    function show() {
+      const [u, v] = [Number(column.value), Number(row.value)];
+      const texts = [`column ${u}, row ${v}`, ...valuesAt(u, v)];
+      writeValues(root, texts);
+      for (const input of [column, row]) {
+        input.setAttribute("aria-valuetext", `${texts[0]}: ${texts[1]}, depth ${texts[2]}`);
+      }
+      cross.style.left = `${(100 * (u + 0.5)) / width}%`;
+      cross.style.top = `${(100 * (v + 0.5)) / height}%`;
+    }
+
+    function point(event) {
+      if (event.buttons !== 1) return;
+      const { left, top, width: across, height: down } = stage.getBoundingClientRect();
+      column.value = Math.floor((width * (event.clientX - left)) / across);
+      row.value = Math.floor((height * (event.clientY - top)) / down);
+      show();
+    }
+
+    cross.hidden = false;
+    stage.onpointerdown = stage.onpointermove = point;
+    stage.ondragstart = () => false;
+    for (const input of [column, row]) input.addEventListener("input", show);
+    show();
+  }
+
+  for (const root of document.querySelectorAll(".explorer")) {
+    const data = JSON.parse(root.dataset.explorer);
+    const panel = root.querySelector(".panel");
+    root.querySelector(".without-script")?.remove();
+    if (data.maps) {
+      panel.hidden = false; // curves are drawn as wide as they are shown
+      startMap(root, data);
+    } else startPicture(root, data).then(() => { panel.hidden = false; });
+  }
 });

@@ -20,7 +20,7 @@ ADDED = """
 from pathlib import Path
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.lessons import LESSONS
-from robo_genesis.site.course_map import read_map
+from robo_genesis.site.course.course_map import read_map
 print(list(LESSONS), [m.page for m in read_map(Path("book")) if m.id == "L99"])
 print([(p.lesson, p.page) for p in find_pages(Path("book")) if p.lesson == "l99"])
 """
@@ -51,7 +51,7 @@ def test_the_code_is_clean(work):
 
 def test_its_tests_and_those_of_all_lessons_pass(work):
     names = ("lessons/l99", "lessons/test_registry.py", "lessons/test_prose.py")
-    course_map = "tests/site/test_course_map.py::" + PUBLISHED
+    course_map = "tests/site/course/test_course_map.py::" + PUBLISHED
     assert "passed" in unit_tests(work, *(f"tests/{name}" for name in names), course_map)
 
 

@@ -21,6 +21,25 @@ THEME_WAITS = 300
 """How long after a change the theme looks again which boxes scroll [ms of the page's clock]."""
 
 
+POSES = """() => {
+  const viewer = document.querySelector("model-viewer");
+  const scene = viewer[Object.getOwnPropertySymbols(viewer).find(s => s.description === "scene")];
+  scene.updateMatrixWorld(true);
+  let world;
+  scene.traverse(node => { if (node.name === "world") world = node; });
+  const back = world.matrixWorld.clone().invert();
+  const ghost = world.children.find(node => node.name === "target");
+  return Object.fromEntries([...world.children, ...ghost?.children ?? []].map(link => {
+    const inRecord = back.clone().multiply(link.matrixWorld);
+    return [link.name, {
+      position: [...link.position.clone().setFromMatrixPosition(inRecord)],
+      rotation: [...link.quaternion.clone().setFromRotationMatrix(inRecord)],
+    }];
+  }));
+}"""
+"""How the links stand in the running viewer, in the frame of the record: [m] and (x, y, z, w)."""
+
+
 def page_names(site: Path) -> list[str]:
     """Return the site's pages as addresses relative to its folder."""
     names = [path.relative_to(site).as_posix() for path in sorted(site.rglob("*.html"))]
@@ -77,3 +96,20 @@ def violations(page: Page, part: str = "html", **options: Any) -> list[str]:
     found, passed = page.evaluate(RUN_AXE, [part, options])
     assert passed
     return found
+
+
+def show_model(page: Page, replay: str = ".replay") -> None:
+    """Load the model with the first Play, and pause if it still plays."""
+    play = page.locator(f"{replay} .play")
+    play.click()
+    page.locator(replay).get_by_text("Turn the view").wait_for(timeout=120_000)
+    play.evaluate("play => { if (play.textContent === 'Pause') play.click(); }")
+    assert play.inner_text() == "Play"
+
+
+def choose(page: Page, case: str, sample: int, replay: str = ".replay"):
+    """Bring a replay to a sample, as a reader does: picker, then slider."""
+    page.locator(f"{replay} input[value={case}]").check()
+    slider = page.locator(f"{replay} input[type=range]")
+    slider.fill(str(sample))
+    return slider

@@ -5,16 +5,21 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 from docutils import nodes
 from docutils.core import publish_doctree, publish_from_doctree
 from docutils.utils import new_document
 from myst_parser.parsers.docutils_ import Parser
 
 from robo_genesis.core.project import BOOK
-from robo_genesis.site import palette_css
+from robo_genesis.core.trace import BodyTrace
 from robo_genesis.site.evidence import panel
 from robo_genesis.site.evidence.ledger import scroll_box
+from robo_genesis.site.figures import palette_css
 from robo_genesis.site.replay import viewer
+
+STEPS, DT, G = 40, 0.01, 10.0
+"""Samples after the first one, time between two [s], and gravity of a fall [m/s²]."""
 
 
 class Panel(panel.Evidence):
@@ -60,3 +65,19 @@ def page_of(block: nodes.Node, folder: Path, scripts: Sequence[str], sheets: Seq
     file = site / "lessons" / "page.html"
     file.write_text(html.replace("</head>", f"{''.join(head)}</head>"))
     return file
+
+
+def falling(height: float) -> BodyTrace:
+    """A box that falls from a height [m] and turns about x while it does."""
+    t = np.arange(STEPS + 1) * DT
+    pos, vel, spin = np.zeros((3, STEPS + 1, 1, 3), np.float32)
+    pos[:, 0, 2], vel[:, 0, 2], spin[..., 0] = height - G * t**2 / 2, -G * t, 1.0
+    quat = np.zeros((STEPS + 1, 1, 4), np.float32)
+    quat[:, 0, 0], quat[:, 0, 1] = np.cos(t / 2), np.sin(t / 2)
+    return BodyTrace(t=t, link_pos=pos, link_quat=quat, link_vel=vel, link_ang=spin)
+
+
+def rows_of(found):
+    """The text of the cells of every row of the tables among some nodes."""
+    rows = [row for node in found for row in node.findall(nodes.row)]
+    return [[cell.astext() for cell in row.findall(nodes.entry)] for row in rows]

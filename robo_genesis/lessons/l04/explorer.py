@@ -1,11 +1,9 @@
-"""The step explorer: the grid as compact JSON, as a table, and as markup for a script.
+"""The step explorer: the grid as compact data for a script, and as a table.
 
 The script asks what a chosen run will show before it shows the run beside the last one.
 """
 
-import json
-from collections.abc import Iterable, Sequence
-from html import escape
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,7 +12,7 @@ from robo_genesis.core import tables
 from robo_genesis.core.checks import evaluate
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.text import format_value
+from robo_genesis.core.text import decimal, format_value
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, RESOLUTION, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_checks import GRID_CHECKS
@@ -24,13 +22,6 @@ MEASURES = False
 
 PACKED = {"q": 1e-4, "force": 1e-2}
 """Value of one unit of the packed integers [rad, N·m]. Metrics come from the full arrays."""
-
-AXES: tuple[tuple[str, Sequence[float], str], ...] = (
-    ("step", STEP_SIZES, "rad"),
-    ("kp", KP, "N·m/rad"),
-    ("kv", KV, "N·m·s/rad"),
-)
-"""Name, values and unit of each axis, in the order of the grid's points."""
 
 UNTIL = 0.6
 """End of the time axis of the curves [s]; after it, no run of the grid moves visibly."""
@@ -68,21 +59,66 @@ def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
     )
 
 
-def pack(run: Experiment) -> dict[str, Any]:
-    """Return the grid as JSON values: traces as integers, metrics as text."""
+def explored(run: Experiment) -> dict[str, Any]:
+    """Return the grid for the explorer: a map for each step, with curves packed as integers."""
     first = run.traces[POINTS[0].name]
-    start = float(first.q[0, ENTRY])
+    start, limit = float(first.q[0, ENTRY]), float(first.effort_limit[ENTRY])
     return {
-        "dt": first.dt,
-        "until": UNTIL,
-        "start": start,
-        "limit": float(first.effort_limit[ENTRY]),
-        "resolution": PACKED,
-        "axes": [{"name": n, "values": list(v), "unit": u} for n, v, u in AXES],
-        "opens": POINTS.index(_opens(run)),
-        "labels": [LABELS[name] for name in SHOWN],
-        "measures": [_measure(run, name) for name in CELLS],
-        "points": [_packed(run, point, start) for point in POINTS],
+        "choices": (f"Step of {STEPPED_JOINT}", "Map shows"),
+        "maps": [_map(run, step, start, limit) for step in STEP_SIZES],
+        "measures": [_measure(name) for name in CELLS],
+        "columns": [LABELS[name] for name in SHOWN],
+        "notes": {"–": "A dash: not observed."},
+        "curves": {
+            "of": STEPPED_JOINT,
+            "dt": first.dt,
+            "until": UNTIL,
+            "drawn": [
+                {"key": "q", "name": "Position", "title": "Position [rad], target dotted",
+                 "unit": PACKED["q"], "zero": start, "first": 0},
+                {"key": "force", "name": "Control force", "unit": PACKED["force"], "zero": 0,
+                 "title": "Control force [N·m], limits dashed", "first": 1},
+            ],
+        },
+        "without_script": "The explorer needs JavaScript. The table of all runs on the page about "
+        "the grid shows the same.",
+    }  # fmt: skip
+
+
+def _map(run: Experiment, step: float, start: float, limit: float) -> dict[str, Any]:
+    """Return the runs of one step: KP upwards, KV to the right, and the axes of their curves."""
+    points = [point for point in POINTS if point.step == step]
+    cells = [_cell(run, point, start) for point in points]
+    size = len(KV)
+    target, room = start + step, 0.08 * step
+    highest = max(start + PACKED["q"] * max(max(cell["q"]) for cell in cells), target)
+    return {
+        "label": f"{step:g} rad",
+        "setting": f"step {step:g} rad",
+        "caption": "Map of the runs: KP upwards, KV to the right.",
+        "columns": [f"{kv:g}" for kv in KV],
+        "rows": [
+            {"label": f"{kp:g}", "cells": cells[k * size : (k + 1) * size]}
+            for k, kp in reversed([*enumerate(KP)])
+        ],
+        "axes": {
+            "q": _axis((start - room, highest + room), (start, start + step / 2, target), 3,
+                       {target: "target"}),
+            "force": _axis((-1.15 * limit, 1.15 * limit), (-limit, 0.0, limit), 0,
+                           {-limit: "limit", limit: "limit"}),
+        },
+    }  # fmt: skip
+
+
+def _axis(
+    ends: tuple[float, float], ticks: Iterable[float], digits: int, levels: Mapping[float, str]
+) -> dict[str, Any]:
+    """Return the value axis of a curve; `levels` are marks of the palette by their value."""
+    return {
+        "low": ends[0],
+        "high": ends[1],
+        "ticks": [{"value": tick, "label": decimal(tick, digits)} for tick in ticks],
+        "levels": [{"value": value, "mark": mark} for value, mark in levels.items()],
     }
 
 
@@ -91,33 +127,39 @@ def _opens(run: Experiment) -> GridPoint:
     return next((p for p in NAMES if run.metrics[p.name].overshoot > 0), POINTS[-1])
 
 
-def _measure(run: Experiment, name: str) -> dict[str, Any]:
-    """Return a metric of the map and of the questions, with its value in each run."""
-    factor, digits, shown = CELLS[name]
+def _measure(name: str) -> dict[str, Any]:
+    """Return a metric that cells show and questions are about."""
     unit, noun = (StepMetrics.about(what)[name] for what in ("unit", "noun"))
     words = ("earlier", "later") if unit == "s" else ("lower", "higher")
     return {
-        "label": SHOWN.index(name),
+        "label": f"{LABELS[name]} [{CELLS[name][2]}]",
+        "column": SHOWN.index(name),
         "noun": noun,
         "lower": words[0],
         "higher": words[1],
         "margin": max(MARGINS[name], RESOLUTION[unit]),
         "within": f"{MARGINS[name]:g} {'samples' if unit == '1' else unit}",
-        "values": [getattr(run.metrics[point.name], name) for point in POINTS],
-        "cell": {"factor": factor, "digits": digits, "unit": shown},
     }
 
 
-def _packed(run: Experiment, point: GridPoint, start: float) -> dict[str, Any]:
+def _cell(run: Experiment, point: GridPoint, start: float) -> dict[str, Any]:
     """Return one run of the grid as JSON values; `start` [rad] is subtracted from positions."""
     trace, measured = run.traces[point.name], run.metrics[point.name]
     drawn = round(UNTIL / trace.dt)
+    numbers = {name: getattr(measured, name) for name in CELLS}
     return {
-        "case": NAMES.get(point, ""),
+        "name": f"KP {point.kp:g}, KV {point.kv:g}",
+        "tag": NAMES.get(point, ""),
+        "opens": point == _opens(run),
+        "sentence": sentence(point, measured, trace.steps),
+        "values": [v for n, v in _written(measured).items() if n in SHOWN],
+        "numbers": list(numbers.values()),
+        "texts": [
+            "–" if value is None else decimal(value * CELLS[name][0], CELLS[name][1])
+            for name, value in numbers.items()
+        ],
         "q": _integers(trace.q[: drawn + 1, ENTRY].astype(float) - start, PACKED["q"]),
         "force": _integers(trace.control_force[:drawn, ENTRY].astype(float), PACKED["force"]),
-        "sentence": sentence(point, measured, trace.steps),
-        "metrics": [v for n, v in _written(measured).items() if n in SHOWN],
     }
 
 
@@ -164,33 +206,3 @@ def rows(run: Experiment) -> list[dict[str, str]]:
             | {LABELS[name]: written[name] for name in SHOWN if name != "saturation_duration"}
         )
     return found
-
-
-def markup(run: Experiment) -> str:
-    """Return the explorer as HTML. A notice replaces it until `_static/explorer.js` runs.
-
-    The data are an attribute, because a script in Markdown is shown as text.
-    """
-    packed = pack(run)
-    text = json.dumps(packed, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    steps = _options(f"{step:g} rad" for step in STEP_SIZES)
-    shown = _options(
-        f"{packed['labels'][m['label']]} [{m['cell']['unit']}]" for m in packed["measures"]
-    )
-    return (
-        f'<div class="explorer" data-grid="{escape(text)}" hidden><div class="controls">'
-        f'<label>Step of {STEPPED_JOINT} <select name="step">{steps}</select></label>'
-        f'<label>Map shows <select name="measure">{shown}</select></label>'
-        '<label><input type="checkbox" name="predict" checked> Predict first</label></div>'
-        '<div class="map-of-runs"></div>'
-        '<fieldset class="question" hidden><legend></legend></fieldset>'
-        '<output aria-live="polite"></output>'
-        f'<div class="plots" data-curves="{" ".join(PACKED)}"></div><dl></dl></div>'
-        "<p>The explorer needs JavaScript. The table of all runs on the page about the grid shows "
-        "the same.</p>"
-    )
-
-
-def _options(texts: Iterable[str]) -> str:
-    """Return the options of a `select`, numbered from 0."""
-    return "".join(f'<option value="{k}">{escape(text)}</option>' for k, text in enumerate(texts))

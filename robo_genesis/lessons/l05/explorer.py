@@ -1,10 +1,11 @@
-"""The maps of postures: the places of recorded answers in a map. What a recorded picture shows."""
+"""The data of the explorers: recorded answers as cells of a map, and what a picture shows."""
 
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.scene import DT
 from robo_genesis.lessons.l05 import spec, study
 from robo_genesis.lessons.l05.text import QUANTITIES, records
 from robo_genesis.sim.camera.geometry import other_axes
@@ -38,31 +39,76 @@ PICTURES = {
 }
 """Alternative text and caption of the pictures that a reader can read."""
 
+READ = ("pixel", "shows", "depth", "point in the world", "closed form", "depth − closed form")
+"""What is read at a pixel."""
 
-def posture_maps(run: Experiment, which: str) -> list[dict[str, Any]]:
-    """Return the maps called `reach`, or `solutions`.
 
-    Returns:
-        By map the `run` with its postures, `targets` (m, 3) [m], a `caption`, the names of both
-        `axes`, `rows` from the top with the numbers of their answers, the labels of `columns`, the
-        columns of `records` that cells can show as `measures`, and `records`, one for each answer.
-    """
+def explored(run: Experiment, name: str) -> dict[str, Any]:
+    """Return the data of an explorer: maps (`reach`, `solutions`) or one of `PICTURES`."""
+    return picture(run, name) if name in PICTURES else posture_maps(run, name)
+
+
+def posture_maps(run: Experiment, which: str) -> dict[str, Any]:
+    """Return the maps called `reach`, or `solutions`, as `site/figures/explorer.py` shows them."""
     maps = [solution_map(run)] if which == "solutions" else [plane_map(name) for name in PLACES]
+    tables = {}
     for one in maps:
-        shown = {str(key) for row in one["rows"] for key in row["cells"]}
-        one["targets"] = spec.QUESTIONS[one["run"]].positions
-        one["columns"] = [f"{value:g}" for value in one["columns"]]
-        one["measures"] = tuple(QUANTITIES)
-        one["records"] = [row for row in records(run, one["run"]) if row["answer"] in shown]
-    return maps
+        found = {row["answer"]: row for row in records(run, one["run"])}
+        axes = one.pop("axes")
+        for row in one["rows"]:
+            places = zip(row["cells"], one["columns"], strict=False)
+            row["cells"] = [
+                _cell(found[str(k)], f"{axes[0]} {row['label']}, {axes[1]} {column}")
+                for k, column in places
+            ]
+        shown = {cell["answer"] for row in one["rows"] for cell in row["cells"]}
+        tables[one["caption"]] = [row for row in found.values() if int(row["answer"]) in shown]
+        one["label"] = one["caption"].split(".")[0]
+    rows = next(iter(tables.values()))
+    return {
+        "choices": ("Map", "Cells show"),
+        "maps": maps,
+        "measures": [{"label": name} for name in QUANTITIES],
+        "columns": [*rows[0]][1:],
+        "notes": {"×": "×: refused."},
+        "dt": DT,
+        "postures": {one["run"]: spec.QUESTIONS[one["run"]].positions for one in maps},
+        "tables": tables,
+    }
+
+
+def _cell(record: dict[str, str], place: str) -> dict[str, Any]:
+    """Return an answer as a cell of a map, whose numbers have at most four characters."""
+    state = "accepted" if record["accepted"] == "yes" else "refused"
+    numbers = [float(record[name]) for name in QUANTITIES]
+    return {
+        "answer": int(record["answer"]),
+        "name": f"{place}, {state}",
+        "tag": "×" * (state == "refused"),
+        "state": state,
+        "opens": state == "accepted",
+        "sentence": f"Answer {record['answer']}, {state}.",
+        "values": [*record.values()][1:],
+        "numbers": numbers,
+        "texts": [short(number) for number in numbers],
+    }
+
+
+def short(value: float) -> str:
+    """Return a number in at most four characters: a cell on a phone has no room for more."""
+    if value >= 10:
+        return f"{value:.0f}"
+    text = f"{value:.{3 if value < 1 else 2}f}".rstrip("0").rstrip(".")
+    return text.removeprefix("0") or "0"
 
 
 def plane_map(name: str) -> dict[str, Any]:
-    """Return run, caption, axes, rows and columns of a map of targets."""
+    """Return run, caption, axes, labels of columns, and rows of answers of a map of targets."""
     (caption, axes, upwards), columns = PLACES[name], spec.GRID_X
     numbers = np.arange(1, len(columns) * len(upwards) + 1).reshape(-1, len(columns)).tolist()
     rows = [{"label": f"{v:g}", "cells": of} for v, of in zip(upwards, numbers, strict=True)]
-    return {"run": name, "caption": caption, "axes": axes, "rows": rows[::-1], "columns": columns}
+    labels = [f"{x:g}" for x in columns]
+    return {"run": name, "caption": caption, "axes": axes, "rows": rows[::-1], "columns": labels}
 
 
 def solution_map(run: Experiment) -> dict[str, Any]:
@@ -78,16 +124,17 @@ def solution_map(run: Experiment) -> dict[str, Any]:
         "left to right.",
         "axes": ("curve", "place"),
         "rows": rows,
-        "columns": range(1, COLUMNS + 1),
+        "columns": [str(k) for k in range(1, COLUMNS + 1)],
     }
 
 
 def picture(run: Experiment, name: str) -> dict[str, Any]:
-    """Return what reads a recorded view: JSON values for `site/picture_reader.py`.
+    """Return what reads a recorded view.
 
     Returns:
         `size`, `K`, `pose` (OpenCV axes), the `unit` of a depth [m], by number the `names`, heights
-        of `planes` [m], centre and radius of `spheres` [m], and `alt` and `caption`.
+        of `planes` [m], centre and radius of `spheres` [m], the `columns` that are read, and of the
+        `picture` its `name`, `alt` and `caption`.
     """
     view, numbers = view_of(run, name), run.readings[SEGMENTS]
     links = dict(enumerate(run.links, int(numbers["hand"]) - run.links.index("hand")))
@@ -99,5 +146,6 @@ def picture(run: Experiment, name: str) -> dict[str, Any]:
         "names": {0: "nothing"} | links | {numbers[name]: name for name in spec.SEGMENTS},
         "planes": {numbers["plane"]: 0.0},
         "spheres": {numbers["marker"]: [*spec.TARGET.tolist(), spec.MARKER_RADIUS]},
-        **PICTURES[name],
+        "columns": READ,
+        "picture": {"name": name} | PICTURES[name],
     }

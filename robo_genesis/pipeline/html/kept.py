@@ -22,7 +22,7 @@ from robo_genesis.pipeline.pages.folder import RECORD
 
 STATE = "state.json"
 UNFIT = "unfit"
-"""Sphinx writes this file if the pages must not be kept; see `site.kept_pages`."""
+"""Sphinx writes this file if the pages must not be kept; see `site.frame.incremental`."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ from bs4 import BeautifulSoup, Comment, Tag
 from robo_genesis.core.files import derived_value
 
 KNOWN = {
-    "b08c20317fb3eb19": "light or dark before the page shows; the second half is page_weight's",
+    "b08c20317fb3eb19": "light or dark before the page shows; the second half is postprocess.py's",
     "d32b2040e449378e": "a word of sphinx-togglebutton",
     "a47df2b7dda58503": "a word of sphinx-togglebutton",
     "16a7e2af3147b51a": "a setting of sphinx-togglebutton",

@@ -4,20 +4,32 @@
 |---|---|
 | {course-measured} (directive) | a line: engine version and dates of this build's runs |
 | {course-status} (directive) | the state of the runs of each published lesson |
+| {glance} l04 (directive) | a plot of this build's lab and its last camera frame |
 """
 
+import os
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+from robo_genesis.core.declaration import Compared, Moving
 from robo_genesis.core.text import listed
-from robo_genesis.site.course_map import MapDirective, page_link
-from robo_genesis.site.evidence.ledger_data import Run
-from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, status_list
+from robo_genesis.evidence.bundle import Predicate, read_manifest
+from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.lessons import compared_cases, course_marks, filmed
+from robo_genesis.pipeline.pages.built import LAST_OUTPUTS
+from robo_genesis.site.course.course_map import MapDirective, page_link
+from robo_genesis.site.evidence.ledger_data import PageRun
+from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, page_run, status_list
+from robo_genesis.site.evidence.panel import Picture, drawn_picture, figure, frames
 from robo_genesis.site.evidence.provenance import all_runs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 EVIDENCE = "evidence/index"
 """The page that explains the evidence."""
@@ -36,7 +48,7 @@ class CourseMeasured(SphinxDirective):
         return [line]
 
 
-def measured_line(runs: Iterable[Run]) -> str:
+def measured_line(runs: Iterable[PageRun]) -> str:
     """Return backend, engine version and dates of the accepted runs that were not recorded.
 
     Args:
@@ -71,7 +83,66 @@ class CourseStatus(MapDirective):
         return found
 
 
+class Glance(SphinxDirective):
+    """Show pictures of a lesson's accepted run on CPU."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return the figures.
+
+        Errors are a lesson without an accepted run of this build, and one that compares no cases.
+        """
+        lesson = self.arguments[0]
+        compared = compared_cases(lesson)
+        if compared is None:
+            raise self.error(
+                f"glance: {lesson} compares no cases. Declare `compared` in its LESSON."
+            )
+        run = page_run(Path(self.env.srcdir), lesson)
+        predicate = shown_predicate(run)
+        if predicate is None:
+            raise self.error(f"glance: {lesson} has no accepted run: {run.status.reason}")
+        box = nodes.container(classes=["glance"], evidence_runs=(run.key,))
+        camera = frames(run.folder, filmed(lesson), run.status.backend)
+        last = (frame for frame in camera if frame.name == "final")
+        for picture in (response(run.folder, compared), *last):
+            box += figure(self, f"glance-{lesson}-{picture.name}", picture)
+        if predicate.render.mode != "camera":
+            box += nodes.paragraph("", "SKIP: rendering was off, so there is no camera frame.")
+        return [box]
+
+
+def shown_predicate(run: PageRun) -> Predicate | None:
+    """Return what the manifest of a run that may be shown states, None for another run.
+
+    With the outputs of last runs, a stale run is shown. The lines of provenance give its state.
+    """
+    if run.status.code == "stale" and LAST_OUTPUTS in os.environ:
+        return read_manifest(run.folder).predicate
+    return run.predicate
+
+
+def response(folder: Path, compared: Compared | Moving) -> Picture:
+    """Return the first channel of the compared cases, drawn from a bundle's arrays."""
+    from robo_genesis.core import plotting  # it loads slowly
+
+    runs = read_runs(folder, compared)
+
+    def draw(drawing: "Figure") -> None:
+        ax = drawing.subplots()
+        plotting.first_channel(ax, runs, course_marks())
+        ax.set_xlim(0, compared.until)
+        ends = [(values[0], values[-1]) for values in runs.channels[0].values.values()]
+        fall = sum(last < first for first, last in ends) > len(ends) / 2
+        ax.set_title(ax.get_title(loc="left"), loc="left", pad=6)
+        ax.legend(loc="upper right" if fall else "lower right")
+
+    return drawn_picture(3.2, draw, runs.alt, runs.caption)
+
+
 def setup(app: Sphinx) -> None:
     """Register the directives."""
     app.add_directive("course-measured", CourseMeasured)
     app.add_directive("course-status", CourseStatus)
+    app.add_directive("glance", Glance)

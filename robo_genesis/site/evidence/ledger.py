@@ -16,7 +16,7 @@ from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
 from robo_genesis.site.evidence import ledger_data
-from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import badge_node
 from robo_genesis.site.evidence.plain_nodes import table
 from robo_genesis.site.evidence.provenance import all_items, all_runs, measured_pages
@@ -35,10 +35,6 @@ class ledger_part(nodes.General, nodes.Element):  # noqa: N801 - docutils names 
 
 class scroll_box(nodes.container):  # noqa: N801
     """A box that scrolls a wide table and accepts the keyboard's focus."""
-
-
-class digest_text(nodes.inline):  # noqa: N801
-    """A sha256 whose first digits are visible, and all of them on hover or focus."""
 
 
 class Ledger(SphinxDirective):
@@ -70,7 +66,7 @@ def fill_in(app: Sphinx, doctree: nodes.document, docname: str) -> None:
             part.replace_self(item_table(app, docname))
 
 
-def run_block(docname: str, run: Run) -> nodes.Node:
+def run_block(docname: str, run: PageRun) -> nodes.Node:
     """Return a run's facts and its bundle, or why it is missing and the command that creates it."""
     block = nodes.container(ids=[run_anchor(run.key)], classes=["run-block"])
     title = nodes.strong("", run.page)
@@ -115,14 +111,14 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
     return scroll("Figures and tables", COLUMNS, rows, anchors)
 
 
-def _of_runs(runs: Sequence[Run]) -> list[list[nodes.Node]]:
+def _of_runs(runs: Sequence[PageRun]) -> list[list[nodes.Node]]:
     """Return five cells with a paragraph for each run."""
     if not runs:
         return [[nodes.Text(text)] for text in ("no run", *"––––")]
     return [list(cell) for cell in zip(*map(_of_run, runs), strict=True)]
 
 
-def _of_run(run: Run) -> list[nodes.Node]:
+def _of_run(run: PageRun) -> list[nodes.Node]:
     badge, predicate = badge_node(run.status), run.predicate
     if predicate is None:
         return [nodes.Text("–"), badge, *map(nodes.Text, "–––")]
@@ -149,7 +145,8 @@ def _reading_order(env: BuildEnvironment) -> list[str]:
 
 
 def _digest(value: str) -> nodes.Node:
-    return digest_text("", value, classes=["digest"])
+    """Return a sha256 whose first digits are visible, and all of them on hover or focus."""
+    return nodes.raw("", f'<code class="digest" tabindex="0">{value}</code>', format="html")
 
 
 def _link(text: str, address: str) -> nodes.Node:
@@ -186,16 +183,10 @@ def visit_scroll_box(self: Any, node: scroll_box) -> None:
     self.body.append(self.starttag(node, "div", CLASS="scroll-box", **given))
 
 
-def visit_digest(self: Any, node: digest_text) -> None:
-    """Open a digest, which becomes wider when it has the focus."""
-    self.body.append(self.starttag(node, "code", "", tabindex="0"))
-
-
 def setup(app: Sphinx) -> None:
     """Register the directive, its nodes and the two later steps."""
     app.add_directive("ledger", Ledger)
     app.add_node(ledger_part)
     app.add_node(scroll_box, html=(visit_scroll_box, lambda self, _: self.body.append("</div>\n")))
-    app.add_node(digest_text, html=(visit_digest, lambda self, _: self.body.append("</code>")))
     app.connect("doctree-resolved", fill_in)
     app.connect("build-finished", write_downloads)

@@ -30,7 +30,7 @@ UNMEASURED = {
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class PageRun:
     """One run of a page on a backend: the folder of its bundle, existing or not, and its state."""
 
     page: str  # as `l04/lab`
@@ -85,7 +85,7 @@ class Item:
         return f"row-{self.docname}-{self.anchor}".replace("/", "-").lower()
 
 
-def provenance(kind: str, runs: Sequence[Run]) -> str:
+def provenance(kind: str, runs: Sequence[PageRun]) -> str:
     """Return the line below a figure or table, without its link.
 
     Args:
@@ -137,7 +137,7 @@ def sha256(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def archive_name(run: Run) -> str:
+def archive_name(run: PageRun) -> str:
     """Return the file name of a run's bundle."""
     assert run.predicate is not None
     return f"{run.key.replace('/', '-')}-{run.predicate.run_id[:8]}.zip"

@@ -11,7 +11,6 @@ Roles and a directive, as pages write them:
 | {engine-source}`engine/scene.py` | a file of the engine, linked to the pinned release |
 | {engine-release}`some words` | the pinned release |
 | {engine-package}`some words` | its page on PyPI |
-| {lesson-state}`l04` | a badge for each backend of a lesson: backend and state |
 | {lesson-status} l04 (directive) | one line with the states of a lesson's runs, details in a fold |
 """
 
@@ -42,7 +41,7 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_status,
 )
 from robo_genesis.pipeline.pages.built import built_pages, page_outputs
-from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.evidence.ledger_data import PageRun
 
 T = TypeVar("T")
 BACKEND = project.BUILD_BACKEND
@@ -148,7 +147,7 @@ def stored(name: str, compute: Callable[[], T]) -> T:
 
 
 @lru_cache(maxsize=64)
-def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> Run:
+def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> PageRun:
     """Return a page's run of this build; it does not change while Sphinx runs.
 
     A stored state is shown; the build verifies the bundle itself each time.
@@ -156,24 +155,24 @@ def page_run(book: Path, lesson: str, page: str = RECORDED_PAGE) -> Run:
     folder = page_outputs(f"{lesson}/{page}") / BACKEND
     absent = f"No bundle was recorded for {lesson}/{page}."
 
-    def run() -> Run:
+    def run() -> PageRun:
         status = bundle_status(folder, lesson, page, absent, book, once=True)
-        return Run(f"{lesson}/{page}", folder, status)
+        return PageRun(f"{lesson}/{page}", folder, status)
 
     return stored(f"{lesson}/{page}", run)
 
 
 @lru_cache(maxsize=64)
-def recorded_runs(book: Path, lesson: str) -> tuple[Run, ...]:
+def recorded_runs(book: Path, lesson: str) -> tuple[PageRun, ...]:
     """Return the recorded runs of a lesson's lab, the reference first, recorded or not."""
     folder, name = book / "evidence" / lesson, f"{lesson}/{RECORDED_PAGE}"
     recorded = (path.name for path in recorded_folders(book) if path.parent == folder)
     labs = {lesson: page_run(book, lesson).folder}
 
-    def run(backend: str) -> Run:
+    def run(backend: str) -> PageRun:
         runs = cpu_runs(folder / backend, labs)
         status = recorded_status(book, lesson, backend, cpu_runs=runs)
-        return Run(name, folder / backend, status, recorded=True)
+        return PageRun(name, folder / backend, status, recorded=True)
 
     backends = dict.fromkeys((REFERENCE, *recorded))
     return stored(f"{lesson}, recorded", lambda: tuple(run(backend) for backend in backends))
@@ -191,12 +190,6 @@ class evidence_badge(nodes.inline):  # noqa: N801
 def badge_node(status: Status) -> nodes.Node:
     """Return a state as the site shows it everywhere: one word and its colour."""
     return evidence_badge("", status.badge, classes=["evidence-badge", f"state-{status.state}"])
-
-
-def lesson_badges(book: Path, lesson: str) -> list[nodes.Node]:
-    """Return the badges of a lesson's lab with spaces between them."""
-    badges = [badge_node(status) for status in lesson_statuses(book, lesson)]
-    return [node for badge in badges for node in (badge, nodes.Text(" "))][:-1]
 
 
 class status_fold(nodes.General, nodes.Element):  # noqa: N801
@@ -234,14 +227,6 @@ def status_list(statuses: Sequence[Status]) -> nodes.bullet_list:
         line = nodes.paragraph("", "", badge_node(status), nodes.Text(f" {status.sentence}"))
         lines += nodes.list_item("", line)
     return lines
-
-
-class LessonState(SphinxRole):
-    """Show the badges of a lesson."""
-
-    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        """Return one badge per backend."""
-        return lesson_badges(Path(self.env.srcdir), self.text), []
 
 
 class EngineSource(SphinxRole):
@@ -293,7 +278,6 @@ def visit_status(self: Any, node: status_fold) -> None:
 def setup(app: Sphinx) -> None:
     """Register roles, directive and writer."""
     app.add_role("measured", Measured())
-    app.add_role("lesson-state", LessonState())
     app.add_role("engine-source", EngineSource())
     app.add_role("engine-release", EngineRelease(f"{REPOSITORY}/releases/tag/v{{}}"))
     app.add_role("engine-package", EngineRelease(f"{PACKAGES}/{{}}/"))

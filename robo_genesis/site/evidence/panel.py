@@ -6,10 +6,11 @@ gives the state, the reason and the command that records a new one.
 """
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from docutils import nodes
 from docutils.parsers.rst.directives import flag
@@ -18,18 +19,20 @@ from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
 from robo_genesis.core.declaration import Compared, Filmed, Moving
-from robo_genesis.core.text import format_value, listed
-from robo_genesis.evidence import bundle
+from robo_genesis.core.text import listed
 from robo_genesis.evidence.bundle import Predicate
-from robo_genesis.evidence.compare import BundleComparison, compare, specification
+from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.rows import DIFFERS
-from robo_genesis.lessons import compared_cases, course_marks, filmed, find_lesson
+from robo_genesis.lessons import compared_cases, course_marks, filmed
 from robo_genesis.site.evidence import measured
-from robo_genesis.site.evidence.ledger_data import Run
+from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import BACKEND, READABLE
 from robo_genesis.site.evidence.plain_nodes import image, marked, text_table
 from robo_genesis.site.replay.directive import replay_block
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +61,7 @@ class Evidence(SphinxDirective):
         runs = measured.recorded_runs(Path(self.env.srcdir), self.arguments[0])
         return [self.panel(run) for run in runs]
 
-    def panel(self, run: Run) -> nodes.Node:
+    def panel(self, run: PageRun) -> nodes.Node:
         """Return the panel of one backend."""
         lesson, folder, status = run.lesson, run.folder, run.status
         panel = nodes.container(classes=["evidence-panel", f"status-{status.state}"])
@@ -94,7 +97,7 @@ def figure(directive: SphinxDirective, anchor: str, picture: Picture) -> nodes.N
     return nodes.figure("", shown, nodes.caption("", picture.caption), ids=[anchor])
 
 
-def not_recorded(run: Run) -> nodes.Node:
+def not_recorded(run: PageRun) -> nodes.Node:
     """Return one sentence for a backend without a run, with the command that records one."""
     backend = READABLE.get(run.status.backend, run.status.backend)
     what = f"No run on {backend} is recorded for Genesis {project.engine_pin()} yet; this command "
@@ -103,7 +106,7 @@ def not_recorded(run: Run) -> nodes.Node:
     return nodes.paragraph("", "", nodes.Text(what), where, command, nodes.Text("."))
 
 
-def withheld(run: Run) -> list[nodes.Node]:
+def withheld(run: PageRun) -> list[nodes.Node]:
     """Return the state of a run that is not shown, the reason, and the command that records one."""
     status = run.status
     what = f"No figures from {status.backend} for Genesis {project.engine_pin()} ({status.badge})."
@@ -142,23 +145,35 @@ def backend_facts(predicate: Predicate) -> nodes.Node:
 def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture:
     """Return every channel of the compared cases, drawn from the bundle's arrays."""
     runs = read_runs(folder, compared)
-    stream, count = io.BytesIO(), len(runs.channels)
 
-    from robo_genesis.core import plotting
-
-    with plotting.course_style():
-        drawing = plotting.figure(0.5 + 3 * count)
-        axes = drawing.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+    def draw(drawing: "Figure") -> None:
+        axes = drawing.subplots(len(runs.channels), 1, sharex=True, squeeze=False)[:, 0]
         for ax, drawn in zip(axes, runs.channels, strict=True):
             levels = runs.levels_of(drawn)
             plotting.channel(ax, runs.t, drawn, runs.subject, course_marks(), levels)
             ax.label_outer()
-        drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+
+    from robo_genesis.core import plotting  # it loads slowly
+
     names = listed([channel.name for channel in runs.channels])
     what = f"{names.capitalize()} of {runs.subject}"
     several = f", with the cases {compared.names} drawn over each other"
     alt = f"{what} over time on {backend}{several if len(runs.traces) > 1 else ''}."
     caption = f"{what} on {backend}, drawn from the arrays of the recorded run."
+    return drawn_picture(0.5 + 3 * len(runs.channels), draw, alt, caption)
+
+
+def drawn_picture(
+    height: float, draw: Callable[["Figure"], None], alt: str, caption: str
+) -> Picture:
+    """Return a figure of a height [in] in the course's style as a picture."""
+    from robo_genesis.core import plotting  # it loads slowly
+
+    stream = io.BytesIO()
+    with plotting.course_style():
+        drawing = plotting.figure(height)
+        draw(drawing)
+        drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return Picture("response", ".svg", stream.getvalue(), alt, caption)
 
 
@@ -197,57 +212,41 @@ def comparison(here: Path, folder: Path) -> list[nodes.Node]:
         f"**Compared with this build's run on {BACKEND}: {found.state}.**{more} The lesson's "
         "specification declares tolerances and orderings; counts must be equal."
     )
-    shown = [
-        nodes.paragraph("", "", *marked(intro)),
-        text_table(value_rows(found, both, (here, folder))),
-    ]
-    rows = ordering_rows(found, both)
-    if not rows:
-        return [*shown, nodes.paragraph("", "The lesson claims no ordering between cases.")]
-    claimed = nodes.paragraph("", "The orderings that the lesson claims, in both runs:")
-    return [*shown, claimed, text_table(rows)]
-
-
-def value_rows(
-    found: BundleComparison, both: tuple[str, str], folders: tuple[Path, Path]
-) -> list[dict[str, str]]:
-    """Return a row for each metric of each case, in the lesson's order, with values as in prose."""
-    spec = specification(found.new.lesson, found.new.page)
-    ours, theirs = (bundle.read_metrics(folder) for folder in folders)
-    rows = {f.what: f for s in found.sections if s.title in VALUES for f in s.rows}
-    labels = find_lesson(found.new.lesson).about_metrics("label")
+    claimed = "The orderings that the lesson claims, in both runs:"
+    orderings = compared_table(found, (RELATIONS,), "claim", both)
     return [
-        {
-            "metric": f"{case} {labels[name]}",
-            both[0]: format_value(ours[case][name].value, ours[case][name].unit),
-            both[1]: format_value(theirs[case][name].value, theirs[case][name].unit),
-            "difference": row.delta or "–",
-            "allowed": row.allowed or "–",
-            "verdict": row.state,
-        }
-        for case, names in spec.metrics.items()
-        for name in names
-        if (row := rows.get(f"{case}.{name}"))
+        nodes.paragraph("", "", *marked(intro)),
+        *compared_table(found, VALUES, "metric", both),
+        nodes.paragraph("", claimed if orderings else "The lesson claims no ordering."),
+        *orderings,
     ]
 
 
-def ordering_rows(found: BundleComparison, both: tuple[str, str]) -> list[dict[str, str]]:
-    """Return a row for each ordering that the lesson claims, with the result in each run."""
-    rows = []
-    labels = find_lesson(found.new.lesson).about_metrics("label")
-    for f in (f for s in found.sections if s.title == RELATIONS for f in s.rows):
-        claim, _, verdict = f.what.partition(", ")
-        metric, _, order = claim.partition(": ")
-        rows.append(
-            {
-                "claim": f"{labels[metric]}: {order}",
-                both[0]: f.old,
-                both[1]: f.new,
-                "margin": f.allowed.removeprefix("margin "),
-                "verdict": verdict,
-            }
-        )
-    return rows
+def compared_table(
+    found: BundleComparison, titles: Sequence[str], what: str, both: tuple[str, str]
+) -> list[nodes.Node]:
+    """Return the findings of some sections as a table, nothing if there are none.
+
+    Args:
+        found: the comparison.
+        titles: of the sections.
+        what: the name of the first column.
+        both: the names of the runs.
+    """
+    rows = [
+        {
+            what: finding.what,
+            both[0]: finding.old,
+            both[1]: finding.new,
+            "difference": finding.delta or "–",
+            "allowed": finding.allowed or "–",
+            "verdict": finding.state,
+        }
+        for section in found.sections
+        if section.title in titles
+        for finding in section.rows
+    ]
+    return [text_table(rows)] if rows else []
 
 
 def warnings_html(warnings: Sequence[str]) -> str:

@@ -24,7 +24,7 @@ from robo_genesis.pipeline.pages.bound import marked
 from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
-from robo_genesis.site.evidence.ledger_data import MEASURED, Item, Run
+from robo_genesis.site.evidence.ledger_data import MEASURED, Item, PageRun
 from robo_genesis.site.evidence.origin import INPUTS, above, came_from_a_cell, origin
 
 TITLE = 80
@@ -40,7 +40,7 @@ def measured_pages(book: Path) -> dict[str, str]:
 
 
 @lru_cache(maxsize=4)
-def all_runs(book: Path) -> dict[str, Run]:
+def all_runs(book: Path) -> dict[str, PageRun]:
     """Return the runs of this build and the recorded ones by key, missing runs included."""
     runs = [measured.page_run(book, *name.split("/")) for name in measured_pages(book).values()]
     recorded = chain.from_iterable(measured.recorded_runs(book, run.lesson) for run in runs)
@@ -93,7 +93,9 @@ def cell_index(node: nodes.Node) -> int | None:
     return next((e["cell_index"] for e in above(node) if e.get("nb_element") == "cell_code"), None)
 
 
-def _problem(keys: tuple[str, ...] | None, known: Mapping[str, Run], is_table: bool) -> str | None:
+def _problem(
+    keys: tuple[str, ...] | None, known: Mapping[str, PageRun], is_table: bool
+) -> str | None:
     """Return why an item cannot be listed."""
     if keys == () and not is_table:
         return f"a cell tagged {INPUTS} shows a picture. The tag is for tables: remove it there."

@@ -14,7 +14,7 @@ from robo_genesis.site.evidence.measured import evidence_badge, measured_value
 from robo_genesis.site.evidence.origin import above, origin
 
 OURS: dict[str, tuple[type[nodes.Element] | tuple[()], str]] = {
-    "evidence-badge": (evidence_badge, "Use {lesson-status} or {lesson-state}."),
+    "evidence-badge": (evidence_badge, "Use {lesson-status}."),
     "status-line": ((), "Use {lesson-status}."),
     "status-word": ((), "Use {lesson-status}."),
     "measured": (measured_value, "Use {measured}."),

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +9,7 @@ from robo_genesis.core import tables
 from robo_genesis.core.channels import Runs
 from robo_genesis.core.palette import css_name, marks_of
 from robo_genesis.core.text import time_digits
-from robo_genesis.site.case_labels import MARKS
+from robo_genesis.site.figures.case_labels import MARKS
 
 if TYPE_CHECKING:
     from robo_genesis.site.replay.scenery import Camera, Scenery  # loads slowly
@@ -21,14 +20,6 @@ SLOW, SLOW_FOR_LONG = "0.1", "0.25"
 runs of more than `LONG` seconds."""
 
 LONG = 3.0
-
-
-@dataclass(frozen=True, slots=True)
-class Files:
-    """Addresses of the scripts that hold the model and the viewer of a replay."""
-
-    model: str
-    viewer: str
 
 
 PLOT = '<div class="plot"></div>'
@@ -49,17 +40,10 @@ def samples(runs: Runs) -> str:
     return tables.markdown([dict(zip(columns, row, strict=True)) for row in rows])
 
 
-def opening(name: str, runs: Runs, camera: "Camera", files: Files) -> str:
-    """Return the start of a replay as HTML, with what `_static/replay.js` needs to know.
-
-    Args:
-        name: of the replay, unique on the site.
-        runs: the runs to play.
-        camera: of the model.
-        files: what loads with the first Play.
-    """
-    model, viewer = f'data-model="{escape(files.model)}"', f'data-viewer="{escape(files.viewer)}"'
-    return f'<div class="replay" {_data(name, runs, camera)} {model} {viewer}>'
+def opening(kind: str, words: Mapping[str, str]) -> str:
+    """Return the start of a replay or an explorer as HTML, with the data for its script."""
+    data = " ".join(f'data-{key}="{escape(text)}"' for key, text in words.items())
+    return f'<div class="{kind}" {data}>'
 
 
 def over_the_picture(button: str) -> str:
@@ -107,18 +91,17 @@ def panel(name: str, runs: Runs, weight: int) -> str:
         f'<p><label for="{name}-time">Time</label><input type="range" id="{name}-time" min="0" '
         f'max="{len(runs.t) - 1}" step="1" value="0"></p>'
         f'<p><label for="{name}-speed">Speed</label><select id="{name}-speed">{speeds}</select></p>'
-        f"</div><dl>{''.join(map(_term, terms))}</dl>"
+        f"</div><dl>{''.join(map(term, terms))}</dl>"
         f'<div class="plots">{PLOT * len(runs.channels)}</div>'
         f'<p class="legend">{escape(_legend(runs))}</p></div></div>'
     )
 
 
-def _data(name: str, runs: Runs, camera: "Camera") -> str:
-    """Return the data of all cases for the script as attributes, the channels as JSON."""
+def data(runs: Runs, camera: "Camera") -> dict[str, str]:
+    """Return the data of all cases for `_static/replay.js`, the channels as JSON."""
     view = runs.view
     channels = [{"name": c.name, "unit": c.unit, "digits": c.digits} for c in runs.channels]
-    words = {
-        "name": name,
+    return {
         "subject": runs.subject,
         "channels": as_json(channels),
         "time-digits": str(time_digits(next(iter(runs.traces.values())).dt)),
@@ -127,7 +110,6 @@ def _data(name: str, runs: Runs, camera: "Camera") -> str:
         "orbit": camera.orbit,
         "target": camera.target,
     }
-    return " ".join(f'data-{key}="{escape(text)}"' for key, text in words.items())
 
 
 def _cases(name: str, runs: Runs) -> str:
@@ -170,7 +152,7 @@ def as_json(content: Any) -> str:
     return json.dumps(content, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
 
 
-def _term(name: str) -> str:
+def term(name: str) -> str:
     """Return a line of the readout; it has its final height before the script fills it."""
     return f"<div><dt>{escape(name)}</dt><dd>&nbsp;</dd></div>"
 

@@ -27,11 +27,11 @@ from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons import drawn_cases
 from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.sim import visual_shape
-from robo_genesis.site.case_labels import labelled
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import image, marked
-from robo_genesis.site.page_files import note_files
+from robo_genesis.site.figures.case_labels import labelled
+from robo_genesis.site.frame.incremental import note_files
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
 
@@ -51,11 +51,20 @@ class ReplayDirective(SphinxDirective):
         Errors: the page has no bundle, or the lesson compares no such cases.
         """
         lesson_page, *further = self.arguments
-        folder = page_outputs(lesson_page) / BACKEND
-        if not (folder / "manifest.json").is_file():
-            raise self.error(f"replay: {lesson_page} has no bundle on {BACKEND}.")
-        key = f"{lesson_page}/{BACKEND}"
-        return [replay_block(self, key, folder, *further, brief="brief" in self.options)]
+        folder, brief = bundle_of(self, lesson_page), "brief" in self.options
+        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *further, brief=brief)]
+
+
+def bundle_of(directive: SphinxDirective, lesson_page: str) -> Path:
+    """Return the folder of the bundle that a page wrote in this build.
+
+    Raises:
+        DirectiveError: it has none.
+    """
+    folder = page_outputs(lesson_page) / BACKEND
+    if not (folder / "manifest.json").is_file():
+        raise directive.error(f"{directive.name}: {lesson_page} has no bundle on {BACKEND}.")
+    return folder
 
 
 def replay_block(
@@ -89,13 +98,14 @@ def replay_block(
         if drawn.places:
             runs, parts = side_by_side(runs, parts, drawn.places)
         around = scenery(parts, runs, hinged=not drawn.places)
-        inputs = [*model_inputs(shape, folder, runs)]
+        drawn_by = repr((list(runs.traces), list(runs.links), runs.view.credit)).encode()
+        inputs = [drawn_by, shape.read_bytes(), *bundle_inputs(folder)]
         what = around, runs.links, runs.traces, runs.view.credit
         model = derived("replay", inputs, lambda: replay_model.glb(*what))
         still = derived("poster", inputs, lambda: picture(model, around.camera))
         files, weight = leave_model(env, name, model)
         shown = first_channel(runs) if brief else runs  # the model is the same
-        opening = controls.opening(name, shown, around.camera, files)
+        opening = controls.opening("replay", files | controls.data(shown, around.camera))
     except (LookupError, ValueError) as error:
         raise directive.error(f"replay: {key}: {error}") from error
     samples = f"samples of {', '.join(runs.traces)} as a table"
@@ -103,8 +113,8 @@ def replay_block(
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     block += nodes.raw("", opening, format="html")
-    captions = controls.alt(runs), controls.caption(runs, around)
-    block += stage(env, name, still, *captions, controls.over_the_picture("Play"))
+    poster, over = still_picture(env, name, still, controls.alt(runs)), controls.over_the_picture
+    block += stage(poster, over("Play"), controls.caption(runs, around), f"{name}-model")
     block += nodes.raw("", controls.panel(name, shown, weight), format="html")
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
     if shown.moves:
@@ -121,27 +131,30 @@ def replay_folder(env: BuildEnvironment) -> str:
     return "../" * env.docname.count("/") + FOLDER
 
 
-def leave_model(env: BuildEnvironment, name: str, model: bytes) -> tuple[controls.Files, int]:
+def leave_model(env: BuildEnvironment, name: str, model: bytes) -> tuple[dict[str, str], int]:
     """Write a model for the page that is read.
 
     Returns:
-        What loads on a reader's request, and its compressed size [kB].
+        Name and addresses of what loads on a reader's request, and its compressed size [kB].
     """
     files_of, up = Path(env.app.outdir) / FOLDER, replay_folder(env)
     written = write_model(files_of, name, model)
     note_files(env, files_of / f"{name}.glb", files_of / f"{name}.js")
     weight = round((written + len(gzip.compress(viewer.viewer()))) / 1000)
-    return controls.Files(f"{up}/{name}.js", f"{up}/{VIEWER}"), weight
+    return {"name": name, "model": f"{up}/{name}.js", "viewer": f"{up}/{VIEWER}"}, weight
 
 
-def stage(
-    env: BuildEnvironment, name: str, still: bytes, alt: str, caption: str, over: str
-) -> nodes.figure:
-    """Return the figure in which the model replaces its still picture; `over` is on top of it."""
-    poster = image(env, f"{name}.jpg", still, alt)
-    poster["kind"], poster["classes"] = "model", ["still"]
-    content = nodes.container("", poster, nodes.raw("", over, format="html"), classes=["stage"])
-    return nodes.figure("", content, nodes.caption("", caption), ids=[f"{name}-model"])
+def still_picture(env: BuildEnvironment, name: str, still: bytes, alt: str) -> nodes.image:
+    """Return the picture that a model replaces."""
+    picture = image(env, f"{name}.jpg", still, alt)
+    picture["kind"], picture["classes"] = "model", ["still"]
+    return picture
+
+
+def stage(picture: nodes.image, over: str, caption: str, anchor: str) -> nodes.figure:
+    """Return a figure with some markup on top of its picture."""
+    content = nodes.container("", picture, nodes.raw("", over, format="html"), classes=["stage"])
+    return nodes.figure("", content, nodes.caption("", caption), ids=[anchor])
 
 
 def first_channel(runs: Runs) -> Runs:
@@ -165,11 +178,11 @@ def shape_file(lesson: str, thing: str) -> Path:
     return shape
 
 
-def model_inputs(shape: Path, folder: Path, runs: Runs) -> Iterator[bytes]:
-    """Yield everything that determines the GLB of a replay and its picture."""
-    yield repr((list(runs.traces), list(runs.links), runs.view.credit)).encode()
+def bundle_inputs(folder: Path) -> Iterator[bytes]:
+    """Yield everything that determines what is made of a bundle."""
     sources = (project.ROOT / "robo_genesis").rglob("*.py")
-    for path in (shape, folder / "arrays.json", *sorted(folder.glob("arrays/*")), *sorted(sources)):
+    files = (path for path in folder.rglob("*") if path.is_file())
+    for path in sorted([*files, *sources]):
         yield path.read_bytes()
 
 

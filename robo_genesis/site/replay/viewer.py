@@ -10,7 +10,7 @@ from sphinx.application import Sphinx
 
 from robo_genesis.pipeline import npm
 from robo_genesis.pipeline.html.scripts import VIEWER
-from robo_genesis.site.page_files import REPLAYS
+from robo_genesis.site.frame.incremental import REPLAYS
 
 FOLDER = REPLAYS
 """Folder of the site; Jupyter Book would load every script of `_static` on every page."""

@@ -4,6 +4,7 @@
 The files are written into the site while the page is read, so that the page can show their sizes.
 """
 
+import re
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
@@ -11,6 +12,7 @@ from pathlib import Path
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.config import Config
+from sphinx.errors import ConfigError
 from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
@@ -19,11 +21,13 @@ from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import executed_notebook, page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, measured
-from robo_genesis.site.page_files import TAKEAWAYS, note_files
+from robo_genesis.site.frame.incremental import TAKEAWAYS, note_files
 from robo_genesis.site.takeaways.files import Takeaways, run_commands, system, write_takeaways
 from robo_genesis.site.takeaways.notebooks import Course
 from robo_genesis.site.takeaways.plain_markdown import ProseError
-from robo_genesis.site.takeaways.repository import codespace, require_address
+
+ADDRESS = re.compile(r"https://(?P<host>[\w.-]+)/(?P<name>[\w.-]+/[\w.-]+)")
+GITHUB = "github.com"
 
 Link = Callable[..., list[nodes.Node]]
 """Returns the link to a file with an optional text, and its size."""
@@ -147,6 +151,36 @@ def bullets(*items: Iterable[str | list[nodes.Node]]) -> nodes.Node:
             line += nodes.Text(part) if isinstance(part, str) else part
         found += nodes.list_item("", line)
     return found
+
+
+def require_address(app: Sphinx, config: Config) -> None:
+    """Require the address of a repository, or none.
+
+    Raises:
+        ConfigError: the given address is not valid.
+    """
+    given = config.course_repository
+    if given and not ADDRESS.fullmatch(given):
+        raise ConfigError(
+            f"course_repository={given!r} in _config.yml is not valid. Give an address like "
+            "https://github.com/OWNER/NAME, without a slash at its end, or leave it empty."
+        )
+
+
+def codespace(repository: str) -> str:
+    """Return Markdown that offers a codespace of a repository on GitHub, nothing for another one.
+
+    Args:
+        repository: its address, empty if none is configured.
+    """
+    found = ADDRESS.fullmatch(repository)
+    if found is None or found["host"] != GITHUB:
+        return ""
+    return (
+        f"Without Linux: [open the course in a codespace](https://codespaces.new/{found['name']}), "
+        "a virtual machine at GitHub with the container of the labs. It needs an account there. We "
+        "have not tried it; the page “Running a lab” has the steps."
+    )
 
 
 def setup(app: Sphinx) -> None:

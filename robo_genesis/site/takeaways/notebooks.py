@@ -13,7 +13,7 @@ from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 from robo_genesis.core.project import COURSE, ENGINE, solutions_shown
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.site.page_facts import WORK_SHEET
+from robo_genesis.site.course.facts import WORK_SHEET
 from robo_genesis.site.takeaways.plain_markdown import SOLUTION, ProseError, Writer, plain
 
 SITE_ONLY = "site-only"

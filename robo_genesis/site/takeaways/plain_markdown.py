@@ -24,7 +24,6 @@ SOLUTION = "solution"
 ADMONITIONS = ("note", "tip", "hint", "important", "attention", "caution", "warning", "danger")
 UNTITLED = {
     "numref": "the figure", "eq": "the equation", "ref": "the section", "doc": "the site",
-    "lesson-state": "",
 }  # fmt: skip
 """Words that replace a role whose text only the site can write."""
 

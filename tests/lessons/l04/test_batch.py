@@ -4,11 +4,9 @@ import gzip
 import json
 import re
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import pytest
-from bs4 import BeautifulSoup
 from matplotlib.figure import Figure
 
 from robo_genesis.core.checks import evaluate
@@ -26,8 +24,16 @@ from robo_genesis.sim.arm.franka import JOINT_NAMES
 
 K = JOINT_NAMES.index(spec.STEPPED_JOINT)
 G2 = study_spec.CASE_POINTS["G2"]
+
+
 SHIPPED = 60_000
-"""Most bytes that the explorer's markup may take, compressed as a server sends it."""
+"""Most bytes that the explorer's data may take, compressed as a server sends them."""
+
+
+def cells_of(data):
+    """Return the cells in the order of the points: rows are upside down in their maps."""
+    rows = (row for one in data["maps"] for row in reversed(one["rows"]))
+    return [cell for row in rows for cell in row["cells"]]
 
 
 def failed(run):
@@ -51,13 +57,12 @@ def test_packed_data_unpacks_within_half_a_unit(study_runs):
     of_q, of_force = (
         np.array([getattr(run, name)[:, K] for run in runs]) for name in ("q", "control_force")
     )
-    data = json.loads(json.dumps(explorer.pack(study_runs)))
+    data = json.loads(json.dumps(explorer.explored(study_runs)))
     q, force = (
-        np.array([point[name] for point in data["points"]]) * data["resolution"][name]
-        for name in ("q", "force")
+        np.array([cell[curve["key"]] for cell in cells_of(data)]) * curve["unit"] + curve["zero"]
+        for curve in data["curves"]["drawn"]
     )
-    q = q + data["start"]
-    drawn = round(data["until"] / data["dt"])
+    drawn = round(data["curves"]["until"] / data["curves"]["dt"])
     of_q, of_force = of_q[:, : drawn + 1], of_force[:, :drawn]
     # The arrays are float32: their own last bit adds to the half unit.
     assert np.abs(q - of_q).max() <= 0.5 * explorer.PACKED["q"] + 1e-6
@@ -66,26 +71,23 @@ def test_packed_data_unpacks_within_half_a_unit(study_runs):
 
 
 def test_packed_metrics_are_those_of_the_full_arrays(study_runs):
-    data, number = explorer.pack(study_runs), POINTS.index(G2)
-    overshoot = data["points"][number]["metrics"][data["labels"].index("overshoot")]
+    data = explorer.explored(study_runs)
+    cells = cells_of(data)
+    overshoot = cells[POINTS.index(G2)]["values"][data["columns"].index("overshoot")]
     assert overshoot == format_value(study_runs.metrics[G2.name].overshoot, "rad")
-    assert [len(point["metrics"]) for point in data["points"]] == [len(data["labels"])] * 100
+    assert [len(cell["values"]) for cell in cells] == [len(data["columns"])] * 100
+    assert [cell["name"] for cell in cells] == [f"KP {p.kp:g}, KV {p.kv:g}" for p in POINTS]
+    assert [cell["tag"] for cell in cells if cell["opens"]] == ["G2"]
+    assert 1000 < len(gzip.compress(json.dumps(data).encode(), mtime=0)) < SHIPPED
 
 
 def test_each_measure_has_the_lesson_s_margin_and_the_values_of_all_runs(study_runs):
-    measures = explorer.pack(study_runs)["measures"]
+    data = explorer.explored(study_runs)
+    numbers = zip(*(cell["numbers"] for cell in cells_of(data)), strict=True)
     assert explorer.CELLS.keys() == spec.MARGINS.keys() - {"settling_time"}
-    for name, measure in zip(explorer.CELLS, measures, strict=True):
+    for name, measure, shown in zip(explorer.CELLS, data["measures"], numbers, strict=True):
         assert measure["margin"] == spec.MARGINS[name]
-        values = [getattr(study_runs.metrics[point.name], name) for point in POINTS]
-        assert measure["values"] == values
-
-
-def test_the_axes_number_the_points(study_runs):
-    """As the page's script counts: the last axis fastest."""
-    axes = explorer.pack(study_runs)["axes"]
-    points = [tuple(getattr(point, axis["name"]) for axis in axes) for point in POINTS]
-    assert points == list(product(*(axis["values"] for axis in axes)))
+        assert [*shown] == [getattr(study_runs.metrics[point.name], name) for point in POINTS]
 
 
 def test_the_sentence_says_what_was_measured(study_runs):
@@ -100,15 +102,6 @@ def test_the_sentence_says_what_was_measured(study_runs):
         "KP 4375, KV 150, step 0.1 rad. Overshoot: none. "
         "Not saturated: no sample at the force limit."
     )
-
-
-def test_the_markup_is_small_and_its_data_can_be_read(study_runs):
-    markup = explorer.markup(study_runs)
-    assert 1000 < len(gzip.compress(markup.encode(), mtime=0)) < SHIPPED
-    text = BeautifulSoup(markup, "html.parser").select_one(".explorer")["data-grid"]
-    assert "\n" not in markup  # one block of HTML in Markdown, in which no script may be
-    assert "<script" not in markup
-    assert json.loads(text) == json.loads(json.dumps(explorer.pack(study_runs)))
 
 
 def test_the_table_has_the_cases_in_the_rows_of_their_points(study_runs):

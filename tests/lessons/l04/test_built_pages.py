@@ -1,6 +1,5 @@
 """The built pages of L04: mistakes, the explorer, warnings and formulas."""
 
-import json
 import re
 from pathlib import Path
 
@@ -96,15 +95,6 @@ def test_the_lecture_shows_two_failures(lecture):
     (after,) = (text for text in blocks if "after step 1:" in text)
     first, last = (float(value) for value in re.findall(r"moved (\S+) rad", after))
     assert 0 < first < last
-
-
-def test_the_explorer_of_the_lecture_has_the_runs_of_the_grid(lecture, site):
-    data = json.loads(lecture.select_one(".explorer")["data-grid"])
-    assert len(data["points"]) == 100
-    records = bundle.read_metrics(site.parent / "pages" / "l04" / "batch" / "cpu")
-    named = [point for point in data["points"] if point["case"] == "G2"]
-    found = records["grid_step_250mrad_KP_7000_KV_100"]["overshoot"].value
-    assert f"{found:.4f} rad" in named[0]["metrics"]
 
 
 def test_a_number_in_prose_is_the_bundle_s_and_says_where_it_comes_from(site):

@@ -1,12 +1,10 @@
 """The bundles of the lecture and the deeper pages: runs, metrics and checks are verified too."""
 
-import json
 import re
 import shutil
 from pathlib import Path
 
 import pytest
-from bs4 import BeautifulSoup
 from bundles import written
 from lessons.l04.conftest import PAGES, of_page
 from lessons.lesson_bundles import altered, judged_again, pop, refused, without_run
@@ -17,7 +15,7 @@ from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare
 from robo_genesis.lessons.l04 import LESSON, spec, study_spec
 from robo_genesis.pipeline.bundles.verify import verify_bundle
-from robo_genesis.site.explorer import explorer_html
+from robo_genesis.site.figures.explorer import Recorded
 
 
 @pytest.fixture(scope="module")
@@ -176,13 +174,13 @@ def test_an_altered_finding_is_refused(studied, page, check):
 
 
 def test_a_page_can_show_the_explorer_of_another_page_s_runs(sound, study_runs):
-    html = BeautifulSoup(explorer_html("l04", sound["batch"]), "html.parser")
-    data = json.loads(html.select_one(".explorer")["data-grid"])
-    (g2,) = (point for point in data["points"] if point["case"] == "G2")
+    data = Recorded("l04", sound["batch"]).explored()
+    cells = (cell for one in data["maps"] for row in one["rows"] for cell in row["cells"])
+    (g2,) = (cell for cell in cells if cell["tag"] == "G2")
     overshoot = study_runs.metrics["grid_step_250mrad_KP_7000_KV_100"].overshoot
-    assert g2["metrics"][data["labels"].index("overshoot")] == f"{overshoot:.4f} rad"
+    assert g2["values"][data["columns"].index("overshoot")] == f"{overshoot:.4f} rad"
 
 
 def test_a_lesson_without_an_explorer_is_named(sound):
-    with pytest.raises(ShownError, match=r"lessons\.l02\.explorer\.markup"):
-        explorer_html("l02", sound["batch"])
+    with pytest.raises(ShownError, match=r"lessons\.l02\.explorer\.explored"):
+        Recorded("l02", sound["batch"]).explored()

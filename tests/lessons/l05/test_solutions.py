@@ -7,24 +7,28 @@ from robo_genesis.lessons.l05 import explorer, plots, spec, study, text
 
 
 def test_each_target_of_a_plane_is_one_cell_and_upwards_is_up(solved):
-    for found, axis in zip(explorer.posture_maps(solved, "reach"), (2, 1), strict=True):
-        cells = [key for row in found["rows"] for key in row["cells"]]
-        assert sorted(cells) == list(range(1, 64)) == [int(r["answer"]) for r in found["records"]]
-        top = found["targets"][found["rows"][0]["cells"][0] - 1]
-        assert top[axis] == found["targets"][:, axis].max()
-        assert top[0] == found["targets"][:, 0].min() == float(found["columns"][0])
+    data = explorer.explored(solved, "reach")
+    for found, axis in zip(data["maps"], (2, 1), strict=True):
+        cells = {cell["answer"]: cell for row in found["rows"] for cell in row["cells"]}
+        rows, targets = data["tables"][found["caption"]], data["postures"][found["run"]]
+        assert sorted(cells) == list(range(1, 64)) == [int(row["answer"]) for row in rows]
+        assert cells[1]["values"] == [*rows[0].values()][1:]
+        top = targets[found["rows"][0]["cells"][0]["answer"] - 1]
+        assert top[axis] == targets[:, axis].max()
+        assert top[0] == targets[:, 0].min() == float(found["columns"][0])
         accepted = study.answers(solved.traces[found["run"]], spec.QUESTIONS[found["run"]])[
             "accepted"
         ]
-        assert [r["accepted"] == "yes" for r in found["records"]] == accepted.tolist()
+        assert [row["accepted"] == "yes" for row in rows] == accepted.tolist()
+        assert [cells[k]["state"] == "accepted" for k in sorted(cells)] == accepted.tolist()
 
 
 def test_the_map_of_solutions_has_the_accepted_answers_along_their_curves(solved):
-    (found,) = explorer.posture_maps(solved, "solutions")
-    assert {r["accepted"] for r in found["records"]} == {"yes"}
+    (found,) = explorer.explored(solved, "solutions")["maps"]
+    assert {cell["state"] for row in found["rows"] for cell in row["cells"]} == {"accepted"}
     q = solved.traces["many_starts"].q
     for row in found["rows"]:
-        assert (np.diff(q[row["cells"], 0]) >= 0).all()
+        assert (np.diff(q[[cell["answer"] for cell in row["cells"]], 0]) >= 0).all()
     accepted = study.many_answers(solved)["accepted"]
     assert sum(len(row["cells"]) for row in found["rows"]) == accepted.sum() > 20
 

@@ -1,4 +1,4 @@
-"""The site's address; test_render and test_course_elsewhere look at sites without and with one."""
+"""The site's address; test_render and test_elsewhere look at sites without and with one."""
 
 import pytest
 

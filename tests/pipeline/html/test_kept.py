@@ -23,12 +23,12 @@ from robo_genesis.pipeline.html.sphinx_process import DOCTREES, RenderError, Sph
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK, RECORD
-from robo_genesis.site.kept_pages import forget_own_pictures, outlines, setup
+from robo_genesis.site.frame.incremental import forget_own_pictures, outlines, setup
 
 GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
 LAW = "# Law\n\n(spring)=\n## The spring\n\nA gain of two, and a rareword.\n\n{ref}`text <there>`\n"
 TEXT = "# Text\n\n(there)=\n## There\n\nSee [](law.md) and {ref}`spring`.\n\n![A drawing](a.svg)\n"
-TEXT += "\nState: {lesson-state}`l04`.\n"
+TEXT += "\n```{lesson-status} l04\n```\n"
 FIGURE = "\n```{figure} a.svg\n%s\nA drawing\n```\n"
 CITING = "# Citing\n\nSee {numref}`drawn` and {eq}`force`.\n"
 DRAWN = "# Drawn\n" + FIGURE % ":name: drawn" + "\n$$\nF = k x\n$$ (force)\n"

@@ -172,7 +172,7 @@ CHANGES = [
     ("core/plotting", CONSTANT, ALL, NONE),
     ("evidence/recorder", CONSTANT, ALL, NONE),
     ("pipeline/stages", CONSTANT, NONE, NONE),
-    ("site/glossary", CONSTANT, NONE, NONE),
+    ("site/text/glossary", CONSTANT, NONE, NONE),
     ("lessons/l04/theory", CONSTANT, ("l04",), ("l04",)),
     ("lessons/l04/spec", ('"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'), ("l04",), NONE),
     ("lessons/l04/pages", ('Filmed("the Franka")', 'Filmed("the arm")'), ("l04",), NONE),

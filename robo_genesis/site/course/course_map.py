@@ -1,0 +1,248 @@
+"""The lessons of the course, from `course_map.yml`: the map, links to lessons, the featured one.
+
+| in a page | shows |
+|---|---|
+| {course-map} (directive) | published lessons as cards, planned ones as a list of titles |
+| {featured} L04 (directive) | its content, while the map features this lesson |
+| {lesson}`some words <l04/lab>` | a link to a lesson's page, plain text without that lesson |
+"""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+from docutils import nodes
+from sphinx import addnodes
+from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
+from sphinx.util.docutils import SphinxDirective, SphinxRole
+
+from robo_genesis.core.text import listed
+from robo_genesis.site.course.facts import LAB, Minutes, minutes_of
+from robo_genesis.site.evidence.plain_nodes import marked
+
+FILE = "course_map.yml"
+LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
+"""A link to a lesson's page: its words, the lesson and the page."""
+
+
+class CourseMapError(Exception):
+    """The map cannot be used; the message names the line and the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lesson:
+    """One lesson.
+
+    `needs` is None where it is not decided yet. `page` is the lecture, None while the lesson is
+    planned. `outcomes` is what a student can do after a published lesson, with code in backticks.
+    The home page shows the measurements of the `featured` lesson.
+    """
+
+    id: str
+    title: str
+    needs: tuple[str, ...] | None = None
+    page: str | None = None
+    outcomes: tuple[str, ...] = ()
+    featured: bool = False
+
+
+def read_map(book: Path) -> list[Lesson]:
+    """Return the lessons of a book's map in their order.
+
+    Raises:
+        CourseMapError: the file is not a list of lessons, an id occurs twice, a lesson needs one
+            that does not come before it, a published one has no outcomes, or two are featured.
+    """
+    rows = yaml.safe_load((book / FILE).read_text("utf8"))
+    lessons: list[Lesson] = []
+    for row in rows if isinstance(rows, list) else [rows]:
+        try:
+            needs, outcomes = row.get("needs"), row.get("outcomes", [])
+            if not isinstance(outcomes, list):
+                raise TypeError("outcomes is not a list")
+            lists = {"needs": None if needs is None else tuple(needs), "outcomes": tuple(outcomes)}
+            lesson = Lesson(**row | lists)
+        except (AttributeError, TypeError) as error:
+            raise CourseMapError(
+                f"{FILE} has {row!r}; a lesson has id, title and perhaps needs, page, outcomes and "
+                "featured."
+            ) from error
+        known = [earlier.id for earlier in lessons]
+        if lesson.id in known:
+            raise CourseMapError(f"{FILE} names {lesson.id} twice.")
+        unknown = [need for need in lesson.needs or () if need not in known]
+        if unknown:
+            raise CourseMapError(
+                f"{FILE}: {lesson.id} needs {', '.join(unknown)}; before it come "
+                f"{', '.join(known) or 'none'}."
+            )
+        if lesson.page and not lesson.outcomes:
+            raise CourseMapError(
+                f"{FILE}: {lesson.id} is published and has no outcomes. Add `outcomes:` with up to "
+                "three things that a student can do after it."
+            )
+        lessons.append(lesson)
+    featured = [lesson.id for lesson in lessons if lesson.featured]
+    if len(featured) > 1:
+        raise CourseMapError(f"{FILE} features {' and '.join(featured)}; keep one `featured`.")
+    return lessons
+
+
+class MapDirective(SphinxDirective):
+    """Base of the directives that read the map."""
+
+    def lessons(self) -> list[Lesson]:
+        """Return the lessons; an unusable map or a missing page is an error of the build."""
+        book = Path(self.env.srcdir)
+        self.env.note_dependency(str(book / FILE))
+        try:
+            lessons = read_map(book)
+        except (CourseMapError, OSError, yaml.YAMLError) as error:
+            raise self.error(f"{self.name}: {error}") from error
+        gone = [x.page for x in lessons if x.page and x.page not in self.env.found_docs]
+        if gone:
+            raise self.error(f"{self.name}: the book has no page {', '.join(gone)}.")
+        return lessons
+
+
+class Featured(MapDirective):
+    """Show content about one lesson while the map features it, otherwise nothing."""
+
+    required_arguments = 1
+    has_content = True
+
+    def run(self) -> list[nodes.Node]:
+        """Return the content; without the lesson it is not even parsed."""
+        featured = [lesson.id for lesson in self.lessons() if lesson.featured and lesson.page]
+        return self.parse_content_to_nodes() if self.arguments == featured else []
+
+
+class LessonLink(SphinxRole):
+    """Link to a page of a lesson; without that lesson, the words alone remain."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return the link; a page that the lesson does not have is an error of the build."""
+        found = LINK.fullmatch(self.text)
+        if found is None:
+            return self.refused(f"{self.text!r} is not a link; write `some words <l04/lecture>`")
+        words, lesson, page = found.groups()
+        pages = lesson_pages(self.env.found_docs, lesson)
+        if pages and page not in pages:
+            return self.refused(f"{lesson} has no page {page!r}; choices: {', '.join(pages)}")
+        if not pages:
+            return [nodes.Text(words)], []
+        return [page_link(self.env.docname, pages[page], words)], []
+
+    def refused(self, message: str) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return an error of the build."""
+        return [], [self.inliner.reporter.error(f"lesson: {message}.", line=self.lineno)]
+
+
+def lesson_pages(docnames: Iterable[str], lesson: str) -> dict[str, str]:
+    """Return the pages of a lesson by name, from the folder `lessons/l04-…` of a book."""
+    paths = [Path(name) for name in sorted(docnames)]
+    return {p.name: str(p) for p in paths if p.match(f"lessons/{lesson}-*/*")}
+
+
+def page_link(source: str, target: str, words: str) -> nodes.Node:
+    """Return a link from one page to another."""
+    return addnodes.pending_xref(
+        "", nodes.inline("", words, classes=["std", "std-doc"]), reftype="doc", refdomain="std",
+        refdoc=source, refexplicit=True, reftarget=f"/{target}", refwarn=True,
+    )  # fmt: skip
+
+
+class page_minutes(nodes.inline):  # noqa: N801 - docutils names nodes in lower case
+    """Placeholder for the minutes of pages until all pages are read."""
+
+
+class CourseMap(MapDirective):
+    """Show the published lessons as cards, and the planned ones as a list."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return the cards and the list, without the list where no lesson is planned."""
+        lessons = self.lessons()
+        cards = [self.card(lesson) for lesson in lessons if lesson.page]
+        shown: list[nodes.Node] = [nodes.bullet_list("", *cards, classes=["course-map"])]
+        if planned := [planned_line(lesson) for lesson in lessons if not lesson.page]:
+            shown.append(nodes.paragraph("", "Planned lessons:"))
+            shown.append(nodes.bullet_list("", *planned, classes=["planned-lessons"]))
+        return shown
+
+    def card(self, lesson: Lesson) -> nodes.list_item:
+        """Return the card of a published lesson."""
+        assert lesson.page is not None
+        title = page_link(self.env.docname, lesson.page, lesson.title)
+        outcomes = (nodes.paragraph("", "", *marked(text)) for text in lesson.outcomes)
+        return nodes.list_item(
+            "",
+            nodes.paragraph("", "", nodes.strong("", f"{lesson.id} "), title),
+            nodes.bullet_list("", *(nodes.list_item("", line) for line in outcomes)),
+            *needs_line(lesson),
+            *self.times(lesson, lesson.page),
+            ids=[anchor(lesson.id)],
+        )
+
+    def times(self, lesson: Lesson, lecture: str) -> list[nodes.Node]:
+        """Return a line for the lecture, for the lab, and for the other pages together."""
+        pages = lesson_pages(self.env.found_docs, lesson.id.lower())
+        others = [page for name, page in pages.items() if name != LAB and page != lecture]
+        rows: list[tuple[nodes.Node, list[str]]] = [
+            (page_link(self.env.docname, lecture, "Lecture"), [lecture])
+        ]
+        if LAB in pages:
+            rows.append((page_link(self.env.docname, pages[LAB], "Lab"), [pages[LAB]]))
+        if others:
+            more = "1 more page" if len(others) == 1 else f"{len(others)} more pages"
+            rows.append((nodes.Text(more), others))
+        return [
+            nodes.paragraph(
+                "", "", what, nodes.Text(": "), page_minutes(pages=of), classes=["time"]
+            )
+            for what, of in rows
+        ]
+
+
+def planned_line(lesson: Lesson) -> nodes.list_item:
+    """Return the line of a planned lesson: its name and title, without a link."""
+    name = nodes.strong("", f"{lesson.id} ")
+    line = nodes.paragraph("", "", name, nodes.Text(lesson.title))
+    return nodes.list_item("", line, ids=[anchor(lesson.id)])
+
+
+def needs_line(lesson: Lesson) -> list[nodes.Node]:
+    """Return the line with the lessons that come before, none where that is not decided yet."""
+    if lesson.needs is None:
+        return []
+    before = listed(lesson.needs) if lesson.needs else "no other lesson"
+    return [nodes.paragraph("", f"Builds on {before}.", classes=["needs"])]
+
+
+def anchor(lesson: str) -> str:
+    """Return the anchor of a lesson on the map."""
+    return f"lesson-{lesson.lower()}"
+
+
+def total_minutes(env: BuildEnvironment, pages: list[str]) -> Minutes:
+    """Return the time that some pages take together."""
+    found = [minutes_of(env, page) for page in pages]
+    read, work = sum(time.read for time in found), sum(time.work for time in found)
+    return Minutes(read, work, sheet=any(time.sheet for time in found))
+
+
+def fill_in(app: Sphinx, document: nodes.document, docname: str) -> None:
+    """Write the minutes of the pages, as each page itself shows them."""
+    for place in list(document.findall(page_minutes)):
+        place.replace_self(nodes.Text(str(total_minutes(app.env, place["pages"]))))
+
+
+def setup(app: Sphinx) -> None:
+    """Register the directives, the role and the later step."""
+    app.add_directive("featured", Featured)
+    app.add_role("lesson", LessonLink())
+    app.add_directive("course-map", CourseMap)
+    app.add_node(page_minutes)
+    app.connect("doctree-resolved", fill_in)

@@ -1,0 +1,1 @@
+"""Drawings and marks of cases, and the explorer of recorded results."""

@@ -1,0 +1,135 @@
+"""Puts drawings into their pages as elements, with the palette of the reader's theme.
+
+Figures of cells and illustrations are SVG files in the colours of the light theme. In a page, each
+colour becomes a variable of `palette.css`, with the colour itself as its fallback. The file stays
+in the site as the run produced it, and the ledger has its digest.
+"""
+
+import re
+import xml.etree.ElementTree as ElementTree
+from html import escape
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+from bs4 import BeautifulSoup
+from bs4.element import PreformattedString
+from PIL import Image
+
+from robo_genesis.core.palette import MARKS, PARTS, css_name
+
+VARIABLES = {
+    **{mark.light: f"var(--{css_name(name)}, {mark.light})" for name, mark in MARKS.items()},
+    **{part.light: f"var(--figure-{name}, {part.light})" for name, part in PARTS.items()},
+}
+"""What takes the place of each colour."""
+
+WIDE = 480
+"""Width above which a drawing is not made for a phone: it scrolls sideways there [CSS px]."""
+
+DRAWING = re.compile(r"\.svg$")
+COLOUR = re.compile(r'(?<=[:"])( ?)(#[0-9a-fA-F]{3,8})(?=[;"])')
+DROPPED = re.compile(r"<!--.*?-->|<(metadata|style|title)\b.*?</\1>|\s+xmlns:\w+=\"[^\"]*\"", re.S)
+REFERENCE = re.compile(r'(?<=url\(#)[^)]+|(?<=href="#)[^"]+')
+IDENTIFIER = re.compile(r'\s+id="([^"]*)"')
+FRACTION = re.compile(r"\b([1-9]\d*\.\d\d)\d+")
+"""Digits beyond a hundredth of a coordinate; a scale is smaller than one and keeps all."""
+SIZE = re.compile(r'\s(?:width|height|version|role)="[^"]*"')
+LINES = "stroke-linejoin: round; stroke-linecap: butt"
+"""Matplotlib's own style sheet, which would apply to the whole page."""
+
+
+PIXELS = {"": 1.0, "px": 1.0, "pt": 4 / 3, "in": 96.0, "cm": 96 / 2.54, "mm": 96 / 25.4}
+"""CSS pixels in one unit of length."""
+LENGTH = re.compile(rf"([\d.]+)({'|'.join(PIXELS)})")
+
+
+def inline_drawings(page: BeautifulSoup, folder: Path) -> None:
+    """Replace the drawings of an article by elements, in place.
+
+    Drawings that contain a picture of a camera stay files: they are large, and have no colours of
+    the palette. A link around a drawing to its own file is removed.
+
+    Args:
+        page: the complete page.
+        folder: the folder that the page's addresses are relative to.
+    """
+    images = page.article.find_all("img", src=DRAWING) if page.article else []
+    for number, image in enumerate(images):
+        address = str(image["src"])
+        file = folder / unquote(urlsplit(address).path)
+        text = file.read_text("utf8") if file.is_file() else "<image"
+        if "<image" not in text:
+            width, height = image_size(file)
+            attributes = {
+                "class": "drawing wide" if width > WIDE else "drawing",
+                "role": "img",
+                "aria-label": str(image.get("alt", "")),
+                "data-file": address,
+                "width": str(width),
+                "height": str(height),
+                "style": f"--natural: {width}px; {LINES}",
+            }
+            if image.has_attr("id"):  # the anchor of a figure without caption
+                attributes["id"] = str(image["id"])
+            link = image.find_parent("a", class_="image-reference")
+            (link or image).replace_with(
+                PreformattedString(element(text, f"drawing-{number}-", attributes))
+            )
+
+
+def image_size(file: Path) -> tuple[int, int]:
+    """Return an image's width and height [CSS px].
+
+    Raises:
+        ValueError: an SVG states neither its size nor a view box.
+    """
+    if file.suffix != ".svg":
+        with Image.open(file) as image:
+            return image.size
+    _, root = next(ElementTree.iterparse(file, events=["start"]))
+    stated = [root.get("width", ""), root.get("height", "")]
+    for lengths in (stated, root.get("viewBox", "").split()[2:]):
+        sizes = [match.groups() for length in lengths if (match := LENGTH.fullmatch(length))]
+        if len(sizes) == 2:
+            width, height = (round(float(number) * PIXELS[unit]) for number, unit in sizes)
+            return width, height
+    raise ValueError(f"{file.name} states no size. Give its root element a viewBox.")
+
+
+def element(drawing: str, prefix: str, attributes: dict[str, str]) -> str:
+    """Return a drawing as an element of a page.
+
+    Args:
+        drawing: the content of an SVG file.
+        prefix: of its identifiers, which are unique on the page.
+        attributes: of the element.
+
+    Raises:
+        ValueError: the drawing has a colour that is not in the palette.
+    """
+    drawing = DROPPED.sub("", drawing[drawing.index("<svg") :]).replace("xlink:href", "href")
+    used = {*REFERENCE.findall(drawing)}
+    drawing = IDENTIFIER.sub(
+        lambda found: f' id="{prefix}{found[1]}"' if found[1] in used else "", drawing
+    )
+    drawing = REFERENCE.sub(lambda found: prefix + found[0], drawing)
+    drawing = FRACTION.sub(r"\1", drawing)
+    drawing = COLOUR.sub(lambda found: found[1] + variable(found[2]), drawing)
+    start, rest = drawing.split(">", 1)
+    given = "".join(f' {name}="{escape(value)}"' for name, value in attributes.items())
+    return f"{SIZE.sub('', start)}{given}>{rest.strip()}"
+
+
+def variable(colour: str) -> str:
+    """Return the variable of a colour.
+
+    Raises:
+        ValueError: it is not in the palette.
+    """
+    if colour not in VARIABLES:
+        raise ValueError(
+            f"A drawing has the colour {colour}, which would not follow the theme. Valid are the "
+            f"light colours of core/palette.py: {', '.join(VARIABLES)}. Draw with one of them, or "
+            "add it to PARTS with its colour in the dark theme."
+        )
+    return VARIABLES[colour]

@@ -1,0 +1,280 @@
+"""Recorded results to choose from: ```` ```{explorer} l05/cameras world ````.
+
+A reader chooses a cell of a map or a pixel of a picture, and reads what was recorded there. A map
+can have curves of the chosen run, or the chosen posture in 3D. The data come from the lesson's
+`explorer.explored`, which gets the experiment of the page's bundle and the directive's second word:
+
+| key | content |
+|---|---|
+| `columns` | names of the values that are read |
+| `maps` | each a `label`, a `caption`, labels of `columns`, and `rows` of a `label` and `cells` |
+| `measures` | each a `label`; a `noun` makes questions about the next run |
+| `choices` | labels of the choice of a map and of a measure |
+| `notes` | the meaning of signs in the cells |
+| `curves` | what is drawn of a run; each map has the axes, each cell the packed values |
+| `postures` | by run the targets (m, 3) [m] of its answers; each map names its `run` |
+| `tables` | by caption the rows of a table below the fold |
+| `picture` | `name`, `alt` and `caption` of a recorded view; see `l05.explorer.picture` |
+| `without_script` | the sentence for a browser without scripts |
+
+A cell has `name`, `sentence`, `values` of the columns, `numbers` and `texts` of the measures. It
+may have a `tag` and a `state`, and one cell `opens`.
+"""
+
+import base64
+import pickle
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from html import escape
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from docutils import nodes
+from PIL import Image
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from robo_genesis.core import tables
+from robo_genesis.core.declaration import Compared
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.files import derived
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.shown import ShownError, find
+from robo_genesis.evidence import bundle
+from robo_genesis.lessons import drawn_cases
+from robo_genesis.pipeline.pages.bound import accepted_experiment
+from robo_genesis.site.evidence.ledger import scroll_box
+from robo_genesis.site.evidence.measured import BACKEND
+from robo_genesis.site.evidence.plain_nodes import image
+from robo_genesis.site.figures.posture_model import glb, with_target
+from robo_genesis.site.replay import controls
+from robo_genesis.site.replay.directive import (
+    bundle_inputs,
+    bundle_of,
+    leave_model,
+    origin_html,
+    replay_folder,
+    shape_file,
+    stage,
+    still_picture,
+)
+
+
+class ExplorerDirective(SphinxDirective):
+    """Show what a page's bundle of this build recorded, one result at a time."""
+
+    required_arguments = 1
+    optional_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return the explorer, or SKIP for a picture of a run without a camera.
+
+        Errors: the page has no bundle, or its lesson has no such explorer or wrote no shape.
+        """
+        lesson_page, *name = self.arguments
+        recorded = Recorded(lesson_page.split("/")[0], bundle_of(self, lesson_page))
+        try:
+            block = explorer_block(self, f"{lesson_page}/{BACKEND}", recorded, *name)
+        except (ShownError, LookupError, ValueError) as error:
+            raise self.error(f"explorer: {' '.join(self.arguments)}: {error}") from error
+        return [block]
+
+
+class Recorded:
+    """The bundle of a page, judged when its experiment is needed: most builds need it not."""
+
+    def __init__(self, lesson: str, folder: Path) -> None:
+        self.lesson, self.folder = lesson, folder
+
+    @cached_property
+    def experiment(self) -> Experiment:
+        """The experiment of the accepted bundle."""
+        return accepted_experiment(self.folder, bundle.read_manifest(self.folder))
+
+    def explored(self, *name: str) -> dict[str, Any]:
+        """Return the data of an explorer of the lesson; see the module's table.
+
+        Raises:
+            ShownError: the lesson has no explorer.
+        """
+        found = find(f"robo_genesis.lessons.{self.lesson}.explorer.explored")
+        inputs = [repr((self.lesson, name)).encode(), *bundle_inputs(self.folder)]
+        made = derived("explorer", inputs, lambda: pickle.dumps(found(self.experiment, *name)))
+        data: dict[str, Any] = pickle.loads(made)
+        return data
+
+
+def explorer_block(
+    directive: SphinxDirective, key: str, recorded: Recorded, *name: str
+) -> nodes.Node:
+    """Return an explorer with all that it shows without a script.
+
+    Args:
+        directive: the directive that shows it.
+        key: names the run, as in the ledger.
+        recorded: its bundle.
+        name: what the lesson calls the data, if it has several.
+    """
+    data = recorded.explored(*name)
+    parts = {part: data.pop(part, None) for part in ("postures", "tables", "picture")}
+    block = nodes.container(classes=["explorer-block"], evidence_runs=(key,))
+    if parts["picture"] is not None:
+        if not (recorded.folder / "frames" / f"{parts['picture']['name']}_rgb.png").is_file():
+            return nodes.paragraph("", "SKIP: this run has no camera.")
+        data["frames"] = frames(recorded.folder / "frames", parts["picture"]["name"])
+        figure = picture(directive, key, recorded.folder / "frames", **parts["picture"])
+        hint = "<p>Point at the picture, or use the arrow keys at a slider.</p>"
+        block += [opening("with-picture", data), figure, panel(data, hint)]
+    elif parts["postures"] is not None:
+        postures = Postures(directive, key, recorded, *name)
+        block["classes"].append("replay-block")
+        block += postures.block(data, parts["postures"])
+        block += fold(directive, parts["tables"])
+        block += postures.origin()
+    else:
+        block += [opening("", data), panel(data)]
+    return block
+
+
+def html(text: str) -> nodes.Node:
+    """Return markup of the site's own."""
+    return nodes.raw("", text, format="html")
+
+
+def opening(kind: str, data: Mapping[str, Any], **words: str) -> nodes.Node:
+    """Return the start of an explorer, with what `_static/explorer.js` needs to know."""
+    start = controls.opening(
+        f"explorer {kind}".strip(), {"explorer": controls.as_json(data)} | words
+    )
+    sentence = data.get("without_script")
+    return html(start + (f'<p class="without-script">{escape(sentence)}</p>' if sentence else ""))
+
+
+def panel(data: Mapping[str, Any], first: str = "") -> nodes.Node:
+    """Return the controls and the end of an explorer; the script fills and shows them."""
+    chooser = sliders(data["size"]) if "size" in data else selects(data)
+    plots = '<div class="plots"></div>' * ("curves" in data)
+    lines = "".join(map(controls.term, data["columns"]))
+    return html(
+        f'<div class="panel" hidden>{first}{chooser}{plots}<dl>{lines}</dl></div></div>',
+    )
+
+
+def selects(data: Mapping[str, Any]) -> str:
+    """Return the choices of a map, and the places of its cells, a question and a sentence."""
+    choices = zip(
+        ("map", "measure"), data["choices"], (data["maps"], data["measures"]), strict=True
+    )
+    labels = "".join(
+        f'<label{" hidden" * (len(of) == 1)}>{escape(label)} <select name="{name}">'
+        f"{controls.options({str(k): one['label'] for k, one in enumerate(of)}, '0')}"
+        "</select></label>"
+        for name, label, of in choices
+    )
+    if any("noun" in measure for measure in data["measures"]):
+        labels += '<label><input type="checkbox" name="predict" checked> Predict first</label>'
+    return (
+        f'<div class="controls">{labels}</div><div class="cells"></div>'
+        '<fieldset class="question" hidden><legend></legend></fieldset>'
+        '<output aria-live="polite"></output>'
+    )
+
+
+def sliders(size: tuple[int, int]) -> str:
+    """Return a slider for the column and one for the row of a picture."""
+    ranges = "".join(
+        f'<label>{label} <input type="range" name="{label.lower()}" min="0" max="{count - 1}" '
+        f'value="{count // 2}"></label>'
+        for label, count in zip(("Column", "Row"), size, strict=True)
+    )
+    return f'<div class="controls">{ranges}</div>'
+
+
+def fold(directive: SphinxDirective, found: Mapping[str, Sequence[Mapping[str, Any]]]) -> list[Any]:
+    """Return tables with their captions below a fold."""
+    shown: list[nodes.Node] = [html("<details><summary>All answers as tables</summary>")]
+    for caption, rows in found.items():
+        table = directive.parse_text_to_nodes(tables.markdown(rows))
+        shown += [nodes.paragraph("", caption), scroll_box("", *table, label=caption)]
+    return [*shown, html("</details>")]
+
+
+def frames(folder: Path, name: str) -> dict[str, str]:
+    """Return the frames that hold numbers: a page from disk cannot read the pixels of a file."""
+    return {
+        part: base64.b64encode((folder / f"{name}_{part}.png").read_bytes()).decode()
+        for part in ("depth", "segmentation")
+    }
+
+
+def picture(
+    directive: SphinxDirective, key: str, folder: Path, name: str, alt: str, caption: str
+) -> nodes.Node:
+    """Return a recorded view with the cross that marks a pixel."""
+    file = "-".join(("picture", *key.split("/"), name))
+    content = BytesIO()
+    with Image.open(folder / f"{name}_rgb.png") as frame:  # to look at: other frames have numbers
+        frame.convert("RGB").save(content, "JPEG", quality=85, optimize=True)
+    shown = image(directive.env, f"{file}.jpg", content.getvalue(), alt)
+    return stage(shown, '<span class="cross" hidden></span>', caption, file)
+
+
+class Postures:
+    """The answers of a page in 3D: one model with an animation for each map."""
+
+    def __init__(
+        self, directive: SphinxDirective, key: str, recorded: Recorded, which: str
+    ) -> None:
+        compared = drawn_cases(recorded.lesson)
+        if not isinstance(compared, Compared):
+            raise LookupError(
+                f"{recorded.lesson} compares free bodies. Only postures of a robot can be shown."
+            )
+        self.env, self.recorded, self.view = directive.env, recorded, compared.view
+        self.name = "-".join(("postures", *key.split("/"), which))
+        self.shape = shape_file(recorded.lesson, self.view.thing)
+
+    def block(self, data: Mapping[str, Any], targets: Mapping[str, FloatArray]) -> list[nodes.Node]:
+        """Return the still picture with the controls, and leave the model for the page."""
+        from robo_genesis.site.replay.poster import picture as drawn  # these load slowly
+        from robo_genesis.site.replay.scenery import fitted
+
+        traces = {
+            run: with_target(self.recorded.experiment.traces[run], of)
+            for run, of in targets.items()
+        }
+        camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
+        inputs = [self.name.encode(), self.shape.read_bytes(), *bundle_inputs(self.recorded.folder)]
+        links = self.recorded.experiment.links
+        model = derived(
+            "replay", inputs, lambda: glb(self.shape, links, traces, camera, self.view.credit)
+        )
+        still = derived("poster", inputs, lambda: drawn(model, camera))
+        files, weight = leave_model(self.env, self.name, model)
+        thing = self.view.thing
+        alt = f"The {thing} at the start, drawn from the recorded poses."
+        words = files | {"orbit": camera.orbit, "target": camera.target}
+        words["alt"] = f"The {thing} in 3D, in the chosen posture."
+        loads = f'<p role="status">Show in 3D loads the {escape(thing)}: {weight} kB.</p>'
+        return [
+            opening("with-model", data, **words),
+            stage(
+                still_picture(self.env, self.name, still, alt),
+                controls.over_the_picture("Show in 3D"),
+                f"Recorded postures of the {thing}. Yellow cross: the target.",
+                f"{self.name}-model",
+            ),
+            panel(data, loads),
+        ]
+
+    def origin(self) -> nodes.Node:
+        """Return the line that names the run and the origin of the shape."""
+        up = replay_folder(self.env)
+        return html(origin_html(self.name, self.recorded.folder, up, self.view.credit))
+
+
+def setup(app: Sphinx) -> None:
+    """Register the directive."""
+    app.add_directive("explorer", ExplorerDirective)

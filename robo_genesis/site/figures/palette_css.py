@@ -1,0 +1,132 @@
+"""The palette in style sheets, and a mark of its line beside a case's name in a table.
+
+`_static/palette.css` is written by each build. It declares, for both themes, each mark's colour
+(`--case-g1`, `--target`) and its dashes for an SVG line two units wide (`--case-g1-dash`), and the
+colours of a figure's other parts (`--figure-text`).
+"""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.transforms.post_transforms import SphinxPostTransform
+
+from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, Mark, css_name
+from robo_genesis.lessons import course_marks
+from robo_genesis.site.figures import case_labels
+
+THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
+"""Paper has the light theme."""
+STROKE = 2
+"""Width of the SVG lines that the dashes are meant for, in their own units."""
+LINE, LENGTH = 0.12, 1.9
+"""Width of the line beside a case's name, and about its length, in letter heights."""
+NAMES = sorted({*course_marks()} - {"baseline"})
+NAME = re.compile(rf"\b({'|'.join(map(re.escape, NAMES)) or '(?!)'})\b")
+"""A case's name in prose; without named cases it matches nothing."""
+OTHER_TEXT = (nodes.literal, nodes.literal_block, nodes.math, nodes.raw, nodes.reference)
+
+
+def css() -> str:
+    """Return the style sheet of the palette."""
+    names = {css_name(name): mark for name, mark in MARKS.items()}
+    colours = names | {f"figure-{name}": part for name, part in PARTS.items()}
+    rules = [
+        (selector, {f"--{name}": getattr(mark, theme) for name, mark in colours.items()})
+        for theme, selector in THEMES.items()
+    ]
+    rules.insert(1, (":root", {f"--{name}-dash": _svg_dashes(m) for name, m in names.items()}))
+    for name in names:
+        ink = {"--ink": f"var(--{name})", "--dash": f"var(--{name}-dash)"}
+        rules.append((f".time-plot .{name}", ink))
+    rules += [(f".case-name.{name}", {"color": f"var(--{name})"}) for name in CASE_CLASSES.values()]
+    rules += [(f".case-mark.{name}::before", _stripe(m)) for m, name in CASE_CLASSES.items()]
+    lines = ["/* Written from robo_genesis/core/palette.py. */"]
+    for selector, properties in rules:
+        declared = [f"  {name}: {value};" for name, value in properties.items()]
+        rule = [f"{selector} {{", *declared, "}"]
+        lines += ["@media screen {", *rule, "}"] if selector == THEMES["dark"] else rule
+    return "\n".join([*lines, ""])
+
+
+def _svg_dashes(mark: Mark) -> str:
+    return " ".join(f"{STROKE * length:g}" for length in mark.dashes) or "none"
+
+
+def _stripe(name: str) -> dict[str, str]:
+    """Return a background that repeats a mark's dashes, and a width that holds them whole.
+
+    Half of the first dash goes to the end, so that a single gap is inside the line.
+    """
+    dashes, colour = MARKS[name].dashes, f"var(--{css_name(name)})"
+    if not dashes:
+        return {"background": colour, "width": f"{LENGTH}em"}
+    half = dashes[0] / 2
+    at, stops = 0.0, []
+    for number, length in enumerate((half, *dashes[1:], half)):
+        paint = "transparent" if number % 2 else colour
+        stops.append(f"{paint} {at * LINE:.2f}em {(at + length) * LINE:.2f}em")
+        at += length
+    width = at * LINE * max(1, round(LENGTH / (at * LINE)))
+    background = f"repeating-linear-gradient(90deg, {', '.join(stops)})"
+    return {"background": background, "width": f"{width:.2f}em"}
+
+
+class MarkCases(SphinxPostTransform):
+    """Mark each case that is named.
+
+    A cell of a table that holds a case's name or its words, and nothing else, gets the line of the
+    plots beside it; in running text the name has the case's colour, "baseline" excepted.
+    """
+
+    default_priority = 400  # outputs of cells have been chosen by then
+
+    def run(self, **kwargs: Any) -> None:
+        """Mark cells, then what is left of the text."""
+        for entry in self.document.findall(nodes.entry):
+            name = entry.astext()
+            paragraph = entry.next_node(nodes.paragraph)
+            if name in case_labels.MARKS and paragraph is not None:
+                paragraph["classes"] += ["case-mark", css_name(case_labels.MARKS[name])]
+        for text in list(self.document.findall(nodes.Text)):
+            if NAME.search(text) and _is_running(text):
+                text.parent.replace(text, _named(text))
+
+
+def _is_running(text: nodes.Text) -> bool:
+    """Whether a text is in a paragraph or a caption, and is neither code, link nor marked."""
+    parent = text.parent
+    while not isinstance(parent, nodes.paragraph | nodes.caption):
+        if parent is None or isinstance(parent, OTHER_TEXT):
+            return False
+        parent = parent.parent
+    return "case-mark" not in parent["classes"]
+
+
+def _named(text: nodes.Text) -> list[nodes.Node]:
+    """Return a text with each case's name in an element of its own."""
+    parts: list[nodes.Node] = []
+    for number, part in enumerate(NAME.split(text)):
+        if number % 2:
+            parts.append(
+                nodes.inline(part, part, classes=["case-name", css_name(course_marks()[part])])
+            )
+        elif part:
+            parts.append(nodes.Text(part))
+    return parts
+
+
+def write_css(app: Sphinx) -> None:
+    """Write the style sheet where Sphinx collects the site's own."""
+    folder = Path(app.outdir) / "_static"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "palette.css").write_text(css(), "utf8")
+
+
+def setup(app: Sphinx) -> None:
+    """Register style sheet and marks."""
+    app.add_post_transform(MarkCases)
+    app.add_css_file("palette.css", priority=400)  # before the sheets that use it
+    app.connect("builder-inited", write_css)

@@ -1,0 +1,1 @@
+"""What every written page shares: how it is read, kept, corrected and styled."""

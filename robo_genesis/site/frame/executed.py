@@ -1,0 +1,93 @@
+"""Sphinx reads executed pages and runs nothing; pages load no third-party files."""
+
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+import myst_nb.sphinx_
+from myst_nb.core.execute.base import NotebookClientBase
+from nbformat import NotebookNode
+from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
+
+from robo_genesis.core.project import EXECUTED_PAGES
+from robo_genesis.pipeline.pages.built import executed_notebook
+from robo_genesis.pipeline.pages.folder import code_and_kernel
+
+ELSEWHERE = re.compile(r"^(?:[a-z]+:)?//", re.IGNORECASE)
+
+
+class ExecutedPage(NotebookClientBase):
+    """Takes a page's outputs from the execution stage; replaces every client of myst-nb.
+
+    The cells keep their metadata (tags, captions, alt texts), which the page states today.
+    `sources` is the folder of the pages.
+    """
+
+    sources: Path
+
+    def start_client(self) -> None:
+        """Copy the stored outputs and execution counts into the notebook.
+
+        Raises:
+            ExtensionError: the execution stage has no outputs for the page's code cells.
+        """
+        try:
+            executed = executed_notebook(self.docname(), self.notebook)
+        except KeyError:
+            executed = None
+        if executed is None or code_and_kernel(executed) != code_and_kernel(self.notebook):
+            raise ExtensionError(
+                f"{self.path} is not executed, and Sphinx executes nothing. "
+                "Build with `make book`; if you did, a code cell is nested in another directive."
+            )
+        executed_cells = iter(executed.cells)
+        for cell in self.notebook.cells:
+            if cell.cell_type == "code":
+                source = next(executed_cells)
+                cell.outputs, cell.execution_count = source.outputs, source.execution_count
+                if "raises-exception" in cell.metadata.get("tags", []):
+                    shorten_tracebacks(cell)
+        if "language_info" in executed.metadata:
+            self.notebook.metadata["language_info"] = executed.metadata["language_info"]
+
+    def docname(self) -> str:
+        """Return the name of the page."""
+        page = Path(str(self.path)).with_suffix("")
+        return page.relative_to(self.sources).as_posix() if self.path else ""
+
+
+def shorten_tracebacks(cell: NotebookNode) -> None:
+    """Keep only the last line of an expected error; its stack contains paths of the build."""
+    for output in cell.outputs:
+        if output.output_type == "error":
+            output.traceback = output.traceback[-1:]
+
+
+def drop_third_parties(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any
+) -> None:
+    """Remove scripts and styles of other hosts that other extensions registered."""
+    for name in ("script_files", "css_files"):
+        # Sphinx lists plain strings and asset objects.
+        context[name] = [
+            file
+            for file in context.get(name, [])
+            if not ELSEWHERE.match(str(getattr(file, "filename", file) or ""))
+        ]
+
+
+def setup(app: Sphinx) -> None:
+    """Register the extension.
+
+    Raises:
+        ExtensionError: the environment does not name the executed pages.
+    """
+    if EXECUTED_PAGES not in os.environ:
+        raise ExtensionError(f"{EXECUTED_PAGES} is not set. Build the site with `make book`.")
+    ExecutedPage.sources = Path(app.srcdir)
+    myst_nb.sphinx_.create_client = lambda *arguments: ExecutedPage(*arguments[:4])
+    # Jupyter Book always sets this value, also where sphinx_comments is not an extension.
+    app.add_config_value("comments_config", None, "html")
+    app.connect("html-page-context", drop_third_parties, priority=900)

@@ -1,0 +1,262 @@
+"""Makes an incremental render equal to one from nothing; `build.site.kept` keeps its folder.
+
+A page depends on its own source, on what is the same for all pages, and on this:
+
+| while it is read | what happens |
+|---|---|
+| another page's source, included or read by a directive (`note_dependency`) | it is read again |
+
+| while it is written | what happens |
+|---|---|
+| titles, contents, targets, equations, terms, ledger items of any page | all are written again |
+| the commit, for the history | all are written again |
+| whether its source is committed | it is written again |
+
+A page does not depend on the pictures that Sphinx itself writes while it reads: they follow from
+runs, whose change empties the folder. Reading another page may write an equal picture again.
+
+Files that pages leave beside the HTML are removed with the last page that left them.
+"""
+
+import hashlib
+import os
+import shutil
+from collections.abc import Iterator, Mapping, Sequence, Set
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from jinja2 import FileSystemBytecodeCache
+from sphinx import addnodes
+from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
+from sphinx.util.nodes import clean_astext
+
+from robo_genesis.pipeline.html.kept import UNFIT
+from robo_genesis.pipeline.up_to_date import history
+from robo_genesis.site.text.glossary import glossary_terms
+
+REPLAYS, TAKEAWAYS = "replay", "takeaways"
+"""Folders of such files in the site."""
+
+HEADS = (nodes.caption, nodes.title, nodes.literal_block)
+"""What a numbered figure, table or code block has for children."""
+
+OWN = {"og:description", "source_map", "wordcount"}
+"""Metadata of a page that no other page shows."""
+
+SHOWN = (
+    "titles", "longtitles", "tocs", "toc_secnumbers", "toc_fignumbers", "toctree_includes",
+    "domaindata", "robo_genesis_items",
+)  # fmt: skip
+"""Attributes of the environment that pages show of one another, beside metadata and terms."""
+
+
+def outline(env: BuildEnvironment, node: nodes.Element) -> list[nodes.Element]:
+    """Return what numbers the figures below a node, in their order: a small part of a doctree.
+
+    Sphinx numbers the figures of all pages in each build, and would load all doctrees for it.
+    Sections, contents, and what a domain numbers are kept. What has no id gets no number.
+    """
+    domains = env.domains.values()
+    found: list[nodes.Element] = []
+    for child in node.children:
+        if not isinstance(child, nodes.Element):
+            continue
+        inside = outline(env, child)
+        is_numbered = any(domain.get_enumerable_node_type(child) for domain in domains)
+        if (is_numbered and child["ids"]) or isinstance(child, nodes.section | addnodes.toctree):
+            heads = (part for part in child.children if isinstance(part, HEADS))
+            kept = type(child)("", **child.attributes)
+            kept.extend([*(type(part)("", clean_astext(part)) for part in heads), *inside])
+            found.append(kept)
+        else:
+            found += inside
+    return found
+
+
+def keep_outline(app: Sphinx, doctree: nodes.document) -> None:
+    """Keep the outline of a page that was read."""
+    outlines(app.env)[app.env.docname] = nodes.container("", *outline(app.env, doctree))
+
+
+def outlines(env: BuildEnvironment) -> dict[str, nodes.Element]:
+    """Return the outlines of the pages by name."""
+    found: dict[str, nodes.Element] = vars(env).setdefault("robo_genesis_outlines", {})
+    return found
+
+
+def number_by_outlines(app: Sphinx, env: BuildEnvironment) -> list[str]:
+    """Give Sphinx outlines in place of doctrees until `outdated_pages` is called."""
+    vars(env)["get_doctree"] = outlines(env).__getitem__
+    return []
+
+
+def including_pages(
+    app: Sphinx, env: BuildEnvironment, added: Set[str], changed: Set[str], removed: Set[str]
+) -> list[str]:
+    """Return the pages that read the source of a changed page."""
+    sources = {str(env.doc2path(name, base=False)) for name in (*added, *changed)}
+    return [name for name, files in env.dependencies.items() if sources & files]
+
+
+def forget_own_pictures(app: Sphinx, doctree: nodes.document) -> None:
+    """Forget that a page depends on files that Sphinx wrote while it read the page."""
+    folder, files = os.path.dirname(app.outdir), app.env.dependencies[app.env.docname]
+    files -= {
+        file
+        for file in files
+        if os.path.normpath(os.path.join(app.srcdir, file)).startswith(folder + os.sep)
+    }
+
+
+def note_reading(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
+    """Note which pages are read in this build."""
+    vars(app.builder)["robo_genesis_reads"] = list(names)
+
+
+def outdated_pages(app: Sphinx, env: BuildEnvironment) -> list[str]:
+    """Return the pages that must be written again, beside those that were read again."""
+    vars(app.builder)["robo_genesis_home"] = True
+    vars(env).pop("get_doctree", None)
+    commit, status = history(Path(env.srcdir))
+    entries = set((status or "").split("\0"))
+    shown = hashlib.sha256(repr((commit, sorted(_shown(env)))).encode()).hexdigest()
+    before = vars(env).get("robo_genesis_shown"), vars(env).get("robo_genesis_status", set())
+    vars(env).update(robo_genesis_shown=shown, robo_genesis_status=entries)
+    if before[0] != shown:
+        return sorted(env.found_docs)
+    changed = tuple(before[1] ^ entries)
+    names = {name: str(env.doc2path(name, base=False)) for name in env.found_docs}
+    edited = [name for name, file in names.items() if any(e.endswith(file) for e in changed)]
+    reads: Sequence[str] = vars(app.builder)["robo_genesis_reads"]
+    home = env.config.root_doc
+    if not edited and not reads:
+        return [home]  # without any page, Sphinx would write no style sheet
+    vars(app.builder)["robo_genesis_home"] = home in (*edited, *reads)
+    return edited
+
+
+def _shown(env: BuildEnvironment) -> Iterator[tuple[str, Any]]:
+    for name in SHOWN:
+        yield name, plain(vars(env).get(name))
+    for page, metadata in env.metadata.items():
+        yield f"metadata {page}", plain({k: v for k, v in metadata.items() if k not in OWN})
+    yield "terms", plain(glossary_terms(env))
+
+
+def plain(value: Any) -> Any:
+    """Return a value in a form whose text depends on nothing but its content."""
+    if isinstance(value, nodes.Node):
+        return value.pformat()
+    if isinstance(value, Mapping):
+        return sorted((repr(key), plain(item)) for key, item in value.items())
+    if isinstance(value, Set):
+        return sorted(map(repr, value))
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    return repr(value)
+
+
+def keep_templates(app: Sphinx) -> None:
+    """Keep the compiled templates of the theme beside the doctrees, for the next render there."""
+    folder = Path(app.doctreedir).with_name("templates")
+    if templates := getattr(app.builder, "templates", None):  # builders without pages have none
+        folder.mkdir(exist_ok=True)
+        templates.environment.bytecode_cache = FileSystemBytecodeCache(str(folder))
+
+
+def drop_static_files(app: Sphinx) -> None:
+    """Remove the style sheets and scripts before any is written: pages contain their digests.
+
+    An extension may write a sheet after the pages that name it, so a page that is written again
+    would find the digest of a sheet that a page from nothing does not find.
+    """
+    shutil.rmtree(Path(app.outdir) / "_static", ignore_errors=True)
+
+
+def drop_downloads(app: Sphinx, builder: Any) -> None:
+    """Remove all downloads before pages are written: Sphinx and the ledger write all again."""
+    shutil.rmtree(Path(builder.outdir) / "_downloads", ignore_errors=True)
+
+
+def leave_out_parents(app: Sphinx, builder: Any) -> None:
+    """Keep Sphinx from writing parents of a changed page and the home page.
+
+    It would write the home page in each build; see `outdated_pages`.
+    """
+    vars(builder)["robo_genesis_parents"] = builder.env.files_to_rebuild
+    builder.env.files_to_rebuild = {}
+
+    def prepare(names: set[str]) -> None:
+        home = builder.config.root_doc
+        if not vars(builder)["robo_genesis_home"] and os.path.exists(builder.get_outfilename(home)):
+            names.discard(home)
+        type(builder).prepare_writing(builder, names)
+
+    builder.prepare_writing = prepare
+
+
+def finish(app: Sphinx, error: Exception | None) -> None:
+    """Remove the pictures that no page shows any more, and report what cannot be kept.
+
+    The names of pictures with equal file names depend on the order in which they were read.
+    """
+    env = app.env
+    if env is not None and (parents := vars(app.builder).pop("robo_genesis_parents", None)):
+        env.files_to_rebuild = parents
+    if error is not None or env is None:
+        return
+    named = {name: file for file, (_, name) in env.images.items()}
+    for path in (Path(app.outdir) / "_images").glob("*"):
+        if path.is_file() and path.name not in named:
+            path.unlink()
+    if any(os.path.basename(file) != name for name, file in named.items()):
+        (Path(app.outdir).parents[1] / UNFIT).touch()
+
+
+def folders(app: Sphinx) -> tuple[Path, Path]:
+    """Return where the files of replays and takeaways are."""
+    html = Path(app.outdir)
+    return html / REPLAYS, html / TAKEAWAYS
+
+
+def note_files(env: BuildEnvironment, *files: Path) -> None:
+    """Note that the page that is read writes some files."""
+    noted: dict[str, set[str]] = vars(env).setdefault("robo_genesis_files", {})
+    noted.setdefault(env.docname, set()).update(map(str, files))
+
+
+def forget_files(app: Sphinx, env: BuildEnvironment, page: str) -> None:
+    """Forget the files of a page that is read again."""
+    vars(env).setdefault("robo_genesis_files", {}).pop(page, None)
+
+
+def remove_others(app: Sphinx, env: BuildEnvironment) -> list[str]:
+    """Remove the files that no page writes any more, and folders that become empty."""
+    noted = set().union(*vars(env).get("robo_genesis_files", {}).values())
+    for folder in folders(app):
+        for path in sorted(folder.rglob("*"), reverse=True):
+            if path.is_file() and str(path) not in noted:
+                path.unlink()
+        for path in sorted([*folder.rglob("*/"), folder], reverse=True):
+            if path.is_dir() and not any(path.iterdir()):
+                path.rmdir()
+    return []
+
+
+def setup(app: Sphinx) -> None:
+    """Register the steps."""
+    app.connect("env-purge-doc", forget_files)
+    app.connect("env-updated", remove_others)
+    app.connect("builder-inited", drop_static_files, priority=0)
+    app.connect("builder-inited", keep_templates)
+    app.connect("env-get-outdated", including_pages)
+    app.connect("env-before-read-docs", note_reading)
+    app.connect("doctree-read", forget_own_pictures, priority=900)  # after they are collected
+    app.connect("doctree-read", keep_outline, priority=950)  # after the others, which may add ids
+    app.connect("env-get-updated", number_by_outlines, priority=0)
+    app.connect("env-get-updated", outdated_pages, priority=900)  # after figures have numbers
+    app.connect("write-started", drop_downloads)
+    app.connect("write-started", leave_out_parents)
+    app.connect("build-finished", finish)

@@ -1,0 +1,207 @@
+"""Changes each written page last: it becomes accessible and light.
+
+No script blocks a page, it loads only the files that it needs, and nothing moves or flashes.
+"""
+
+import re
+import shutil
+from html import unescape
+from pathlib import Path
+from typing import Any
+from urllib.parse import unquote, urlsplit
+
+from bs4 import BeautifulSoup
+from sphinx.application import Sphinx
+
+from robo_genesis.core import palette
+from robo_genesis.core.files import derived
+from robo_genesis.site.figures import drawings
+from robo_genesis.site.frame import accessibility, style_sheets
+
+CHANGES = (accessibility, drawings, style_sheets, palette)
+"""The modules that change a page, and the colours that they use."""
+# Jupyter Book and the theme load every script on all pages; these are needed only where a selector
+# matches. No page needs `fontawesome.js`: the icons come from a font.
+NEEDED_BY = {
+    "div.highlight": {"clipboard.min.js", "copybutton.js"},
+    ".sd-tab-set": {"design-tabs.js"},
+    "fieldset.choice": {"choice.js"},
+    ".explorer": {"explorer.js"},
+    ".explorer .plots, .replay": {"plot.js"},
+    ".replay": {"replay.js"},
+    ".explorer .play, .replay": {"stage.js"},
+    "#search-results": {
+        "language_data.js", "search-from-disk.js", "searchindex.js", "searchtools.js",
+    },
+    ".toggle, .admonition.dropdown": {"togglebutton.js"},
+}  # fmt: skip
+NEEDED_NOWHERE = {"fontawesome.js"}
+
+NAMED = re.compile(r"[.#]([\w-]+)")
+"""Classes and identifiers in a selector."""
+
+# Files of the theme that no page loads.
+UNUSED = (
+    "_static/**/*.map",
+    "_static/*webpack-macros.html",
+    "_static/locales",
+    "_static/scripts/fontawesome.js*",
+)
+
+OPTIONS = "DOCUMENTATION_OPTIONS"
+"""The object that Sphinx's scripts set; the file `documentation_options.js` defines it."""
+
+CHOOSE_THEME = """
+    if (document.documentElement.dataset.mode === "auto")
+      document.documentElement.dataset.theme =
+        matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+  """
+"""The theme's own script does the same, but only after it has loaded."""
+
+TITLE = "page-title"
+"""The anchor of a title that has no other."""
+
+IMAGE = re.compile(r"""<img\b[^>]*?\bsrc="([^"]+)\"""")
+"""A picture of a page; a finished page contains its size."""
+
+
+def note_page(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    """Note that a page is written in this build; the pages of earlier builds are finished."""
+    written(app).add(page)
+
+
+def written(app: Sphinx) -> set[str]:
+    """Return the names of the pages that this build has written so far."""
+    pages: set[str] = vars(app.builder).setdefault("robo_genesis_written", set())
+    return pages
+
+
+def finish_site(app: Sphinx, error: Exception | None) -> None:
+    """Finish the pages that Sphinx has written."""
+    if error is None and app.builder.name == "html":
+        drop_unused_files(Path(app.outdir))
+        for page in sorted(written(app)):
+            path = Path(app.builder.get_outfilename(page))  # type: ignore[attr-defined]
+            path.write_text(finish_page(path.read_text("utf8"), path.parent), "utf8")
+        style_sheets.join_sheets(Path(app.outdir))  # it looks for the names in all finished pages
+    written(app).clear()
+
+
+def finish_page(html: str, folder: Path) -> str:
+    """Return a page as readers get it.
+
+    Args:
+        html: the page as the theme wrote it.
+        folder: the folder that the page's addresses are relative to.
+    """
+
+    def make() -> bytes:
+        page = BeautifulSoup(html, "html.parser")
+        accessibility.make_accessible(page)
+        accessibility.stack_tables(page)
+        drawings.inline_drawings(page, folder)
+        reduce_weight(page, folder)
+        style_sheets.link_joined(page)
+        return str(page).encode()
+
+    images = [folder / unquote(urlsplit(unescape(src)).path) for src in IMAGE.findall(html)]
+    sources = (Path(module.__file__ or "") for module in CHANGES)
+    files = [path for path in (*images, *sources, Path(__file__)) if path.is_file()]
+    return derived(
+        "finished", [html.encode(), *(path.read_bytes() for path in files)], make
+    ).decode()
+
+
+def reduce_weight(page: BeautifulSoup, folder: Path) -> None:
+    """Reduce the weight of one page, in place.
+
+    Args:
+        page: the complete page as the theme wrote it.
+        folder: the folder that the page's addresses are relative to.
+    """
+    drop_idle_scripts(page)
+    defer_scripts(page)
+    choose_theme(page)
+    wait_for_the_title(page)
+    place_images(page, folder)
+
+
+def drop_idle_scripts(page: BeautifulSoup) -> None:
+    """Remove the scripts that this page does not need."""
+    tags = page.find_all(True)
+    written = {name for tag in tags for name in (*tag.get("class", ()), tag.get("id"))}
+
+    def matches(selector: str) -> bool:
+        """Search only if the page has all names of a selector: a search without result is slow."""
+        named = (NAMED.findall(part) for part in selector.split(","))
+        return any(written.issuperset(names) for names in named) and bool(page.select_one(selector))
+
+    idle = NEEDED_NOWHERE.union(*(NEEDED_BY[s] for s in NEEDED_BY if not matches(s)))
+    for script in page.find_all("script", src=True):
+        if Path(urlsplit(str(script["src"])).path).name in idle:
+            script.decompose()
+
+
+def defer_scripts(page: BeautifulSoup) -> None:
+    """Defer every script file until the page is parsed; the files then run in their order.
+
+    An inline script can be deferred only as a module. A script that sets options which a file
+    before it defines becomes one. The others need no file, like the theme's first script, which
+    chooses light or dark before the page shows.
+    """
+    for script in page.find_all("script", type=None, attrs={"async": None}):
+        if script.has_attr("src"):
+            script["defer"] = ""
+        elif OPTIONS in script.get_text():
+            script["type"] = "module"
+
+
+def choose_theme(page: BeautifulSoup) -> None:
+    """Choose light or dark before the page shows.
+
+    The theme starts with neither, and its style sheets have no colours or borders for that state:
+    the page would change its colours and move when the deferred scripts run. Without scripts the
+    page is light.
+    """
+    for script in page.head.find_all("script", src=False) if page.head else ():
+        if "dataset.theme" in script.get_text():
+            script.append(CHOOSE_THEME)
+            script.find_parents("html")[0]["data-theme"] = "light"
+
+
+def wait_for_the_title(page: BeautifulSoup) -> None:
+    """Make a browser that supports `rel="expect"` wait for the page's title before it renders.
+
+    The buttons of the bar above the title are aligned at its end: the first ones would move when
+    the others appear.
+    """
+    title = page.select_one("article h1")
+    if page.head and title:
+        anchor = title.attrs.setdefault("id", TITLE)
+        expect = {"rel": "expect", "href": f"#{anchor}", "blocking": "render"}
+        page.head.append(page.new_tag("link", attrs=expect))
+
+
+def place_images(page: BeautifulSoup, folder: Path) -> None:
+    """Give images their size, so that nothing moves when they load, and load them when in sight."""
+    images = [image for image in page.find_all("img", src=True) if image.find_parent("article")]
+    for image in images:
+        file = folder / unquote(urlsplit(str(image["src"])).path)
+        if not image.has_attr("width") and file.is_file():
+            width, height = drawings.image_size(file)
+            image["width"], image["height"] = str(width), str(height)
+        image["loading"], image["decoding"] = "lazy", "async"
+
+
+def drop_unused_files(html: Path) -> None:
+    """Remove the theme's files that no page of the site's folder loads."""
+    for pattern in UNUSED:
+        for path in list(html.glob(pattern)):
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+
+
+def setup(app: Sphinx) -> None:
+    """Register the extension; see the module's summary."""
+    app.connect("html-page-context", note_page)
+    # After the theme, which writes the colours of code then.
+    app.connect("build-finished", finish_site, priority=900)

@@ -1,0 +1,146 @@
+"""Joins the style sheets of the site in one file, without the rules that no page can match.
+
+A phone that fetches one sheet instead of sixteen shows a page earlier.
+"""
+
+import json
+import re
+import subprocess
+import tempfile
+from collections.abc import Iterable, Mapping
+from fnmatch import fnmatch
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from bs4 import BeautifulSoup
+
+from robo_genesis.core.files import derived
+from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.pipeline import npm
+from robo_genesis.pipeline.command import end_with_parent
+
+PARTS = ("print", "calm", "course", "explorer", "replay", "look", "plot")
+SHEETS = (
+    "_static/basic.css",
+    "_static/styles/pydata-sphinx-theme.css",
+    "_static/pygments.css",
+    "_static/styles/sphinx-book-theme.css",
+    "_static/palette.css",
+    "_static/togglebutton.css",
+    "_static/copybutton.css",
+    "_static/mystnb.*.css",
+    "_static/sphinx-design.min.css",
+    *(f"_static/{name}.css" for name in PARTS),
+    "_static/home.css",
+)
+"""The sheets of all pages in their order, relative to the site. `math.css` contains a font, so only
+pages with formulas load it."""
+IMPORTING = "_static/styles/theme.css"
+"""A sheet of the theme that imports the first one and has no rule."""
+TRIMMED = (*SHEETS[:4], "_static/mystnb.*.css", "_static/sphinx-design.min.css")
+"""The sheets of the theme and its extensions that have rules for other sites."""
+JOINED = "_static/styles/site.css"
+
+NAMES = (re.compile(rb' class="([^"]*)"'), re.compile(rb' id="([^"]*)"'))
+"""Classes and identifiers of a page, which its tags name."""
+WORD = re.compile(rb"[\w-]+")
+OTHER_WORD = re.compile(rb"(?<![.#\w-])[\w-]+")
+"""A word of a sheet that is neither a class nor an identifier: elements, attributes, states."""
+ADDRESS = re.compile(r"url\(\s*([\"']?)(?![\"']?(?:data:|https?:|[/#]))")
+"""The beginning of an address that is relative to its sheet."""
+PURGE = "purgecss/bin/purgecss.js"
+
+
+def link_joined(page: BeautifulSoup) -> None:
+    """Replace the links of a page to the single sheets by one link, in place.
+
+    All pages have the same link, so a browser fetches the sheet once. It has no query: its content
+    depends on the names in all pages, and a browser asks the server whether it changed.
+    """
+    links = [
+        link for link in page.find_all("link", rel="stylesheet") if _is_joined(str(link["href"]))
+    ]
+    if links:
+        start = str(links[0]["href"]).partition("_static/")[0]
+        links[0].attrs = {"rel": "stylesheet", "href": f"{start}{JOINED}"}
+        for link in links[1:]:
+            link.decompose()
+
+
+def _is_joined(address: str) -> bool:
+    path = urlsplit(address).path
+    _, found, name = path.partition("_static/")
+    return any(fnmatch(found + name, pattern) for pattern in (*SHEETS, IMPORTING))
+
+
+def join_sheets(html: Path) -> None:
+    """Write the joined sheet of a site.
+
+    The theme's rules with classes or identifiers that the site does not have are left out. A name
+    counts as present if a tag of any page has it or if it is a word of any script, which may add it
+    later. Rules that name elements and attributes alone stay.
+
+    Args:
+        html: folder of the site.
+
+    Raises:
+        ProjectError: PurgeCSS failed; the message holds its output.
+    """
+    sheets = [path for pattern in SHEETS for path in sorted(html.glob(pattern))]
+    trimmed = {p.name: p.read_bytes() for pattern in TRIMMED for p in html.glob(pattern)}
+    present = used_names(html) | words(trimmed.values(), OTHER_WORD)
+    names = b"\n".join(sorted(present & words(trimmed.values(), WORD)))
+    lock = (ROOT / "package-lock.json").read_bytes()  # names the version of PurgeCSS
+    inputs = [names, *trimmed.values(), Path(__file__).read_bytes(), lock]
+    found = json.loads(
+        derived("sheets", inputs, lambda: json.dumps(_purged(trimmed, names)).encode())
+    )
+    joined = html / JOINED
+    joined.parent.mkdir(parents=True, exist_ok=True)
+    texts = (
+        (path, found[path.name] if path.name in found else path.read_text("utf8"))
+        for path in sheets
+    )
+    joined.write_text(
+        "\n".join(
+            text if path.parent == joined.parent else ADDRESS.sub(r"url(\1../", text)
+            for path, text in texts
+        ),
+        "utf8",
+    )
+
+
+def used_names(html: Path) -> set[bytes]:
+    """Return the classes and identifiers of all pages, and all words of their common scripts."""
+    pages = [path.read_bytes() for path in html.rglob("*.html")]
+    attributes = (set(pattern.findall(page)) for page in pages for pattern in NAMES)
+    names = {name for values in attributes for value in values for name in value.split()}
+    return names | words((path.read_bytes() for path in html.glob("_static/**/*.js")), WORD)
+
+
+def words(texts: Iterable[bytes], pattern: re.Pattern[bytes]) -> set[bytes]:
+    """Return all matches of a pattern in texts."""
+    return {word for text in texts for word in pattern.findall(text)}
+
+
+def _purged(content: Mapping[str, bytes], names: bytes) -> dict[str, str]:
+    """Return the sheets without the rules that name none of some words."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "names.txt").write_bytes(names)
+        for sheet, text in content.items():
+            (folder / sheet).write_bytes(text)
+        (folder / "out").mkdir()
+        command = [str(npm.node()), str(npm.packages() / PURGE), "--keyframes"]
+        done = subprocess.run(
+            [*command, "--content", "names.txt", "--output", "out", "--css", *content],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
+            preexec_fn=end_with_parent(),
+        )
+        made = {sheet: folder / "out" / sheet for sheet in content}
+        if done.returncode or not all(path.is_file() for path in made.values()):
+            raise ProjectError(f"PurgeCSS failed:\n{done.stdout}{done.stderr}")
+        return {sheet: path.read_text("utf8") for sheet, path in made.items()}

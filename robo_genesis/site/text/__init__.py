@@ -1,0 +1,1 @@
+"""What authors write in pages: terms, questions, formulas, excerpts."""

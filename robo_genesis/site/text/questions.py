@@ -1,0 +1,273 @@
+"""Questions whose right answer was measured: multiple choice, or a number with a tolerance.
+
+A page asks how one metric of a case compares with that of another, or for the value of a metric.
+The right answer is read from the accepted bundle when the page is rendered, so it cannot become
+stale. A list below the question gives the cause for each answer; it may be left out:
+
+    ```{choice} l04/lecture rise_time G1 G2
+    When does G2 reach 90 % of its step?
+
+    - lower: Both runs deliver 87 N·m until 0.07 s, so KP cannot matter before that.
+    - unknown: Both runs reach 90 % in this window.
+    ```
+
+    ```{number} l04/lecture G2.overshoot
+    :tolerance: 20
+    How large is the overshoot of G2?
+
+    - low: Saturation makes the overshoot larger than the linear formula says.
+    - x57.3: That is in degrees.
+    ```
+
+The keys are lower, equal, higher and unknown, or right, low and high. The tolerance is in percent;
+it may be below one.
+`:unit: mm` asks for a length in millimetres, and other units for their thousandths.
+A key as `x57.3` belongs to a typical wrong answer: the value times this factor.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from types import MappingProxyType
+from typing import Any
+
+from docutils import nodes
+from docutils.parsers.rst.directives import unchanged
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from robo_genesis.core.comparison import Comparison, compare_values
+from robo_genesis.core.text import SCALED, comparison_sentence, format_value
+from robo_genesis.evidence import bundle
+from robo_genesis.lessons import find_lesson
+from robo_genesis.pipeline.pages.built import page_outputs
+from robo_genesis.site.evidence.measured import BACKEND, measured
+from robo_genesis.site.figures.case_labels import label
+from robo_genesis.site.text.question_nodes import (
+    choice,
+    depart_choice,
+    depart_number,
+    number,
+    visit_question,
+)
+
+EARLIER = {"lower": "earlier", "equal": "at the same time", "higher": "later"}
+LOWER = {"lower": "less", "equal": "the same (to {})", "higher": "more"}
+"""The options by order; `{}` is the smallest difference that counts."""
+CLOSE = "about the same (less than {} apart)"
+UNDECIDED = "these two runs cannot show it"
+UNKNOWN = "unknown"
+"""The key of the option that no order was observed."""
+JUDGED = ("right", "low", "high")
+"""The keys of an answer that is a number."""
+WRONG = "x57.3"
+"""Represents the keys of typical wrong numbers, which `FACTOR` matches."""
+CAUSE = re.compile(r"[-*] +([\w.]+): +(.+)", re.DOTALL)
+FACTOR = re.compile(r"x\d+(\.\d+)?")
+"""The key of a typical wrong number: the value times this factor."""
+
+
+def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict[str, str]]:
+    """Return the question, and the cause of each answer that has one.
+
+    Args:
+        content: lines; each cause begins a line with `- key:`.
+        keys: the valid keys; `WRONG` represents all keys of its form.
+
+    Raises:
+        LookupError: a key is not valid or given twice; the message lists the valid ones.
+    """
+    question, *items = re.split(r"\n(?=[-*] )", "\n".join(content))
+    causes: dict[str, str] = {}
+    for item in items:
+        found = CAUSE.fullmatch(item.strip())
+        known = found and (found[1] in keys or (WRONG in keys and FACTOR.fullmatch(found[1])))
+        if found is None or not known or found[1] in causes:
+            valid = ", ".join(f"`- {key}: …`" for key in keys)
+            raise LookupError(f"{item.strip()!r} is not a cause. Valid, once each: {valid}.")
+        causes[found[1]] = " ".join(found[2].split())
+    return " ".join(question.split()), causes
+
+
+class Question(SphinxDirective):
+    """Ask for something that was measured."""
+
+    has_content = True
+
+    def run(self) -> list[nodes.Node]:
+        """Return the question; an unknown page, case, metric or key is an error."""
+        try:
+            text, node = self.ask()
+        except (LookupError, bundle.BundleRefused) as error:
+            raise self.error(f"{self.name}: {error}") from error
+        question, messages = self.parse_inline(text, lineno=self.lineno)
+        node += question
+        node["number"] = self.env.new_serialno("choice")
+        return [node, *messages]
+
+    def ask(self) -> tuple[str, choice]:
+        """Return the question's text, and its node with everything that was measured."""
+        raise NotImplementedError
+
+
+class Choice(Question):
+    """Ask how the second of two cases compares with the first in one metric."""
+
+    required_arguments = 4
+
+    def ask(self) -> tuple[str, choice]:
+        """See `Question.ask`."""
+        lesson_page, metric, *cases = self.arguments
+        text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
+        order, unit, answer, origin = measured_order(lesson_page, metric, cases)
+        margin = declared_margin(lesson_page.split("/")[0], metric)
+        shown = options(unit, order, smallest_difference(lesson_page, unit), causes, margin)
+        return text, choice(options=shown, answer=answer, origin=origin)
+
+
+def percents(text: str) -> float:
+    """Return the tolerance of a number in percent.
+
+    Raises:
+        ValueError: it is not a number between 0 and 100.
+    """
+    with suppress(ValueError):
+        if 0 < (value := float(text)) < 100:
+            return value
+    raise ValueError(f"{text!r} is not a tolerance. Give percents above 0 and below 100: 0.5.")
+
+
+class Number(Question):
+    """Ask for the value of one metric."""
+
+    required_arguments = 2
+    option_spec = {"tolerance": percents, "unit": unchanged}  # noqa: RUF012 - as docutils does
+
+    def ask(self) -> tuple[str, choice]:
+        """See `Question.ask`."""
+        page, name = self.arguments
+        text, causes = split_causes(self.content, [*JUDGED, WRONG])
+        if "tolerance" not in self.options:
+            raise LookupError("the option tolerance is missing. Give percents: `:tolerance: 20`.")
+        percent, unit = self.options["tolerance"], self.options.get("unit", "")
+        return text, number(**asked_number(page, name, percent, causes, unit))
+
+
+def asked_number(
+    lesson_page: str, name: str, percent: float, causes: Mapping[str, str], unit: str = ""
+) -> dict[str, Any]:
+    """Return the attributes of a question for a number.
+
+    Args:
+        lesson_page: as `l04/lab`.
+        name: `case.metric`.
+        percent: the tolerance relative to the value.
+        causes: texts by `JUDGED` or a factor, any of them.
+        unit: of the answer, if it is the thousandth of the metric's.
+
+    Raises:
+        LookupError: there is no such metric, or it has no value.
+        BundleRefused: the bundle cannot be read.
+    """
+    text, origin = measured(lesson_page, f"{name} {unit}".strip())
+    case, _, metric = name.partition(".")
+    record = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)[case][metric]
+    if record.value is None:
+        raise LookupError(f"{lesson_page} did not observe {name}. Ask with {{choice}}.")
+    verdicts = {"right": "Yes.", "low": "Too low.", "high": "Too high."}
+    verdicts |= {key: "No." for key in causes if key not in JUDGED}
+    feedback = [(key, f"{said} {causes.get(key, '')}".strip()) for key, said in verdicts.items()]
+    value = 1000 * record.value if unit else record.value
+    return {
+        "value": value, "tolerance": abs(value) * percent / 100,
+        "unit": unit or ("" if record.unit == "1" else record.unit), "feedback": feedback,
+        "answer": f"{text}; answers within {percent:g} % count as right.", "origin": origin,
+    }  # fmt: skip
+
+
+def measured_order(
+    lesson_page: str, metric: str, cases: list[str]
+) -> tuple[str | None, str, str, str]:
+    """Return (order of the second case relative to the first, unit, sentence, provenance).
+
+    Raises:
+        LookupError: the metric or a case is not in the bundle; the message lists the known ones.
+        BundleRefused: the bundle cannot be read.
+    """
+    _, origin = (measured(lesson_page, f"{case}.{metric}")[1] for case in cases)
+    records = bundle.read_metrics(page_outputs(lesson_page) / BACKEND)
+    first, second = (records[case][metric] for case in cases)
+    lesson_name = lesson_page.split("/")[0]
+    lesson = find_lesson(lesson_name)
+    noun, resolution = lesson.about_metrics("noun")[metric], lesson.spec.RESOLUTION
+    values, margin = (first.value, second.value), declared_margin(lesson_name, metric)
+    found = compare_values(noun, first.unit, *values, resolution, margin)
+    names = (label(lesson_name, cases[0]), label(lesson_name, cases[1]))
+    return found.order, found.unit, measured_sentence(names, found), origin
+
+
+def measured_sentence(names: tuple[str, str], found: Comparison) -> str:
+    """Return a sentence with the values of one metric in two cases."""
+    if found.first is None or found.second is None:
+        return comparison_sentence(names, found)
+    values, unit = (found.first, found.second), found.unit
+    texts = [format_value(value, unit) for value in values]
+    if unit == "m" and all(0 < abs(value) < 0.1 for value in values):
+        texts = [f"{1000 * value:.3g} mm" for value in values]
+    pairs = ", ".join(f"{text} for {name}" for name, text in zip(names, texts, strict=True))
+    sentence = f"{found.label[0].upper()}{found.label[1:]}: {pairs}."
+    if found.order == "equal" and found.margin and found.first != found.second:
+        sentence += f" A difference below {small(found.margin, unit)} does not count."
+    return sentence
+
+
+def small(value: float, unit: str) -> str:
+    """Return a margin or a resolution with its unit, in thousandths where it is small."""
+    if unit in SCALED and value < 0.1:
+        value, unit = 1000 * value, SCALED[unit]
+    return f"{value:g} {'samples' if unit == '1' else unit}"
+
+
+def smallest_difference(lesson_page: str, unit: str) -> str:
+    """Return the resolution of a unit that a lesson declares, as text."""
+    return small(find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[unit], unit)
+
+
+def declared_margin(lesson: str, metric: str) -> float:
+    """Return the margin that a lesson declares for orderings of a metric, 0 if it declares none."""
+    found = (m for _, name, _, m in find_lesson(lesson).spec.RELATIONS if name == metric)
+    return max(found, default=0.0)
+
+
+def options(
+    unit: str,
+    order: str | None,
+    resolution: str,
+    causes: Mapping[str, str] = MappingProxyType({}),
+    margin: float = 0.0,
+) -> list[tuple[str, bool, str]]:
+    """Return each option, whether it was measured, and its cause; exactly one is true.
+
+    Args:
+        unit: of the metric.
+        order: the order that was measured, None where no order was observed.
+        resolution: the smallest difference that counts, as text.
+        causes: the cause of each answer by its key, or a part of them.
+        margin: that the lesson declares for this metric, 0 for none.
+    """
+    words = dict(EARLIER if unit == "s" else LOWER)
+    words["equal"] = words["equal"].format(resolution)
+    if unit == "1":
+        words["equal"] = "the same"
+    if margin:
+        words["equal"] = CLOSE.format(small(margin, unit))
+    told = [(text, order == name, causes.get(name, "")) for name, text in words.items()]
+    return [*told, (UNDECIDED, order is None, causes.get(UNKNOWN, ""))]
+
+
+def setup(app: Sphinx) -> None:
+    """Register the directives."""
+    app.add_directive("choice", Choice)
+    app.add_directive("number", Number)
+    app.add_node(choice, html=(visit_question, depart_choice))
+    app.add_node(number, html=(visit_question, depart_number))

@@ -1,0 +1,93 @@
+"""The ledger and the pages agree in both directions, and what it offers is what it says."""
+
+import hashlib
+import io
+import posixpath
+import zipfile
+
+import pytest
+from bs4 import BeautifulSoup
+from built_site import PAGES, parsed
+
+from robo_genesis.lessons import LESSONS
+from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.site.evidence.ledger_data import UNMEASURED
+
+pytestmark = pytest.mark.engine
+LEDGER = "evidence/ledger.html"
+SHOWN = (
+    "article :is(img, svg.drawing), .cell_output table, .glued table, figure table, "
+    ".evidence-panel table, .replay-block table"
+)
+
+
+def shown(pages) -> set[tuple[str, str]]:
+    """Return (page, anchor) of each picture and measured table, found by what HTML they are."""
+    found = set()
+    for name, page in pages.items():
+        for tag in page.select(SHOWN):
+            holder = tag.find_parent("figure") or tag
+            found.add((name, holder.get("id", f"no anchor: {str(tag)[:80]}")))
+    return found
+
+
+def listed(pages) -> list[tuple[str, str]]:
+    """Return (page, anchor) that each row of the ledger leads to."""
+    rows = pages[LEDGER].select("#figures-and-tables tbody tr")
+    links = [row.select_one("td a")["href"] for row in rows]
+    return [place(link) for link in links]
+
+
+def place(link: str) -> tuple[str, str]:
+    """Return (page, anchor) that a link of the ledger leads to."""
+    address, _, anchor = link.partition("#")
+    return posixpath.normpath(posixpath.join(posixpath.dirname(LEDGER), address)), anchor
+
+
+def differences(pages) -> tuple[set, set]:
+    return shown(pages) - set(listed(pages)), set(listed(pages)) - shown(pages)
+
+
+@pytest.fixture(scope="module")
+def pages(site) -> dict[str, BeautifulSoup]:
+    """Every page, by its path; the ledger's own tables are not measurements."""
+    return {f"{name}.html": parsed(site, name) for name in PAGES}
+
+
+def test_each_figure_and_measured_table_has_one_row_and_each_row_its_place(pages):
+    assert differences(pages) == (set(), set())
+    assert len(listed(pages)) == len(set(listed(pages))) >= 25
+
+
+def test_each_line_of_provenance_leads_to_the_row_that_leads_back(pages):
+    rows = {row["id"]: row for row in pages[LEDGER].select("tr[id]")}
+    for name, page in pages.items():
+        for line in page.select(".provenance"):
+            row = rows[line.select_one("a")["href"].split("#")[1]]
+            target, anchor = place(row.select_one("td a")["href"])
+            assert target == name
+            kind, _, run = (cell.get_text(strip=True) for cell in row.select("td")[1:4])
+            runs = [link.text for link in row.select("td")[3].select("a")]
+            assert (runs == []) == (run == "no run") == (kind in UNMEASURED)
+            assert all(f"run {run}" in line.get_text() for run in runs)
+            assert line.get_text().startswith(UNMEASURED.get(kind, "Measured on "))
+            holder = line.find_parent("figure")
+            assert holder is None or holder["id"] == anchor
+    assert sum(len(page.select(".provenance")) for page in pages.values()) == len(rows)
+
+
+def test_digests_are_those_of_the_files(site, pages):
+    for row in pages[LEDGER].select("#figures-and-tables tbody tr"):
+        file = (site / LEDGER).parent / row.select("td")[-1].a["href"]
+        assert hashlib.sha256(file.read_bytes()).hexdigest() == row.select_one(".digest").text
+
+
+def test_a_downloaded_bundle_is_accepted_and_has_the_digest_that_is_given(site, pages, tmp_path):
+    blocks = [b for b in pages[LEDGER].select(".run-block") if b.select("a")]
+    assert len(blocks) == sum(len(lesson.pages) for lesson in LESSONS.values())
+    for block in blocks:
+        data = ((site / LEDGER).parent / block.a["href"]).read_bytes()
+        assert hashlib.sha256(data).hexdigest() == block.select(".digest")[-1].text
+        folder = tmp_path / block["id"] / "cpu"
+        zipfile.ZipFile(io.BytesIO(data)).extractall(folder)
+        assert verify_bundle(folder).predicate.run_id[:8] in block.text

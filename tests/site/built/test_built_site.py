@@ -1,0 +1,70 @@
+"""What a reader finds on the built pages."""
+
+import json
+import subprocess
+
+import pytest
+from built_site import LESSON_PAGES, parsed
+
+from robo_genesis.core import project
+from robo_genesis.lessons import LESSONS, find_page
+from robo_genesis.pipeline import npm
+from robo_genesis.pipeline.html.sums import SUMS
+
+pytestmark = pytest.mark.engine
+PIN = project.engine_pin()
+
+
+@pytest.mark.parametrize(
+    ("lesson", "name"),
+    [(le, name) for (le, page), name in LESSON_PAGES.items() if page in ("lecture", "lab")],
+)
+def test_status_is_computed_and_says_what_is_missing(site, lesson, name):
+    line = parsed(site, name).select_one(".status-line > summary").get_text()
+    assert line == f"Measured on CPU with Genesis {PIN}"
+    status = parsed(site, name).select_one(".lesson-status").get_text()
+    count = len(find_page(lesson, "lab").checks)
+    assert f"cpu-verified Lab in a clean notebook kernel, Genesis {PIN}" in status
+    assert f"{count} of {count} checks passed" in status
+    assert f"amdgpu-missing No run on this backend is recorded for Genesis {PIN}" in status
+
+
+def test_every_page_is_valid_html(site, tmp_path):
+    """By the rules of the HTML standard, as html-validate knows them, at once for all pages."""
+    settings = tmp_path / "settings.json"
+    settings.write_text('{"root": true, "extends": ["html-validate:standard"]}')
+    program = npm.packages() / "html-validate/bin/html-validate.mjs"
+    command = [npm.node(), program, "--formatter", "json", "--config", settings]
+    pages = sorted(site.parent.rglob("*.html"))
+
+    def found(*files):
+        done = subprocess.run([*command, *files], capture_output=True, text=True, check=False)
+        reports = json.loads(done.stdout)
+        return {r["filePath"]: [(m["line"], m["message"]) for m in r["messages"]] for r in reports}
+
+    spoiled = tmp_path / "spoiled.html"
+    spoiled.write_text(pages[0].read_text("utf8").replace("</body>", "<ul><p>a</p></ul></body>"))
+    assert "<p>" in found(spoiled)[str(spoiled)][0][1]
+    assert found(*pages) == {}
+
+
+def test_nothing_published_names_a_path_of_the_builder(site):
+    texts = [p for p in site.parent.rglob("*") if p.suffix in {".html", ".json", ".txt", ".md"}]
+    assert texts
+    assert [p.name for p in texts if str(project.ROOT) in p.read_text(errors="ignore")] == []
+
+
+def test_the_sums_cover_every_other_file_of_the_site(site):
+    command = ["sha256sum", "--check", "--strict", SUMS]
+    done = subprocess.run(command, cwd=site, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    files = [path.relative_to(site).as_posix() for path in site.rglob("*") if path.is_file()]
+    assert {f"{name}: OK" for name in files} == {*done.stdout.splitlines(), f"{SUMS}: OK"}
+    assert ".buildinfo" not in files
+
+
+def test_build_ends_with_what_it_was_made_of(build_output):
+    tail = "\n".join(build_output.splitlines()[-4 - len(LESSONS) :])
+    expected = ["Site: ", "Engine: genesis-world", "requested cpu, actual cpu", "render camera"]
+    expected += ["executed", "reused", "Checks passed: "]
+    assert [words for words in expected if words not in tail] == []

@@ -1,0 +1,133 @@
+"""Finding a page, a name or a place again: search, 404, anchors, neighbours, facts."""
+
+import re
+from pathlib import Path
+
+import pytest
+from built_site import PAGES, QuietHandler, parsed, served
+from watching import errors
+
+from robo_genesis.core.project import BOOK
+from robo_genesis.site.course.course_map import read_map
+
+pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+LECTURE = "lessons/l04-joint-control/lecture"
+LAB = "lessons/l04-joint-control/lab"
+TESTS = Path(__file__).parents[2]
+ANCHORS = [TESTS / "site" / "anchors.txt", *sorted(TESTS.glob("lessons/*/anchors.txt"))]
+"""The anchors of each lesson's pages are a file beside the lesson's tests."""
+
+PLACES = (
+    "article section[id], article section > span[id], article p[id], article p > span[id], "
+    "article figure[id], article dt[id]"
+)
+NUMBERED = re.compile(r"id\d+$")
+
+
+@pytest.fixture
+def page(browser):
+    page = browser.new_page()
+    problems = errors(page)
+    yield page
+    page.close()
+    assert [text for text in problems if "404 (" not in text] == []
+
+
+def results(page) -> list[str]:
+    page.wait_for_function(
+        "/Search finished|did not match/.test(document.querySelector('#search-results').innerText)"
+    )
+    return page.eval_on_selector_all("#search-results li > a", "links => links.map(a => a.href)")
+
+
+def test_search_finds_names_of_joints_and_calls(page, address):
+    names = "joint4 finger_joint1 set_dofs_kp dofs_kp control_dofs_position control_force overshoot"
+    for words in (*names.split(), "get_dofs_control_force"):
+        page.goto(f"{address}/search.html?q={words}")
+        assert [url for url in results(page) if f"/{LECTURE}.html" in url], words
+
+
+def test_search_finds_what_a_student_types_into_the_field(page, address):
+    page.goto(f"{address}/{LAB}.html")
+    page.keyboard.press("Control+k")
+    page.keyboard.type("get_dofs_control_force")
+    page.keyboard.press("Enter")
+    page.wait_for_url("**/search.html?q=get_dofs_control_force*")
+    found = results(page)
+    for name in (LECTURE, LAB, "glossary"):
+        assert [url for url in found if f"/{name}.html" in url], name
+
+
+class WithNotFound(QuietHandler):
+    """Answers as a host of static sites does: unknown addresses get the site's own page."""
+
+    def send_error(self, code: int, *_) -> None:
+        body = (Path(self.directory) / "404.html").read_bytes()
+        self.send_response(code)
+        self.send_header("Content-Type", "text/html")
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+
+@pytest.fixture(scope="module")
+def host(site):
+    with served(site, WithNotFound) as address:
+        yield address
+
+
+@pytest.mark.parametrize("lost", ["nowhere", "lessons/nowhere.html", "a/b/c/d"])
+def test_who_is_lost_at_any_depth_can_search_and_go_on(page, host, lost):
+    assert page.goto(f"{host}/{lost}", wait_until="networkidle").status == 404
+    assert page.locator("article h1").inner_text() == "There is no such page"
+    family = page.evaluate("getComputedStyle(document.querySelector('article h1')).fontFamily")
+    assert family.startswith("system-ui")  # the style sheets were found
+    for link in page.locator("article li a").all():
+        assert page.request.get(host + link.get_attribute("href")).ok
+    page.get_by_label("Search all pages").fill("joint4")
+    page.locator("form.lost button").click()
+    page.wait_for_url("**/search.html?q=joint4")
+    assert results(page)
+
+
+@pytest.fixture(scope="module")
+def anchors(site) -> set[str]:
+    """Return page#anchor of each heading, figure and term that a reader may link to.
+
+    Recorded runs come and go with the machines that made them, so what is in their panels is none.
+    """
+    names = [name for name in PAGES if not name.startswith("evidence/")]
+    return {
+        f"{name}#{tag['id']}"
+        for name in names
+        for tag in parsed(site, name).select(PLACES)
+        if not NUMBERED.match(tag["id"]) and not tag.find_parent(class_="evidence-panel")
+    }
+
+
+def published_anchors() -> set[str]:
+    return {anchor for file in ANCHORS for anchor in file.read_text().split()}
+
+
+def test_anchors_that_were_published_stay(anchors):
+    published = published_anchors()
+    assert len(published) > 100
+    gone = sorted(published - anchors)
+    assert gone == [], "Links elsewhere lead there: keep the old name as a target `(name)=` above."
+
+
+def test_new_anchors_are_kept_from_now_on(anchors):
+    new = sorted(anchors - published_anchors())
+    assert new == [], "Add these lines to anchors.txt in tests/lessons/lNN or tests/site."
+
+
+def test_the_page_on_evidence_shows_a_measurement_and_leads_to_its_three_pages(site):
+    page = parsed(site, "evidence/index")
+    (featured,) = (lesson.id.lower() for lesson in read_map(BOOK) if lesson.featured)
+    expected = [f"glance-{featured}-{picture}" for picture in ("response", "final")]
+    figures = page.select(".glance figure")
+    assert [figure["id"] for figure in figures] == expected
+    assert all("Measured on cpu" in figure.get_text() for figure in figures)
+    links = {a["href"] for a in page.select("article a[href]")}
+    assert {"ledger.html", "trust.html", "recording.html"} <= links

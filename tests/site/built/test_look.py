@@ -1,0 +1,142 @@
+"""The look in a browser: the palette arrives in both themes, and everything on it can be read."""
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+
+import matplotlib as mpl
+import pytest
+from playwright.sync_api import Page
+
+from robo_genesis.core import plotting
+from robo_genesis.core.palette import GROUNDS, MARKS, PARTS, contrast, css_name
+from robo_genesis.lessons import LESSONS
+
+pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+CASES = {"baseline": "baseline"} | dict(LESSONS["l04"].marks)
+"""The mark of each case on the lecture."""
+
+LECTURE = "lessons/l04-joint-control/lecture.html"
+TEXT = 4.5
+
+
+SHOWN = """selectors => selectors.map(selector =>
+  [...document.querySelectorAll(selector)].filter(one => one.checkVisibility()).length)"""
+FOLDS = "article .sd-summary-content > p"
+
+
+def hexadecimal(colour: str) -> str:
+    """Return `rgb(r, g, b)` as `#rrggbb`."""
+    return "#" + "".join(f"{int(part):02x}" for part in re.findall(r"\d+", colour)[:3])
+
+
+@pytest.fixture(scope="module", params=["light", "dark"])
+def theme(request) -> str:
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def page(browser, address, theme) -> Iterator[Page]:
+    page = browser.new_page(
+        viewport={"width": 1280, "height": 900}, color_scheme=theme, reduced_motion="reduce"
+    )
+    page.goto(f"{address}/{LECTURE}")
+    page.wait_for_function(f"document.documentElement.dataset.theme === {theme!r}")
+    yield page
+    page.close()
+
+
+def style(page: Page, selector: str, name: str) -> str:
+    script = "([selector, name]) => getComputedStyle(document.querySelector(selector))[name]"
+    return page.evaluate(script, [selector, name])
+
+
+def test_the_page_s_ground_is_one_that_the_palette_was_held_against(page, theme):
+    assert hexadecimal(style(page, "body", "backgroundColor")) in GROUNDS[theme]
+    panel = hexadecimal(style(page, "div.evidence-panel", "backgroundColor"))
+    assert panel in GROUNDS[theme]
+
+
+def test_the_word_of_each_badge_can_be_read(page):
+    for state in ("verified", "inconclusive", "missing", "stale", "failed", "refused"):
+        badge = f"evidence-badge state-{state}"
+        page.evaluate(f"document.querySelector('.evidence-badge').className = '{badge}'")
+        pair = (style(page, ".evidence-badge", name) for name in ("color", "backgroundColor"))
+        assert contrast(*map(hexadecimal, pair)) >= TEXT, state
+
+
+def test_on_paper_the_menus_are_gone_and_folds_can_be_read(page):
+    sidebars = ["#pst-primary-sidebar", "#pst-secondary-sidebar"]
+    menus = [".bd-header-article", *sidebars, ".prev-next-footer"]
+    folded = page.locator(FOLDS).count()
+    assert min(page.evaluate(SHOWN, menus)) > 0
+    assert page.evaluate(SHOWN, [FOLDS])[0] < folded
+    page.emulate_media(media="print")
+    assert page.evaluate(SHOWN, [*menus, FOLDS]) == [*[0] * len(menus), folded]
+    page.emulate_media(media="screen")
+
+
+def test_a_figure_has_the_colours_of_the_theme(page, theme):
+    drawn = page.locator("#fig-l04-gains svg.drawing")
+    found = drawn.evaluate(
+        """svg => [...svg.querySelectorAll("*")].flatMap(part => {
+          const { fill, stroke } = getComputedStyle(part);
+          return [part.style.fill && fill, part.style.stroke && stroke];
+        })"""
+    )
+    colours = {hexadecimal(colour) for colour in found if colour and colour != "none"}
+    marks = [MARKS[CASES[name]] for name in ("G1", "G2", "G3")] + [MARKS["limit"]]
+    assert {getattr(mark, theme) for mark in (*marks, *PARTS.values())} <= colours
+    other = "dark" if theme == "light" else "light"
+    assert not {getattr(mark, other) for mark in (*marks, PARTS["text"])} & colours
+
+
+def test_on_a_phone_no_figure_is_cut_off_and_its_letters_can_be_read(browser, address):
+    page = browser.new_page(viewport={"width": 390, "height": 800})
+    page.goto(f"{address}/{LECTURE}")
+    sizes = page.eval_on_selector_all(
+        "article svg.drawing:not(.wide)",
+        """drawings => drawings.filter(one => one.checkVisibility()).map(one => {
+          const { left, right, width } = one.getBoundingClientRect();
+          const texts = [...one.querySelectorAll("text")];
+          const letters = texts.map(text => parseFloat(getComputedStyle(text).fontSize));
+          return [left, right, width / one.getAttribute("width"), letters];
+        })""",
+    )
+    assert len(sizes) >= 4
+    with plotting.course_style():  # it draws letters as paths
+        drawn = mpl.rcParams["font.size"] * 96 / 72
+    for left, right, scale, letters in sizes:
+        assert left >= 0
+        assert right <= 390
+        assert scale * min(letters or [drawn]) >= 11
+    page.close()
+
+
+def lines(page: Page, selector: str) -> list[list]:
+    """Return class, colour and dashes of each drawn line."""
+    found = page.eval_on_selector_all(
+        selector,
+        """lines => lines.map(line => {
+          const { stroke, strokeDasharray } = getComputedStyle(line);
+          return [line.classList.item(1), stroke, strokeDasharray.match(/[\\d.]+/g) ?? []];
+        })""",
+    )
+    return [[name, hexadecimal(ink), [float(d) for d in dashes]] for name, ink, dashes in found]
+
+
+def look(name: str, theme: str) -> list:
+    """Return colour and dashes of a mark, for lines two units wide."""
+    mark = MARKS[name]
+    return [getattr(mark, theme), [2 * length for length in mark.dashes]]
+
+
+def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
+    names = {css_name(name): name for name in MARKS}
+    count: Counter[str] = Counter()
+    runs = ".replay[data-name=replay-l04-lecture-cpu] svg :is(.curve, .level)"
+    for css_class, *drawn in lines(page, runs):
+        assert drawn == look(names[css_class], theme), css_class
+        count[names[css_class]] += 1
+    assert count == {"first": 3, "second": 3, "third": 3, "target": 1, "limit": 2}

@@ -1,0 +1,141 @@
+"""The replays of the built pages: the robot of a lecture is where the record says, and all fit."""
+
+from collections.abc import Iterator
+from io import BytesIO
+
+import numpy as np
+import pytest
+from browsers import SOFTWARE, launched
+from built_site import PAGES
+from PIL import Image
+from playwright.sync_api import Browser, Page
+from watching import POSES, choose, errors, show_model
+
+from robo_genesis.core.project import BOOK
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.trace_files import read_trace
+from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons.l04.study_spec import ASSIGNED
+from robo_genesis.site.replay.model import rotations
+
+pytestmark = [pytest.mark.engine, pytest.mark.browser]
+
+LECTURE = "lessons/l04-joint-control/lecture"
+REPLAY = ".replay[data-name=replay-l04-lecture-cpu]"
+FIRST_SCREEN = (LECTURE, "lessons/l01-ready/lecture")
+"""Pages that begin with their replay."""
+
+BELOW = ("link4", "link5", "link6", "link7", "hand", "left_finger", "right_finger")
+"""The links that joint4 turns."""
+
+PLAYING = [name for name in PAGES if "{replay}" in (BOOK / f"{name}.md").read_text()]
+
+TOO_WIDE = """() => [...document.querySelectorAll(".replay")].flatMap(root => {
+  const edge = root.getBoundingClientRect().right, slider = root.querySelector("input[type=range]");
+  const parts = "input, button, select, svg, svg text, dl div, .shown, figcaption, .legend";
+  const cut = [...root.querySelectorAll(parts)]
+    .filter(e => e.getBoundingClientRect().right > edge).map(e => e.outerHTML);
+  for (const run of root.querySelectorAll("input[type=radio]")) {
+    run.click();
+    for (slider.value = 0; ; slider.stepUp(7)) {
+      slider.dispatchEvent(new Event("input"));
+      for (const line of root.querySelectorAll("dl div")) {
+        const text = document.createRange();
+        text.selectNodeContents(line);
+        const beyond = text.getBoundingClientRect().right - line.getBoundingClientRect().right;
+        if (beyond > 0) cut.push(`${run.value} ${slider.value} ${line.innerText} ${beyond}`);
+      }
+      if (slider.value === slider.max) break;
+    }
+  }
+  return cut;
+})"""
+"""What of the replays is cut off, or reaches into the place beside it."""
+
+POSED = """([name, time]) => {
+  const viewer = document.querySelector("model-viewer");
+  return viewer.animationName === name && Math.abs(viewer.currentTime - time) < 1e-5;
+}"""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with launched(*SOFTWARE) as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def lecture(browser, site) -> Iterator[Page]:
+    """The lecture from disk with the robot loaded."""
+    page = browser.new_page(viewport={"width": 480, "height": 700}, color_scheme="dark")
+    problems = errors(page)
+    page.goto((site / f"{LECTURE}.html").as_uri())
+    show_model(page, REPLAY)
+    yield page
+    assert problems == []
+    page.close()
+
+
+def test_links_and_their_copies_are_where_the_record_says(lecture, site):
+    """In each case at several samples. The lecture also assigns the states up to the target."""
+    folder = site.parent / "pages" / "l04" / "lecture" / "cpu"
+    arrays = bundle.read_arrays(folder)
+    links = arrays.coords["link"]
+    for case in LESSONS["l04"].compared.cases:
+        trace = read_trace(folder, arrays, case)
+        for sample in (0, 9, trace.steps):
+            choose(lecture, case, sample, REPLAY)
+            lecture.wait_for_function(POSED, arg=[case, float(trace.t[sample])])
+            found = lecture.evaluate(POSES)
+            added = [f"target_{link}" for link in BELOW]
+            assert sorted(found) == sorted([*links, *added, "still", "target"])
+            places, turns = (
+                np.array([found[link][part] for link in links]) for part in ("position", "rotation")
+            )
+            recorded = rotations(trace.link_quat[sample])
+            turns *= np.sign((turns * recorded).sum(axis=1))[:, None]  # q and −q turn alike
+            assert places == pytest.approx(trace.link_pos[sample], abs=1e-6), (case, sample)
+            assert turns == pytest.approx(recorded, abs=1e-6), (case, sample)
+        assert np.abs(trace.link_pos[9] - trace.link_pos[0]).max() > 1e-3
+    assigned = read_trace(folder, arrays, ASSIGNED)
+    for link in BELOW:
+        copy, k = found[f"target_{link}"], links.index(link)
+        assert copy["position"] == pytest.approx(assigned.link_pos[-1, k], abs=2e-6), link
+        turned = abs(np.dot(copy["rotation"], rotations(assigned.link_quat[-1:, k])[0]))
+        assert turned == pytest.approx(1, abs=1e-6), link
+
+
+def test_the_picture_is_that_of_the_model(lecture):
+    """Both show the robot in one place: most points of one are in the other."""
+    choose(lecture, "G1", 0, REPLAY)
+    lecture.wait_for_function(POSED, arg=["G1", 0.0])
+    stage = lecture.locator(f"{REPLAY} .stage")
+    model = lightness(lecture, stage, "model-viewer")
+    picture = lightness(lecture, stage, ".still")
+    above = np.s_[: int(0.7 * len(model))]  # the floor is below; its light differs
+    robot, drawn = (np.abs(image - image[20, -20])[above] > 15 for image in (model, picture))
+    assert 0.15 < robot.mean() < 0.5
+    assert (robot & drawn).sum() / (robot | drawn).sum() > 0.8
+
+
+def lightness(page, stage, part) -> np.ndarray:
+    """Return a screenshot of one part of the stage alone, 0 to 255."""
+    only = f".stage > :not({part}) {{ visibility: hidden; }} .stage > {part} {{ display: block; }}"
+    style = page.add_style_tag(content=only.replace("}", " }").replace(";", " !important;"))
+    with Image.open(BytesIO(stage.screenshot())) as image:
+        found = np.asarray(image.convert("L")).astype(int)
+    style.evaluate("style => style.remove()")
+    return found
+
+
+@pytest.mark.parametrize("name", PLAYING)
+def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(browser, address, name):
+    """At each sample of each run of each replay of a page."""
+    page = browser.new_page(viewport={"width": 390, "height": 844})
+    page.goto(f"{address}/{name}.html")
+    play = page.locator(".replay .play").first.bounding_box()
+    assert play["y"] + play["height"] < 844 or name not in FIRST_SCREEN
+    for width in (1280, 320):
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate(TOO_WIDE) == []
+    page.close()

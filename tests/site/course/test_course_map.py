@@ -1,0 +1,111 @@
+"""The course map is one file: published lessons become cards with minutes, planned ones a list."""
+
+import re
+
+import pytest
+import yaml
+from built_site import LESSON_PAGES, parsed
+from small_book import MAP
+
+from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.lessons import LESSONS
+from robo_genesis.site.course.course_map import FILE, CourseMapError, read_map
+
+
+def write(book, rows):
+    (book / FILE).write_text(yaml.safe_dump(rows))
+
+
+def test_the_course_s_map_names_the_lessons_that_are_published():
+    published = {lesson.id: lesson.page for lesson in read_map(BOOK) if lesson.page}
+    lectures = {name.upper(): LESSON_PAGES[name, "lecture"] for name in LESSONS}
+    assert published == lectures
+
+
+@pytest.mark.parametrize(
+    ("document", "form"),
+    [
+        ("README.md", "- **{id}:** {title}\n"),
+        ("book/running-a-lab.md", "`{id} <{folder}/lab>`"),
+        ("book/troubleshooting.md", "`{id}, "),
+        ("book/{page}.md", "\n# {id}: {heading}\n"),
+    ],
+)
+def test_a_published_lesson_is_in_each_list_that_is_kept_by_hand(document, form):
+    """A lecture may have the first sentence of its title as heading."""
+    missing = []
+    for lesson in read_map(BOOK):
+        if lesson.page:
+            text = (ROOT / document.format(page=lesson.page)).read_text()
+            words = {"id": lesson.id, "title": lesson.title, "folder": lesson.id.lower()}
+            titles = {lesson.title, re.split(r"(?<=[?.]) ", lesson.title)[0]}
+            if not any(form.format(heading=title, **words) in text for title in titles):
+                missing.append(lesson.id)
+    assert missing == []
+
+
+def test_the_list_of_decision_records_has_each_of_them():
+    folder = BOOK / "_decisions"
+    titles = {p.name: p.read_text().splitlines()[0] for p in sorted(folder.glob("0*.md"))}
+    rows = re.findall(r"\[(\d+)\]\((.+?)\) \| (.+?) \|", (folder / "README.md").read_text())
+    assert {name: f"# {number}: {title}" for number, name, title in rows} == titles
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ([{"id": "L01"}], "a lesson has id, title"),
+        ([{"id": "L01", "title": "One", "state": "verified"}], "a lesson has id, title"),
+        (["L01"], "a lesson has id, title"),
+        ([MAP[0] | {"outcomes": "walk"}], "a lesson has id, title"),
+        ([MAP[0] | {"page": "page"}], "L01 is published and has no outcomes"),
+        ([MAP[0], MAP[0]], "names L01 twice"),
+        ([MAP[0], MAP[2]], "L04 needs L02; before it come L01"),
+        ([{"id": "L01", "title": "One", "needs": ["L01"]}], "L01 needs L01; before it come none"),
+        ([MAP[2] | {"id": name, "needs": []} for name in ("L04", "L05")], "features L04 and L05"),
+    ],
+)
+def test_a_map_that_cannot_be_right_is_refused(tmp_path, rows, said):
+    write(tmp_path, rows)
+    with pytest.raises(CourseMapError, match=said):
+        read_map(tmp_path)
+
+
+def test_a_published_lesson_is_a_card_with_outcomes_prerequisites_and_minutes(small_site):
+    cards = parsed(small_site, "cards").select("ul.course-map > li")
+    assert [[p.get_text() for p in card.select("p")] for card in cards] == [
+        ["L04 Four", "read a qpos", "stop", "Builds on L01 and L02.", "Lecture: 1 min to read"],
+        [
+            "L06 Six", "walk", "Lecture: 3 min to read", "Lab: 15 min with the work sheet",
+            "2 more pages: 6 min to read",
+        ],
+    ]  # fmt: skip
+    assert [a["href"] for a in cards[0].select("a")] == ["page.html", "page.html"]
+    folder = "lessons/l06-six"
+    pages = ("lecture", "lecture", "lab")
+    assert [a["href"] for a in cards[1].select("a")] == [f"{folder}/{name}.html" for name in pages]
+    assert cards[0].code.get_text() == "qpos"
+
+
+def test_a_planned_lesson_is_a_title_without_a_link(small_site):
+    planned = parsed(small_site, "cards").select_one("ul.planned-lessons")
+    lines = {item["id"]: item.get_text().strip() for item in planned.select("li")}
+    assert lines == {"lesson-l01": "L01 One", "lesson-l02": "L02 Two"}
+    assert not planned.select("a")
+
+
+def test_lessons_that_are_absent_leave_words_and_no_content(small_site):
+    article = parsed(small_site, "featured").article
+    _, first, second, *_ = article.select("section > p")
+    assert first.get_text() == "The second and the third."
+    assert [a["href"] for a in first.select("a")] == ["lessons/l02-two/lecture.html"]
+    assert second.get_text() == "Four was measured."
+    assert [b.get_text() for b in article.select("section > p > strong")] == ["L04 ", "L06 "]
+    lines = article.select("ul.lesson-status > li")
+    assert [line.select_one(".evidence-badge").get_text() for line in lines] == 2 * [
+        "cpu-missing", "amdgpu-missing"
+    ]  # fmt: skip
+    assert article.select_one(".course-measured").get_text() == (
+        "No run of this build was accepted."
+    )
+    assert "L05" not in article.get_text()

@@ -1,0 +1,84 @@
+"""What counts as prose, code and plots of a page, and which sizes are refused."""
+
+import pytest
+from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
+
+from robo_genesis.core.project import BOOK
+from robo_genesis.pipeline.pages.book import Page, find_pages
+from robo_genesis.site.course.sizes import LIMITS, Size, count_words, excess, report, size
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("# Title\n\nTwo words.", 3),
+        ("A.\n\n| a | b |\n| - | - |\n| c | d |\n\n(old-name)=\nB.", 2),
+        ("A.\n```{figure} a.svg\n:alt: x\n\nA caption.\n```\nB.", 2),
+        (":::{admonition} Title\n:class: tip\nIn it.\n:::", 2),
+        (":::{admonition} Title\n:class: tip dropdown\nIn it.\n:::\nB.", 1),
+        ("::::{dropdown} Fold\n:::{note}\nIn it.\n:::\nIn it.\n::::\nB.", 1),
+        ("```python\ncode\n```\nB.", 1),
+        ("```{math}\nx + 1\n```\nB.", 1),
+    ],
+)
+def test_folds_tables_captions_and_code_are_not_prose(text, words):
+    assert count_words(text) == words
+
+
+EXCERPT = "```{literalinclude} code.py\n:language: python\n:pyobject: f\n```"
+
+
+def test_a_page_s_size(tmp_path):
+    (tmp_path / "code.py").write_text(f'def f():\n    """{"x" * 90}"""\n    return {"1" * 70}\n')
+    asked = "```{choice} l04/lab a b c\nWhen?\n```"
+    cells = [
+        new_markdown_cell(f"{'word ' * 400}\n\n{EXCERPT}\n\n{asked}"),
+        new_code_cell("a = 1\n\nb = 2\npage.show(l04.plots.baseline)"),
+        new_code_cell("page.show(l04.study_plots.theory)", metadata={"tags": ["hide-input"]}),
+        new_code_cell("c = 3"),
+    ]
+    found = size(new_notebook(cells=cells), tmp_path / "lecture.md")
+    assert found == Size(words=400, cells=2, longest=3, plots=2, minutes=4, widest=81)
+
+
+def test_the_minutes_of_a_lab_contain_its_functions_a_run_and_the_work_sheet(tmp_path):
+    stubs = [new_code_cell(f"def f{k}(x):\n    raise NotImplementedError") for k in range(3)]
+    solution = new_code_cell("def f0(x):\n    return x", metadata={"tags": ["hide-cell"]})
+    lab = new_notebook(cells=[new_markdown_cell("word " * 400), *stubs, solution])
+    assert size(lab, tmp_path / "lab.md").minutes == round(2 + 0.6 + 3 * 10 + 5)
+    (tmp_path / "worksheet.md").touch()
+    assert size(lab, tmp_path / "lab.md").minutes == round(2 + 0.6 + 3 * 10 + 5 + 10)
+    assert size(lab, tmp_path / "lecture.md").minutes == round(2 + 0.6 + 3 * 10 + 5)
+
+
+def page_of(**numbers):
+    return Size(**dict.fromkeys(Size.__slots__, 0) | numbers)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "limit"),
+    [(kind, *item) for kind, limits in LIMITS.items() for item in limits.items()],
+)
+def test_each_limit_is_kept_exactly(kind, name, limit):
+    assert excess(page_of(**{name: limit}), kind) == []
+    (phrase,) = excess(page_of(**{name: limit + 1}), kind)
+    assert phrase.endswith(f"(at most {limit:,})")
+
+
+def test_a_wide_excerpt_is_refused_on_every_page():
+    assert excess(page_of(widest=81, words=9999), "index") == [
+        "81 characters in its widest line of code (at most 80)"
+    ]
+
+
+def test_a_large_page_is_named(tmp_path):
+    large = new_notebook(cells=[new_markdown_cell("word " * 3400)])
+    pages = [Page(name, tmp_path / f"{name}.md", large, None, None) for name in ("lecture", "lab")]
+    lines, (problem,) = report(pages)
+    assert [line.partition(":")[0] for line in lines] == ["lecture", "lab"]
+    assert problem.startswith("lecture is over its size: 3,400 words of prose (at most 3,300)")
+    assert problem.endswith("Shorten it, or move a part to a deeper page.")
+
+
+def test_the_course_s_pages_keep_their_sizes():
+    assert report(find_pages(BOOK))[1] == []

@@ -1,0 +1,73 @@
+"""The comparison of this build's run with a recorded one, as a panel shows it."""
+
+import shutil
+
+import pytest
+from spoilers import edit, metrics, on, part, seal
+from without_sphinx import rows_of
+
+from robo_genesis.core.text import six_digits
+from robo_genesis.evidence import bundle
+from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.site.evidence import panel as sphinx_panel
+
+
+@pytest.fixture
+def there(folder, tmp_path):
+    """A bundle of an accelerator, otherwise the same."""
+    return on("amdgpu")(shutil.copytree(folder, tmp_path / "there" / "cpu"))
+
+
+def moved(folder, case, metric, by):
+    """Move one metric, as another machine might have measured it."""
+    metrics(lambda m: m[case][metric].update(value=m[case][metric]["value"] + by))(folder)
+    seal(folder)
+
+
+def compared(folder, there):
+    """The text on two bundles of L04, and the cells of every row of its tables."""
+    found = sphinx_panel.comparison(folder, there)
+    return "\n".join(node.astext() for node in found), rows_of(found)
+
+
+def cells(rows, start):
+    """The other cells of the only row that begins with `start`."""
+    (found,) = [row for row in rows if row[0] == start]
+    return found[1:]
+
+
+def test_values_and_orderings_of_both_runs_are_side_by_side(folder, there):
+    text, rows = compared(folder, there)
+    assert text.startswith("Compared with this build's run on cpu: equal.")
+    both = ["cpu, this build", "amdgpu, recorded"]
+    assert rows[0] == ["metric", *both, "difference", "allowed", "verdict"]
+    names = LESSONS["l04"].about_metrics("label")
+    assert {f"{case}.{name}" for case in l04.CASES for name in names} <= {row[0] for row in rows}
+    assert sum(row[0].endswith(", held in both") for row in rows) == len(l04.RELATIONS)
+    moved(there, "G1", "overshoot", 1.0)
+    text, rows = compared(folder, there)
+    assert ": differs. The lesson's" in text
+    *_, difference, allowed, verdict = cells(rows, "G1.overshoot")
+    atol, rtol = l04.TOLERANCES["rad"]
+    value = bundle.read_metrics(there)["G1"]["overshoot"].value
+    assert (difference, verdict) == (six_digits(1.0, "rad"), "differs")
+    assert allowed == six_digits(atol + rtol * value, "rad")
+    ours, theirs, *_ = cells(rows, "overshoot: G2 higher than G1, flipped")
+    assert ours.startswith("held: ")
+    assert theirs.startswith("broken: ")
+
+
+def test_a_difference_outside_the_tables_is_named(folder, there):
+    edit(there, "arrays.json", lambda a: a["joints"][3].update(dof_idx_local=0))
+    seal(there)
+    said = ": differs. They also differ in coverage: see make compare."
+    assert said in compared(folder, there)[0]
+
+
+def test_runs_that_cannot_be_compared_have_the_reason(folder, there):
+    part("parameters", rise_fraction=0.5)(there)
+    text, rows = compared(folder, there)
+    assert text.startswith("Not comparable with this build's run on cpu.")
+    assert "parameters.rise_fraction differs: 0.9 and 0.5." in text
+    assert rows == []

@@ -1,0 +1,68 @@
+"""The line on the measurement of the course follows from the bundles of this build alone."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from robo_genesis.evidence.bundle import read_manifest
+from robo_genesis.pipeline.bundles.status import Status
+from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, page_outputs
+from robo_genesis.site.evidence.course_runs import measured_line, shown_predicate
+from robo_genesis.site.evidence.ledger_data import PageRun, provenance
+
+
+@pytest.fixture
+def accepted(outputs):
+    """Return a run as the build accepted it, with another version, start or backend."""
+    manifest = read_manifest(page_outputs("l04/lab") / "cpu")
+
+    def run(
+        version="1.4.5", started="2026-11-22T10:00:00", backend="cpu", recorded=False
+    ) -> PageRun:
+        engine = manifest.predicate.engine.model_copy(update={"version": version})
+        changed = {"engine": engine, "started": started}
+        predicate = manifest.predicate.model_copy(update=changed)
+        shown = manifest.model_copy(update={"predicate": predicate})
+        return PageRun("l04/lab", Path(), Status("verified", backend, "", shown), recorded)
+
+    return run
+
+
+def test_the_line_names_version_and_date_of_the_accepted_runs(accepted):
+    line = "Measured on CPU with Genesis 1.4.5 on 2026-11-22."
+    assert measured_line([accepted(), accepted(started="2026-11-22T23:59:59")]) == line
+    elsewhere = accepted("1.3.3", "2020-01-01T00:00:00", "amdgpu", recorded=True)
+    assert measured_line([accepted(), elsewhere]) == line
+
+
+def test_several_dates_and_versions_are_all_in_the_line(accepted):
+    runs = [
+        accepted(started="2026-11-24T10:00:00"),
+        accepted("1.3.3"),
+        accepted(started="2026-11-23T10:00:00"),
+    ]
+    assert measured_line(runs) == (
+        "Measured on CPU with Genesis 1.3.3 and 1.4.5 from 2026-11-22 to 2026-11-24."
+    )
+
+
+def test_runs_that_were_not_accepted_are_counted_and_never_measured(accepted):
+    missing = replace(accepted(), status=Status("missing", "cpu", "", None))
+    assert measured_line([accepted(), missing]).endswith(" 1 of 2 runs were not accepted.")
+    assert measured_line([missing]) == "No run of this build was accepted."
+
+
+@pytest.mark.parametrize(
+    ("code", "last_outputs", "is_shown"),
+    [("stale", True, True), ("stale", False, False), ("digest", True, False)],
+)
+def test_a_stale_run_is_shown_with_the_outputs_of_last_runs_alone(
+    outputs, monkeypatch, code, last_outputs, is_shown
+):
+    if last_outputs:
+        monkeypatch.setenv(LAST_OUTPUTS, "1")
+    status = Status(code, "cpu", "a reason", None, code)
+    run = PageRun("l04/lab", page_outputs("l04/lab") / "cpu", status)
+    assert (shown_predicate(run) is not None) == is_shown
+    assert provenance("figure", [run]) == f"No accepted evidence: cpu-{code}."

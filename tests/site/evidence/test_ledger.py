@@ -1,0 +1,74 @@
+import io
+import zipfile
+
+import pytest
+from docutils import nodes
+
+from robo_genesis.pipeline.bundles.status import Status
+from robo_genesis.site.evidence import ledger_data
+from robo_genesis.site.evidence.ledger import run_block
+from robo_genesis.site.evidence.ledger_data import Item, PageRun
+
+
+@pytest.fixture
+def bundle(tmp_path):
+    (tmp_path / "arrays").mkdir()
+    (tmp_path / "arrays" / "G1.npz").write_bytes(b"numbers")
+    (tmp_path / "log.txt").write_text("a log")
+    return tmp_path
+
+
+def test_the_same_bundle_gives_the_same_bytes_whenever_it_was_written(bundle):
+    before = ledger_data.archive(bundle)
+    (bundle / "log.txt").touch()
+    (bundle / "log.txt").chmod(0o600)
+    assert ledger_data.archive(bundle) == before
+    assert zipfile.ZipFile(io.BytesIO(before)).namelist() == ["arrays/G1.npz", "log.txt"]
+    (bundle / "log.txt").write_text("another log")
+    assert ledger_data.archive(bundle) != before
+
+
+def test_a_table_becomes_csv_with_what_needs_quoting_quoted():
+    assert ledger_data.csv_bytes([["a", "b"], ["1, 2", 'say "no"']]) == (
+        b'a,b\r\n"1, 2","say ""no"""\r\n'
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "kind"),
+    [
+        ("a.svg", b"<svg><path/></svg>", "figure"),
+        ("a.svg", b"<svg><image href='data:'/></svg>", "camera frame"),
+        ("a.png", b"", "camera frame"),
+    ],
+)
+def test_a_picture_of_pixels_is_a_camera_frame(tmp_path, name, content, kind):
+    (tmp_path / name).write_bytes(content)
+    assert ledger_data.picture_kind(tmp_path / name) == kind
+
+
+def test_without_an_accepted_bundle_nothing_is_called_measured(tmp_path):
+    run = PageRun("l04/lab", tmp_path, Status("refused", "cpu", "files: gone", None, "files"))
+    assert ledger_data.provenance("table", [run]) == "No accepted evidence: cpu-refused."
+    assert ledger_data.provenance("figure", [run, run]).endswith(": cpu-refused, cpu-refused.")
+    assert ledger_data.provenance("illustration", []) == "Illustration, not measured."
+    assert ledger_data.provenance("settings", []) == "Chosen, not measured."
+
+
+@pytest.mark.parametrize(
+    ("recorded", "key", "command"),
+    [
+        (False, "l04/lab/cpu", "$ make book"),
+        (True, "l04/lab/cpu/recorded", "$ make evidence LESSON=l04 BACKEND=cpu"),
+    ],
+)
+def test_a_recorded_run_has_its_own_key_and_command(tmp_path, recorded, key, command):
+    run = PageRun("l04/lab", tmp_path, Status("stale", "cpu", "old", None), recorded)
+    assert run.key == key
+    block = run_block("", run)
+    assert [code.astext() for code in block.findall(nodes.literal_block)] == [command]
+
+
+def test_a_row_s_anchor_is_made_of_page_and_item():
+    item = Item("table", "T", "lessons/L04/lab", "table-1-x", (), "0", "x.csv", b"")
+    assert item.row == "row-lessons-l04-lab-table-1-x"

@@ -1,0 +1,272 @@
+"""The explorer in a browser, from disk: cells with curves or postures, and pixels of a picture."""
+
+from collections.abc import Iterator
+from types import SimpleNamespace
+
+import numpy as np
+import pygltflib
+import pytest
+import trimesh
+from browsers import SOFTWARE, launched
+from closed_views import plane_depth, sphere_depth
+from docutils import nodes
+from playwright.sync_api import Browser, Page
+from watching import POSES, errors, violations
+from without_sphinx import Panel, falling, page_of
+
+from robo_genesis.core.channels import ReplayView as BodyView
+from robo_genesis.core.declaration import Compared
+from robo_genesis.core.scene import CAMERA_RES
+from robo_genesis.core.trace import Trace
+from robo_genesis.evidence.picture_file import write_picture
+from robo_genesis.sim import visual_shape
+from robo_genesis.sim.camera import record as view_record
+from robo_genesis.sim.camera.geometry import intrinsics, rays
+from robo_genesis.sim.camera.views import View
+from robo_genesis.site.figures import explorer
+from robo_genesis.site.figures.posture_model import CROSS
+
+NAME = "postures-l99-answers-cpu-reach"
+TARGETS = np.array([[0.1 * k, 0.0, 0.5] for k in range(40)])
+K = intrinsics(42.0, CAMERA_RES)
+TRANSFORM = np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 2], [0, 0, 0, 1]])
+BALL = (0.2, 0.1, 0.3, 0.1)
+"""Centre and radius of a sphere below a camera that looks straight down from z = 2 [m]."""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with launched(*SOFTWARE) as browser:
+        yield browser
+
+
+@pytest.fixture
+def open_block(browser, tmp_path):
+    """Return a function that opens a block on a phone; no script may fail."""
+    opened = []
+
+    def open_block(block: nodes.Node) -> Page:
+        page = browser.new_page(viewport={"width": 390, "height": 844}, has_touch=True)
+        problems = errors(page)
+        scripts, sheets = ("plot", "stage", "explorer"), ("course", "plot", "explorer", "replay")
+        page.goto(page_of(block, tmp_path, scripts, sheets).as_uri())
+        page.locator(".explorer .panel").wait_for()
+        opened.append((page, problems))
+        return page
+
+    yield open_block
+    for page, problems in opened:
+        assert problems == []
+        page.close()
+
+
+def block_of(tmp_path, folder, data, *name, **experiment) -> nodes.Node:
+    recorded = SimpleNamespace(
+        lesson="l99", folder=folder, experiment=SimpleNamespace(**experiment),
+        explored=lambda *_: data,
+    )  # fmt: skip
+    return explorer.explorer_block(Panel(tmp_path / "book"), "l99/answers/cpu", recorded, *name)
+
+
+def texts(page, selector: str) -> list[str]:
+    return page.locator(f".explorer {selector}").all_inner_texts()
+
+
+def cell(k: int, place: str, **more) -> dict:
+    state = "refused" if k == 1 else "accepted"
+    return {
+        "answer": k, "name": f"{place}, {state}", "state": state, "tag": "×" * (k == 1),
+        "opens": k != 1, "sentence": f"Answer {k}, {state}.", "numbers": [10.0 * k, 1 / k],
+        "values": [f"{10 * k}", f"{1 / k:.3f}"], "texts": [f"{10 * k}", f"{1 / k:.2f}"],
+    } | more  # fmt: skip
+
+
+def map_of(run: str, answers: list[list[int]], **more) -> dict:
+    rows = [
+        {"label": f"{z}", "cells": [cell(k, f"z {z}, x 0.{x + 1}") for x, k in enumerate(row)]}
+        for z, row in enumerate(answers)
+    ]
+    return {"run": run, "label": f"Plane {run}", "caption": f"Plane {run}. x to the right.",
+            "rows": rows, "columns": ["0.1", "0.2", "0.3"]} | more  # fmt: skip
+
+
+def maps() -> dict:
+    return {
+        "choices": ("Map", "Cells show"), "columns": ["left [mm]", "margin [rad]"], "dt": 0.01,
+        "maps": [map_of("upright", [[1, 2, 3], [4, 5]]), map_of("level", [[7, 8, 9]])],
+        "measures": [{"label": "left [mm]"}, {"label": "margin [rad]"}],
+        "notes": {"×": "×: refused."},
+    }  # fmt: skip
+
+
+def assigned(height: float) -> Trace:
+    """Return the places of a falling box as assigned postures of a robot with one joint."""
+    body = falling(height)
+    q, one, step = np.zeros((41, 1)), np.zeros(1), np.zeros((40, 1))
+    rest = dict.fromkeys(("qd", "target", "control_force", "internal_force"), step)
+    start = dict.fromkeys(("start_control_force", "start_qd", "effort_limit"), one)
+    return Trace(t=body.t, q=q, link_pos=body.link_pos, link_quat=body.link_quat, **rest, **start)
+
+
+@pytest.fixture
+def postures(folder, tmp_path, monkeypatch) -> nodes.Node:
+    box = trimesh.creation.box((0.2, 0.2, 0.2))
+    part = visual_shape.Part("box", (200, 80, 0), box.vertices, box.faces)
+    visual_shape.write_shape(tmp_path, [part])
+    drawn = object.__new__(Compared)
+    object.__setattr__(drawn, "view", BodyView("box", "A box."))
+    monkeypatch.setattr(explorer, "drawn_cases", lambda lesson: drawn)
+    monkeypatch.setattr(explorer, "shape_file", lambda *_: tmp_path / visual_shape.FILE)
+    rows = {run: [{"answer": f"{k}", "left [mm]": f"{10 * k}"} for k in of]
+            for run, of in (("upright", range(1, 6)), ("level", range(7, 10)))}  # fmt: skip
+    data = maps() | {"postures": {"upright": TARGETS, "level": TARGETS}, "tables": rows}
+    traces = {"upright": assigned(2.0), "level": assigned(1.0)}
+    return block_of(tmp_path, folder, data, "reach", traces=traces, links=["box"])
+
+
+def test_every_answer_is_in_a_table_and_in_the_model_with_its_target(postures, tmp_path):
+    assert postures["evidence_runs"] == ("l99/answers/cpu",)
+    rows = [[entry.astext() for entry in row] for row in postures.findall(nodes.row)]
+    assert (rows[2], len(rows)) == (["2", "20"], 2 + 5 + 3)
+    file = tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.glb"
+    model = pygltflib.GLTF2.load_binary(file)
+    assert [animation.name for animation in model.animations] == ["upright", "level"]
+    assert {"box", CROSS} <= {node.name for node in model.nodes}
+    assert np.vstack([TARGETS[:1], TARGETS]).astype(np.float32).tobytes() in model.binary_blob()
+
+
+@pytest.mark.browser
+def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(postures, open_block):
+    page = open_block(postures)
+    assert texts(page, "output") == ["Answer 2, accepted."]  # the first that is
+    page.locator("[aria-selected=true]").focus()
+    for key in ("ArrowDown", "ArrowRight", "ArrowUp", "ArrowLeft", "ArrowLeft", "ArrowDown"):
+        page.keyboard.press(key)  # right of 5 and left of 1 is no cell
+    assert (texts(page, "output"), texts(page, "dd")) == (["Answer 4, accepted."], ["40", "0.250"])
+    assert page.evaluate("document.activeElement.ariaSelected") == "true"
+    assert page.locator(".map [tabindex='0']").count() == 1
+    page.get_by_role("gridcell", name="× 10 left [mm]: z 0, x 0.1, refused").tap()
+    assert texts(page, "output") == ["Answer 1, refused."]
+    page.get_by_label("Cells show").select_option("margin [rad]")
+    assert page.get_by_role("grid").get_attribute("aria-label") is None
+    assert texts(page, "caption") == [
+        "Plane upright. x to the right. Numbers: margin [rad]. ×: refused."
+    ]
+    page.get_by_label("Map").select_option("Plane level")
+    assert texts(page, "output") == ["Answer 7, accepted."]  # the same place
+    assert page.locator("[role=gridcell]").count() == 3
+    page.get_by_label("Map").select_option("Plane upright")
+    page.get_by_role("button", name="Show in 3D").click()
+    page.get_by_text("Turn the view").wait_for(timeout=120_000)
+    page.get_by_role("gridcell", name="0.20 margin [rad]: z 1, x 0.2, accepted").tap()
+    page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.049")
+    place = page.evaluate(POSES)["box"]["position"]
+    assert place == pytest.approx(falling(2.0).link_pos[5, 0], abs=1e-5)
+    assert texts(page, ".shown") == ["Answer 5, accepted."]
+    assert violations(page, ".explorer", preload=False) == []
+
+
+@pytest.mark.browser
+def test_a_run_is_predicted_then_drawn_over_the_last_one(open_block, folder, tmp_path):
+    axis = {"low": -1, "high": 30, "ticks": [], "levels": []}
+    data = maps() | {
+        "curves": {"of": "joint4", "dt": 0.1, "until": 0.3, "drawn": [
+            {"key": "q", "name": "Position", "title": "q", "unit": 1, "zero": 0, "first": 0}]},
+        "without_script": "It needs a script.",
+    }  # fmt: skip
+    for one in data["maps"]:
+        one |= {"setting": f"height {one['run']}", "axes": {"q": axis}}
+        for row in one["rows"]:
+            row["cells"] = [c | {"q": [0, c["answer"], 2 * c["answer"]]} for c in row["cells"]]
+    data["maps"][0]["rows"][1]["cells"][0]["numbers"] = [None, 0.2]
+    words = {"lower": "earlier", "higher": "later", "margin": 0.0, "within": "5 ms"}
+    data["measures"] = [one | {"noun": one["label"], "column": k} | words
+                        for k, one in enumerate(data["measures"])]  # fmt: skip
+    page = open_block(block_of(tmp_path, folder, data))
+    assert page.get_by_text("It needs a script.").count() == 0
+    page.get_by_label("Cells show").select_option("margin [rad]")  # so the other is asked for
+    page.get_by_role("gridcell", name="z 0, x 0.3, accepted").tap()
+    (question,) = texts(page, "legend")
+    assert question.startswith("From z 0, x 0.2, accepted, height upright to z 0, x 0.3, accepted")
+    assert question.endswith(": what happens to the left [mm]?")
+    assert (texts(page, "dd"), page.locator(".ghost").count()) == (["20", "0.500"], 0)
+    page.get_by_role("button", name="earlier").click()
+    verdict = "No. The left [mm]: later, first 20, now 30. Answer 3, accepted."
+    assert texts(page, "output") == [verdict]
+    assert texts(page, "dd.last") == ["last run: 20", "last run: 0.500"]
+    label = page.locator(".ghost-label").text_content()
+    assert label == "last run: z 0, x 0.2, accepted"
+    assert page.evaluate("document.activeElement.ariaSelected") == "true"
+    page.get_by_label("Predict first").uncheck()
+    page.get_by_role("gridcell", name="z 1, x 0.1, accepted").tap()
+    assert not page.locator(".question").is_visible()
+    page.get_by_label("Predict first").check()
+    page.get_by_role("gridcell", name="z 0, x 0.1, refused").tap()
+    page.get_by_role("button", name="Skip").click()
+    assert texts(page, "output")[0].startswith("Skipped. The left [mm]: earlier, first 40, now 10.")
+    assert violations(page, ".explorer", preload=False) == []
+
+
+@pytest.fixture
+def picture(tmp_path, folder) -> nodes.Node:
+    """A picture whose floor has a hole and whose sphere is 1 mm too deep."""
+    start, directions = rays(K, TRANSFORM, CAMERA_RES)
+    ball = sphere_depth(start, directions, np.array(BALL[:3]), BALL[3])
+    hit = np.isfinite(ball)
+    depth = np.where(hit, ball + 1e-3, plane_depth(start, directions))
+    depth[:20, :20] = 20.0
+    depth[-20:, :20] += 4e-5  # a height that rounds to zero from below
+    numbers = np.where(hit, 2, 1) * (depth < 20)
+    numbers[-20:, -20:] = 3
+    rgb = np.repeat(80 * numbers[..., None], 3, axis=-1).astype(np.uint8)
+    view = View(K, TRANSFORM, CAMERA_RES, (0.1, 20.0), rgb, depth, numbers)
+    (tmp_path / "frames").mkdir()
+    for name, frame in view_record.frames("world", view).items():
+        write_picture(tmp_path / "frames" / f"{name}.png", frame, "run")
+    data = {
+        "size": CAMERA_RES, "K": K.tolist(), "unit": view_record.DEPTH_UNIT,
+        "pose": (TRANSFORM @ np.diag([1.0, -1, -1, 1]))[:3].tolist(),
+        "names": {0: "nothing", 1: "plane", 2: "ball", 3: "hand"},
+        "planes": {1: 0.0}, "spheres": {2: BALL}, "columns": ["read"] * 6,
+        "picture": {"name": "world", "alt": "A ball.", "caption": "A picture."},
+    }  # fmt: skip
+    return block_of(tmp_path, tmp_path, data, "world")
+
+
+@pytest.mark.browser
+def test_a_pixel_has_its_recorded_depth_point_and_closed_form(picture, open_block):
+    page = open_block(picture)
+    width, height = CAMERA_RES
+
+    def choose(column: int, row: int) -> list[str]:
+        for name, value in (("Column", column), ("Row", row)):
+            page.get_by_label(name).fill(str(value))
+        return texts(page, "dd")
+
+    u, v = (int(value) for value in (K @ [0.2 / 1.7, -0.1 / 1.7, 1])[:2])
+    pixel, name, depth, point, expected, apart = choose(u, v)
+    assert (pixel, name, apart) == (f"column {u}, row {v}", "ball", "1.00 mm")
+    start, directions = rays(K, TRANSFORM, CAMERA_RES)
+    closed = sphere_depth(start, directions, np.array(BALL[:3]), BALL[3])[v, u]
+    assert float(expected.split()[0]) == pytest.approx(closed, abs=6e-5)
+    assert float(depth.split()[0]) == pytest.approx(closed + 1e-3, abs=7e-5)
+    there = start + (closed + 1e-3) * directions[v, u]
+    found = [float(part) for part in point.replace("−", "-").removesuffix(" m").split(", ")]
+    assert found == pytest.approx(there, abs=6e-5)
+    for at, says in (
+        ((100, 400), ["plane", "2.0000 m", "2.0000 m", "0.00 mm"]),
+        ((5, height - 5), ["plane", "2.0000 m", "2.0000 m", "0.04 mm"]),
+        ((5, 5), ["nothing", "20.000 m: no surface", "–", "–"]),
+        ((width - 5, height - 5), ["hand", "2.0000 m", "none for this shape", "–"]),
+    ):
+        read = choose(*at)
+        assert [read[k] for k in (1, 2, 4, 5)] == says
+        assert "−0.0000" not in read[3]
+    box = page.locator(".stage").bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 4, box["y"] + box["height"] / 2)
+    column, row = (int(part.split()[-1]) for part in texts(page, "dd")[0].split(","))
+    assert (column, row) == (pytest.approx(width / 4, abs=3), pytest.approx(height / 2, abs=3))
+    page.get_by_label("Column").press("ArrowRight")
+    spoken = page.get_by_label("Column").get_attribute("aria-valuetext")
+    assert spoken == f"column {column + 1}, row {row}: plane, depth 2.0000 m"
+    assert violations(page, ".explorer", preload=False) == []

@@ -1,0 +1,128 @@
+"""One book of broken pages: each mistake stops the build and is shown with its page."""
+
+import re
+
+import pytest
+import yaml
+from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
+
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import RenderError, SphinxProcess
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.execute import execute_pages
+from robo_genesis.pipeline.pages.folder import write_page
+from robo_genesis.pipeline.pages.results import PageResult
+from robo_genesis.pipeline.pages.store import places
+from robo_genesis.site.course import course_map
+from robo_genesis.site.text import glossary
+
+TEXT = {
+    r"$\foo{x}$": r"uses \\foo, which latex2mathml does not know",
+    "{doc}`nowhere`": "nowhere",
+    "[missing](#away)": "away",
+    "{py:func}`module`": "reference target not found: module",
+    "{nosuchrole}`x`": "nosuchrole",
+    "{lesson}`Two <l02/lectur>`": "l02 has no page 'lectur'; choices: lecture",
+    "{lesson}`l02/lecture`": "'l02/lecture' is not a link; write `some words <l04/lecture>`",
+    "```{course-map}\n```": "the book has no page gone",
+    "```{cell-times}\n```": "timed has 2 code cells and 1 recorded times",
+}
+"""What stands alone on the page, and what is said of its line."""
+
+IMPORTS = """\
+from IPython.display import HTML, SVG, Markdown
+drawn = SVG("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 3 2'/>")
+table = Markdown("| read |\\n| --- |\\n| 7 |")"""
+INPUTS = ":tags: [inputs]\n"
+LAB = """
+[amdgpu-verified]{.evidence-badge .state-verified}
+
+```{figure} ../book/evidence/l04/amdgpu/frames/final.svg
+:alt: x
+
+Free words.
+```
+
+```{figure} innocent.svg
+:alt: x
+
+Free words.
+```
+"""
+CELLS = (
+    cell("display(HTML('<table><tr><td>7</td></tr></table>'))"),
+    cell("Markdown('<img src=\"x.png\">')"),
+    cell("drawn", INPUTS),
+)
+OTHERS = {
+    "lab": [
+        "a cell outputs <table> as raw HTML, which would have no line in the ledger. "
+        "Display Markdown (robo_genesis.core.tables) or a figure.",
+        "a cell outputs <img> as raw HTML",
+        "a cell tagged inputs shows a picture",
+        "a page may not set the class evidence-badge",
+        "evidence/l04/amdgpu/frames/final.svg lies below evidence/",
+        "the picture innocent.svg lies below evidence/",
+    ],
+    "glue": ["bare is glued from the page lab, and its origin would not be shown."],
+    "free": ["a cell shows a table, but the page declares no bundle"],
+    "glossary": [
+        f"glossary_forms.yml names '{name}', which is not in the glossary"
+        for name in ("gain", "force")
+    ],
+}
+"""What is said of the other pages."""
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """What the build says of the book."""
+    folder = tmp_path_factory.mktemp("broken")
+    for place in ("lessons/l02-two", "evidence/l04/amdgpu/frames"):
+        (folder / "book" / place).mkdir(parents=True)
+    imports = cell(IMPORTS)
+    pages = {
+        "text": "# Text\n\n" + "\n\n".join(TEXT) + "\n",
+        "lessons/l02-two/lecture": "# Two\n\nText.\n",
+        "lab": notebook(cell(WRITE_BUNDLE), imports, *CELLS, front=LAB_FRONT) + LAB,
+        "glue": "# Glue\n\n{glue}`lab.md::bare`\n",
+        "free": notebook(imports, cell("table", INPUTS), cell("table")),
+        "glossary": "# Glossary\n\n```{glossary}\nDOF\n  One axis of motion.\n```\n",
+        "timed": notebook(cell("1"), cell("2")),
+    }
+    book = make_book(folder, **pages)
+    (book / glossary.FORMS).write_text("forms: {gain: [gains]}\nunlinked: [force]")
+    (book / course_map.FILE).write_text(
+        yaml.safe_dump([{"id": "L01", "title": "One", "page": "gone", "outcomes": ["go"]}])
+    )
+    frame = book / "evidence/l04/amdgpu/frames/final.svg"
+    frame.write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
+    (book / "innocent.svg").symlink_to(frame)
+    *others, timed = find_pages(book)
+    results = execute_pages(others, places(others, folder / "store"))
+    assert {result.status for result in results} == {"executed"}
+    timed.notebook.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
+    run = {"run_id": "0" * 32, "command": None, "seconds": 1.0, "cell_seconds": [1.5]}
+    write_page(folder / "store/timed", timed, timed.notebook, folder, **run)
+    results.append(PageResult(timed, "reused", 0.0, "0" * 32, folder=folder / "store/timed"))
+    with pytest.raises(RenderError) as caught:
+        render(
+            SphinxProcess(book, folder / "render.log"), folder / "staging", BuiltPages.of(results)
+        )
+    assert str(folder / "render.log") in str(caught.value)
+    return str(caught.value)
+
+
+def test_each_mistake_in_a_text_is_shown_with_page_and_line(report):
+    line = 3
+    for text, said in TEXT.items():
+        assert re.search(rf"text\.md:{line}\b.*{said}", report), said
+        line += 2 + text.count("\n")
+
+
+@pytest.mark.parametrize(("page", "said"), [(p, s) for p, all_ in OTHERS.items() for s in all_])
+def test_each_mistake_is_shown_once_with_its_page(report, page, said):
+    lines = [line for line in report.splitlines() if said in line]
+    assert len(lines) == 1
+    assert page in lines[0].partition(said)[0]

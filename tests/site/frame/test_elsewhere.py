@@ -1,0 +1,94 @@
+"""A small book for another address and without solutions.
+
+The address is below a server's root: it decides links, sitemap, cards and the 404 page.
+"""
+
+import re
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+from built_site import parsed
+from PIL import Image
+from small_book import render_with
+from tiny_book import cell, make_book, notebook
+
+from robo_genesis.pipeline.html.checks import check_site
+
+ADDRESS = "https://example.org/robot/course/"
+PUBLIC, SECRET = "public_line = 1", "secret_line = 2"
+SOLVED = (
+    cell(PUBLIC),
+    cell(SECRET, ":tags: [solution]\n"),
+    f"\n:::{{dropdown}} Answer\nIt is `{SECRET}`.\n:::\n",
+    f"\n:::{{dropdown}} Why?\n:class-container: solution\nBecause `{SECRET}`.\n:::\n",
+)
+
+
+def rendered(folder: Path) -> Path:
+    """Render a book whose pages are taken as executed, pack it, and return its folder."""
+    pages = {"solved": notebook(*SOLVED), "deep/page": "# A page\n\nAbout joint4.\n"}
+    (folder / "book" / "deep").mkdir(parents=True)
+    return render_with(make_book(folder, **pages), folder, {"solved": [1.0, 1.0]})
+
+
+@pytest.fixture(scope="module")
+def html(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SITE_URL", ADDRESS.rstrip("/"))
+        patch.setenv("SOLUTIONS", "0")
+        return rendered(tmp_path_factory.mktemp("elsewhere"))
+
+
+def test_a_render_leaves_no_process(html):
+    book = f"{html.parent.parent / 'book'}\0".encode()
+    commands = []
+    for path in Path("/proc").glob("[0-9]*/cmdline"):
+        with suppress(OSError):  # it has ended
+            commands.append(path.read_bytes())
+    assert [command for command in commands if book in command] == []
+
+
+def test_each_page_names_its_own_address_and_the_sitemap_lists_pages_alone(html):
+    names = [path.relative_to(html).as_posix() for path in html.rglob("*.html")]
+    found = {
+        name: link["href"]
+        for name in names
+        for link in parsed(html, name.removesuffix(".html")).select('link[rel="canonical"]')
+    }
+    assert {"index.html", "deep/page.html"} <= {*found}
+    assert found == {name: ADDRESS + name for name in found}
+    listed = re.findall(r"<loc>(.*?)</loc>", (html / "sitemap.xml").read_text())
+    pages = ("index.html", "solved.html", "deep/page.html")
+    assert sorted(listed) == sorted(ADDRESS + name for name in pages)
+
+
+def test_a_link_to_a_page_shows_a_card(html):
+    page = parsed(html, "deep/page")
+    tags = {tag["property"]: tag["content"] for tag in page.select('meta[property^="og:"]')}
+    assert (tags["og:title"], tags["og:url"]) == ("A page", f"{ADDRESS}deep/page.html")
+    assert "joint4" in tags["og:description"]
+    card = Image.open(html / tags["og:image"].removeprefix(ADDRESS))
+    assert (card.format, card.size) == ("PNG", (1146, 600))
+
+
+def test_links_of_the_404_page_begin_at_the_root_and_the_site_passes_its_checks(html):
+    page = parsed(html, "404")
+    inside = [tag["href"] for tag in page.select("a[href], link[href]") if tag["href"][0] != "#"]
+    assert len(inside) > 5
+    assert [href for href in inside if not href.startswith(("/robot/course/", ADDRESS))] == []
+    assert [line for check in check_site(html, "/robot/course/") for line in check.problems] == []
+
+
+def leaks(html: Path, text: str) -> set[str]:
+    """Return the files that contain a text, as code or highlighted."""
+    marked = re.compile(r"(<[^>]*>|\s)*".join(map(re.escape, text.split())))
+    files = (path for path in html.rglob("*") if path.suffix in {".html", ".js", ".md", ".txt"})
+    return {path.name for path in files if marked.search(path.read_text("utf8", "ignore"))}
+
+
+def test_no_file_has_a_solution_or_an_answer(html, tmp_path):
+    assert leaks(html, PUBLIC) == {"solved.html"}  # nor is the source published
+    assert leaks(html, SECRET) == set()
+    shown = rendered(tmp_path)
+    assert {"solved.html", "solved.md"} <= leaks(shown, SECRET)

@@ -1,0 +1,139 @@
+"""The controls of a replay name what it shows, and its table has every sample."""
+
+import base64
+import gzip
+import html
+import json
+import re
+from dataclasses import replace
+
+import numpy as np
+import pygltflib as gltf
+import pytest
+from bs4 import BeautifulSoup
+
+from robo_genesis.core.channels import Runs
+from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.lessons import LESSONS
+from robo_genesis.pipeline.html.checks import SERVICES
+from robo_genesis.site.replay import controls, viewer
+from robo_genesis.site.replay import directive as sphinx_replay
+from robo_genesis.site.replay.scenery import Camera, Scenery
+
+
+@pytest.fixture(scope="module")
+def joint(pristine) -> Runs:
+    return read_runs(pristine, LESSONS["l04"].compared)
+
+
+CAMERA = Camera(np.array([0.2, 0.5, 0.0]), 1.5)
+AROUND = Scenery([], CAMERA, axis=True, target={"hand": np.eye(4)})
+FILES = {"model": "replay/a.js", "viewer": "replay/viewer.js"}
+
+
+def parsed(runs: Runs) -> BeautifulSoup:
+    words = FILES | controls.data(runs, CAMERA)
+    text = controls.opening("replay", words) + controls.panel("replay-x", runs, 560)
+    return BeautifulSoup(text, "html.parser").div
+
+
+def test_the_table_has_every_sample_of_each_channel(joint):
+    lines = [line.strip("| ").split(" | ") for line in controls.samples(joint).splitlines()]
+    heads = ["q [rad]", "q̇ [rad/s]", "force [N·m]"]
+    assert lines[0] == ["t [s]", *(f"{case} {head}" for case in joint.traces for head in heads)]
+    numbers = np.array([[float(c.replace("−", "-")) for c in row] for row in lines[2:]])
+    recorded = [channel.values[case] for case in joint.traces for channel in joint.channels]
+    assert numbers == pytest.approx(np.column_stack([joint.t, *recorded]), abs=6e-5)
+
+
+def test_the_controls_name_their_parts_and_have_the_script_s_data(joint):
+    root = parsed(joint)
+    slider = root.select_one("input[type=range]")
+    assert root.legend.get_text() == "Run of joint4"
+    assert root.select_one("[role=status]").get_text() == "Play loads the robot in 3D: 560 kB."
+    picture = "The robot at the start of G1, drawn from the recorded poses."
+    assert controls.alt(joint) == picture
+    assert controls.caption(joint, AROUND) == (
+        "Recorded poses of the robot. Yellow rod: the axis of joint4. Dark and translucent: joint4 "
+        "at its target, other joints at rest."
+    )
+    assert json.loads(root["data-channels"]) == [
+        {"name": "position", "unit": "rad", "digits": 4},
+        {"name": "velocity", "unit": "rad/s", "digits": 4},
+        {"name": "control force", "unit": "N·m", "digits": 2},
+    ]
+    assert (root["data-time-digits"], slider["max"]) == ("2", "120")
+    terms = ["time", "position", "velocity", "control force", "target", "force limit"]
+    assert [term.get_text() for term in root.select("dt")] == terms
+    runs = {one["value"]: one["data-mark"] for one in root.select("input[type=radio]")}
+    assert runs == {"G1": "case-g1", "G2": "case-g2", "G3": "case-g3"}
+    assert (root["data-orbit"], root["data-target"]) == (CAMERA.orbit, CAMERA.target)
+    assert (root["data-model"], root["data-viewer"]) == (*FILES.values(),)
+    assert root.select_one(f"label[for={slider['id']}]").get_text() == "Time"
+    assert len(root.select(".plots > .plot")) == 3
+
+
+def test_levels_are_given_to_the_script_and_explained(joint):
+    root = parsed(joint)
+    target, limit = json.loads(root.select_one("input[type=radio]")["data-levels"])
+    assert target == {
+        "channel": "position", "mark": "target", "values": [-1.75], "text": "−1.7500 rad",
+    }  # fmt: skip
+    assert (limit["channel"], limit["values"]) == ("control force", [-87, 87])
+    legend = root.select_one(".legend").get_text()
+    assert "Dotted: the target. Short dashes, at the edges of the control force" in legend
+
+
+def test_a_joint_s_motion_ends_with_its_quality(joint, traces):
+    hand = traces["G2"].link_pos[:, 2]
+    far = 100 * np.linalg.norm(hand - hand[0], axis=1).max()
+    assert re.fullmatch(
+        r"\*\*G2\*\*: `joint4` starts at −2\.0000 rad and gets the target −1\.7500 rad\. "
+        rf"The link `hand` moves farthest, by up to {far:.1f} cm\. "
+        r"Rise time [\d.]+ s, overshoot [\d.]+ rad, final error [\d.]+ rad; "
+        r"at the force limit: \d+ samples?\.",
+        joint.moves["G2"],
+    )
+
+
+def test_words_are_escaped(joint):
+    runs = replace(joint, subject='a"<b')
+    text = controls.opening("replay", controls.data(runs, CAMERA)) + controls.panel("x", runs, 560)
+    assert 'a"<b' not in text
+    assert html.unescape(re.search('data-subject="([^"]*)"', text)[1]) == 'a"<b'
+
+
+def test_the_viewer_is_the_package_s_without_other_hosts():
+    script = viewer.viewer().decode()
+    assert SERVICES.search(script) is None
+    assert "sourceMappingURL" not in script
+    assert "Licensed under the Apache License" in script  # the notices are all there
+    assert script.startswith("/* See NOTICE.txt. */")
+
+
+def test_a_model_is_written_twice_and_weighed(tmp_path):
+    weight = sphinx_replay.write_model(tmp_path / "replay", "replay-x", b"glTF\0model")
+    script = (tmp_path / "replay" / "replay-x.js").read_bytes()
+    assert weight == len(gzip.compress(script))
+    assert (tmp_path / "replay" / "replay-x.glb").read_bytes() == b"glTF\0model"
+    packed = re.search(rb'\["replay-x"\] = "(.*)";', script)
+    assert packed is not None
+    assert base64.b64decode(packed[1]) == b"glTF\0model"
+
+
+def test_each_package_in_the_viewer_is_named_with_its_licence_beside_it(tmp_path):
+    lines = list(viewer.copy_licences(tmp_path))
+    assert len(lines) == len(viewer.PARTS) == len(list(tmp_path.iterdir()))
+    said = {line.split()[1]: line for line in lines}
+    assert " MIT, LICENSE-three.txt" in said["three"]
+    assert " BSD-3-Clause, LICENSE-lit.txt" in said["lit"]
+    assert "three.js authors" in (tmp_path / "LICENSE-three.txt").read_text()
+
+
+def test_the_notice_says_whose_each_model_is(tmp_path):
+    for name, credit in (("replay-arm", "© Somebody, Apache-2.0"), ("replay-box", None)):
+        asset = gltf.Asset(version="2.0", copyright=credit)
+        (tmp_path / f"{name}.glb").write_bytes(b"".join(gltf.GLTF2(asset=asset).save_to_bytes()))
+    assert list(viewer.model_credits(tmp_path)) == [
+        "The model replay-arm.glb, and the same in replay-arm.js: © Somebody, Apache-2.0.\n"
+    ]

@@ -1,0 +1,222 @@
+"""The GLB of a run is valid, with the keys of the record and the shape of the model."""
+
+from dataclasses import replace
+from itertools import product
+from types import SimpleNamespace
+
+import numpy as np
+import pygltflib
+import pytest
+import trimesh
+from gltf import report
+from trimesh.transformations import rotation_matrix, translation_matrix
+
+from robo_genesis.lessons import LESSONS
+from robo_genesis.sim import visual_shape
+from robo_genesis.sim.visual_shape import Part
+from robo_genesis.site.replay import model as replay_model
+from robo_genesis.site.replay.scenery import Camera, Scenery
+
+LINKS = ("link0", "link4", "hand")  # of the synthetic traces
+
+BOX = trimesh.creation.box((0.1, 0.2, 0.3))
+
+
+def part(link, rgb, mesh):
+    return Part(link, rgb, mesh.vertices.astype(np.float32), mesh.faces)
+
+
+@pytest.fixture(scope="module")
+def shape() -> list[Part]:
+    """A ball of many triangles and a box of few on the first link, a box on each other."""
+    ball = part("link0", (255, 255, 255), trimesh.creation.icosphere(subdivisions=4))
+    return [ball, *(part(link, (64, 0, 0), BOX) for link in LINKS)]
+
+
+@pytest.fixture(scope="module")
+def turning(traces):
+    """The synthetic cases with links that turn, one through a sign flip of its quaternion."""
+    angle = np.linspace(0, 2, 121)
+    quat = np.zeros((121, len(LINKS), 4), np.float32)
+    quat[..., 0], quat[..., 3] = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    quat[60:, 1] *= -1
+    return {
+        "G1": replace(traces["G1"], link_quat=quat), "G2": traces["G2"], "G3": traces["G3"]
+    }  # fmt: skip
+
+
+def drawn(parts, traces, credit=None, **around) -> bytes:
+    scenery = Scenery(parts, Camera(np.zeros(3), 1.0), **around)
+    return replay_model.glb(scenery, LINKS, traces, credit)
+
+
+@pytest.fixture(scope="module")
+def glb(shape, turning) -> bytes:
+    return drawn(shape, turning, LESSONS["l04"].compared.view.credit)
+
+
+@pytest.fixture(scope="module")
+def model(glb) -> pygltflib.GLTF2:
+    return pygltflib.GLTF2.load_from_bytes(glb)
+
+
+def values(model, accessor):
+    """Read an accessor of floats as (n, k)."""
+    found = model.accessors[accessor]
+    view = model.bufferViews[found.bufferView]
+    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[found.type]
+    data = model.binary_blob()[view.byteOffset : view.byteOffset + view.byteLength]
+    return np.frombuffer(data, np.float32).reshape(-1, width)
+
+
+def keys(model, case, link, path):
+    """Return (times, values) of one channel of the animation of a case."""
+    animation = next(a for a in model.animations if a.name == case)
+    channel = next(
+        c for c in animation.channels
+        if model.nodes[c.target.node].name == link and c.target.path == path
+    )  # fmt: skip
+    sampler = animation.samplers[channel.sampler]
+    assert sampler.interpolation == "LINEAR"
+    return values(model, sampler.input)[:, 0], values(model, sampler.output)
+
+
+def test_the_validator_finds_nothing(glb, tmp_path):
+    found = report(glb, tmp_path)
+    assert found["issues"]["messages"] == []
+    assert found["info"]["animationCount"] == 3
+    assert found["info"]["totalTriangleCount"] > 0
+    assert report(glb.replace(b'"VEC3"', b'"VEC2"'), tmp_path)["issues"]["numErrors"] > 0
+
+
+def test_every_key_is_a_sample_of_the_record(model, turning):
+    for (case, trace), (k, link) in product(turning.items(), enumerate(LINKS)):
+        times, places = keys(model, case, link, "translation")
+        assert np.array_equal(times, trace.t.astype(np.float32))
+        assert np.array_equal(places, trace.link_pos[:, k])
+        _, turns = keys(model, case, link, "rotation")
+        xyzw = trace.link_quat[:, k][:, [1, 2, 3, 0]]
+        assert np.abs((turns * xyzw).sum(axis=1)) == pytest.approx(1, abs=1e-6)
+
+
+def test_a_sign_flip_of_the_record_turns_nothing_the_long_way(model, turning):
+    recorded = turning["G1"].link_quat[:, 1]
+    assert (recorded[1:] * recorded[:-1]).sum(axis=1).min() < 0
+    _, turns = keys(model, "G1", "link4", "rotation")
+    assert (turns[1:] * turns[:-1]).sum(axis=1).min() > 0.99
+
+
+def test_many_triangles_become_few_near_the_surface_and_few_stay(shape):
+    ball = replay_model.simplified(shape[0])
+    assert len(ball.faces) < 0.1 * len(shape[0].faces)
+    assert np.linalg.norm(ball.vertices, axis=1) == pytest.approx(1, abs=0.02)
+    assert len(replay_model.simplified(shape[1]).faces) == len(shape[1].faces)
+
+
+def test_colours_are_those_of_the_model_in_linear_light(model):
+    factors = {m.name: m.pbrMetallicRoughness.baseColorFactor for m in model.materials}
+    assert list(factors) == ["[255, 255, 255]", "[64, 0, 0]"]
+    assert factors["[255, 255, 255]"] == [1, 1, 1, 1]
+    assert factors["[64, 0, 0]"] == pytest.approx([0.0513, 0, 0, 1], abs=1e-4)
+
+
+def test_a_shape_of_another_robot_is_refused(shape):
+    with pytest.raises(ValueError, match="parts of hand; the record knows link0, link4"):
+        visual_shape.check_links(shape, LINKS[:2])
+
+
+def test_a_shape_comes_back_from_its_file(shape, tmp_path):
+    file = visual_shape.write_shape(tmp_path / "new", shape)
+    for part, back in zip(shape, visual_shape.load_shape(file), strict=True):
+        assert (back.link, back.rgb) == (part.link, part.rgb)
+        assert np.array_equal(back.vertices, part.vertices)
+        assert np.array_equal(back.faces, part.faces)
+
+
+def body(name, *geoms):
+    """One link of an entity of the engine; a geometry is (mesh, position, quaternion)."""
+    vgeoms = [
+        SimpleNamespace(
+            get_trimesh=lambda mesh=mesh: mesh, init_pos=np.array(pos), init_quat=np.array(quat)
+        )
+        for mesh, pos, quat in geoms
+    ]
+    return SimpleNamespace(links=[SimpleNamespace(name=name, vgeoms=vgeoms)])
+
+
+def test_meshes_are_placed_in_their_link_and_joined_by_colour():
+    red, blue = (
+        trimesh.Trimesh([[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2]], vertex_colors=rgb)
+        for rgb in ([255, 0, 0, 255], [0, 0, 255, 255])
+    )
+    upright, half = [1.0, 0, 0, 0], 0.5**0.5
+    turned = (red, [0, 0, 5], [half, 0, 0, half])  # a quarter turn about z
+    arm = body("arm", (red, [0, 0, 0], upright), (blue, [0, 0, 0], upright), turned)
+    first, second = visual_shape.read_shape(arm)
+    assert (first.rgb, second.rgb) == ((255, 0, 0), (0, 0, 255))
+    assert first.faces.tolist() == [[0, 1, 2], [3, 4, 5]]
+    assert first.vertices[3:] == pytest.approx(np.array([[0, 1, 5], [-1, 0, 5], [0, 0, 6]]))
+
+
+def test_links_of_a_body_can_have_other_names():
+    box = body("box_baselink", (BOX, [0, 0, 0], [1.0, 0, 0, 0]))
+    (read,) = visual_shape.read_shape(box)
+    assert (read.link, len(read.faces)) == ("box_baselink", 12)
+    assert visual_shape.read_shape(box, ["left"])[0].link == "left"
+    with pytest.raises(ValueError, match="2 names given for 1 links: box_baselink"):
+        visual_shape.read_shape(box, ["left", "right"])
+
+
+def test_what_belongs_to_no_link_stands_still(shape, turning, tmp_path):
+    content = drawn([*shape, visual_shape.floor(2.0)], turning)
+    assert report(content, tmp_path)["issues"]["messages"] == []
+    still = pygltflib.GLTF2.load_from_bytes(content)
+    number = next(k for k, node in enumerate(still.nodes) if node.name == replay_model.STILL)
+    assert number in still.nodes[0].children
+    moved = {c.target.node for a in still.animations for c in a.channels}
+    assert moved == {1, 2, 3} - {number}
+    primitive = still.meshes[still.nodes[number].mesh].primitives[0]
+    corners = values(still, primitive.attributes.POSITION)
+    assert np.ptp(corners, axis=0).tolist() == [2, 2, 0]
+    up = values(still, primitive.attributes.NORMAL)
+    assert up == pytest.approx(np.tile([0, 0, 1], (len(corners), 1)))
+
+
+def test_copies_of_links_stand_translucent_at_their_target(shape, turning, tmp_path):
+    target = translation_matrix([1, 2, 3]) @ rotation_matrix(0.5, [1, 0, 0])
+    content = drawn(shape, turning, target={"hand": target})
+    assert report(content, tmp_path)["issues"]["messages"] == []
+    model = pygltflib.GLTF2.load_from_bytes(content)
+    node = {node.name: node for node in model.nodes}
+    matrix = np.reshape(node["target_hand"].matrix, (4, 4)).T
+    assert matrix == pytest.approx(target)
+    assert [model.nodes[k].name for k in node["target"].children] == ["target_hand"]
+    assert model.nodes.index(node["target"]) in model.nodes[0].children
+    own, copy = (model.meshes[node[name].mesh].primitives[0] for name in ("hand", "target_hand"))
+    assert vars(copy.attributes) == vars(own.attributes)  # the same vertices, stored once
+    opaque, clear = (model.materials[one.material] for one in (own, copy))
+    assert (opaque.alphaMode, clear.alphaMode) == ("OPAQUE", "BLEND")
+    assert clear.pbrMetallicRoughness.baseColorFactor[3] == replay_model.GHOST[3] < 1
+    moved = {channel.target.node for one in model.animations for channel in one.channels}
+    assert moved == {1, 2, 3}
+
+
+def test_the_world_moves_against_a_followed_link(shape, turning, tmp_path):
+    content = drawn(shape, turning, followed=2)
+    assert report(content, tmp_path)["issues"]["messages"] == []
+    model = pygltflib.GLTF2.load_from_bytes(content)
+    for case, trace in turning.items():
+        times, places = keys(model, case, visual_shape.WORLD, "translation")
+        assert np.array_equal(times, trace.t.astype(np.float32))
+        x, y, _ = trace.link_pos[:, 2].T
+        assert np.array_equal(places, np.column_stack([-x, 0 * x, y]))
+    assert (
+        np.float32(model.nodes[0].translation).tolist()
+        == keys(model, "G1", visual_shape.WORLD, "translation")[1][0].tolist()
+    )
+
+
+@pytest.mark.parametrize("links", [("box", "box"), ("box", "world")])
+def test_two_links_of_one_name_are_refused(links):
+    with pytest.raises(ValueError, match=rf"of the world: {links[1]}\. Give each a name"):
+        visual_shape.check_links([], links)

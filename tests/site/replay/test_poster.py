@@ -1,0 +1,68 @@
+"""The picture of a replay shows its model from the camera of the replay."""
+
+from io import BytesIO
+
+import numpy as np
+import pytest
+import trimesh
+from falling import falling
+from PIL import Image
+from trimesh.transformations import translation_matrix
+
+from robo_genesis.sim.visual_shape import Part
+from robo_genesis.site.replay import model, poster
+from robo_genesis.site.replay.scenery import Camera, Scenery
+
+RED, BLUE, GREY = (255, 0, 0), (0, 0, 255), (200, 200, 200)
+GROUND = np.array([*bytes.fromhex(poster.GROUND[1:])])
+CAMERA = Camera(np.array([0.0, 0.5, 0.0]), 3.0)
+
+
+def box(link, rgb, size, at=(0, 0, 0)):
+    mesh = trimesh.creation.box((size, size, size), translation_matrix(at))
+    return Part(link, rgb, mesh.vertices, mesh.faces)
+
+
+def drawn(*parts, target=None, camera=CAMERA):
+    """Return the picture of two links, at the origin and half a metre above, as (h, w, 3)."""
+    scenery = Scenery(parts, camera, target=target or {})
+    glb = model.glb(scenery, ("stand", "box"), {"run": falling(0.5)})
+    with Image.open(BytesIO(poster.picture(glb, camera))) as image:
+        assert (image.format, image.mode) == ("JPEG", "RGB")
+        return np.asarray(image).astype(int)
+
+
+def middle(image):
+    return image[image.shape[0] // 2, image.shape[1] // 2]
+
+
+def test_a_link_is_drawn_where_the_camera_sees_it():
+    image = drawn(box("box", RED, 0.2))
+    assert image.shape == (poster.HEIGHT, poster.WIDTH, 3)
+    red, green, blue = middle(image)
+    assert red > 100 > max(green, blue)
+    assert image[0, 0].tolist() == pytest.approx(GROUND, abs=2)
+    rows, columns = np.nonzero(np.abs(image - GROUND).max(axis=2) > 40)
+    centre = rows.min() + rows.max(), columns.min() + columns.max()
+    assert centre == pytest.approx((poster.HEIGHT, poster.WIDTH), abs=12)
+    height = poster.HEIGHT / (2 * 3.0 * np.tan(np.radians(15)))  # pixels of a metre
+    assert np.ptp(rows) == pytest.approx(0.25 * height, rel=0.1)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_nearer_part_hides_the_other_one(order):
+    nearer = box("box", BLUE, 0.2, 0.5 * CAMERA.axes[2][[0, 2, 1]] * [1, -1, 1])
+    red, _, blue = middle(drawn(*[box("box", RED, 0.2), nearer][::order]))
+    assert blue > red
+
+
+def test_the_copy_at_the_target_is_translucent():
+    alone = drawn(box("box", GREY, 0.2))
+    beside = np.eye(4)
+    beside[:3, 3] = [0, 0, 0.9]
+    above = drawn(box("box", GREY, 0.2), target={"box": beside})
+    assert middle(above).tolist() == pytest.approx(middle(alone).tolist(), abs=6)
+    rows = np.nonzero(np.abs(above - alone).max(axis=2) > 40)[0]
+    shade = above[(rows.min() + rows.max()) // 2, poster.WIDTH // 2]
+    opacity, dark = model.GHOST[3], 30
+    assert shade.tolist() == pytest.approx(opacity * dark + (1 - opacity) * GROUND, abs=10)

@@ -1,0 +1,285 @@
+"""The replay in a real browser: it shows the record, by keyboard and from disk.
+
+A page with two falling boxes shows what every replay does; the built lecture has a robot.
+"""
+
+import shutil
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pygltflib
+import pytest
+import trimesh
+from browsers import SOFTWARE, chromium, launched
+from docutils import nodes
+from docutils.parsers.rst import DirectiveError
+from playwright.sync_api import Browser, Page
+from watching import POSES, choose, errors, show_model, violations
+from without_sphinx import STEPS, Panel, falling, page_of
+
+from robo_genesis import lessons as registry
+from robo_genesis.core.declaration import Filmed, Lesson, Moving
+from robo_genesis.evidence import bundle
+from robo_genesis.evidence.replay_data import read_runs
+from robo_genesis.evidence.strict_json import write_json
+from robo_genesis.evidence.trace_files import read_any_trace, write_traces
+from robo_genesis.sim import visual_shape
+from robo_genesis.site.evidence import course_runs as sphinx_glance
+from robo_genesis.site.evidence.panel import response
+from robo_genesis.site.replay import directive as sphinx_replay
+from robo_genesis.site.replay.directive import replay_block
+
+LESSON, KEY = "l99", "l99/lecture/cpu"
+NAME = "replay-l99-lecture-cpu"
+DROPPED = Moving(("high", "low"), link="box", thing="box")
+G = 10.0
+
+
+FRAMES_ASKED = """async () => {
+  const request = requestAnimationFrame.bind(window);
+  let asked = 0;
+  window.requestAnimationFrame = (todo) => {
+    asked += todo.name === "advance"; // the viewer also draws
+    return request(todo);
+  };
+  for (let frame = 0; frame < 10; frame += 1) await new Promise(request);
+  window.requestAnimationFrame = request;
+  return asked;
+}"""
+"""How often the replay asks to draw while ten frames pass."""
+
+
+@pytest.fixture
+def dropped(folder, monkeypatch, tmp_path, built):
+    """A bundle of two falls, of a lesson that declares them and wrote its shape."""
+    shutil.rmtree(folder / "arrays")
+    traces = {"high": falling(2.0), "low": falling(1.0)}
+    arrays = write_traces(folder, traces, None, ["box"])
+    write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
+    spec = registry.LESSONS["l04"].spec
+    lesson = Lesson(spec, {}, {}, Filmed("the box"), DROPPED)
+    monkeypatch.setitem(registry.LESSONS.found, LESSON, lesson)
+    built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
+    box = trimesh.creation.box((0.2, 0.2, 0.2))
+    part = visual_shape.Part("box", (200, 80, 0), box.vertices.astype(np.float32), box.faces)
+    visual_shape.write_shape(tmp_path / LESSON / "lecture", [part, visual_shape.floor(1.0)])
+    return folder
+
+
+@pytest.fixture
+def block(dropped, tmp_path) -> nodes.Node:
+    return replay_block(Panel(tmp_path / "book"), KEY, dropped)
+
+
+def test_runs_of_joints_are_not_read_as_bodies_nor_the_other_way(dropped, pristine):
+    with pytest.raises(bundle.BundleRefused, match="joints of free bodies"):
+        read_runs(pristine, Moving(("G1",), link="hand", thing="hand"))
+    with pytest.raises(bundle.BundleRefused):
+        read_runs(dropped, replace(registry.LESSONS["l04"].compared, cases=("high", "low")))
+
+
+def test_pictures_draw_what_the_bundle_holds(dropped):
+    glance, panel = sphinx_glance.response(dropped, DROPPED), response(dropped, DROPPED, "cpu")
+    assert glance.alt == "Height of the box over time: high and low."
+    assert glance.caption == "Height of the box, from get_links_pos."
+    both = "Height and vertical velocity of the box over time on cpu"
+    assert panel.alt == f"{both}, with the cases high and low drawn over each other."
+    other = Moving(("low", "high"), link="box", thing="box")
+    assert sphinx_glance.response(dropped, other).content != glance.content
+
+
+def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, tmp_path):
+    assert block["evidence_runs"] == (KEY,)
+    rows = [[cell.astext() for cell in row] for row in block.findall(nodes.row)]
+    assert len(rows) == 1 + STEPS + 1
+    assert rows[21] == ["0.2", "1.8", "−2", "0.8", "−2"]  # height and velocity: high, low
+    text = block.astext()
+    assert "the box starts at a height of 2.0000 m" in text
+    written = tmp_path / "book" / "_build" / "html" / "replay"
+    model = pygltflib.GLTF2.load_binary(written / f"{NAME}.glb")
+    assert [animation.name for animation in model.animations] == ["high", "low"]
+    recorded = read_any_trace(dropped, bundle.read_arrays(dropped), "low")
+    assert recorded.link_pos[:, 0].tobytes() in model.binary_blob()
+    assert model.asset.copyright is None
+    assert "Franka" not in text
+    assert ">licence</a>" in text  # the viewer's
+
+
+def test_a_brief_replay_has_the_same_model_one_channel_and_no_sentences(dropped, tmp_path):
+    written = tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.glb"
+    replay_block(Panel(tmp_path / "book"), KEY, dropped)
+    model = written.read_bytes()
+    block = replay_block(Panel(tmp_path / "book"), KEY, dropped, brief=True)
+    assert written.read_bytes() == model
+    rows = [[cell.astext() for cell in row] for row in block.findall(nodes.row)]
+    assert rows[21] == ["0.2", "1.8", "0.8"]  # heights: high, low
+    assert not list(block.findall(nodes.list_item))
+    opening = next(iter(block.findall(nodes.raw))).astext()
+    assert "height" in opening
+    assert "velocity" not in opening
+
+
+def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_path):
+    (tmp_path / LESSON / "lecture" / visual_shape.FILE).unlink()
+    with pytest.raises(DirectiveError) as caught:
+        replay_block(Panel(tmp_path / "book"), KEY, dropped)
+    assert "l99 wrote no shape of its box" in caught.value.msg
+    assert "page.write_shape(l99.read_shape(entity)) after scene.build()" in caught.value.msg
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with launched(*SOFTWARE) as browser:
+        yield browser
+
+
+@pytest.fixture
+def opened(block, tmp_path, browser):
+    """Return a function that opens the replay alone from disk, in some kind of window.
+
+    What the page asks for is its `asked`, errors of its scripts are its `problems`.
+    """
+    file = page_of(block, tmp_path, ("plot", "stage", "replay"), ("plot", "replay"))
+
+    def open_it(of: Browser = browser, address: str = file.as_uri(), **context) -> Page:
+        page = of.new_page(**{"viewport": {"width": 480, "height": 700}, **context})
+        page.problems, page.asked = errors(page), []
+        page.on("request", lambda request: page.asked.append(request.url.rpartition("/replay/")[2]))
+        page.goto(address)
+        return page
+
+    return open_it
+
+
+@pytest.fixture
+def page(opened) -> Iterator[Page]:
+    page = opened()
+    yield page
+    assert page.problems == []
+    page.close()
+
+
+def readout(page: Page) -> dict[str, str]:
+    terms, values = (page.locator(f".replay {tag}").all_inner_texts() for tag in ("dt", "dd"))
+    return dict(zip(terms, values, strict=True))
+
+
+@pytest.mark.browser
+def test_keys_read_the_record_out_and_the_plots_draw_it(page):
+    assert readout(page)["time"] == "0.00 s, before the first step"  # nothing plays by itself
+    slider = choose(page, "low", 19)
+    slider.press("ArrowRight")
+    fallen = {"time": "0.20 s", "height": "0.8000 m", "vertical velocity": "−2.0000 m/s"}
+    assert readout(page) == fallen
+    spoken = "low: time 0.20 s; height 0.8000 m; vertical velocity −2.0000 m/s"
+    assert slider.get_attribute("aria-valuetext") == spoken
+    labels = page.locator(".replay svg").evaluate_all("all => all.map(e => e.ariaLabel)")
+    assert labels == [
+        "Height [m] of the box over time; low is drawn bold.",
+        "Vertical velocity [m/s] of the box over time; low is drawn bold.",
+    ]
+    chosen = page.locator(".replay svg").first.locator(".chosen").get_attribute("points")
+    heights = [float(pair.split(",")[1]) for pair in chosen.split()]
+    fallen = (np.array(heights) - heights[0]) / (heights[-1] - heights[0])
+    assert fallen == pytest.approx(np.linspace(0, 1, STEPS + 1) ** 2, abs=0.01)
+    assert page.locator(".replay .dot.case-g2").count() == 2
+    cursor = page.locator(".replay .cursor").first
+    places = [slider.press(key) or cursor.get_attribute("x1") for key in ("End", "Home")]
+    assert float(places[0]) > float(places[1])
+    page.locator("input[value=low]").press("ArrowUp")
+    assert page.locator(".chosen").first.get_attribute("class").split()[1] == "case-g1"
+
+
+@pytest.mark.browser
+def test_the_box_falls_in_3d_in_the_place_of_its_picture(page):
+    stage, picture = page.locator(".stage"), page.locator(".still")
+    page.wait_for_function("document.querySelector('.still').naturalWidth > 0")
+    place = stage.bounding_box()
+    assert page.asked.count(f"{NAME}.js") == 0
+    assert page.locator(".shown").inner_text() == "at the start"
+    show_model(page)
+    assert {sphinx_replay.VIEWER, f"{NAME}.js"} <= {*page.asked}
+    assert not picture.is_visible()
+    assert stage.bounding_box() == place
+    model = page.locator("model-viewer")
+    assert model.get_attribute("alt").startswith("The box in 3D, where it is")
+    choose(page, "high", 30)
+    assert page.locator(".shown").inner_text() == "high"
+    page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.29")
+    _, _, height = page.evaluate(POSES)["box"]["position"]
+    assert height == pytest.approx(2.0 - G * 0.3**2 / 2, abs=1e-5)
+    assert violations(page, ".replay", preload=False) == []
+
+
+@pytest.mark.browser
+def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
+    show_model(page)
+    slider = choose(page, "low", 0)
+    speed, play = page.locator("select"), page.locator(".play")
+    speed.select_option("0.1")  # slow enough to be paused before the end
+    play.press("Space")
+    page.wait_for_function("document.querySelector('input[type=range]').value > 2")
+    play.press("Space")
+    paused = slider.input_value()
+    assert play.inner_text() == "Play"
+    assert page.evaluate(FRAMES_ASKED) == 0  # it does not play on
+    assert slider.input_value() == paused
+    press_often = "for (const press of ['play', 'pause', 'play']) play.click();"
+    play.evaluate(f"play => {{ {press_often} }}")
+    assert 0 < page.evaluate(FRAMES_ASKED) <= 11  # two loops would ask twice in each of ten frames
+    speed.select_option("1")
+    page.wait_for_function("document.querySelector('input[type=range]').value === '40'")
+    assert play.inner_text() == "Play"
+
+
+@pytest.mark.browser
+def test_reduced_motion_goes_by_steps(opened):
+    page = opened(reduced_motion="reduce")
+    play = page.locator(".play")
+    assert play.inner_text() == "Next 0.05 s"
+    play.click()
+    page.get_by_text("Turn the view").wait_for(timeout=120_000)
+    assert page.evaluate(FRAMES_ASKED) == 0  # it stands still
+    assert readout(page)["time"] == "0.05 s"
+    assert page.problems == []
+    page.close()
+
+
+@pytest.mark.browser
+def test_without_3d_or_with_a_missing_file_the_plots_play_and_it_is_said(opened, browser, tmp_path):
+    arguments = ["--no-sandbox", "--disable-3d-apis"]
+    blind = browser.browser_type.launch(executable_path=chromium(), args=arguments)
+    page = opened(blind)
+    page.locator(".play").click()
+    page.get_by_text("This browser draws no 3D").wait_for()
+    page.wait_for_function("document.querySelector('input[type=range]').value > 0")
+    assert f"{NAME}.js" not in page.asked
+    assert page.locator(".still").is_visible()
+    assert page.problems == []
+    blind.close()
+    (tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.js").unlink()
+    page = opened()
+    page.locator(".play").click()
+    page.get_by_text("cannot be shown").wait_for()
+    assert page.locator("model-viewer").count() == 0
+    assert page.locator(".play").inner_text() == "Pause"
+    page.close()
+
+
+@pytest.mark.browser
+def test_two_replays_of_a_page_are_two(block, dropped, tmp_path, opened):
+    other = replay_block(Panel(tmp_path / "book"), "l99/lab/cpu", dropped)
+    both = nodes.container("", block, other)
+    page = opened(
+        address=page_of(both, tmp_path, ("plot", "stage", "replay"), ("plot", "replay")).as_uri()
+    )
+    first, second = (f".replay[data-name=replay-l99-{name}-cpu]" for name in ("lecture", "lab"))
+    choose(page, "low", 7, second)
+    assert page.locator(f"{first} input:checked").input_value() == "high"
+    assert page.locator(f"{first} input[type=range]").input_value() == "0"
+    for replay in (first, second):
+        show_model(page, replay)
+    assert page.locator("model-viewer").count() == 2
+    assert page.problems == []
+    page.close()

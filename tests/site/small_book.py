@@ -1,0 +1,130 @@
+"""A small book that the tests of the site share: a course map, a glossary, and executed pages."""
+
+from copy import deepcopy
+from pathlib import Path
+
+import yaml
+from tiny_book import cell, make_book, notebook
+
+from robo_genesis.pipeline.html.render import render
+from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.folder import write_page
+from robo_genesis.pipeline.pages.results import PageResult
+from robo_genesis.site.course.course_map import FILE
+from robo_genesis.site.text import glossary
+
+MAP = [
+    {"id": "L01", "title": "One"},
+    {"id": "L02", "title": "Two", "needs": []},
+    {
+        "id": "L04",
+        "title": "Four",
+        "needs": ["L01", "L02"],
+        "page": "page",
+        "outcomes": ["read a `qpos`", "stop"],
+        "featured": True,
+    },
+    {
+        "id": "L06",
+        "title": "Six",
+        "page": "lessons/l06-six/lecture",
+        "outcomes": ["walk"],
+    },
+]
+CARDS = "```{course-map}\n```\n"
+FEATURED = """
+{lesson}`The second <l02/lecture>` and {lesson}`the
+third <l03/lab>`.
+
+:::{featured} L04
+Four was measured.
+:::
+
+:::{featured} L05
+```{glance} l05
+```
+:::
+
+```{course-status}
+```
+
+```{course-measured}
+```
+"""
+WORDS = "word " * 600
+"""Three minutes to read."""
+GLOSSARY = """\
+# Glossary
+
+```{glossary}
+DOF
+degree of freedom
+  One axis of motion. It may turn or slide.
+
+overshoot
+  How far it passes, counted along its DOF.
+
+PD control
+  A law with two gains.
+
+step
+time step
+  What one call of the solver covers.
+```
+"""
+TERMS = """\
+# Overshoot and DOF
+
+The `DOF` of [an overshoot](glossary.md) is $DOF$.
+
+| DOF |
+| :--- |
+| overshoot |
+
+Overshoots count as overshoot; a
+degree
+of freedom is a DOF, two are DOFs. A non-DOF, an *overshoot* more.
+
+A step is a time step.
+"""
+FORMS = "forms: {DOF: [DOFs], overshoot: [overshoots]}\nunlinked: [step, time step]\n"
+
+DESCRIBED = "# Described\n\n- no paragraph\n\nA joint's *step* & more. " + "word " * 100
+SECONDS = {"timed": [0.26, 12.345, 3.0], "other": [2.0]}
+"""Seconds of the cells of the executed pages."""
+
+
+def render_with(book: Path, folder: Path, seconds: dict[str, list[float]]) -> Path:
+    """Render a book whose executed pages took these times, pack the site and return its folder."""
+    results = []
+    for found in find_pages(book):
+        ran, place = deepcopy(found.notebook), folder / "store" / found.docname
+        ran.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
+        run = {"run_id": "0" * 32, "command": None, "seconds": 1.0}
+        write_page(place, found, ran, folder, cell_seconds=seconds[found.docname], **run)
+        results.append(PageResult(found, "reused", 0.0, "0" * 32, folder=place))
+    sphinx = SphinxProcess(book, folder / "render.log")
+    draft = render(sphinx, folder / "staging", BuiltPages.of(results))
+    draft.pack()
+    return draft.html
+
+
+def render_small_book(folder: Path) -> Path:
+    """Render the book and return the folder of its site."""
+    for name in ("l02-two", "l06-six"):
+        (folder / "book" / "lessons" / name).mkdir(parents=True)
+    (folder / "book" / "lessons" / "l06-six" / "worksheet.md").touch()
+    pages = {"page": "Page", "lessons/l02-two/lecture": "Two", "cards": f"Map\n\n{CARDS}"}
+    pages |= {"featured": f"Map\n\n{FEATURED}", "lessons/l06-six/lecture": f"Six\n\n{WORDS}"}
+    pages |= {f"lessons/l06-six/{name}": f"Six\n\n{WORDS}" for name in ("lab", "deeper", "more")}
+    pages |= {"times": "Times\n\n```{cell-times}\n```\n"}
+    texts = {name: f"# {text}\n\nText.\n" for name, text in pages.items()}
+    texts |= {"glossary": GLOSSARY, "terms": TERMS, "described": DESCRIBED}
+    texts["timed"] = notebook(cell("1"), cell("2"), cell(""), cell("3"))
+    texts["other"] = notebook(cell("4"), title="Other")
+    book = make_book(folder, **texts)
+    (book / FILE).write_text(yaml.safe_dump(MAP))
+    (book / glossary.FORMS).write_text(FORMS)
+    return render_with(book, folder, SECONDS)

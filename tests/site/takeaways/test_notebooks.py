@@ -1,0 +1,208 @@
+"""A made-up lab as notebooks: what travels to a student, and what never does."""
+
+from importlib.metadata import PackageNotFoundError
+
+import nbformat
+import pytest
+from nbformat.v4 import new_code_cell, new_notebook, new_output
+from tiny_book import LAB_FRONT, cell, make_book, notebook
+
+from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.site.takeaways.notebooks import (
+    Course,
+    Origin,
+    executed_notebook,
+    student_notebook,
+)
+from robo_genesis.site.takeaways.plain_markdown import ProseError, Writer
+
+FOLD = "\n:::{dropdown} Answer\n:class-container: solution\nSECRET prose\n:::\n"
+PROSE = "\nIt was {measured}`l04/lab G1.rise_time`.\n" + FOLD
+CELLS = (
+    cell("x = 1"),
+    PROSE,
+    cell("print('SECRET code')", ":tags: [hide-cell, solution]\n"),
+    cell("plot()", ":tags: [figure]\n:mystnb: {figure: {caption: 'Drawn by {term}`plot`.'}}\n"),
+    '\n+++ {"tags": ["site-only"]}\n\nOnly on the site.\n',
+)
+COMMANDS = ("python3 -m venv course", "course/bin/pip install ./robo.whl jupyterlab")
+ORIGIN = Origin(
+    Course("Course", "Its authors", "https://example.org/cpu", ""),
+    "A lab",
+    "Linux with Python 3",
+    "1.2.3",
+    "0.1.0",
+    "robo.whl",
+    COMMANDS,
+    "12345678",
+    "2026-01-02",
+)
+
+
+@pytest.fixture
+def page(tmp_path):
+    (found,) = find_pages(make_book(tmp_path, lab=notebook(*CELLS, front=LAB_FRONT)))
+    return found
+
+
+@pytest.fixture
+def student(page, tmp_path):
+    return student_notebook(page, ORIGIN, Writer(tmp_path, lambda _: "(yours)"))
+
+
+def test_the_student_s_notebook_is_clean_and_valid(student):
+    nbformat.validate(student)
+    text = nbformat.writes(student)
+    assert not [words for words in ("SECRET", "Only on the site", "{measured}") if words in text]
+    assert "It was (yours)." in text
+    code = [c for c in student.cells if c.cell_type == "code"]
+    assert [c.source for c in code[1:]] == ["x = 1", "plot()"]
+    assert all(c.outputs == [] and c.execution_count is None for c in code)
+    assert student.metadata.kernelspec.name == "python3"
+    assert "*Drawn by plot.*" in [c.source for c in student.cells]
+    first = student.cells[0].source
+    facts = (
+        ORIGIN.course.name,
+        ORIGIN.course.authors,
+        ORIGIN.title,
+        ORIGIN.system,
+        ORIGIN.engine,
+        ORIGIN.run,
+        ORIGIN.measured,
+    )
+    assert [words for words in (*facts, *COMMANDS, "CC BY 4.0") if words not in first] == []
+
+
+SHEET = """\
+# Work sheet: fall
+
+## 1. Predictions, before the run
+
+Earlier or later?
+
+## 2. The scene
+
+Its mass:
+
+## 3. Results
+
+## 4. Measured
+
+```python
+## no heading
+```
+"""
+SECTIONS = (
+    "\n## 2. The scene\n\nA box.\n",
+    cell("y = 2"),
+    "\n## 3. Run\n\nWrite parts 3 to\n3 of the work\nsheet now.\n",
+    cell("z = 3"),
+)
+
+
+def sheet_of(folder, sheet, *cells):
+    """The cells of a student's notebook of a lab with a work sheet."""
+    (found,) = find_pages(make_book(folder, lab=notebook(*cells, front=LAB_FRONT)))
+    found.path.with_name("worksheet.md").write_text(sheet)
+    made = student_notebook(found, ORIGIN, Writer(folder, lambda _: "(yours)"))
+    return [cell.source for cell in made.cells]
+
+
+def test_each_part_of_a_work_sheet_follows_what_it_belongs_to(tmp_path):
+    sources = sheet_of(tmp_path, SHEET, cell("x = 1"), *SECTIONS)
+    heads = [source.split("\n")[0] for source in sources]
+    first = heads.index("## Work sheet: fall")
+    assert heads[first:] == [
+        "## Work sheet: fall", "## Work sheet, part 1: Predictions, before the run", "x = 1",
+        "## 2. The scene", "y = 2", "## Work sheet, part 2: The scene",
+        "## 3. Run", "## Work sheet, part 3: Results", "z = 3", "## Work sheet, part 4: Measured",
+    ]  # fmt: skip
+    assert len(heads) == len(set(heads))
+    assert sources[first + 1].endswith("\n\nEarlier or later?")
+    assert sources[-1].endswith("```python\n## no heading\n```")
+
+
+@pytest.mark.parametrize(
+    ("sheet", "said"),
+    [
+        ("# Sheet\n\n## 1. Measured\n", "no part to fill in before the run"),
+        ("# Sheet\n\n## Guess, before the run\n", "Number it, as in"),
+    ],
+)
+def test_a_work_sheet_without_predictions_or_numbers_is_refused(tmp_path, sheet, said):
+    with pytest.raises(ProseError, match=said):
+        sheet_of(tmp_path, sheet, cell("x = 1"))
+
+
+def run_check(student, monkeypatch, **installed: str) -> None:
+    """Run the first cell where only these versions are installed."""
+
+    def look_up(name: str) -> str:
+        if name.replace("-", "_") not in installed:
+            raise PackageNotFoundError(name)
+        return installed[name.replace("-", "_")]
+
+    monkeypatch.setattr("importlib.metadata.version", look_up)
+    code = next(c.source for c in student.cells if c.cell_type == "code")
+    exec(compile(code, "check", "exec"), {})
+
+
+def test_its_first_cell_accepts_the_pinned_engine_alone(student, monkeypatch, capsys):
+    run_check(student, monkeypatch, genesis_world="1.2.3", robo_genesis="0.1.0")
+    assert capsys.readouterr().out == "genesis-world 1.2.3\nrobo-genesis 0.1.0\n"
+    for installed, message in (
+        ({"genesis_world": "1.0.0", "robo_genesis": "0.1.0"}, "genesis-world 1.2.3; it is 1.0.0"),
+        ({"robo_genesis": "0.1.0"}, "genesis-world 1.2.3; it is not installed here"),
+        ({"genesis_world": "1.2.3"}, "robo-genesis 0.1.0; it is not installed here"),
+    ):
+        with pytest.raises(RuntimeError, match=message) as error:
+            run_check(student, monkeypatch, **installed)
+        assert COMMANDS[1] in str(error.value)
+
+
+def executed(page, folder, *outputs):
+    """The page's executed notebook, its code cells and its text, with these outputs of cells."""
+    codes = [c.source for c in page.notebook.cells if c.cell_type == "code"]
+    ran = [
+        new_code_cell(source, execution_count=k, outputs=[output])
+        for k, (source, output) in enumerate(zip(codes, outputs, strict=True), 1)
+    ]
+    writer = Writer(folder, lambda _: "0.12 s")
+    found = executed_notebook(page, new_notebook(cells=ran), ORIGIN, writer)
+    nbformat.validate(found)
+    return [c for c in found.cells if c.cell_type == "code"], nbformat.writes(found)
+
+
+def test_the_executed_notebook_has_outputs_and_measured_values(page, tmp_path):
+    stack = ["File /home/me/secret.py", "\x1b[31mValueError\x1b[0m: no"]
+    error = new_output("error", ename="ValueError", evalue="no", traceback=stack)
+    hello = new_output("stream", text="hello")
+    cells, text = executed(page, tmp_path, hello, error, hello)
+    assert cells[0].outputs[0].text == "hello"
+    assert cells[1].outputs[0].traceback == ["ValueError: no"]
+    assert [c.execution_count for c in cells] == [1, 2, 3]
+    assert "It was 0.12 s." in text
+    assert "Only on the site" not in text
+
+
+@pytest.mark.parametrize(("shown", "sources"), [("1", 3), ("0", 2)])
+def test_the_executed_notebook_has_the_solutions_only_if_the_site_has(
+    page, tmp_path, monkeypatch, shown, sources
+):
+    monkeypatch.setenv("SOLUTIONS", shown)
+    outputs = [new_output("stream", text=f"output {k}") for k in range(3)]
+    cells, text = executed(page, tmp_path, *outputs)
+    assert len(cells) == sources
+    assert ("SECRET code" in text) == (shown == "1")
+    assert cells[-1].outputs[0].text == "output 2"
+
+
+def test_notes_of_the_compiler_are_dropped_and_warnings_stay(page, tmp_path):
+    note = "[I 01/02/26 11:30:00.841 25171] [shell.py:_shell_pop_print@25] a shell\n"
+    warning = "[W 01/02/26 11:30:00.841 25171] [a.py:b@2] mind\n"
+    streams = (("stderr", note), ("stderr", f"{note}UserWarning: x\n{warning}"), ("stdout", note))
+    outputs = (new_output("stream", name=name, text=text) for name, text in streams)
+    cells, _ = executed(page, tmp_path, *outputs)
+    assert [[output.text for output in cell.outputs] for cell in cells] == [
+        [], [f"UserWarning: x\n{warning}"], [note],
+    ]  # fmt: skip

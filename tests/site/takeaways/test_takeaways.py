@@ -1,0 +1,178 @@
+import csv
+import io
+import json
+import os
+import subprocess
+import sys
+import zipfile
+from contextlib import nullcontext
+from email import message_from_bytes
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from sphinx.errors import ConfigError
+
+from robo_genesis.core import project, trace
+from robo_genesis.core import text as quantities
+from robo_genesis.evidence import bundle, fields, npz_archive, trace_files
+from robo_genesis.evidence.strict_json import write_json
+from robo_genesis.evidence.trace_files import write_traces
+from robo_genesis.site.takeaways import files
+from robo_genesis.site.takeaways.directive import codespace, require_address
+from robo_genesis.site.takeaways.files import csv_text, package_facts, run_commands, without_places
+from robo_genesis.site.takeaways.wheel import build_wheel, built_wheel
+
+LINKS = ["link0", "link4", "hand"]
+UP_TO_THE_ENGINE = """
+from robo_genesis import doctor
+from robo_genesis.sim import session
+
+def start(contract):
+    raise OSError("the engine would start now")
+
+session.start = start
+doctor.main(["--json"])
+"""
+
+
+@pytest.fixture
+def table(tmp_path, traces, joints):
+    described = write_traces(tmp_path, {"G2": traces["G2"]}, joints, LINKS)
+    return list(csv.DictReader(io.StringIO(csv_text(traces["G2"], described, "G2"))))
+
+
+def column(table, name: str) -> np.ndarray:
+    return np.array([row[name] for row in table], dtype=np.float32)
+
+
+def test_each_number_of_a_run_is_in_its_table_with_its_unit(table, traces):
+    run = traces["G2"]
+    assert len(table) == len(run.t)
+    assert np.array_equal([float(row["t [s]"]) for row in table], run.t)
+    assert np.array_equal(column(table, "q joint4 [rad]"), run.q[:, 3])
+    assert np.array_equal(column(table, "q finger_joint2 [m]"), run.q[:, 8])
+    assert np.array_equal(column(table, "link_pos hand x [m]"), run.link_pos[:, 2, 0])
+    assert np.array_equal(column(table, "link_quat hand w [1]"), run.link_quat[:, 2, 0])
+    for field, unit in (("qd", "rad/s"), ("control_force", "N·m")):
+        name = f"{field} joint4 [{unit}]"
+        assert np.array_equal(column(table, name)[1:], getattr(run, field)[:, 3])
+        assert np.float32(table[0][name]) == getattr(run, f"start_{field}")[3]
+    assert {row["effort_limit joint4 [N·m]"] for row in table} == {str(run.effort_limit[3])}
+
+
+def test_every_column_names_a_unit_and_nothing_is_made_up_before_the_first_step(table):
+    assert [name for name in table[0] if not name.endswith("]")] == []
+    empty = {name.split()[0] for name, value in table[0].items() if value == ""}
+    assert empty == {"target", "internal_force"}
+    assert [name for name, value in table[1].items() if value == ""] == []
+
+
+def test_a_kept_table_is_of_one_state_of_all_code_that_shapes_it(
+    tmp_path, monkeypatch, traces, joints
+):
+    run, own, keys = tmp_path / "run", tmp_path / "own", []
+    for folder in (run, own):
+        folder.mkdir()
+    described = write_traces(run, {"G2": traces["G2"]}, joints, LINKS)
+    write_json(run / "arrays.json", described.model_dump(by_alias=True))
+    monkeypatch.setattr(files, "derived", lambda kind, inputs, make: keys.append(inputs) or make())
+    ((_, table, _),) = files._arrays(run, own)
+    assert next(csv.reader(table.open()))[0] == "t [s]"
+    for module in (files, trace_files, fields, bundle, npz_archive, trace, quantities):
+        assert Path(module.__file__).read_bytes() in keys[0], module.__name__
+
+
+def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
+    first, second = (build_wheel(tmp_path / name) for name in "ab")
+    assert built_wheel(project.ROOT).endswith(first.read_bytes())
+    assert first.name == f"robo_genesis-{package_facts()['version']}-py3-none-any.whl"
+    assert first.read_bytes() == second.read_bytes()
+    with zipfile.ZipFile(first) as wheel:
+        names = wheel.namelist()
+        (found,) = (name for name in names if name.endswith("/METADATA"))
+        needed = message_from_bytes(wheel.read(found)).get_all("Requires-Dist")
+    assert f"genesis-world=={project.engine_pin()}" in needed
+    sources = (project.ROOT / "robo_genesis").rglob("*")
+    files = {
+        path.relative_to(project.ROOT).as_posix()
+        for path in sources
+        if path.is_file() and path.suffix not in (".pyc", ".tmpl")
+    }
+    assert {name for name in names if not name.startswith("robo_genesis-")} == files
+
+
+def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path):
+    """The metadata of the wheel has the pin; an unpacked wheel is what pip installs."""
+    home, installed = tmp_path / "home", tmp_path / "installed"
+    home.mkdir()
+    with zipfile.ZipFile(build_wheel(tmp_path)) as wheel:
+        wheel.extractall(installed)
+    given = os.environ | {"PYTHONPATH": str(installed)}
+    command = [sys.executable, "-c", UP_TO_THE_ENGINE]
+    done = subprocess.run(command, cwd=home, env=given, capture_output=True, text=True, check=False)
+    version, libraries, backend = json.loads(done.stdout)["steps"][:3]
+    assert f"genesis-world {project.engine_pin()}, as pinned" in version["found"]
+    assert libraries["state"] == "ok"
+    assert "the engine would start now" in backend["found"]
+
+
+def test_the_wheel_names_the_repository_that_is_configured(tmp_path):
+    wheels = {
+        "": build_wheel(tmp_path / "without"),
+        "https://github.com/a/b": build_wheel(
+            tmp_path / "with", repository="https://github.com/a/b"
+        ),
+    }
+    for address, path in wheels.items():
+        with zipfile.ZipFile(path) as wheel:
+            (found,) = (name for name in wheel.namelist() if name.endswith("/METADATA"))
+            urls = message_from_bytes(wheel.read(found)).get_all("Project-URL")
+        assert urls == ([f"Repository, {address}"] if address else None)
+
+
+@pytest.mark.parametrize(
+    ("given", "valid", "offered"),
+    [
+        ("", True, ""),
+        ("https://github.com/a/b-c", True, "(https://codespaces.new/a/b-c)"),
+        ("https://example.org/a/b", True, ""),
+        ("https://github.com/a/b/", False, ""),
+        ("http://github.com/a/b", False, ""),
+        ('https://github.com/a/b"', False, ""),
+    ],
+)
+def test_a_valid_repository_on_github_alone_offers_a_codespace(given, valid, offered):
+    with nullcontext() if valid else pytest.raises(ConfigError, match="OWNER/NAME, without a sl"):
+        require_address(None, SimpleNamespace(course_repository=given))
+    text = codespace(given)
+    assert offered in text
+    assert bool(text) == bool(offered)
+
+
+def test_a_package_that_cannot_be_built_says_why(tmp_path):
+    for name in ("README.md", "LICENSE"):
+        (tmp_path / name).write_text("")
+    (tmp_path / "robo_genesis").mkdir()
+    (tmp_path / "pyproject.toml").write_text("[project]\nname = 3\n")
+    with pytest.raises(project.ProjectError, match="must contain"):
+        build_wheel(tmp_path, tmp_path)
+
+
+def test_the_commands_install_the_wheel_and_open_the_notebook():
+    assert run_commands("robo.whl", "https://example.org/cpu", "lab.ipynb") == (
+        "python3 -m venv course",
+        "course/bin/pip install -c constraints.txt \\\n"
+        "  --extra-index-url https://example.org/cpu \\\n"
+        "  ./robo.whl jupyterlab",
+        "course/bin/jupyter lab lab.ipynb",
+    )
+
+
+def test_a_notebook_names_no_folder_of_the_builder():
+    text = "/srv/site/robo_genesis/page.py, /srv/site, /srv/site-2/a, x/srv/site, /home/me/b"
+    assert without_places(text, Path("/srv/site")) == (
+        "robo-genesis/robo_genesis/page.py, robo-genesis, /srv/site-2/a, x/srv/site, ~/b"
+    )
+    assert without_places(f"{project.ROOT}/a") == "robo-genesis/a"
