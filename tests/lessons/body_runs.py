@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.trace import BodyTrace, ContactTrace
 from robo_genesis.sim.bodies.contacts import ContactCase
+from robo_genesis.sim.bodies.free_fall import summed_drop
 from robo_genesis.sim.bodies.rigid_bodies import Drop
 
 

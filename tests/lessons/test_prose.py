@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.core.free_fall import GRAVITY
 from robo_genesis.core.project import BOOK
+from robo_genesis.sim.bodies.free_fall import GRAVITY
 
 LISTS = sorted(Path(__file__).parent.glob("*/prose_numbers.py"))
 """The numbers of each lesson are a module beside its tests."""

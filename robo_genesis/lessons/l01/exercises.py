@@ -5,9 +5,9 @@ from typing import Any
 
 from robo_genesis.core.checks import Finding, equal, within
 from robo_genesis.core.exercises import as_test
-from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.lessons.l01 import spec
 from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.bodies.free_fall import summed_drop
 
 MEASURES = False
 

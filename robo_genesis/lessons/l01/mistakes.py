@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.exercises import Mistake
-from robo_genesis.core.fresh_process import run_python
 from robo_genesis.lessons.l01 import machine
+from robo_genesis.sim.fresh_process import run_python
 
 MEASURES = False
 

@@ -4,8 +4,8 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.plotting import look
+from robo_genesis.sim.bodies.free_fall import summed_drop
 
 MEASURES = False
 

@@ -7,11 +7,11 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding, equal, within
 from robo_genesis.core.exercises import as_test, same_array
-from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.scene import FRAME_SHAPE
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.bodies.free_fall import summed_drop
 from robo_genesis.sim.bodies.rigid_bodies import Drop
 
 MEASURES = False

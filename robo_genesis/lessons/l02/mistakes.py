@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.exercises import Mistake, quoted, refused
-from robo_genesis.core.free_fall import continuous_drop
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.bodies.free_fall import continuous_drop
 from robo_genesis.sim.bodies.rigid_bodies import Drop, read_body
 from robo_genesis.sim.camera.frames import FrameError, require_frame
 

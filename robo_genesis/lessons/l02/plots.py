@@ -5,11 +5,11 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.free_fall import continuous_drop
 from robo_genesis.core.plotting import look
 from robo_genesis.lessons.l02 import spec, trials
 from robo_genesis.lessons.l02.study import by_step, expected_gap
 from robo_genesis.sim.bodies.falls import fallen, predicted
+from robo_genesis.sim.bodies.free_fall import continuous_drop
 
 MEASURES = False
 

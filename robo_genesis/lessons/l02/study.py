@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 from robo_genesis.core.checks import Finding, factors, within
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.free_fall import ahead_of_continuous
 from robo_genesis.lessons.l02 import spec
+from robo_genesis.sim.bodies.free_fall import ahead_of_continuous
 
 
 def by_step(run: Experiment) -> list[str]:

@@ -2,9 +2,9 @@
 
 from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.free_fall import continuous_drop, summed_drop
 from robo_genesis.core.text import bullets, format_value, signed
 from robo_genesis.lessons.l02 import spec, study, trials
+from robo_genesis.sim.bodies.free_fall import continuous_drop, summed_drop
 
 MEASURES = False
 

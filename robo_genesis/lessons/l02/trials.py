@@ -7,9 +7,9 @@ import numpy as np
 
 from robo_genesis.core.checks import Check, Finding, above, below, conclude, equal, within
 from robo_genesis.core.experiment import Experiment, Readings, counts
-from robo_genesis.core.free_fall import summed_drop
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import spec
+from robo_genesis.sim.bodies.free_fall import summed_drop
 from robo_genesis.sim.common_checks import usable_frame
 
 SHAPES, TRAYS, FURTHER = "shapes", "trays", "further"

@@ -5,10 +5,10 @@ import os
 from typing import Any
 
 from robo_genesis.core.experiment import counts
-from robo_genesis.core.fresh_process import last_value, run_python
 from robo_genesis.lessons.l05 import spec
 from robo_genesis.lessons.l05.run import ask
 from robo_genesis.sim import diagnosis, session
+from robo_genesis.sim.fresh_process import last_value, run_python
 
 GROUP = "ik_restarts"
 COMPARED = ("between_processes", "after_a_new_init", "at_the_second_question")

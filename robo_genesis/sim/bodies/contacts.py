@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.free_fall import GRAVITY
 from robo_genesis.core.scene import DT, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.sim.arm.joints import to_numpy
+from robo_genesis.sim.bodies.free_fall import GRAVITY
 from robo_genesis.sim.bodies.rigid_bodies import read_body, record_states, stacked, times
 
 SURFACE_SIZE = (2.0, 0.8, 0.05)

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from robo_genesis.core.free_fall import continuous_drop, summed_drop
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.bodies.free_fall import continuous_drop, summed_drop
 from robo_genesis.sim.bodies.rigid_bodies import Drop
 
 

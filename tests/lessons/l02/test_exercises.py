@@ -6,8 +6,8 @@ import torch
 from lessons.body_runs import make_drop
 from lessons.exercise_cells import solutions
 
-from robo_genesis.core.free_fall import continuous_drop
 from robo_genesis.lessons.l02 import exercises, spec
+from robo_genesis.sim.bodies.free_fall import continuous_drop
 
 SOLVED = solutions("l02")
 OURS, FRAME, STEPPED = SOLVED["record"], SOLVED["usable_frame"], SOLVED["stepped"]

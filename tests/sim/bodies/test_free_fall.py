@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from robo_genesis.core.free_fall import (
+from robo_genesis.sim.bodies.free_fall import (
     ahead_of_continuous,
     continuous_drop,
     stepped_drop,

@@ -2,8 +2,8 @@
 
 import pytest
 
-from robo_genesis.core import fresh_process
-from robo_genesis.core.fresh_process import StartError, last_value, run_python
+from robo_genesis.sim import fresh_process
+from robo_genesis.sim.fresh_process import StartError, last_value, run_python
 
 
 def test_it_prints_with_the_changed_environment():
