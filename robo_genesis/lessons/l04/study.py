@@ -12,7 +12,12 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated, step_metrics
-from robo_genesis.lessons.l04.theory import IdealJoint, step_share, stepped_joint
+from robo_genesis.lessons.l04.theory import (
+    IdealJoint,
+    overshoot_share,
+    step_share,
+    stepped_joint,
+)
 from robo_genesis.sim.arm import dynamics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase, run_case
@@ -110,17 +115,6 @@ def damping_ratio(case: str) -> FloatArray:
     return np.asarray(settings.dt / settings.substeps * (settings.kv + damping) / inertia)
 
 
-def same_beginning(short: Trace, long: Trace) -> bool:
-    """Return whether the longer run begins with exactly the samples of the shorter one."""
-    n = short.steps
-    return (
-        long.steps > n
-        and np.array_equal(short.q, long.q[: n + 1])
-        and np.array_equal(short.qd, long.qd[:n])
-        and np.array_equal(short.control_force, long.control_force[:n])
-    )
-
-
 def ideal(run: Experiment, case: str) -> IdealJoint:
     """Return the linear joint with a compared case's gains and the inertia of Genesis."""
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
@@ -134,27 +128,79 @@ def share(run: Experiment, case: str, kind: str = "") -> FloatArray:
     return step_share(step, run.traces[f"{case}_hold"], spec.ENTRY)
 
 
-def stepped(run: Experiment, case: str, height: float) -> FloatArray:
-    """Return the distance of the stepped joint (n+1,) from the target [rad], sampled as the run.
+def model_overshoot(run: Experiment, case: str, height: float) -> float:
+    """Return the overshoot of the stepped model of one joint at the run's samples [rad].
 
     A step of the lesson's height has the force limit and gravity: the mean of the efforts that hold
     start and end of the case. A smaller step has neither.
     """
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
-    h, steps = gains.dt / gains.substeps, gains.steps * gains.substeps
-    clipped = height >= spec.STEP
-    gravity = (readings["gravity_at_start_Genesis"] + readings[f"gravity_{case}"]) / 2
+    limit, gravity = np.inf, 0.0
+    if height >= spec.STEP:
+        limit = float(gains.effort_limit[spec.ENTRY])
+        gravity = (readings["gravity_at_start_Genesis"] + readings[f"gravity_{case}"]) / 2
     path = stepped_joint(
-        ideal(run, case), readings["passive_damping"], height, h, steps,
-        limit=float(gains.effort_limit[spec.ENTRY]) if clipped else np.inf,
-        gravity=gravity if clipped else 0.0,
+        ideal(run, case), readings["passive_damping"], height, gains.dt / gains.substeps,
+        gains.steps * gains.substeps, limit, gravity,
     )  # fmt: skip
-    return np.asarray(path[:: gains.substeps])
+    return float(max(0.0, path[:: gains.substeps].max()))
 
 
-def stepped_overshoot(run: Experiment, case: str, height: float) -> float:
-    """Return the overshoot of the model of one joint [rad]."""
-    return float(max(0.0, stepped(run, case, height).max()))
+def overshoots(run: Experiment, case: str, height: float) -> tuple[float, float, float]:
+    """Return the overshoots [rad] of the ideal joint, of the stepped model and of Genesis.
+
+    The last is that of a difference of two runs for the small step, and the metric for the other.
+    """
+    found = (
+        overshoot_share(share(run, case, "small")) * height
+        if height < spec.STEP
+        else run.metrics[case].overshoot
+    )
+    return ideal(run, case).overshoot * height, model_overshoot(run, case, height), found
+
+
+def leaves_ideal(run: Experiment, case: str) -> tuple[int, float]:
+    """Return the first sample at which a case is too far from the ideal joint, and how far it gets.
+
+    The sample is the last one if the distance [rad] never exceeds `PARTING_THRESHOLD`.
+    """
+    trace = run.traces[case]
+    q = trace.q[:, spec.ENTRY].astype(float)
+    step = float(study_spec.COMPARED[case].q_target[spec.ENTRY]) - q[0]
+    distance = np.abs(q - q[0] - step * ideal(run, case).response(trace.t))
+    beyond = np.flatnonzero(distance > study_spec.PARTING_THRESHOLD)
+    return int(beyond[0]) if beyond.size else trace.steps, float(distance.max())
+
+
+def at_limit_until(trace: Trace) -> float:
+    """Return the time [s] to which the stepped joint's effort stays at the limit of its start.
+
+    It is 0 if the effort is below the limit at t = 0 or at the first sample.
+    """
+    first, limit = trace.start_control_force[spec.ENTRY], trace.effort_limit[spec.ENTRY]
+    force = trace.control_force[:, spec.ENTRY]
+    held = is_saturated(force, limit) & (np.sign(force) == np.sign(first))
+    held &= is_saturated(float(first), float(limit))
+    return float(trace.t[int(np.append(held, False).argmin())])
+
+
+def first_speed(run: Experiment, case: str, term: float) -> float:
+    """Return the stepped joint's speed [rad/s] after the first step, its neighbours held still.
+
+    Args:
+        run: inertia, passive damping and gravity of the start pose.
+        case: one of the compared cases; its effort is assumed to be clipped throughout the step.
+        term: the integrator's addition to the passive damping on the inertia's side [N·m·s/rad].
+    """
+    configured, readings = study_spec.COMPARED[case], run.readings[GROUP]
+    damping, inertia = readings["passive_damping"], readings["inertia_Genesis"]
+    h = configured.dt / configured.substeps
+    effort = float(run.traces[case].start_control_force[spec.ENTRY])
+    speed = 0.0
+    for _ in range(configured.substeps):
+        net = effort - damping * speed - readings["gravity_at_start_Genesis"]
+        speed += h * net / (inertia + h * (damping + term))
+    return speed
 
 
 def unstable_joints(trace: Trace) -> list[str]:

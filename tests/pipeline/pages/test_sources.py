@@ -182,7 +182,7 @@ CHANGES = [
     ("lessons/l04/study_spec", CONSTANT, ("l04",), NONE),
     ("lessons/l04/pages", ('Filmed("the Franka")', 'Filmed("the arm")'), ("l04",), NONE),
     ("lessons/l02/plots", CONSTANT, ("l02",), NONE),
-    ("lessons/l04/theory_text", CONSTANT, ("l04",), NONE),
+    ("lessons/l04/tables", CONSTANT, ("l04",), NONE),
     ("lessons/l02/mistakes", CONSTANT, ("l02",), NONE),
     ("lessons/l02/checks", ('"""The engine\'s mass', '"""The mass'), ("l02",), NONE),
     ("lessons/l02/text", DOCSTRING, NONE, NONE),
