@@ -55,23 +55,22 @@ def measure(trace: Trace, case: ControlCase) -> StepMetrics:
 
 def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
     """Read passive damping, inertia and gravity effort at the start, in Genesis."""
-    k, dofs = joints.entry(spec.STEPPED_JOINT), joints.dofs_idx_local.tolist()
-    q = spec.BASELINE.q_start
-    return {
-        "passive_damping": float(dynamics.passive_damping(robot, dofs)[k]),
-        "inertia_Genesis": float(dynamics.effective_inertia(scene, robot, joints, q)[k]),
-        "gravity_at_start_Genesis": float(dynamics.gravity_effort(scene, robot, joints, q)[k]),
+    q, dofs = spec.BASELINE.q_start, joints.dofs_idx_local.tolist()
+    found = {
+        "passive_damping": dynamics.passive_damping(robot, dofs),
+        "inertia_Genesis": dynamics.effective_inertia(scene, robot, joints, q),
+        "gravity_at_start_Genesis": dynamics.gravity_effort(scene, robot, joints, q),
     }
+    return {name: float(values[spec.ENTRY]) for name, values in found.items()}
 
 
 def read_masses(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
     """Read the mass matrix at the start while a position is commanded, for each KV, in Genesis."""
-    k, dofs = joints.entry(spec.STEPPED_JOINT), joints.dofs_idx_local.tolist()
     found = {}
-    for kv in COMPARED_KV:
-        case = next(of for of in study_spec.COMPARED.values() if of.kv[spec.ENTRY] == kv)
+    for case in (spec.G1, spec.G3):
         run_case(scene, robot, joints, replace(case, q_target=case.q_start, steps=1))
-        found[f"mass_KV_{kv:g}"] = float(dynamics.mass_diagonal(robot, dofs)[k])
+        masses = dynamics.mass_diagonal(robot, joints.dofs_idx_local.tolist())
+        found[f"mass_KV_{case.kv[spec.ENTRY]:g}"] = float(masses[spec.ENTRY])
     return found
 
 
@@ -79,22 +78,17 @@ def read_gravity(
     scene: Any, robot: Any, joints: JointMap, traces: Mapping[str, Trace]
 ) -> dict[str, float]:
     """Read the gravity effort at the end state of each case, in Genesis."""
-    k = joints.entry(spec.STEPPED_JOINT)
-    return {
-        f"gravity_{name}": float(
-            dynamics.gravity_effort(scene, robot, joints, traces[name].q[-1])[k]
-        )
-        for name in spec.CASES
-    }
+    found = {}
+    for name in spec.CASES:
+        efforts = dynamics.gravity_effort(scene, robot, joints, traces[name].q[-1])
+        found[f"gravity_{name}"] = float(efforts[spec.ENTRY])
+    return found
 
 
 def read_second_engine() -> dict[str, float]:
     """Read inertia and gravity effort at the start in MuJoCo."""
-    inertia, gravity = mujoco_joints.at_rest(spec.BASELINE, spec.BASELINE.q_start)
-    return {
-        "inertia_MuJoCo": float(inertia[spec.ENTRY]),
-        "gravity_at_start_MuJoCo": float(gravity[spec.ENTRY]),
-    }
+    at_rest = mujoco_joints.at_rest(spec.BASELINE, spec.BASELINE.q_start)
+    return {name: float(of[spec.ENTRY]) for name, of in zip(IN_MUJOCO, at_rest, strict=True)}
 
 
 def implicit_term(run: Experiment, kv: float) -> float:

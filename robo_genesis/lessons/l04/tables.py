@@ -1,5 +1,6 @@
 """Tables of L04: the robot, the metrics, and what the studies of the stepped joint measured."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from robo_genesis.core import tables
@@ -109,7 +110,7 @@ def outcomes_of_predictions(run: Experiment) -> str:
         rows.append(
             {
                 "prediction": f"{found.label}: {other} {claim} than {one}",
-                "measured": _change(found.first, found.second, metric),
+                "measured": _change((found.first, found.second), metric),
                 "margin": margin_text(metric),
                 "outcome": outcome,
             }
@@ -117,9 +118,9 @@ def outcomes_of_predictions(run: Experiment) -> str:
     return tables.markdown(rows)
 
 
-def _change(first: float | None, second: float | None, metric: str) -> str:
+def _change(values: Iterable[float | None], metric: str) -> str:
     """Write a metric of two cases: `0.12 s → 0.11 s`."""
-    return " → ".join(format_value(value, UNITS[metric]) for value in (first, second))
+    return " → ".join(format_value(value, UNITS[metric]) for value in values)
 
 
 def gravity_table(run: Experiment) -> str:
@@ -274,7 +275,7 @@ def relation_table(run: Experiment) -> str:
         row: dict[str, Any] = {"claim": f"{NOUNS[metric]}: {second} {order} than {first}"}
         for engine in study.ENGINES:
             found = study.compared(run, engine)
-            values = _change(*(getattr(found[case], metric) for case in (first, second)), metric)
+            values = _change((getattr(found[case], metric) for case in (first, second)), metric)
             state, _ = study.relation_outcome(run, engine, relation)
             shown = "unstable" if study.unstable(run, engine) else state
             row[ENGINE_LABELS[engine]] = f"{shown}: {values}"

@@ -1,6 +1,13 @@
 """The interpretation that L04's lab generates: sentences that are right for every outcome."""
 
-from robo_genesis.core.comparison import compare, comparison_sentence, prediction_sentence
+from collections.abc import Iterator
+
+from robo_genesis.core.comparison import (
+    Comparison,
+    compare,
+    comparison_sentence,
+    prediction_sentence,
+)
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.text import Block
@@ -23,28 +30,9 @@ COSTS = {
     None: "The cost in response time is unknown: no rise was observed.",
     "lower": "The change costs no response time: {second} reaches 90 % earlier than {first}.",
     "equal": "No cost in response time is visible: the rise times are within the margin.",
-    "higher": "The change costs response time: {second} reaches 90 % later than {first}, if at all.",
+    "higher": "The change costs response time: {second} reaches 90 % after {first}, if at all.",
 }
 """By the order of the second rise time, the cost of a change."""
-
-ENDS = {
-    (
-        True,
-        True,
-    ): "{name} ends nearly at rest ({speed}, no more than {rest:g} rad/s), {error} from its "
-    "target. It stays within ±{band:g} rad from {settled} on.",
-    (
-        True,
-        False,
-    ): "{name} ends nearly at rest ({speed}, no more than {rest:g} rad/s), {error} from its "
-    "target. Settling into ±{band:g} rad was not observed, and only a longer window can "
-    "distinguish a steady error from a slow approach.",
-    (False, True): "{name} still moves at {speed} at the end, {error} from its target. It stays "
-    "within ±{band:g} rad from {settled} on, but its speed shows that the error is not final.",
-    (False, False): "{name} still moves at {speed} at the end, {error} from its target. Settling "
-    "into ±{band:g} rad was not observed, so its last sample is not a steady error.",
-}
-"""By whether a run ends nearly at rest and whether it settled, what its last sample shows."""
 
 LIMITS_OF_ERROR = (
     "A small remaining error would be consistent with a controller without an integral term "
@@ -54,14 +42,16 @@ LIMITS_OF_ERROR = (
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the compared cases, in four blocks."""
-    (kp_pair, kv_pair), limit = spec.ONE_FACTOR, float(run.traces["G1"].effort_limit[spec.ENTRY])
+    kp_pair, kv_pair = spec.ONE_FACTOR
+    limit = float(run.traces["G1"].effort_limit[spec.ENTRY])
     found = {name: run.metrics[name] for name in COMPARED}
-    errors = [final_error_sentence(name, m) for name, m in found.items()]
+    errors = [line for name, m in found.items() for line in final_error_sentences(name, m)]
+    cost = COSTS[compared(run, kv_pair, "rise_time").order]
     blocks = (
         Block("1. {} → {}: the effect of KP".format(*kp_pair), pair_sentences(run, kp_pair)),
         Block(
             "2. {} → {}: the effect of KV, and its cost".format(*kv_pair),
-            (*pair_sentences(run, kv_pair), cost_sentence(run, kv_pair)),
+            (*pair_sentences(run, kv_pair), cost.format(first=kv_pair[0], second=kv_pair[1])),
         ),
         Block("3. The final error, and its limits as evidence", (*errors, LIMITS_OF_ERROR)),
         Block(
@@ -75,13 +65,13 @@ def conclusions(run: Experiment) -> str:
 def pair_sentences(run: Experiment, names: tuple[str, str]) -> tuple[str, ...]:
     """Compare two cases that should differ in one entry, and judge the predictions about them."""
     predictions = spec.PREDICTIONS[names]
-    first, second = (run.metrics[name] for name in names)
+    cases = run.cases[names[0]], run.cases[names[1]]
     of_metric = {
-        metric: compare(metric, first, second, spec.RESOLUTION, spec.MARGINS[metric])
+        metric: compared(run, names, metric)
         for metric in (*COMPARED_METRICS, *(metric for metric, _ in predictions))
     }
     return (
-        factor_sentence(names, differences(*(run.cases[name] for name in names), run.joints)),
+        factor_sentence(names, differences(*cases, run.joints)),
         *(comparison_sentence(names, of_metric[metric]) for metric in COMPARED_METRICS),
         *(
             prediction_sentence(names, of_metric[metric], order, INSPECT)
@@ -104,24 +94,26 @@ def factor_sentence(names: tuple[str, str], changed: list[str]) -> str:
     )
 
 
-def cost_sentence(run: Experiment, names: tuple[str, str]) -> str:
-    """State the second case's cost in response time, if there is one."""
-    metrics, margin = (run.metrics[name] for name in names), spec.MARGINS["rise_time"]
-    rise = compare("rise_time", *metrics, spec.RESOLUTION, margin)
-    return COSTS[rise.order].format(first=names[0], second=names[1])
+def compared(run: Experiment, names: tuple[str, str], metric: str) -> Comparison:
+    """Compare one metric of two cases with its declared margin."""
+    first, second = (run.metrics[name] for name in names)
+    return compare(metric, first, second, spec.RESOLUTION, spec.MARGINS[metric])
 
 
-def final_error_sentence(name: str, m: StepMetrics) -> str:
+def final_error_sentences(name: str, m: StepMetrics) -> Iterator[str]:
     """Describe the end of one run: its final error with final velocity and settling."""
-    message = ENDS[abs(m.final_velocity) <= AT_REST, m.settling_time is not None]
-    return message.format(
-        name=name,
-        rest=AT_REST,
-        band=SETTLING_BAND,
-        error=format_value(m.final_error, "rad"),
-        speed=format_value(m.final_velocity, "rad/s"),
-        settled=format_value(m.settling_time, "s"),
-    )
+    speed = format_value(m.final_velocity, "rad/s")
+    yield f"{name} ends {format_value(m.final_error, 'rad')} from its target at {speed}."
+    if abs(m.final_velocity) > AT_REST:
+        yield f"{name} is faster than {AT_REST:g} rad/s at the end, so its error is not final."
+    if m.settling_time is None:
+        yield (
+            f"Settling of {name} into ±{SETTLING_BAND:g} rad was not observed. Only a longer "
+            "window can distinguish a steady error from a slow approach."
+        )
+    else:
+        settled = format_value(m.settling_time, "s")
+        yield f"{name} stays within ±{SETTLING_BAND:g} rad from {settled} on."
 
 
 def actuator_sentence(name: str, m: StepMetrics, limit: float) -> str:
