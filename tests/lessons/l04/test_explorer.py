@@ -9,13 +9,7 @@ from bs4 import BeautifulSoup
 from playwright.sync_api import Page
 from watching import errors
 
-from robo_genesis.core.comparison import order
-from robo_genesis.core.quantities import format_value
-from robo_genesis.evidence import bundle
-from robo_genesis.evidence.trace_files import read_any_trace
-from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import ENTRY
-from robo_genesis.lessons.l04.study_spec import POINTS
+from robo_genesis.core.orderings import order
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -23,20 +17,9 @@ LECTURE = "lessons/l04-joint-control/lecture.html"
 
 
 @pytest.fixture(scope="module")
-def lecture(site) -> BeautifulSoup:
-    return BeautifulSoup((site / LECTURE).read_text(), "html.parser")
-
-
-@pytest.fixture(scope="module")
-def grid(site) -> BeautifulSoup:
-    """The page that ran the grid."""
-    page = site / LECTURE.replace("lecture", "deeper-batch")
-    return BeautifulSoup(page.read_text(), "html.parser")
-
-
-@pytest.fixture(scope="module")
-def data(lecture) -> dict:
-    return json.loads(lecture.select_one(".explorer")["data-grid"])
+def data(site) -> dict:
+    page = BeautifulSoup((site / LECTURE).read_text(), "html.parser")
+    return json.loads(page.select_one(".explorer")["data-grid"])
 
 
 @pytest.fixture(scope="module", params=["served", "from disk"])
@@ -121,14 +104,13 @@ def test_arrow_keys_choose_a_run_and_all_of_it_is_shown(page, data):
     assert len(points.split()) == drawn_samples(data)
     assert "KP 5250, KV 150" in chosen(page).get_attribute("aria-label")
     assert chosen(page).evaluate("cell => cell === document.activeElement")
-
-
-def test_a_touch_and_another_step_choose_a_run(page, data):
-    without_questions(page)
     cell(page, 3500, 300).tap()
-    assert shown(page) == expected(data, 0.25, 3500, 300)
     page.get_by_label("Step of joint4").select_option("0.05 rad")
     assert shown(page) == expected(data, 0.05, 3500, 300)
+    page.get_by_label("Map shows").select_option("overshoot [mrad]")
+    (found,) = (m for m in data["measures"] if m["noun"] == "overshoot")
+    value = 1000 * found["values"][number(data, 0.05, 7000, 100)]
+    assert float(cell(page, 7000, 100).inner_text().split()[-1]) == pytest.approx(value, abs=0.05)
 
 
 def test_the_map_is_one_stop_for_the_keyboard(page):
@@ -144,50 +126,23 @@ def test_the_map_is_one_stop_for_the_keyboard(page):
     assert chosen(page).evaluate("cell => cell === document.activeElement")
 
 
-@pytest.mark.parametrize("measure", ["saturation [samples]", "rise time [ms]", "overshoot [mrad]"])
-def test_each_cell_of_the_map_holds_its_measured_number(page, data, measure):
-    page.get_by_label("Map shows").select_option(measure)
-    (found,) = (
-        m for m in data["measures"]
-        if measure == f"{data['labels'][m['label']]} [{m['cell']['unit']}]"
-    )  # fmt: skip
-    for kp, kv in ((7000, 100), (3500, 300), (6125, 150)):
-        value = found["values"][number(data, 0.25, kp, kv)] * found["cell"]["factor"]
-        text = cell(page, kp, kv).inner_text().split()[-1]
-        assert float(text) == pytest.approx(value, abs=0.05 + 0.45 * (found["cell"]["digits"] == 0))
-    grounds = page.locator(".explorer [role=gridcell]").evaluate_all(
-        "all => all.map(one => getComputedStyle(one).backgroundColor)"
-    )
-    assert len(set(grounds)) > 3
-
-
-def judged(data, noun, first, second):
-    """Return the order of the second run by Python's rule."""
-    (measure,) = (m for m in data["measures"] if m["noun"] == noun)
-    return measure, order(measure["values"][first], measure["values"][second], measure["margin"])
-
-
-QUESTIONS = [
-    # the answers before, the run before and the run, the question's metric, the answer, its verdict
-    (0, (7000, 100), (6125, 100), "rise time", "too close to call", "Yes"),
-    (0, (7000, 100), (6125, 100), "rise time", "earlier", "No"),
-    (0, (7000, 100), (3500, 300), "rise time", "later", "Yes"),
-    (1, (7000, 100), (6125, 100), "overshoot", "lower", "Yes"),
-    (1, (7000, 100), (6125, 100), "overshoot", "too close to call", "No"),
-    (2, (7000, 100), (3500, 300), "peak speed", "lower", "Yes"),
-]
-
-
-@pytest.mark.parametrize(("earlier", "first", "second", "noun", "said", "verdict"), QUESTIONS)
+@pytest.mark.parametrize(
+    ("turns", "second", "noun", "said", "verdict"),
+    [
+        (0, (6125, 100), "rise time", "too close to call", "Yes"),
+        (0, (6125, 100), "rise time", "earlier", "No"),
+        (1, (6125, 100), "overshoot", "lower", "Yes"),
+    ],
+)
 def test_a_prediction_is_judged_by_the_recorded_runs(
-    page, data, earlier, first, second, noun, said, verdict
+    page, data, turns, second, noun, said, verdict
 ):
-    for turn in range(earlier):
-        cell(page, *((7000, 150), (7000, 100))[turn % 2]).tap()
+    """Compared with G2, after one further question for each turn."""
+    for _ in range(turns):
+        cell(page, 7000, 150).tap()
         answer(page, "Skip")
-    if earlier % 2:
         without_questions(page)
-        cell(page, *first).tap()
+        cell(page, 7000, 100).tap()
         page.get_by_label("Predict first").check()
     before = shown(page)[1]
     cell(page, *second).tap()
@@ -197,8 +152,9 @@ def test_a_prediction_is_judged_by_the_recorded_runs(
     assert shown(page)[1] == before  # nothing is shown before the answer
     answer(page, said)
     output, metrics = shown(page)
-    runs = [number(data, 0.25, *gains) for gains in (first, second)]
-    measure, found = judged(data, noun, *runs)
+    (measure,) = (m for m in data["measures"] if m["noun"] == noun)
+    values = (measure["values"][number(data, 0.25, *run)] for run in ((7000, 100), second))
+    found = order(*values, measure["margin"])
     words = {"equal": "too close to call"}.get(found) or measure[found]
     assert (words == said) == (verdict == "Yes")
     assert output.startswith(f"{verdict}. The {noun}: {words}, first ")
@@ -230,51 +186,6 @@ def test_the_last_run_stays_as_a_labelled_grey_line_with_its_metrics(page, data)
             page.locator(".explorer dd.last").all_inner_texts()]  # fmt: skip
     assert last == list(expected(data, 0.25, 7000, 100)[1].values())
     assert "the last run" in page.locator(".explorer .map .last").get_attribute("aria-label")
-
-
-def test_no_question_is_asked_once_the_reader_turned_them_off(page, data):
-    cell(page, 3500, 150).tap()
-    assert page.locator(".explorer .question").is_visible()
-    without_questions(page)
-    assert shown(page) == expected(data, 0.25, 3500, 150)
-    cell(page, 3500, 200).tap()
-    assert not page.locator(".explorer .question").is_visible()
-
-
-def test_no_run_moves_visibly_after_the_end_of_the_plots(data, site):
-    folder = site.parent / "pages" / "l04" / "batch" / "cpu"
-    described = bundle.read_arrays(folder)
-    for point in POINTS:
-        trace = read_any_trace(folder, described, point.name)
-        late = trace.q[drawn_samples(data) - 1 :, ENTRY]
-        assert late.size > 1
-        assert np.ptp(late) < 5e-4, point.name  # rad
-
-
-def test_the_curve_is_drawn_to_scale(page, data):
-    """The lowest and highest point of the drawn force are the packed ones, between the limits."""
-    packed = data["points"][data["opens"]]["force"]
-    assert len(packed) == drawn_samples(data) - 1
-    force = [value * data["resolution"]["force"] for value in packed]
-    drawn = page.locator('.explorer svg[data-curve="force"]').evaluate("""svg => ({
-        y: svg.querySelector("polyline").getAttribute("points").split(" ")
-          .map(pair => Number(pair.split(",")[1])),
-        limits: [...svg.querySelectorAll("line.limit")].map(l => Number(l.getAttribute("y1")))
-    })""")
-    low, high = drawn["limits"]
-    to_force = [(y - low) / (high - low) * 2 * data["limit"] - data["limit"] for y in drawn["y"]]
-    assert to_force == pytest.approx(force, abs=0.1)  # coordinates have one decimal
-
-
-def test_the_widget_opens_at_g2_with_what_the_bundle_holds(page, site):
-    sentence, metrics = shown(page)
-    assert "(the case G2)" in sentence
-    records = bundle.read_metrics(site.parent / "evidence" / "l04" / "cpu")["G2"]
-    assert metrics == {
-        label: format_value(records[name].value, records[name].unit)
-        for name, label in StepMetrics.about("label").items()
-        if name != "initial_error"
-    }
 
 
 def test_controls_and_pictures_have_names(page):
@@ -330,23 +241,23 @@ def test_text_and_curves_stand_out_from_the_ground(page):
     assert min(contrasts[name] for name in ("curve", "limit", "ghost")) >= 3, contrasts
 
 
-def test_the_script_is_deferred_and_on_no_other_page(site, lecture):
-    (script,) = lecture.select("script[src*='explorer.js']")
-    assert script.has_attr("defer")
-    others = [path for path in site.rglob("*.html") if "explorer.js" in path.read_text()]
-    assert [path.name for path in others] == ["lecture.html"]
+def test_the_curve_is_drawn_to_scale(page, data):
+    """The drawn force is the packed one, between the limits."""
+    force = np.array(data["points"][data["opens"]]["force"]) * data["resolution"]["force"]
+    assert len(force) == drawn_samples(data) - 1
+    drawn = page.locator('.explorer svg[data-curve="force"]').evaluate("""svg => ({
+        y: svg.querySelector("polyline").getAttribute("points").split(" ")
+          .map(pair => Number(pair.split(",")[1])),
+        limits: [...svg.querySelectorAll("line.limit")].map(l => Number(l.getAttribute("y1")))
+    })""")
+    low, high = drawn["limits"]
+    shares = (np.array(drawn["y"]) - low) / (high - low)
+    found = (2 * shares - 1) * data["limit"]
+    assert found == pytest.approx(force, abs=0.1)  # coordinates have one decimal
 
 
-def test_every_run_is_in_the_folded_table_of_the_page_of_the_grid(grid, data):
-    tables = [table for table in grid.select("table") if len(table.select("tr")) > 50]
-    (table,) = tables
-    assert len(table.select("tbody tr")) == len(data["points"])
-
-
-def test_the_grid_s_checks_passed(grid):
-    (table,) = grid.select("#can-a-copy-among-many-be-trusted table")
-    rows = [[cell.get_text(strip=True) for cell in row.select("td")] for row in table.select("tr")]
-    assert [row[:2] for row in rows if row] == [
-        ["grid_matches_cases", "passed"],
-        ["grid_within_gains", "passed"],
-    ]
+def test_the_script_is_deferred_and_on_no_other_page(site):
+    pages = {path: path.read_text() for path in site.rglob("*.html")}
+    (lecture,) = (path for path, text in pages.items() if "explorer.js" in text)
+    (script,) = BeautifulSoup(pages[lecture], "html.parser").select("script[src*='explorer.js']")
+    assert (lecture, script.has_attr("defer")) == (site / LECTURE, True)
