@@ -3,11 +3,12 @@
 from collections.abc import Iterable
 from typing import Any
 
-from robo_genesis.core import tables
 from robo_genesis.core.comparison import compare
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.orderings import HELD_BY, order
 from robo_genesis.core.quantities import format_value
+from robo_genesis.core.tables import markdown
+from robo_genesis.core.tables import metric_table as by_case
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated
 from robo_genesis.lessons.l04.theory import overshoot_share
@@ -44,28 +45,28 @@ def damping_word(zeta: float) -> str:
 
 def model_table(run: Experiment) -> str:
     """Return the engine's counts of the robot."""
-    return tables.markdown([run.readings["model"]])
+    return markdown([run.readings["model"]])
 
 
 def joint_table(run: Experiment) -> str:
     """Return the joints by name with their DOFs and limits."""
-    return tables.markdown(run.joints.rows())
+    return markdown(run.joints.rows())
 
 
 def metric_table(run: Experiment) -> str:
     """Return the metrics of all cases of the lab."""
-    return tables.metric_table({name: run.metrics[name] for name in spec.CASES})
+    return by_case({name: run.metrics[name] for name in spec.CASES})
 
 
 def compared_metrics(run: Experiment) -> str:
     """Return the metrics of G1 to G3."""
-    return tables.metric_table({name: run.metrics[name] for name in study_spec.COMPARED})
+    return by_case({name: run.metrics[name] for name in study_spec.COMPARED})
 
 
 def force_ranges(run: Experiment) -> str:
     """Return the gains and the force range of each joint in the baseline."""
     limits, joints = run.traces["baseline"].effort_limit, run.joints
-    return tables.markdown(
+    return markdown(
         [
             {
                 "joint": name,
@@ -91,7 +92,7 @@ def first_demand(run: Experiment) -> str:
                 "at the same limit until": format_value(study.at_limit_until(trace), "s"),
             }
         )
-    return tables.markdown(rows)
+    return markdown(rows)
 
 
 def outcomes_of_predictions(run: Experiment) -> str:
@@ -115,7 +116,7 @@ def outcomes_of_predictions(run: Experiment) -> str:
                 "outcome": outcome,
             }
         )
-    return tables.markdown(rows)
+    return markdown(rows)
 
 
 def _change(values: Iterable[float | None], metric: str) -> str:
@@ -139,7 +140,7 @@ def gravity_table(run: Experiment) -> str:
                 "settled from": format_value(m.settling_time, "s"),
             }
         )
-    return tables.markdown(rows)
+    return markdown(rows)
 
 
 def mass_table(run: Experiment) -> str:
@@ -152,12 +153,12 @@ def mass_table(run: Experiment) -> str:
         mass = readings[f"mass_KV_{kv:g}"]
         rows.append({head: f"position commanded, KV = {kv:g}", unit: mass})
         rows.append({head: term, unit: study.without_term(run, kv)})
-    return tables.markdown(rows)
+    return markdown(rows)
 
 
 def ideal_table(run: Experiment) -> str:
     """Return the linear joint's parameters and overshoot for each compared case."""
-    return tables.markdown(
+    return markdown(
         [
             {
                 "case": case,
@@ -186,7 +187,7 @@ def step_cases(run: Experiment) -> str:
                 "peak control": f"{float(abs(efforts).max()):.1f} N·m",
             }
         )
-    return tables.markdown(rows)
+    return markdown(rows)
 
 
 def step_size_table(run: Experiment) -> str:
@@ -201,7 +202,7 @@ def step_size_table(run: Experiment) -> str:
             row[f"overshoot, +{height:g} rad"] = share_text(overshoot_share(share))
             row[f"largest distance, +{height:g} rad"] = share_text(distance)
         rows.append(row)
-    return tables.markdown(rows)
+    return markdown(rows)
 
 
 def stepped_table(run: Experiment) -> str:
@@ -216,7 +217,7 @@ def stepped_table(run: Experiment) -> str:
             ]
             heads = ("run", "ideal joint", "stepped model", "Genesis")
             rows.append(dict(zip(heads, [f"{case}, +{height:g} rad", *values], strict=True)))
-    return tables.markdown(rows)
+    return markdown(rows)
 
 
 def explicit_table(run: Experiment) -> str:
@@ -226,7 +227,7 @@ def explicit_table(run: Experiment) -> str:
         name: is_saturated(engines[name].control_force, engines[name].effort_limit).sum(axis=0)
         for name in study_spec.SECOND_INTEGRATORS
     }
-    return tables.markdown(
+    return markdown(
         [
             {"joint": joint, "h (KV + d) / I": f"{ratio[k]:.2f}"}
             | {f"clipped, {name}": format_value(int(of[k]), "1") for name, of in counts.items()}
@@ -248,13 +249,13 @@ def first_step_table(run: Experiment) -> str:
             for engine, trace in study.by_engine(run, case).items()
         }
         rows.append({"case": case} | {n: format_value(v, "rad/s") for n, v in speeds.items()})
-    return tables.markdown(rows)
+    return markdown(rows)
 
 
 def convergence_table(run: Experiment) -> str:
     """Return for each solver step G2's overshoot in both engines; unstable runs are marked."""
     found = {engine: study.overshoot_by_substeps(run, engine) for engine in study.ENGINES}
-    return tables.markdown(
+    return markdown(
         [
             {"substeps": n, "h": f"{1000 * spec.G2.dt / n:g} ms"}
             | {
@@ -280,12 +281,12 @@ def relation_table(run: Experiment) -> str:
             shown = "unstable" if study.unstable(run, engine) else state
             row[ENGINE_LABELS[engine]] = f"{shown}: {values}"
         rows.append(row)
-    return tables.markdown(rows)
+    return markdown(rows)
 
 
 def metrics_by_engine(run: Experiment) -> str:
     """Return all metrics of G1 to G3, one table for each engine."""
     return "\n".join(
-        f"**{label}**\n\n{tables.metric_table(study.compared(run, engine))}"
+        f"**{label}**\n\n{by_case(study.compared(run, engine))}"
         for engine, label in ENGINE_LABELS.items()
     )
