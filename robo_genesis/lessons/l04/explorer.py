@@ -76,16 +76,11 @@ def pack(run: Experiment) -> dict[str, Any]:
         "limit": float(first.effort_limit[ENTRY]),
         "resolution": PACKED,
         "axes": [{"name": n, "values": list(v), "unit": u} for n, v, u in AXES],
-        "opens": POINTS.index(_opens(run)),
+        "opens": POINTS.index(CASE_POINTS["G2"]),
         "labels": [LABELS[name] for name in SHOWN],
         "measures": [_measure(run, name) for name in CELLS],
         "points": [_packed(run, point, start) for point in POINTS],
     }
-
-
-def _opens(run: Experiment) -> GridPoint:
-    """Return the first of the lesson's cases that overshoots, else the last point."""
-    return next((p for p in NAMES if run.metrics[p.name].overshoot > 0), POINTS[-1])
 
 
 def _measure(run: Experiment, name: str) -> dict[str, Any]:
