@@ -12,7 +12,6 @@ from robo_genesis.core.tables import metric_table as by_case
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated
 from robo_genesis.lessons.l04.theory import overshoot_share
-from robo_genesis.sim.arm.joint_control import differences
 
 MEASURES = False
 
@@ -172,22 +171,6 @@ def ideal_table(run: Experiment) -> str:
             for ideal in [study.ideal(run, case)]
         ]
     )
-
-
-def step_cases(run: Experiment) -> str:
-    """Return what each case of another step changes, and its largest control force."""
-    rows = []
-    for name, case in study_spec.STEP_CASES.items():
-        compared = name.split("_")[0]
-        efforts = run.traces[name].control_force[:, spec.ENTRY]
-        rows.append(
-            {
-                "case": f"{compared} → {name}",
-                "changes": ", ".join(differences(study_spec.COMPARED[compared], case, run.joints)),
-                "peak control": f"{float(abs(efforts).max()):.1f} N·m",
-            }
-        )
-    return markdown(rows)
 
 
 def step_size_table(run: Experiment) -> str:

@@ -4,7 +4,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robo_genesis.core.quantities import format_value
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
 
@@ -75,15 +74,6 @@ def test_saturation_counts_either_sign_from_the_threshold_on(make_trace, force, 
 def test_what_cannot_be_measured_is_refused(make_trace, target, entry, message):
     with pytest.raises(ValueError, match=message):
         step_metrics(make_trace([0, 0, 0], target), entry)
-
-
-def test_values_are_written_with_their_unit():
-    written = [format_value(*of) for of in (
-        (None, "s"), (0.04472, "rad"), (87, "N·m"), (1, "1"), (19, "1"), (-1e-5, "rad"),
-    )]  # fmt: skip
-    assert written == [
-        "not observed", "0.0447 rad", "87.00 N·m", "1 sample", "19 samples", "0.0000 rad",
-    ]  # fmt: skip
 
 
 # Multiples of 2⁻⁸ add and subtract without rounding.

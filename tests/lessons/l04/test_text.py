@@ -7,53 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robo_genesis.core.comparison import compare, comparison_sentence, prediction_sentence
 from robo_genesis.lessons.l04 import tables, text
 from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import MARGINS, RESOLUTION
+from robo_genesis.lessons.l04.spec import MARGINS
 
 NAMES = ("G1", "G2")
 MEASURED = StepMetrics(0.25, 0.12, 0.0111, 0.31, 0.0061, 0.002, 3.234, 86.5, 7, 0.07)
-
-
-def rise_times(*values, margin=0.0):
-    """Compare the rise times of two cases."""
-    pair = (replace(MEASURED, rise_time=value) for value in values)
-    return compare("rise_time", *pair, RESOLUTION, margin)
-
-
-@pytest.mark.parametrize(
-    ("values", "margin", "says"),
-    [
-        ((0.4, 0.3), 0, "goes down (G1 0.40 s, G2 0.30 s)."),
-        ((0.4, 0.4), 0.015, "does not change measurably (G1 0.40 s, G2 0.40 s)."),
-        ((0.4, 0.404), 0, "does not change measurably (G1 0.40 s, G2 0.40 s)."),
-        ((0.12, 0.11), 0.015,
-         "is too close to call: G1 0.12 s, G2 0.11 s, within the margin of 0.015 s."),
-        ((0.4, None), 0, "was observed for G1 alone (G1 0.40 s, G2 not observed); within this "
-                         "window G2 is the slower one, by how much is unknown."),
-        ((None, None), 0, "was not observed in either case, so this window cannot rank them."),
-    ],
-)  # fmt: skip
-def test_a_comparison_says_what_was_measured_or_not_observed(values, margin, says):
-    assert comparison_sentence(NAMES, rise_times(*values, margin=margin)) == f"The rise time {says}"
-
-
-@pytest.mark.parametrize(
-    ("predicted", "values", "says"),
-    [
-        ("no later", (0.4, 0.3), "Held in this run."),
-        ("no later", (0.4, 0.4), "Held in this run."),
-        ("no later", (0.4, None), f"**Did not hold**: measured higher. {text.INSPECT}"),
-        ("later", (0.3, 0.4), "Held in this run."),
-        ("later", (0.4, 0.4), f"**Did not hold**: measured equal. {text.INSPECT}"),
-        ("lower", (None, 0.4), "Held in this run."),
-        ("higher", (None, None), "Cannot be judged: not observed in either case."),
-    ],
-)
-def test_a_prediction_is_compared_with_the_measured_order(predicted, values, says):
-    sentence = prediction_sentence(NAMES, rise_times(*values), predicted, text.INSPECT)
-    assert sentence == f"Predicted: rise time {predicted} in G2 than in G1. {says}"
 
 
 def with_metrics(run, **by_case):
