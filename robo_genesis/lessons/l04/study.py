@@ -145,11 +145,9 @@ def overshoots(run: Experiment, case: str, height: float) -> tuple[float, float,
 
     The last is that of a difference of two runs for the small step, and the metric for the other.
     """
-    found = (
-        overshoot_share(share(run, case, "small")) * height
-        if height < spec.STEP
-        else run.metrics[case].overshoot
-    )
+    found = run.metrics[case].overshoot
+    if height < spec.STEP:
+        found = overshoot_share(share(run, case, "small")) * height
     return ideal(run, case).overshoot * height, model_overshoot(run, case, height), found
 
 
@@ -183,18 +181,16 @@ def first_speed(run: Experiment, case: str, term: float) -> float:
 
     Args:
         run: inertia, passive damping and gravity of the start pose.
-        case: one of the compared cases; its effort is assumed to be clipped throughout the step.
+        case: one of the compared cases; the demand on its motor is far above the limit.
         term: the integrator's addition to the passive damping on the inertia's side [N·m·s/rad].
     """
-    configured, readings = study_spec.COMPARED[case], run.readings[GROUP]
-    damping, inertia = readings["passive_damping"], readings["inertia_Genesis"]
-    h = configured.dt / configured.substeps
-    effort = float(run.traces[case].start_control_force[spec.ENTRY])
-    speed = 0.0
-    for _ in range(configured.substeps):
-        net = effort - damping * speed - readings["gravity_at_start_Genesis"]
-        speed += h * net / (inertia + h * (damping + term))
-    return speed
+    gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
+    damping, h = readings["passive_damping"], gains.dt / gains.substeps
+    joint = replace(ideal(run, case), damping=damping + term)
+    limit = float(gains.effort_limit[spec.ENTRY])
+    gravity = readings["gravity_at_start_Genesis"]
+    path = stepped_joint(joint, damping, spec.STEP, h, gains.substeps, limit, gravity)
+    return float(path[-1] - path[-2]) / h
 
 
 def unstable_joints(trace: Trace) -> list[str]:
