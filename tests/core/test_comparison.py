@@ -2,8 +2,9 @@
 
 import pytest
 
-from robo_genesis.core.comparison import compare_values, comparison_sentence, prediction_sentence
+from robo_genesis.core.comparison import compare_values
 from robo_genesis.core.quantities import format_value
+from robo_genesis.core.text import comparison_sentence, prediction_sentence
 
 NAMES, ADVICE = ("G1", "G2"), "Look at the window."
 

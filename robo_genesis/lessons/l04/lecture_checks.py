@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from robo_genesis.core.checks import Finding, above, at_most, below, equal, noted, within
+from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.orderings import HELD
 from robo_genesis.core.quantities import format_value
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND, is_saturated

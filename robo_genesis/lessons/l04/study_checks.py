@@ -15,7 +15,6 @@ from robo_genesis.core.checks import (
     noted,
     within,
 )
-from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.lecture_checks import orders

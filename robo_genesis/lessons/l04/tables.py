@@ -3,9 +3,8 @@
 from collections.abc import Iterable
 from typing import Any
 
-from robo_genesis.core.comparison import compare
+from robo_genesis.core.comparison import HELD_BY, compare, order
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.orderings import HELD_BY, order
 from robo_genesis.core.quantities import format_value
 from robo_genesis.core.tables import markdown
 from robo_genesis.core.tables import metric_table as by_case

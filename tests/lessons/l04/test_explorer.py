@@ -9,7 +9,7 @@ from bs4 import BeautifulSoup
 from playwright.sync_api import Page
 from watching import errors
 
-from robo_genesis.core.orderings import order
+from robo_genesis.core.comparison import order
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
