@@ -48,7 +48,7 @@ FACTS = SimpleNamespace(
 LAB = notebook(cell(WRITE_BUNDLE), front=LAB_FRONT)
 FORGED = """\
 from IPython.display import display
-of = {"function": "robo_genesis.lessons.l04.text.metric_table", "arguments": []}
+of = {"function": "robo_genesis.lessons.l04.tables.metric_table", "arguments": []}
 display({"text/markdown": "7"}, metadata={"robo_genesis": of}, raw=True)"""
 FORGED_LAB = notebook(cell(WRITE_BUNDLE), cell(FORGED), front=LAB_FRONT)
 

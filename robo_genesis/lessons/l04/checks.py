@@ -16,10 +16,10 @@ from robo_genesis.lessons.l04.metrics import (
     SETTLING_BAND,
 )  # fmt: skip
 from robo_genesis.sim import common_checks
+from robo_genesis.sim.arm import laws
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import differences
 from robo_genesis.sim.arm.joints import EFFORT_UNIT, POSITION_UNIT
-from robo_genesis.sim.arm.laws import LAW
 from robo_genesis.sim.common_checks import posture
 
 
@@ -115,12 +115,11 @@ def not_observed(run: Experiment) -> Iterator[Finding]:
 
 def control_law(run: Experiment) -> Iterator[Finding]:
     """Each control force is clip(KP (q_target − q) − KV q̇) with the gains of its own case."""
-    for name, c in spec.CASES.items():
+    for name, case in spec.CASES.items():
         trace = run.traces[name]
-        limit = trace.effort_limit
-        law = np.clip(c.kp * (c.q_target - trace.q[1:]) - c.kv * trace.qd, -limit, limit)  # (n, d)
+        law = laws.control_law(case, trace.q[1:], trace.qd)  # (n, d)
         apart = float(np.abs(law - trace.control_force).max())
-        yield at_most(f"{name}.distance_to_control_law", apart, LAW)
+        yield at_most(f"{name}.distance_to_control_law", apart, laws.LAW)
 
 
 def measurements(run: Experiment) -> Iterator[Finding]:

@@ -3,20 +3,19 @@
 The script asks what a chosen run will show before it shows the run beside the last one.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
 from robo_genesis.core import tables
-from robo_genesis.core.checks import evaluate
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import decimal, format_value
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, RESOLUTION, STEPPED_JOINT
-from robo_genesis.lessons.l04.study_checks import GRID_CHECKS
 from robo_genesis.lessons.l04.study_spec import CASE_POINTS, KP, KV, POINTS, STEP_SIZES, GridPoint
+from robo_genesis.lessons.l04.tables import margin_text, share_text
 
 MEASURES = False
 
@@ -30,6 +29,9 @@ LABELS = StepMetrics.about("label")
 SHOWN = tuple(name for name in LABELS if name != "initial_error")
 """The metrics shown for a run. The initial error is left out: it equals the step."""
 
+REPEATED = "saturation_duration"
+"""Not in the table, because it is the number of saturated samples times the time step."""
+
 CELLS = {
     "saturation_samples": (1, 0, "samples"),
     "rise_time": (1000, 0, "ms"),
@@ -42,15 +44,10 @@ declared margin, so a reader can be asked for the order of two runs."""
 NAMES = {point: name for name, point in CASE_POINTS.items()}
 
 
-def overshoot_share(point: GridPoint, measured: StepMetrics) -> float:
-    """Return the overshoot as a share of the step."""
-    return measured.overshoot / point.step
-
-
 def sentence(point: GridPoint, measured: StepMetrics, samples: int) -> str:
     """Describe a point, its overshoot, and whether it saturated."""
     name = f" (the case {NAMES[point]})" if point in NAMES else ""
-    overshoot = f"{100 * overshoot_share(point, measured):.1f} % of the step"
+    overshoot = f"{share_text(measured.overshoot / point.step)} of the step"
     count = measured.saturation_samples
     force = f"Saturated: {count} of {samples} samples" if count else "Not saturated: no sample"
     return (
@@ -122,11 +119,6 @@ def _axis(
     }
 
 
-def _opens(run: Experiment) -> GridPoint:
-    """Return the first of the lesson's cases that overshoots, else the last point."""
-    return next((p for p in NAMES if run.metrics[p.name].overshoot > 0), POINTS[-1])
-
-
 def _measure(name: str) -> dict[str, Any]:
     """Return a metric that cells show and questions are about."""
     unit, noun = (StepMetrics.about(what)[name] for what in ("unit", "noun"))
@@ -138,7 +130,7 @@ def _measure(name: str) -> dict[str, Any]:
         "lower": words[0],
         "higher": words[1],
         "margin": max(MARGINS[name], RESOLUTION[unit]),
-        "within": f"{MARGINS[name]:g} {'samples' if unit == '1' else unit}",
+        "within": margin_text(name),
     }
 
 
@@ -150,7 +142,7 @@ def _cell(run: Experiment, point: GridPoint, start: float) -> dict[str, Any]:
     return {
         "name": f"KP {point.kp:g}, KV {point.kv:g}",
         "tag": NAMES.get(point, ""),
-        "opens": point == _opens(run),
+        "opens": point == CASE_POINTS["G2"],
         "sentence": sentence(point, measured, trace.steps),
         "values": [v for n, v in _written(measured).items() if n in SHOWN],
         "numbers": list(numbers.values()),
@@ -171,38 +163,18 @@ def _written(measured: StepMetrics) -> dict[str, str]:
     return {name: format_value(value, unit) for name, value, unit in measured.items()}
 
 
-def cell_labels(numbers: Sequence[str]) -> list[str]:
-    """Return the text of each point's cell in a map: the case's name, if any, above its number."""
-    return [
-        f"{NAMES[point]}\n{number}" if point in NAMES else number
-        for point, number in zip(POINTS, numbers, strict=True)
-    ]
-
-
-def checks(run: Experiment) -> str:
-    """Return the table of the checks of the grid."""
-    return tables.check_table(evaluate(GRID_CHECKS, run))
-
-
 def table(run: Experiment) -> str:
-    """Return all runs of the grid with the metrics of the maps and the explorer."""
-    return tables.markdown(rows(run))
-
-
-def rows(run: Experiment) -> list[dict[str, str]]:
-    """Return one row a point for a table, with the metrics of the maps and the explorer."""
-    found = []
+    """Return all runs of the grid, one row a point, with the metrics of the explorer."""
+    rows = []
     for point in POINTS:
         measured = run.metrics[point.name]
-        written = _written(measured)
-        found.append(
-            {
-                "step [rad]": f"{point.step:g}",
-                "KP": f"{point.kp:g}",
-                "KV": f"{point.kv:g}",
+        gains = {"step [rad]": point.step, "KP": point.kp, "KV": point.kv}
+        rows.append(
+            {head: f"{value:g}" for head, value in gains.items()}
+            | {
                 "case": NAMES.get(point, ""),
-                "overshoot, share": f"{100 * overshoot_share(point, measured):.1f} %",
+                "overshoot, share": share_text(measured.overshoot / point.step),
             }
-            | {LABELS[name]: written[name] for name in SHOWN if name != "saturation_duration"}
+            | {LABELS[name]: _written(measured)[name] for name in SHOWN if name != REPEATED}
         )
-    return found
+    return tables.markdown(rows)

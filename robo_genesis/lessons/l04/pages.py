@@ -18,6 +18,7 @@ from robo_genesis.core.text import listed
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import (
     checks,
+    lecture_checks,
     spec,
     study,
     study_checks,
@@ -77,7 +78,7 @@ LECTURE = with_runs(
         study_spec.ASSIGNED: ASSIGNED,
     },
     study.GRAVITY,
-    study_checks.LECTURE,
+    (study_checks.study_factors, *lecture_checks.LECTURE),
 )
 FORMULA = with_runs(
     MISTAKES,

@@ -1,6 +1,6 @@
-"""Figures of lesson L04: functions of the experiment, and of axes; no numerics, no show()."""
+"""Figures of lesson L04: functions of the experiment; no numerics, no show()."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,6 @@ from robo_genesis.lessons.l04.metrics import SETTLING_BAND
 from robo_genesis.lessons.l04.spec import CASE_MARKS, ENTRY, STEPPED_JOINT
 from robo_genesis.lessons.l04.study_spec import ASSIGNED, COMPARED, EXAMPLE
 from robo_genesis.sim.arm.franka import LINK_PARENTS
-from robo_genesis.sim.arm.joints import JointMap
 
 MEASURES = False
 
@@ -34,6 +33,13 @@ GAINS_LABELS: Mapping[str, Mapping[str, Label]] = {
     "control force": {"G1": (0.09, (-24, -4)), "G2": (0.2, (-10, -16)), "G3": (0.1, (8, -24))},
 }
 
+PANELS = {
+    "position": ("q", "q [rad]"),
+    "velocity": ("qd", "q̇ [rad/s]"),
+    "control force": ("control_force", "control force [N·m]"),
+}
+"""The array of a trace that each panel of a response shows, and the label of its axis."""
+
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured link origins."""
@@ -41,36 +47,74 @@ def posture(run: Experiment) -> Figure:
 
 
 def assigned(run: Experiment) -> Figure:
-    """Draw the stepped joint with assigned states and with a commanded target."""
-    figure = plotting.figure(3.4)
-    both = run.traces[ASSIGNED], run.traces["baseline"]
-    assigned_and_commanded(figure.subplots(), *both, run.joints, STEPPED_JOINT)
+    """Draw the stepped joint with assigned states and with a commanded target, over time."""
+    figure, written, commanded = plotting.figure(3.4), run.traces[ASSIGNED], run.traces["baseline"]
+    ax = figure.subplots()
+    _target(ax, float(commanded.target[0, ENTRY]))
+    crosses = {"color": look("other")["color"], "linestyle": "", "marker": "x", "markersize": 4}
+    ax.plot(written.t[::4], written.q[::4, ENTRY], label="assigned: set_dofs_position", **crosses)
+    name = "commanded: control_dofs_position"
+    ax.plot(commanded.t, commanded.q[:, ENTRY], label=name, **solid("baseline"))
+    for trace, text, mark, label in (
+        (written, "set_dofs_position", "other", (0.6, (10, -20))),
+        (commanded, "control_dofs_position", "baseline", (0.27, (2, -18))),
+    ):
+        _direct(ax, trace.t, trace.q[:, ENTRY], text, look(mark)["color"], label)
+    title = f"Assigned or commanded, {STEPPED_JOINT}"
+    _finish(ax, title, "q [rad]", float(commanded.t[-1]))
     return figure
 
 
 def baseline(run: Experiment) -> Figure:
     """Draw position, velocity and control force of the stepped joint in the baseline."""
-    figure = plotting.figure(7)
-    response(
-        figure.subplots(3, 1, sharex=True), {"baseline": run.traces["baseline"]}, run.joints,
-        STEPPED_JOINT, 0.6,
-    )  # fmt: skip
-    return figure
+    return _response(7, {"baseline": run.traces["baseline"]}, 0.6, {})
 
 
 def compared(run: Experiment) -> Figure:
     """Draw the beginning of the compared cases: position, velocity, control force of the joint."""
-    figure = plotting.figure(8)
-    traces = {name: run.traces[name] for name in COMPARED}
-    axes = figure.subplots(3, 1, sharex=True)
-    response(axes, traces, run.joints, STEPPED_JOINT, START, GAINS_LABELS)
+    return _response(8, {name: run.traces[name] for name in COMPARED}, START, GAINS_LABELS)
+
+
+def _response(
+    height: float,
+    traces: Mapping[str, Trace],
+    until: float,
+    labels: Mapping[str, Mapping[str, Label]],
+) -> Figure:
+    """Draw position, velocity and control force of the stepped joint up to `until` [s].
+
+    The position has the common target and its settling band, the force the limits read back.
+    """
+    figure, first = plotting.figure(height), next(iter(traces.values()))
+    position, velocity, force = axes = figure.subplots(3, 1, sharex=True)
+    _target(position, float(first.target[0, ENTRY]), SETTLING_BAND)
+    velocity.axhline(0, **LINE)
+    _limits(force, first, until)
+    for ax, (panel, (field, ylabel)) in zip(axes, PANELS.items(), strict=True):
+        for name, mark in marks_of(list(traces), CASE_MARKS).items():
+            values = getattr(traces[name], field)[:, ENTRY]
+            t = traces[name].t[-len(values) :]
+            t, values = t[t <= until], values[t <= until]
+            ax.plot(t, values, label=name, marker=".", markersize=5, **solid(mark))
+            if labels:
+                _direct(ax, t, values, name, look(mark)["color"], labels[panel][name])
+        _finish(ax, f"{panel.capitalize()} of {STEPPED_JOINT}", ylabel, until)
+        ax.label_outer()
     return figure
 
 
 def baseline_forces(run: Experiment) -> Figure:
-    """Draw both force getters of the baseline."""
-    figure = plotting.figure(3.4)
-    two_forces(figure.subplots(), run.traces["baseline"], run.joints, STEPPED_JOINT)
+    """Draw both force getters of the baseline: they answer different questions."""
+    figure, trace, until = plotting.figure(3.4), run.traces["baseline"], 0.6
+    ax = figure.subplots()
+    _limits(ax, trace, until)
+    for name, array, mark, label in (
+        ("get_dofs_control_force", trace.control_force, "baseline", (0.14, (0, 32))),
+        ("get_dofs_force", trace.internal_force, "other", (0.25, (4, -20))),
+    ):
+        ax.plot(trace.t_step, array[:, ENTRY], label=name, marker=".", markersize=5, **solid(mark))
+        _direct(ax, trace.t_step, array[:, ENTRY], name, solid(mark)["color"], label)
+    _finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]", until)
     return figure
 
 
@@ -92,111 +136,13 @@ def defined(run: Experiment) -> Figure:
     overshoot, error = (format_value(value, "rad") for value in (m.overshoot, m.final_error))
     _note(ax, (float(trace.t[peak]), float(q[peak])), f"overshoot: {overshoot}", 0.94, (0, 0.5))
     _note(ax, (START, float(q[last])), f"final error: {error}", 0.62, (0.8, 1))
-    unit = run.joints.position_units[ENTRY]
-    _finish(ax, f"Position of {STEPPED_JOINT} in the example", f"q [{unit}]", START)
+    _finish(ax, f"Position of {STEPPED_JOINT} in the example", "q [rad]", START)
     return figure
 
 
 def solid(mark: str, **more: Any) -> dict[str, Any]:
     """Return the look of measured data: the colour of a mark, and a solid line."""
     return look(mark, **{"linestyle": "-", **more})
-
-
-def position(
-    ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str, until: float,
-    labels: Mapping[str, Label] | None = None,
-) -> Axes:  # fmt: skip
-    """Draw q of one joint for each trace, the common target and its settling band."""
-    k, first = joints.entry(joint), next(iter(traces.values()))
-    _target(ax, float(first.target[0, k]), SETTLING_BAND)
-    _curves(ax, {name: (trace.t, trace.q[:, k]) for name, trace in traces.items()}, labels, until)
-    return _finish(ax, f"Position of {joint}", f"q [{joints.position_units[k]}]", until)
-
-
-def velocity(
-    ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str, until: float,
-    labels: Mapping[str, Label] | None = None,
-) -> Axes:  # fmt: skip
-    """Draw q̇ of one joint for each trace."""
-    k = joints.entry(joint)
-    ax.axhline(0, **LINE)
-    _curves(
-        ax, {name: (trace.t_step, trace.qd[:, k]) for name, trace in traces.items()}, labels, until
-    )
-    return _finish(ax, f"Velocity of {joint}", f"q̇ [{joints.position_units[k]}/s]", until)
-
-
-def control_force(
-    ax: Axes, traces: Mapping[str, Trace], joints: JointMap, joint: str, until: float,
-    labels: Mapping[str, Label] | None = None,
-) -> Axes:  # fmt: skip
-    """Draw the control force of one joint for each trace, between the limits read back."""
-    k = joints.entry(joint)
-    _limits(ax, next(iter(traces.values())), k, until)
-    curves = {name: (trace.t_step, trace.control_force[:, k]) for name, trace in traces.items()}
-    _curves(ax, curves, labels, until)
-    ylabel = f"control force [{joints.effort_units[k]}]"
-    return _finish(ax, f"Control force of {joint}", ylabel, until)
-
-
-def response(
-    axes: Sequence[Axes],
-    traces: Mapping[str, Trace],
-    joints: JointMap,
-    joint: str,
-    until: float,
-    labels: Mapping[str, Mapping[str, Label]] | None = None,
-) -> Sequence[Axes]:
-    """Draw position, velocity and control force of one joint on three axes, to `until` [s]."""
-    panels = {"position": position, "velocity": velocity, "control force": control_force}
-    for ax, (name, draw) in zip(axes, panels.items(), strict=True):
-        draw(ax, traces, joints, joint, until, labels[name] if labels else None)
-        ax.label_outer()
-    return axes
-
-
-def two_forces(ax: Axes, trace: Trace, joints: JointMap, joint: str) -> Axes:
-    """Draw both force getters of one run: they answer different questions."""
-    k, until = joints.entry(joint), 0.6
-    _limits(ax, trace, k, until)
-    for name, array, mark, label in (
-        ("get_dofs_control_force", trace.control_force, "baseline", (0.14, (0, 32))),
-        ("get_dofs_force", trace.internal_force, "other", (0.25, (4, -20))),
-    ):
-        ax.plot(trace.t_step, array[:, k], label=name, marker=".", markersize=5, **solid(mark))
-        _direct(ax, trace.t_step, array[:, k], name, solid(mark)["color"], label)
-    return _finish(ax, f"Forces on {joint}", f"force [{joints.effort_units[k]}]", until)
-
-
-def assigned_and_commanded(
-    ax: Axes, assigned: Trace, commanded: Trace, joints: JointMap, joint: str
-) -> Axes:
-    """Draw a state that is assigned at every sample and one that is commanded, over time."""
-    k = joints.entry(joint)
-    _target(ax, float(commanded.target[0, k]))
-    written = {"color": look("other")["color"], "linestyle": "", "marker": "x", "markersize": 4}
-    ax.plot(assigned.t[::4], assigned.q[::4, k], label="assigned: set_dofs_position", **written)
-    name = "commanded: control_dofs_position"
-    ax.plot(commanded.t, commanded.q[:, k], label=name, **solid("baseline"))
-    for run, text, mark, label in (
-        (assigned, "set_dofs_position", "other", (0.6, (10, -20))),
-        (commanded, "control_dofs_position", "baseline", (0.27, (2, -18))),
-    ):
-        _direct(ax, run.t, run.q[:, k], text, look(mark)["color"], label)
-    unit = joints.position_units[k]
-    return _finish(ax, f"Assigned or commanded, {joint}", f"q [{unit}]", float(commanded.t[-1]))
-
-
-def _curves(
-    ax: Axes, curves: Mapping[str, tuple[Any, Any]], labels: Mapping[str, Label] | None,
-    until: float,
-) -> None:  # fmt: skip
-    """Draw one solid line with a mark at each sample for each case, labelled directly."""
-    for name, mark in marks_of(list(curves), CASE_MARKS).items():
-        t, values = (array[curves[name][0] <= until] for array in curves[name])
-        ax.plot(t, values, label=name, marker=".", markersize=5, **solid(mark))
-        if labels:
-            _direct(ax, t, values, name, look(mark)["color"], labels[name])
 
 
 def _direct(
@@ -239,9 +185,9 @@ def _target(ax: Axes, value: float, band: float | None = None) -> None:
         ax.annotate(name, (1, value - band), (-4, -4), ha="right", va="top", **end)
 
 
-def _limits(ax: Axes, trace: Trace, k: int, until: float) -> None:
+def _limits(ax: Axes, trace: Trace, until: float) -> None:
     """Draw both limits that were read back, and name the upper one."""
-    limit = float(trace.effort_limit[k])
+    limit = float(trace.effort_limit[ENTRY])
     ax.axhline(limit, **LIMIT)
     ax.axhline(-limit, **LIMIT)
     ax.set_ylim(-1.25 * limit, 1.25 * limit)
@@ -249,7 +195,6 @@ def _limits(ax: Axes, trace: Trace, k: int, until: float) -> None:
                 ha="right", color=LIMIT["color"])  # fmt: skip
 
 
-def _finish(ax: Axes, title: str, ylabel: str, until: float) -> Axes:
+def _finish(ax: Axes, title: str, ylabel: str, until: float) -> None:
     ax.set_title(title, loc="left")
     ax.set(xlabel="time [s]", ylabel=ylabel, xlim=(-0.005, until))
-    return ax

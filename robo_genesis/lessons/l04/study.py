@@ -12,7 +12,12 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated, step_metrics
-from robo_genesis.lessons.l04.theory import IdealJoint, step_share, stepped_joint
+from robo_genesis.lessons.l04.theory import (
+    IdealJoint,
+    overshoot_share,
+    step_share,
+    stepped_joint,
+)
 from robo_genesis.sim.arm import dynamics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase, run_case
@@ -50,23 +55,22 @@ def measure(trace: Trace, case: ControlCase) -> StepMetrics:
 
 def read_start(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
     """Read passive damping, inertia and gravity effort at the start, in Genesis."""
-    k, dofs = joints.entry(spec.STEPPED_JOINT), joints.dofs_idx_local.tolist()
-    q = spec.BASELINE.q_start
-    return {
-        "passive_damping": float(dynamics.passive_damping(robot, dofs)[k]),
-        "inertia_Genesis": float(dynamics.effective_inertia(scene, robot, joints, q)[k]),
-        "gravity_at_start_Genesis": float(dynamics.gravity_effort(scene, robot, joints, q)[k]),
+    q, dofs = spec.BASELINE.q_start, joints.dofs_idx_local.tolist()
+    found = {
+        "passive_damping": dynamics.passive_damping(robot, dofs),
+        "inertia_Genesis": dynamics.effective_inertia(scene, robot, joints, q),
+        "gravity_at_start_Genesis": dynamics.gravity_effort(scene, robot, joints, q),
     }
+    return {name: float(values[spec.ENTRY]) for name, values in found.items()}
 
 
 def read_masses(scene: Any, robot: Any, joints: JointMap) -> dict[str, float]:
     """Read the mass matrix at the start while a position is commanded, for each KV, in Genesis."""
-    k, dofs = joints.entry(spec.STEPPED_JOINT), joints.dofs_idx_local.tolist()
     found = {}
-    for kv in COMPARED_KV:
-        case = next(of for of in study_spec.COMPARED.values() if of.kv[spec.ENTRY] == kv)
+    for case in (spec.G1, spec.G3):
         run_case(scene, robot, joints, replace(case, q_target=case.q_start, steps=1))
-        found[f"mass_KV_{kv:g}"] = float(dynamics.mass_diagonal(robot, dofs)[k])
+        masses = dynamics.mass_diagonal(robot, joints.dofs_idx_local.tolist())
+        found[f"mass_KV_{case.kv[spec.ENTRY]:g}"] = float(masses[spec.ENTRY])
     return found
 
 
@@ -74,22 +78,17 @@ def read_gravity(
     scene: Any, robot: Any, joints: JointMap, traces: Mapping[str, Trace]
 ) -> dict[str, float]:
     """Read the gravity effort at the end state of each case, in Genesis."""
-    k = joints.entry(spec.STEPPED_JOINT)
-    return {
-        f"gravity_{name}": float(
-            dynamics.gravity_effort(scene, robot, joints, traces[name].q[-1])[k]
-        )
-        for name in spec.CASES
-    }
+    found = {}
+    for name in spec.CASES:
+        efforts = dynamics.gravity_effort(scene, robot, joints, traces[name].q[-1])
+        found[f"gravity_{name}"] = float(efforts[spec.ENTRY])
+    return found
 
 
 def read_second_engine() -> dict[str, float]:
     """Read inertia and gravity effort at the start in MuJoCo."""
-    inertia, gravity = mujoco_joints.at_rest(spec.BASELINE, spec.BASELINE.q_start)
-    return {
-        "inertia_MuJoCo": float(inertia[spec.ENTRY]),
-        "gravity_at_start_MuJoCo": float(gravity[spec.ENTRY]),
-    }
+    at_rest = mujoco_joints.at_rest(spec.BASELINE, spec.BASELINE.q_start)
+    return {name: float(of[spec.ENTRY]) for name, of in zip(IN_MUJOCO, at_rest, strict=True)}
 
 
 def implicit_term(run: Experiment, kv: float) -> float:
@@ -110,17 +109,6 @@ def damping_ratio(case: str) -> FloatArray:
     return np.asarray(settings.dt / settings.substeps * (settings.kv + damping) / inertia)
 
 
-def same_beginning(short: Trace, long: Trace) -> bool:
-    """Return whether the longer run begins with exactly the samples of the shorter one."""
-    n = short.steps
-    return (
-        long.steps > n
-        and np.array_equal(short.q, long.q[: n + 1])
-        and np.array_equal(short.qd, long.qd[:n])
-        and np.array_equal(short.control_force, long.control_force[:n])
-    )
-
-
 def ideal(run: Experiment, case: str) -> IdealJoint:
     """Return the linear joint with a compared case's gains and the inertia of Genesis."""
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
@@ -134,27 +122,75 @@ def share(run: Experiment, case: str, kind: str = "") -> FloatArray:
     return step_share(step, run.traces[f"{case}_hold"], spec.ENTRY)
 
 
-def stepped(run: Experiment, case: str, height: float) -> FloatArray:
-    """Return the distance of the stepped joint (n+1,) from the target [rad], sampled as the run.
+def model_overshoot(run: Experiment, case: str, height: float) -> float:
+    """Return the overshoot of the stepped model of one joint at the run's samples [rad].
 
     A step of the lesson's height has the force limit and gravity: the mean of the efforts that hold
     start and end of the case. A smaller step has neither.
     """
     gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
-    h, steps = gains.dt / gains.substeps, gains.steps * gains.substeps
-    clipped = height >= spec.STEP
-    gravity = (readings["gravity_at_start_Genesis"] + readings[f"gravity_{case}"]) / 2
+    limit, gravity = np.inf, 0.0
+    if height >= spec.STEP:
+        limit = float(gains.effort_limit[spec.ENTRY])
+        gravity = (readings["gravity_at_start_Genesis"] + readings[f"gravity_{case}"]) / 2
     path = stepped_joint(
-        ideal(run, case), readings["passive_damping"], height, h, steps,
-        limit=float(gains.effort_limit[spec.ENTRY]) if clipped else np.inf,
-        gravity=gravity if clipped else 0.0,
+        ideal(run, case), readings["passive_damping"], height, gains.dt / gains.substeps,
+        gains.steps * gains.substeps, limit, gravity,
     )  # fmt: skip
-    return np.asarray(path[:: gains.substeps])
+    return float(max(0.0, path[:: gains.substeps].max()))
 
 
-def stepped_overshoot(run: Experiment, case: str, height: float) -> float:
-    """Return the overshoot of the model of one joint [rad]."""
-    return float(max(0.0, stepped(run, case, height).max()))
+def overshoots(run: Experiment, case: str, height: float) -> tuple[float, float, float]:
+    """Return the overshoots [rad] of the ideal joint, of the stepped model and of Genesis.
+
+    The last is that of a difference of two runs for the small step, and the metric for the other.
+    """
+    found = run.metrics[case].overshoot
+    if height < spec.STEP:
+        found = overshoot_share(share(run, case, "small")) * height
+    return ideal(run, case).overshoot * height, model_overshoot(run, case, height), found
+
+
+def leaves_ideal(run: Experiment, case: str) -> tuple[int, float]:
+    """Return the first sample at which a case is too far from the ideal joint, and how far it gets.
+
+    The sample is the last one if the distance [rad] never exceeds `PARTING_THRESHOLD`.
+    """
+    trace = run.traces[case]
+    q = trace.q[:, spec.ENTRY].astype(float)
+    step = float(study_spec.COMPARED[case].q_target[spec.ENTRY]) - q[0]
+    distance = np.abs(q - q[0] - step * ideal(run, case).response(trace.t))
+    beyond = np.flatnonzero(distance > study_spec.PARTING_THRESHOLD)
+    return int(beyond[0]) if beyond.size else trace.steps, float(distance.max())
+
+
+def at_limit_until(trace: Trace) -> float:
+    """Return the time [s] to which the stepped joint's effort stays at the limit of its start.
+
+    It is 0 if the effort is below the limit at t = 0 or at the first sample.
+    """
+    first, limit = trace.start_control_force[spec.ENTRY], trace.effort_limit[spec.ENTRY]
+    force = trace.control_force[:, spec.ENTRY]
+    held = is_saturated(force, limit) & (np.sign(force) == np.sign(first))
+    held &= is_saturated(float(first), float(limit))
+    return float(trace.t[int(np.append(held, False).argmin())])
+
+
+def first_speed(run: Experiment, case: str, term: float) -> float:
+    """Return the stepped joint's speed [rad/s] after the first step, its neighbours held still.
+
+    Args:
+        run: inertia, passive damping and gravity of the start pose.
+        case: one of the compared cases; the demand on its motor is far above the limit.
+        term: the integrator's addition to the passive damping on the inertia's side [N·m·s/rad].
+    """
+    gains, readings = study_spec.COMPARED[case], run.readings[GROUP]
+    damping, h = readings["passive_damping"], gains.dt / gains.substeps
+    joint = replace(ideal(run, case), damping=damping + term)
+    limit = float(gains.effort_limit[spec.ENTRY])
+    gravity = readings["gravity_at_start_Genesis"]
+    path = stepped_joint(joint, damping, spec.STEP, h, gains.substeps, limit, gravity)
+    return float(path[-1] - path[-2]) / h
 
 
 def unstable_joints(trace: Trace) -> list[str]:

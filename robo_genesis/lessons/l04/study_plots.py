@@ -1,9 +1,8 @@
-"""Figures of L04's studies: functions of the experiment, and of axes; no numerics, no show()."""
+"""Figures of L04's studies: functions of the experiment; no numerics, no show()."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, to_rgba
 from matplotlib.figure import Figure
 
@@ -13,8 +12,7 @@ from robo_genesis.core.palette import MARKS, PARTS
 from robo_genesis.core.plotting import LINE, look
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.lessons.l04 import spec, study
-from robo_genesis.lessons.l04.engine_comparison import ENGINE_LABELS
-from robo_genesis.lessons.l04.explorer import cell_labels
+from robo_genesis.lessons.l04.explorer import NAMES
 from robo_genesis.lessons.l04.plots import solid
 from robo_genesis.lessons.l04.spec import CASE_MARKS
 from robo_genesis.lessons.l04.study_spec import (
@@ -25,7 +23,10 @@ from robo_genesis.lessons.l04.study_spec import (
     SMALL_STEP,
     SMALL_STEPPED,
     STEP_SIZES,
+    SUBSTEPS_STUDIED,
+    GridPoint,
 )
+from robo_genesis.lessons.l04.tables import ENGINE_LABELS
 
 MEASURES = False
 
@@ -46,23 +47,21 @@ ENGINE_STYLES = {
 
 
 def theory(run: Experiment) -> Figure:
-    """Draw the compared cases over the ideal joint's response."""
-    figure = plotting.figure(7)
+    """Draw the compared cases over the ideal joint's response, one case on each axes."""
     start, t = float(spec.BASELINE.q_start[spec.ENTRY]), run.traces["G1"].t
-    beside_ideal(
-        figure.subplots(3, 1, sharex=True),
-        t,
-        {name: run.traces[name].q[:, spec.ENTRY] for name in COMPARED},
-        {name: start + spec.STEP * study.ideal(run, name).response(t) for name in COMPARED},
-        target=start + spec.STEP,
-        until=0.4,
-    )
-    return figure
+    curves = {
+        name: {
+            "ideal joint": start + spec.STEP * study.ideal(run, name).response(t),
+            "measured": run.traces[name].q[:, spec.ENTRY],
+        }
+        for name in COMPARED
+    }
+    return _beside_ideal(7, t, curves, start + spec.STEP, "q of joint4 [rad]")
 
 
 def step_size(run: Experiment) -> Figure:
     """Draw the response to both heights of the step beside the ideal joint's."""
-    figure, t = plotting.figure(5.6), run.traces["G1"].t
+    t = run.traces["G1"].t
     shares = {
         name: {
             "ideal joint": study.ideal(run, name).response(t),
@@ -71,146 +70,83 @@ def step_size(run: Experiment) -> Figure:
         }
         for name in SMALL_STEPPED
     }
-    step_sizes(figure.subplots(2, 1, sharex=True), t, shares, until=0.4)
+    return _beside_ideal(5.6, t, shares, 1.0, "share of the step")
+
+
+def _beside_ideal(
+    height: float,
+    t: FloatArray,
+    curves: Mapping[str, Mapping[str, FloatArray]],
+    target: float,
+    ylabel: str,
+) -> Figure:
+    """Draw the curves (n+1,) of each case over `t` [s], one case on each axes.
+
+    The curve of the ideal joint is dashed, the last one has the colour of its case.
+    """
+    figure = plotting.figure(height)
+    axes = figure.subplots(len(curves), 1, sharex=True)
+    for ax, (name, of_case) in zip(axes, curves.items(), strict=True):
+        ax.axhline(target, **LINE)
+        for label, curve in of_case.items():
+            last = solid(CASE_MARKS[name] if label == [*of_case][-1] else "other")
+            ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else last))
+        ax.set_title(name, loc="left")
+        ax.set(xlim=(0, 0.4), xlabel="time [s]", ylabel=ylabel)
+        ax.legend(loc="lower right")
+        ax.label_outer()
     return figure
 
 
 def overshoot_by_step(run: Experiment) -> Figure:
-    """Draw the overshoot of G2 over the solver's step for each engine."""
+    """Draw the overshoot of G2 over the solver's step for each engine.
+
+    The mark of an unstable run is hollow, and no line leads there.
+    """
     figure = plotting.figure(3.8)
-    curves = {
-        ENGINE_LABELS[engine]: {
-            1000 * spec.G2.dt / n: (value, study.unstable(run, engine, n))
-            for n, value in study.overshoot_by_substeps(run, engine).items()
-        }
-        for engine in study.ENGINES
-    }
-    convergence(figure.subplots(), curves, declared=1000 * spec.G2.dt / spec.G2.substeps)
+    ax, steps = figure.subplots(), 1000 * spec.G2.dt / np.array(SUBSTEPS_STUDIED)
+    for engine, label in ENGINE_LABELS.items():
+        style = ENGINE_STYLES[label] | {"markersize": 6}
+        found = study.overshoot_by_substeps(run, engine)
+        hollow = np.array([study.unstable(run, engine, n) for n in found])
+        values = np.array([*found.values()])
+        ax.plot(steps[~hollow], values[~hollow], label=label, **style)
+        if hollow.any():
+            empty = style | {"linestyle": "", "markerfacecolor": PARTS["ground"].light}
+            ax.plot(steps[hollow], values[hollow], label=f"{label}, unstable", **empty)
+    declared = 1000 * spec.G2.dt / spec.G2.substeps
+    ax.axvline(declared, **LINE)
+    ax.annotate("the lesson's step", (declared, 0), (-4, 4), textcoords="offset points", ha="right")
+    ax.set(xscale="log", xlabel="solver step h [ms]", ylabel="overshoot of G2 [rad]")
+    ax.set_xticks(sorted(steps), [f"{h:g}" for h in sorted(steps)])
+    ax.minorticks_off()
+    ax.set_ylim(0, 1.4 * ax.get_ylim()[1])  # space for the legend
+    ax.legend(loc="upper left")
     return figure
 
 
 def grid_saturation(run: Experiment) -> Figure:
-    """Draw the number of saturated samples of each run of the grid."""
-    counts = [run.metrics[point.name].saturation_samples for point in POINTS]
-    return _grid(np.array(counts), [str(count) for count in counts])
+    """Draw the number of saturated samples of each run of the grid.
 
-
-def _grid(values: FloatArray, numbers: Sequence[str]) -> Figure:
+    One step size on each axes, KP upwards, KV to the right, one colour scale for all, from zero.
+    Readers read the number in a cell, the colour only helps.
+    """
     figure = plotting.figure(6.8)
-    axes = list(figure.subplots(2, 2).flat)
-    grid_maps(axes, values, cell_labels(numbers), STEP_SIZES, KP, KV)
-    return figure
-
-
-def beside_ideal(
-    axes: Sequence[Axes],
-    t: FloatArray,
-    measured: Mapping[str, FloatArray],
-    ideal: Mapping[str, FloatArray],
-    target: float,
-    until: float,
-) -> Sequence[Axes]:
-    """Draw each case's measured position [rad] over the ideal joint's, one case on each axes.
-
-    All arrays (n+1,) over `t` [s], shown up to `until` [s].
-    """
-    for ax, (name, q) in zip(axes, measured.items(), strict=True):
-        ax.axhline(target, **LINE)
-        ax.plot(t, ideal[name], label="ideal joint", **IDEAL)
-        ax.plot(t, q, label="measured", **solid(CASE_MARKS[name]))
-        _finish_case(ax, name, "q of joint4 [rad]", until)
-    return axes
-
-
-def step_sizes(
-    axes: Sequence[Axes],
-    t: FloatArray,
-    shares: Mapping[str, Mapping[str, FloatArray]],
-    until: float,
-) -> Sequence[Axes]:
-    """Draw responses as shares of their step, one case on each axes, one curve a label.
-
-    A curve called `ideal joint` is drawn as such. All arrays (n+1,) over `t` [s].
-    """
-    for ax, (name, curves) in zip(axes, shares.items(), strict=True):
-        ax.axhline(1.0, **LINE)
-        measured = iter((solid("other"), solid(CASE_MARKS[name])))
-        for label, curve in curves.items():
-            ax.plot(t, curve, label=label, **(IDEAL if label == "ideal joint" else next(measured)))
-        _finish_case(ax, name, "share of the step", until)
-    return axes
-
-
-def _finish_case(ax: Axes, title: str, ylabel: str, until: float) -> None:
-    ax.set_title(title, loc="left")
-    ax.set(xlim=(0, until), xlabel="time [s]", ylabel=ylabel)
-    ax.legend(loc="lower right")
-    ax.label_outer()
-
-
-def convergence(
-    ax: Axes, overshoot: Mapping[str, Mapping[float, tuple[float, bool]]], declared: float
-) -> Axes:
-    """Draw overshoot [rad] over the solver's step [ms], one curve for each engine.
-
-    Each value comes with whether its run is unstable: such a mark is hollow, and no line leads
-    there. `declared` [ms] marks the step of the lesson's own runs.
-    """
-    for name, values in overshoot.items():
-        style = ENGINE_STYLES[name] | {"markersize": 6}
-        stable = {h: v for h, (v, unstable) in values.items() if not unstable}
-        ax.plot(list(stable), list(stable.values()), label=name, **style)
-        hollow = {h: v for h, (v, unstable) in values.items() if unstable}
-        if hollow:
-            empty = style | {"linestyle": "", "markerfacecolor": PARTS["ground"].light}
-            ax.plot(list(hollow), list(hollow.values()), label=f"{name}, unstable", **empty)
-    ax.axvline(declared, **LINE)
-    ax.annotate("the lesson's step", (declared, 0), (-4, 4), textcoords="offset points", ha="right")
-    ax.set(xscale="log", xlabel="solver step h [ms]", ylabel="overshoot of G2 [rad]")
-    steps = sorted({h for values in overshoot.values() for h in values})
-    ax.set_xticks(steps, [f"{h:g}" for h in steps])
-    ax.minorticks_off()
-    ax.set_ylim(0, 1.4 * ax.get_ylim()[1])  # space for the legend
-    ax.legend(loc="upper left")
-    return ax
-
-
-def grid_maps(
-    axes: Sequence[Axes],
-    values: FloatArray,
-    labels: Sequence[str],
-    steps: Sequence[float],
-    kp: Sequence[float],
-    kv: Sequence[float],
-) -> Sequence[Axes]:
-    """Draw one value a point of a grid, one step size on each axes, KP upwards, KV to the right.
-
-    Args:
-        axes: as many as steps.
-        values: (points,) in the grid's order; one colour scale for all, from zero.
-        labels: (points,), the text in each cell: readers read the number, the colour only helps.
-        steps: step sizes [rad].
-        kp: gains of the rows [N·m/rad].
-        kv: gains of the columns [N·m·s/rad].
-    """
-    shape, highest = (len(steps), len(kp), len(kv)), float(np.max(values))
-    maps, texts = np.reshape(values, shape), np.reshape(np.array(labels), shape)
-    for number, (ax, step) in enumerate(zip(axes, steps, strict=True)):
+    counts = [run.metrics[point.name].saturation_samples for point in POINTS]
+    maps = np.reshape(counts, (len(STEP_SIZES), len(KP), len(KV)))
+    for ax, step, cells in zip(figure.subplots(2, 2).flat, STEP_SIZES, maps, strict=True):
         ax.pcolormesh(
-            maps[number],
-            cmap=SHADES,
-            vmin=0,
-            vmax=highest,
-            edgecolors=PARTS["grid"].light,
+            cells, cmap=SHADES, vmin=0, vmax=maps.max(), edgecolors=PARTS["grid"].light,
             linewidth=1,
-        )
-        for (row, column), text in np.ndenumerate(texts[number]):
-            x, y = column + 0.5, row + 0.5
-            ax.text(x, y, text, ha="center", va="center")
+        )  # fmt: skip
+        for (row, column), count in np.ndenumerate(cells):
+            name = NAMES.get(GridPoint(step, KP[row], KV[column]))
+            text = f"{name}\n{count}" if name else f"{count}"
+            ax.text(column + 0.5, row + 0.5, text, ha="center", va="center")
         ax.grid(visible=False)
-        ax.set_xticks(np.arange(len(kv)) + 0.5, [f"{value:g}" for value in kv])
-        ax.set_yticks(np.arange(len(kp)) + 0.5, [f"{value:g}" for value in kp])
+        ax.set_xticks(np.arange(len(KV)) + 0.5, [f"{value:g}" for value in KV])
+        ax.set_yticks(np.arange(len(KP)) + 0.5, [f"{value:g}" for value in KP])
         ax.set_title(f"step {step:g} rad", loc="left")
         ax.set(xlabel="KV [N·m·s/rad]", ylabel="KP [N·m/rad]")
         ax.label_outer()
-    return axes
+    return figure

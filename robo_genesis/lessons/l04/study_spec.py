@@ -7,15 +7,7 @@ from typing import Any
 from robo_genesis.core.experiment import case_inputs
 from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l04.metrics import SETTLING_BAND
-from robo_genesis.lessons.l04.spec import (
-    ENTRY,
-    G1,
-    G2,
-    G3,
-    START_OF_STEP,
-    STEP,
-    with_entry,
-)  # fmt: skip
+from robo_genesis.lessons.l04.spec import ENTRY, G1, G2, G3, START_OF_STEP, STEP, with_entry
 from robo_genesis.sim.arm.joint_control import ControlCase
 
 MEASURES = False
@@ -166,11 +158,7 @@ def point_of(case: ControlCase) -> GridPoint:
 CASE_POINTS = {name: point_of(case) for name, case in COMPARED.items()}
 """The points of the lesson's own cases."""
 
-BOUNDS = {
-    "kp": (min(p.kp for p in CASE_POINTS.values()), max(p.kp for p in CASE_POINTS.values())),
-    "kv": (min(p.kv for p in CASE_POINTS.values()), max(p.kv for p in CASE_POINTS.values())),
-    "step": (0.0, STEP),
-}
+BOUNDS = {"kp": (3500.0, 7000.0), "kv": (100.0, 300.0), "step": (0.0, STEP)}
 """Smallest and largest value of each axis: no point is more violent than the compared cases."""
 
 AGREEMENT = {"rad": 1e-6, "rad/s": 1e-5, "s": 0.0, "N·m": 1e-3, "1": 0.0}

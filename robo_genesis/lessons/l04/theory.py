@@ -1,4 +1,4 @@
-"""Models of one joint, in closed form and in steps, and where a measured response leaves one."""
+"""Models of one joint, in closed form and in steps, and responses as shares of their step."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,6 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04.metrics import is_saturated
 
 CRITICAL = 1e-9
 """A damping ratio this close to one counts as critical."""
@@ -102,63 +101,13 @@ def stepped_joint(
     return np.array(path)
 
 
-@dataclass(frozen=True, slots=True)
-class Parting:
-    """Where a measured response leaves an ideal one.
-
-    | field | meaning |
-    |---|---|
-    | `time` | first sample beyond the threshold [s], None where there is none |
-    | `distance` | largest distance in the whole record, in the responses' unit |
-    | `clipped`, `efforts` | number of clipped and of all efforts before that sample or the end |
-    """
-
-    time: float | None
-    distance: float
-    clipped: int
-    efforts: int
-
-
-def parting(
-    trace: Trace, measured: FloatArray, ideal: FloatArray, entry: int, threshold: float
-) -> Parting:
-    """Find where `measured` (n+1,) first differs from `ideal` (n+1,) by more than `threshold`.
-
-    The efforts that lead to state k are those at t[0] … t[k−1]: the first is `start_control_force`.
-
-    Raises:
-        ValueError: the responses do not have one value for each state of the trace.
-    """
-    if measured.shape != trace.t.shape or ideal.shape != trace.t.shape:
-        raise ValueError(
-            f"measured has shape {measured.shape}, ideal {ideal.shape}; expected {trace.t.shape}: "
-            "one value for each state of the trace, t = 0 included."
-        )
-    distance = np.abs(measured - ideal)
-    beyond = np.flatnonzero(distance > threshold)
-    k = int(beyond[0]) if beyond.size else trace.steps
-    efforts = np.append(trace.start_control_force[entry], trace.control_force[:, entry])[:k]
-    clipped = int(is_saturated(efforts, trace.effort_limit[entry]).sum())
-    time = float(trace.t[k]) if beyond.size else None
-    return Parting(time, float(distance.max()), clipped, k)
-
-
 def step_share(step: Trace, hold: Trace, entry: int) -> FloatArray:
     """Return (q_step − q_hold) / step (n+1,): a response without the effects common to both runs.
 
     For a linear joint the two motions add up. Subtracting the run that holds its start therefore
     removes gravity.
-
-    Raises:
-        ValueError: the runs differ in start or time, or the command does not differ.
     """
-    if step.t.shape != hold.t.shape or not (step.t == hold.t).all():
-        raise ValueError("The two runs have different times: run both with the same dt and window.")
-    if not (step.q[0] == hold.q[0]).all():
-        raise ValueError("The two runs start in different states: reset both to the same state.")
     height = float(step.target[0, entry]) - float(hold.target[0, entry])
-    if height <= 0:
-        raise ValueError(f"The step is {height:g} above the held target, expected more than 0.")
     difference = step.q[:, entry].astype(np.float64) - hold.q[:, entry].astype(np.float64)
     return np.asarray(difference / height)
 

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from robot_runs import assigned, driven
 
@@ -38,13 +37,6 @@ def of_page(run: Experiment, name: str) -> Experiment:
     traces = {n: run.traces[n] for n in page.runs}
     return replace(run, page=page, traces=traces, readings=readings, frames=frames,
                    rendered=page.camera)  # fmt: skip
-
-
-def raised(trace, overshoot):
-    """Return a run whose highest sample of the stepped joint passes its target by `overshoot`."""
-    q, k = np.array(trace.q), l04.ENTRY
-    q[q[:, k].argmax(), k] = trace.target[0, k] + overshoot
-    return replace(trace, q=q)
 
 
 @pytest.fixture(scope="session")

@@ -1,196 +1,248 @@
+"""Every check of L04 passes on sound runs, and at least one spoiled run fails it."""
+
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from lessons.changed_runs import with_trace
-from lessons.lesson_bundles import differing_outputs
 
-from robo_genesis.core.checks import Check, CheckFailed, require
-from robo_genesis.core.experiment import runs_of
-from robo_genesis.core.project import BOOK
-from robo_genesis.lessons.l04 import spec
-from robo_genesis.lessons.l04.checks import CHECKS
+from robo_genesis.core.checks import CheckFailed, evaluate, require
+from robo_genesis.lessons.l04 import LAB, spec, study, study_spec
+from robo_genesis.lessons.l04.checks import control_law
+from robo_genesis.lessons.l04.laws import laws_of_motion
+from robo_genesis.sim.arm.laws import LAW
 
-NAMES = [check.__name__ for check in CHECKS]
-
-
-def changed(values, index, value):
-    array = np.array(values)
-    array[index] = value
-    return array
+K = spec.ENTRY
+GRID_G2 = study_spec.CASE_POINTS["G2"].name
+MOTION = "MuJoCo_Euler_G2_substeps_50"
 
 
-def with_links(run, count):
-    return replace(run, readings={"model": {**run.readings["model"], "links": count}})
+def put(index, value):
+    """Return a change of one element of an array."""
+
+    def change(values):
+        array = np.array(values)
+        array[index] = value
+        return array
+
+    return change
 
 
-def with_joints(run, **fields):
-    return replace(run, joints=replace(run.joints, **fields))
+def changed(of, fields):
+    """Return an object with other fields: values, or changes of the present ones."""
+    new = {name: v(getattr(of, name)) if callable(v) else v for name, v in fields.items()}
+    return replace(of, **new)
 
 
-def with_case(run, name, **fields):
-    cases = {**run.cases, name: replace(run.cases[name], **fields)}
-    return replace(run, page=replace(run.page, runs=runs_of(cases)))
+def joints(**fields):
+    return lambda run: replace(run, joints=changed(run.joints, fields))
 
 
-def case_value(run, name, field, index, value):
-    return with_case(run, name, **{field: changed(getattr(run.cases[name], field), index, value)})
+def case(name, **fields):
+    def change(run):
+        one = run.page.runs[name]
+        runs = {**run.page.runs, name: replace(one, case=changed(one.case, fields))}
+        return replace(run, page=replace(run.page, runs=runs))
+
+    return change
 
 
-def trace_value(run, name, field, index, value):
-    array = changed(getattr(run.traces[name], field), index, value)
-    return with_trace(run, name, **{field: array})
+def trace(name, **fields):
+    return lambda run: replace(run, traces={**run.traces, name: changed(run.traces[name], fields)})
 
 
-def with_metrics(run, name, **fields):
-    found = replace(run)  # its metrics are computed at their first use
-    vars(found)["metrics"] = {**run.metrics, name: replace(run.metrics[name], **fields)}
-    return found
+def copied(name, other):
+    return lambda run: replace(run, traces={**run.traces, name: run.traces[other]})
 
 
-def with_final(run, frame):
-    return replace(run, frames={**run.frames, "final": frame})
+def metric(name, **fields):
+    return lambda run: replace(
+        run, accepted={**run.metrics, name: replace(run.metrics[name], **fields)}
+    )
 
 
-def swapped(of_cases):
-    return {**of_cases, "G1": of_cases["G2"], "G2": of_cases["G1"]}
+def overshoot(name, value):
+    """Return a change of a run's highest sample: it passes the target by `value` [rad]."""
+
+    def change(run):
+        q, target = np.array(run.traces[name].q), run.traces[name].target[0, K]
+        q[q[:, K].argmax(), K] = target + value
+        return trace(name, q=q)(run)
+
+    return change
+
+
+def lifted(name, by):
+    """Return a change of all samples of a run after the first: higher by `by` [rad]."""
+    return trace(name, q=lambda q: np.vstack([q[:1], q[1:] + by * (np.arange(9) == K)]))
+
+
+def readings(group=study.GROUP, **values):
+    return lambda run: replace(
+        run, readings={**run.readings, group: {**run.readings[group], **values}}
+    )
+
+
+def frames(**pictures):
+    return lambda run: replace(run, frames=pictures)
+
+
+def as_theory(run):
+    """Let the large step follow the ideal curve."""
+    q = np.array(run.traces["G1"].q)
+    response = study.ideal(run, "G1").response(run.traces["G1"].t)
+    q[:, K] = run.traces["G1_hold"].q[:, K] + spec.STEP * response
+    return trace("G1", q=q)(run)
 
 
 SPOILERS = {
-    "mapping": {
-        "a link is missing": lambda run: with_links(run, 10),
-        "another name": lambda run: with_joints(run, names=("base", *run.joints.names[1:])),
-        "another type": lambda run: with_joints(run, types=("REVOLUTE",) * 9),
-        "a shared DOF": lambda run: with_joints(run, dofs_idx_local=np.arange(9) // 2),
-    },
-    "configuration": {
-        "a gain is NaN": lambda run: case_value(run, "baseline", "kp", 0, np.nan),
-        "a gain is missing": lambda run: with_case(run, "baseline", kv=spec.BASELINE.kv[:8]),
-        "no lower limit": lambda run: with_joints(run, lower=changed(run.joints.lower, 0, -np.inf)),
-    },
-    "target_limits": {
-        "a start outside": lambda run: case_value(run, "baseline", "q_start", 8, 0.05),
-        "a narrower model": lambda run: with_joints(run, upper=changed(run.joints.upper, 3, -1.9)),
-    },
-    "baseline_approaches": {
-        "it ends where it began": lambda run: with_metrics(run, "baseline", final_error=0.25),
-        "it ends farther": lambda run: with_metrics(run, "baseline", final_error=0.3),
-    },
-    "stamps": {
-        "one step less": lambda run: with_case(run, "baseline", steps=spec.STEPS - 1),
-        "another time step": lambda run: with_metrics(
-            with_trace(run, "G2", t=run.traces["G2"].t * (1 + 1e-6)),
-            "G2",
-            saturation_duration=run.metrics["G2"].saturation_duration,
-        ),
-        "another target on the way": lambda run: trace_value(run, "G1", "target", (5, 0), 0.1),
-    },
-    "same_start": {
-        "a start that moves": lambda run: trace_value(run, "G2", "start_qd", 1, 1e-6),
-        "another position": lambda run: trace_value(run, "G3", "q", (0, 0), 1e-6),
-        "another pose": lambda run: trace_value(run, "G3", "link_pos", (0, 1, 2), 0.6),
-    },
-    "one_factor": {
-        "two gains": lambda run: case_value(run, "G3", "kp", 0, 4501.0),
-        "none": lambda run: with_case(run, "G1", kp=run.cases["G2"].kp),
-        "another seed": lambda run: with_case(run, "G2", seed=1),
-    },
-    "control_law": {
-        "the run of another case": lambda run: replace(run, traces=swapped(run.traces)),
-        "another gain": lambda run: case_value(run, "baseline", "kv", 3, 349.0),
-    },
-    "not_observed": {
-        "a rise withheld": lambda run: with_metrics(run, "G1", rise_time=None),
-        "a rise too late": lambda run: with_metrics(run, "G1", rise_time=1.2),
-        "settling withheld": lambda run: with_metrics(run, "G2", settling_time=None),
-        "settling too early": lambda run: with_metrics(run, "G2", settling_time=0.01),
-    },
-    "measurements": {
-        "an excessive force": lambda run: trace_value(run, "G1", "control_force", (4, 0), -87.1),
-    },
-    "saturation": {
-        "another count": lambda run: with_metrics(run, "G2", saturation_samples=999),
-        "another duration": lambda run: with_metrics(run, "G2", saturation_duration=9.0),
-        "another limit read back": lambda run: trace_value(run, "G1", "effort_limit", 0, 90.0),
-    },
-    "posture": {
-        "no frames": lambda run: replace(run, frames={}),
-        "one frame": lambda run: replace(run, frames={"final": run.frames["final"]}),
-        "an empty frame": lambda run: with_final(run, np.zeros_like(run.frames["final"])),
-        "the same frame twice": lambda run: with_final(run, run.frames["initial"]),
-        "frames with a schematic": lambda run: replace(run, rendered=False),
-        "a schematic that stands still": lambda run: with_trace(
-            replace(run, rendered=False, frames={}),
-            "baseline",
-            link_pos=np.ones_like(run.traces["baseline"].link_pos),
-        ),
-    },
+    "mapping": [
+        readings("model", links=10), joints(types=("SPHERICAL",) * 9),
+        joints(names=("base", *LAB.joints[1:])), joints(dofs_idx_local=np.arange(9) // 2),
+    ],
+    "configuration": [
+        case("baseline", kp=put(0, np.nan)), case("baseline", kv=spec.BASELINE.kv[:8]),
+        joints(lower=put(0, -np.inf)), joints(types=("SPHERICAL",) * 9),
+    ],
+    "target_limits": [case("baseline", q_start=put(8, 0.05)), joints(upper=put(3, -1.9))],
+    "baseline_approaches": [metric("baseline", final_error=0.25)],
+    "stamps": [
+        case("baseline", steps=119), trace("G2", t=lambda t: t * (1 + 1e-6)),
+        trace("G1", target=put((5, 0), 0.1)),
+    ],
+    "same_start": [
+        trace("G2", start_qd=put(1, 1e-6)), trace("G3", q=put((0, 0), 1e-6)),
+        trace("G3", link_pos=put((0, 1, 2), 0.6)),
+    ],
+    "one_factor": [case("G3", kp=put(0, 4501.0)), case("G1", kp=spec.G2.kp), case("G2", seed=1)],
+    "control_law": [case("baseline", kv=put(K, 349.0)), copied("G1", "G2")],
+    "not_observed": [
+        metric("G1", rise_time=None), metric("G1", rise_time=1.2),
+        metric("G2", settling_time=None), metric("G2", settling_time=0.01),
+    ],
+    "measurements": [trace("G1", control_force=put((4, 0), -87.1))],
+    "saturation": [
+        metric("G2", saturation_samples=999), metric("G2", saturation_duration=9.0),
+        trace("G1", effort_limit=put(0, 90.0)),
+    ],
+    "posture": [frames(), lambda run: replace(run, rendered=False)],
+    "study_factors": [copied("G1_small", "G1")],
+    "claimed_orders": [copied("G2", "G1"), overshoot("G3", 0.1)],
+    "clipped_start": [
+        trace("G1", start_control_force=put(K, 80.0)), copied("G2", "G1"), copied("G3", "G2"),
+        trace("G2", control_force=np.abs), trace("G1", qd=put((6, K), 0.0)),
+    ],
+    "gravity_support": [
+        readings(gravity_G2=30.0),
+        lambda run: replace(run, accepted={n: replace(m, final_velocity=1.0)
+                                           for n, m in run.metrics.items()}),
+    ],
+    "ends_at_rest": [metric("G3", final_velocity=-0.02), metric("G1", final_error=0.011)],
+    "same_beginning": [copied("G2_longer", "G1"), trace("G2_longer", qd=put((3, 0), 9.0))],
+    "same_metrics": [metric("G2_longer", settling_time=1.5)],
+    "implicit_term": [readings(mass_KV_300=2.5)],
+    "clipped_before_parting": [
+        trace("G2", start_control_force=put(K, 80.0)), as_theory,
+    ],
+    "small_step_unsaturated": [
+        trace("G2_small", start_control_force=put(K, -87.0)),
+        trace("G2_hold", control_force=put((7, K), 87.0)),
+    ],
+    "theory_small_step": [lifted("G1_small", 0.001), as_theory],
+    "stepped_model": [lifted("G1_small", 0.001), overshoot("G2", 0.1)],
+    "model_predicts": [overshoot("G1", 0.01), lifted("G2_small", 0.0001)],
+    "same_model": [readings(inertia_Genesis=1.582), readings(gravity_at_start_Genesis=21.0)],
+    "stable_engines": [copied("G2", "MuJoCo_Euler_G2_substeps_2")],
+    "first_step": [
+        copied("G3", "G2"), trace("G3", start_control_force=put(K, 40.0)),
+        trace("MuJoCo_implicitfast_G3_substeps_2", qd=put((0, K), 0.5)),
+    ],
+    "convergence": [overshoot("G2_substeps_4", 0.07), overshoot("G2_substeps_50", 0.07)],
+    "one_limit": [overshoot("G2_substeps_50", 0.0415)],
+    "second_engine_order": [
+        copied("MuJoCo_implicitfast_G2_substeps_2", "MuJoCo_implicitfast_G1_substeps_2")
+    ],
+    "grid_matches_cases": [
+        trace(GRID_G2, q=put((60, K), 0.0)), metric(GRID_G2, saturation_samples=99),
+        metric(GRID_G2, rise_time=None),
+    ],
+    "grid_within_gains": [
+        case(GRID_G2, kp=put(K, 7001.0)), case(GRID_G2, kv=put(K, 99.0)),
+        case(GRID_G2, q_target=put(K, -1.74)), case(GRID_G2, kv=put(0, 99.0)),
+        trace(GRID_G2, target=lambda target: target + 0.01),
+    ],
 }  # fmt: skip
-SPOILED = [(name, how) for name, spoilers in SPOILERS.items() for how in spoilers]
 
 
-@pytest.fixture
-def outcomes_of(monkeypatch):
-    """Run the checks with the cases of the run as those of the lesson."""
-
-    def outcomes(run):
-        monkeypatch.setattr(spec, "CASES", run.cases)
-        return run.outcomes()
-
-    return outcomes
+def of_check(run, name):
+    """Return the outcome of one check."""
+    checks = [check for check in run.page.checks if check.__name__ == name]
+    (outcome,) = evaluate(checks, run)
+    return outcome
 
 
-def test_every_check_has_a_spoiler():
-    assert list(SPOILERS) == NAMES
-
-
-def test_a_sound_run_passes(experiment):
-    outcomes = experiment.outcomes()
-    assert [(c.name, c.passed) for c in outcomes] == [(name, True) for name in NAMES]
-    assert all(c.detail.endswith(".") for c in outcomes)
+def test_sound_runs_pass_every_check_and_each_has_a_spoiler(study_runs):
+    outcomes = study_runs.outcomes()
     assert require("l04", outcomes) == "L04 CHECK: PASSED"
-    require("l04", replace(experiment, rendered=False, frames={}).outcomes())
-
-
-@pytest.mark.parametrize(("name", "how"), SPOILED, ids=[f"{n}-{h}" for n, h in SPOILED])
-def test_what_is_spoiled_fails_its_own_check_and_no_other(experiment, outcomes_of, name, how):
-    outcomes = outcomes_of(SPOILERS[name][how](experiment))
-    failed = {c.name for c in outcomes if not c.passed}
-    assert name in failed
-    assert failed <= {name, "control_law"}  # it ties gains, limits and forces: it may see more
-    with pytest.raises(CheckFailed, match=rf"^L04 CHECK: FAILED .*\[{name}\] \S"):
-        require("l04", outcomes)
-
-
-def test_an_unknown_joint_type_has_no_unit(experiment):
-    run = with_joints(experiment, types=("SPHERICAL",) * 9)
-    failed = {c.name: c.detail for c in run.outcomes() if not c.passed}
-    assert set(failed) == {"mapping", "configuration"}
-    assert "SPHERICAL" in failed["configuration"]
+    assert [*SPOILERS] == [check.name for check in outcomes if check.name != "laws_of_motion"]
 
 
 @pytest.mark.parametrize(
-    "spoil",
-    [
-        lambda run: with_case(run, "G1", q_start=run.cases["G1"].q_start[:8]),
-        lambda run: with_case(run, "G1", kp=run.cases["G1"].kp[:8]),
-        lambda run: with_joints(run, upper=run.joints.upper[:8]),
-    ],
-    ids=["start", "gains", "limits"],
+    ("name", "spoil"), [(name, spoil) for name, of in SPOILERS.items() for spoil in of]
 )
-def test_a_wrong_length_is_named_and_does_not_stop_the_other_checks(experiment, outcomes_of, spoil):
-    outcomes = outcomes_of(spoil(experiment))
-    assert [c.name for c in outcomes] == NAMES
-    assert "configuration" in {c.name for c in outcomes if not c.passed}
+def test_a_spoiled_run_fails_by_the_name_of_its_check(study_runs, monkeypatch, name, spoil):
+    run = spoil(study_runs)
+    monkeypatch.setattr(spec, "CASES", {case: run.cases[case] for case in spec.CASES})
+    outcome = of_check(run, name)
+    with pytest.raises(CheckFailed, match=rf"^L04 CHECK: FAILED \[{name}\] \S.* expected "):
+        require("l04", [outcome])
 
 
-def test_every_failed_check_is_named_and_no_check_is_a_failure():
-    outcomes = (Check("a", False, "x"), Check("b", True, "held."), Check("c", False, "y"))
-    with pytest.raises(CheckFailed, match=r"^L04 CHECK: FAILED \[a\] x \[c\] y$"):
-        require("l04", outcomes)
-    with pytest.raises(CheckFailed, match="no check ran"):
-        require("l04", ())
+def test_a_study_case_with_a_second_factor_fails(study_runs, monkeypatch):
+    second = replace(study_spec.STEP_CASES["G1_small"], seed=1)
+    monkeypatch.setitem(study_spec.STEP_CASES, "G1_small", second)
+    assert "is q_target[joint4], seed, expected" in of_check(study_runs, "study_factors").detail
 
 
-def test_what_the_lab_shows_follows_from_its_bundle(pristine, experiment):
-    assert differing_outputs(pristine, experiment, BOOK) == []
+def test_a_missing_run_fails_its_checks_and_stops_no_other(study_runs):
+    run = replace(study_runs, traces={n: t for n, t in study_runs.traces.items() if n != "G2"})
+    assert not of_check(run, "convergence").passed
+    assert "'G2'" in of_check(run, "saturation").detail
+    assert of_check(run, "mapping").passed
+
+
+def test_a_lab_without_a_camera_passes_with_a_schematic_that_moves(experiment):
+    without = replace(experiment, rendered=False, frames={})
+    assert of_check(without, "posture").passed
+    still = trace("baseline", link_pos=np.ones_like)(without)
+    assert not of_check(still, "posture").passed
+
+
+def failed(run, *checks):
+    return {check.name: check.detail for check in evaluate(checks, run) if not check.passed}
+
+
+def test_the_page_refuses_a_force_off_the_law_so_that_no_build_can_later(experiment):
+    """Both judge the control law by one tolerance."""
+    assert LAW == 5e-3
+    off = trace("G1", control_force=lambda force: put((40, 1), force[40, 1] + 8e-3)(force))
+    found = failed(off(experiment), laws_of_motion, control_law)
+    assert [*found] == ["laws_of_motion", "control_law"]
+    assert "control_force [N·m or N] at index [40, 1]" in found["laws_of_motion"]
+    near = trace("G1", control_force=lambda force: put((40, 1), force[40, 1] + 3e-3)(force))
+    assert failed(near(experiment), laws_of_motion, control_law) == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "spoil"),
+    [
+        ("G1", trace("G1", link_pos=put((4, 1, 2), 0.6))),
+        ("assigned", trace("assigned", qd=put((3, 1), 0.1))),
+        (MOTION, trace(MOTION, qd=put((9, 1), 0.1))),
+        ("MuJoCo_implicitfast_G2_substeps_2", copied("MuJoCo_implicitfast_G2_substeps_2", "G2")),
+    ],
+)
+def test_a_run_that_breaks_its_laws_is_named(study_runs, name, spoil):
+    page = replace(study_runs.page, runs={n: study_runs.page.runs[n] for n in {name, "G2"}})
+    alone = replace(study_runs, page=page)
+    assert failed(alone, laws_of_motion) == {}
+    assert name in failed(spoil(alone), laws_of_motion)["laws_of_motion"]

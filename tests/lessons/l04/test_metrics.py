@@ -1,57 +1,37 @@
-from dataclasses import replace
-
 import control
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robo_genesis.core.text import NOT_OBSERVED, format_value
-from robo_genesis.core.trace import first_time, settled_from
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
 
 STEP = 0.25
 
 
-@pytest.mark.parametrize("zeta", [0.2, 0.5, 0.8, 1, 1.5, 3])
+@pytest.mark.parametrize("zeta", [0.2, 0.8, 1, 3])
 def test_rise_settling_and_overshoot_agree_with_python_control(second_order, make_trace, zeta):
     t = np.arange(121) * 0.01
     y, yd = second_order(t, 20.0, zeta)
     m = step_metrics(make_trace(-2.0 + STEP * y, -2.0 + STEP, qd=STEP * yd[1:]), 0)
     info = control.step_info(
-        STEP * y,
-        t,
-        final_output=STEP,
-        SettlingTimeThreshold=0.01 / STEP,
-        RiseTimeLimits=(0, 0.9),
+        STEP * y, t, final_output=STEP, SettlingTimeThreshold=0.01 / STEP, RiseTimeLimits=(0, 0.9)
     )
-    assert m.rise_time == pytest.approx(info["RiseTime"], abs=1e-12)
-    assert m.settling_time == pytest.approx(info["SettlingTime"], abs=1e-12)
-    assert m.overshoot == pytest.approx(STEP * info["Overshoot"] / 100, abs=1e-12)
+    expected = info["RiseTime"], info["SettlingTime"], STEP * info["Overshoot"] / 100
+    assert (m.rise_time, m.settling_time, m.overshoot) == pytest.approx(expected, abs=1e-12)
 
 
 def test_every_number_of_a_small_run(make_trace):
     trace = make_trace(
-        [0.0, 0.5, 1.125, 1.0],
-        1.0,
-        dt=0.5,
-        qd=[1.0, -2.0, 0.25],
-        control_force=[8.0, -4.0, 2.0],
+        [0.0, 0.5, 1.125, 1.0], 1.0, dt=0.5, qd=[1.0, -2.0, 0.25], control_force=[8.0, -4.0, 2.0],
         effort_limit=8.0,
-    )
+    )  # fmt: skip
     assert step_metrics(trace, 0) == StepMetrics(
-        initial_error=1.0,
-        rise_time=1.0,
-        overshoot=0.125,
-        settling_time=1.5,
-        final_error=0.0,
-        final_velocity=0.25,
-        peak_speed=2.0,
-        peak_control=8.0,
-        saturation_samples=1,
+        initial_error=1.0, rise_time=1.0, overshoot=0.125, settling_time=1.5, final_error=0.0,
+        final_velocity=0.25, peak_speed=2.0, peak_control=8.0, saturation_samples=1,
         saturation_duration=0.5,
-    )
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -63,10 +43,8 @@ def test_every_number_of_a_small_run(make_trace):
         ([0, 0.25, 0.25, 0.28, 0.25, 0.25], STEP, 0.01, 0.04),  # leaves the band once more
         ([0, 0.25, 0.25, 0.28], STEP, 0.01, None),  # outside the band at the last sample
         ([0, 0.002, 0.004], 0.005, None, 0),  # a step within the band
-        ([-STEP, -0.01], 0, 0.01, 0.01),  # the band includes its edges
-        ([-STEP, 0.01], 0, 0.01, 0.01),
+        ([-STEP, 0.01], 0, 0.01, 0.01),  # the band includes its edges
         ([-STEP, np.nextafter(-0.01, -1)], 0, 0.01, None),
-        ([-STEP, np.nextafter(0.01, 1)], 0, 0.01, None),
     ],
 )
 def test_rise_and_settling_at_their_edges(make_trace, q, target, rise, settled):
@@ -76,33 +54,20 @@ def test_rise_and_settling_at_their_edges(make_trace, q, target, rise, settled):
 
 
 @pytest.mark.parametrize(
-    ("force", "samples"), [(99.0, 1), (-99.0, 1), (np.nextafter(99.0, 0), 0), (-100.0, 1), (0.0, 0)]
+    ("force", "samples"), [(99.0, 1), (-99.0, 1), (np.nextafter(99.0, 0), 0), (-100.0, 1)]
 )
 def test_saturation_counts_either_sign_from_the_threshold_on(make_trace, force, samples):
     trace = make_trace([0, 0, 0], STEP, control_force=[0.0, force], effort_limit=100.0)
     m = step_metrics(trace, 0)
-    assert m.saturation_samples == samples
-    assert m.saturation_duration == samples * trace.dt
+    assert (m.saturation_samples, m.saturation_duration) == (samples, samples * trace.dt)
     assert m.peak_control == abs(force)
-
-
-def test_demand_before_the_first_step_is_not_counted(make_trace):
-    trace = replace(make_trace([0, 0], STEP), start_control_force=np.array([87.0]))
-    assert step_metrics(trace, 0).saturation_samples == 0
-
-
-def test_float32_positions_are_measured_in_double(make_trace):
-    q = np.array([-2.0, -1.7561798], dtype=np.float32)
-    assert step_metrics(make_trace(q, -1.75), 0).final_error == abs(-1.75 - float(q[-1]))
 
 
 @pytest.mark.parametrize(
     ("target", "entry", "message"),
     [
         (0.0, 0, "positive step"),
-        (-0.25, 0, "positive step"),
         ([0.25, 0.3], 0, "target changes"),
-        (STEP, -1, "entry is -1, expected 0 to 0"),
         (STEP, 1, "entry is 1, expected 0 to 0"),
     ],
 )
@@ -111,77 +76,30 @@ def test_what_cannot_be_measured_is_refused(make_trace, target, entry, message):
         step_metrics(make_trace([0, 0, 0], target), entry)
 
 
-@pytest.mark.parametrize(
-    ("value", "unit", "text"),
-    [
-        (None, "s", NOT_OBSERVED),
-        (0.12, "s", "0.12 s"),
-        (0.04472, "rad", "0.0447 rad"),
-        (0.0071, "m", "0.0071 m"),
-        (3.2344, "rad/s", "3.234 rad/s"),
-        (87, "N·m", "87.00 N·m"),
-        (100, "N", "100.00 N"),
-        (0, "1", "0 samples"),
-        (1, "1", "1 sample"),
-        (19, "1", "19 samples"),
-        (-0.00001, "rad", "0.0000 rad"),
-        (-0.0, "s", "0.00 s"),
-        (-0.5, "rad/s", "-0.500 rad/s"),
-    ],
-)
-def test_values_are_written_with_their_unit(value, unit, text):
-    assert format_value(value, unit) == text
-
-
 # Multiples of 2⁻⁸ add and subtract without rounding.
 DYADIC = st.integers(-1024, 1024).map(lambda k: k / 256)
 POSITIONS = st.lists(DYADIC, min_size=2, max_size=30)
-HEIGHT = st.integers(1, 512).map(lambda k: k / 256)
 
 
-@given(q=POSITIONS, height=HEIGHT, shift=DYADIC)
-def test_shifting_position_and_target_changes_nothing(make_trace, q, height, shift):
-    q = np.array(q)
-    target = q[0] + height
-    moved = step_metrics(make_trace(q + shift, target + shift), 0)
-    assert moved == step_metrics(make_trace(q, target), 0)
-
-
-@given(q=POSITIONS, more=POSITIONS, height=HEIGHT)
-def test_a_longer_window_keeps_what_was_seen(make_trace, q, more, height):
-    target = q[0] + height
+@given(q=POSITIONS, more=POSITIONS, shift=DYADIC)
+def test_a_shift_changes_nothing_and_a_longer_window_keeps_what_was_seen(
+    make_trace, q, more, shift
+):
+    target = q[0] + STEP
     short = step_metrics(make_trace(q, target), 0)
+    assert step_metrics(make_trace(np.array(q) + shift, target + shift), 0) == short
     longer = step_metrics(make_trace(q + more, target), 0)
     assert short.rise_time in (None, longer.rise_time)
     assert longer.overshoot >= short.overshoot
 
 
-@given(reached=st.lists(st.booleans(), min_size=1))
-def test_first_time_is_the_first(reached):
-    t = np.arange(len(reached)) * 0.5
-    expected = reached.index(True) * 0.5 if True in reached else None
-    assert first_time(t, np.array(reached)) == expected
-
-
-@given(inside=st.lists(st.booleans(), min_size=1))
-def test_settled_from_is_the_start_of_the_last_run_inside(inside):
-    tail = len(inside) - (inside[::-1].index(False) if False in inside else len(inside))
-    expected = tail * 0.5 if inside[-1] else None
-    assert settled_from(np.arange(len(inside)) * 0.5, np.array(inside)) == expected
-
-
 def test_records_are_the_metrics_with_class_and_source(experiment):
     found, m = experiment.records(), experiment.metrics["G1"]
-    count = {"unit": "1", "class": "exact"}
-    force = ["control_force_Nm_or_N", "effort_limit_Nm_or_N"]
-    assert list(found) == ["model", *spec.CASES]
-    assert found["model"]["links"] == count | {"value": 11, "from": ["engine"]}
-    assert list(found["G1"]) == [name for name, _, _ in m.items()]
-    assert found["G1"]["overshoot"] == {
-        "value": m.overshoot,
-        "unit": "rad",
-        "class": "value",
-        "from": ["q_rad_or_m", "target_rad_or_m"],
-    }
-    samples = m.saturation_samples
-    assert found["G1"]["saturation_samples"] == count | {"value": samples, "from": force}
+    assert [*found] == ["model", *spec.CASES]
+    source = ["q_rad_or_m", "target_rad_or_m"]
+    expected = {"value": m.overshoot, "unit": "rad", "class": "value", "from": source}
+    assert found["G1"]["overshoot"] == expected
+    assert found["G1"]["saturation_samples"]["class"] == "exact"
+    assert found["model"]["links"] == expected | {
+        "value": 11, "unit": "1", "class": "exact", "from": ["engine"],
+    }  # fmt: skip

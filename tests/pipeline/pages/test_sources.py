@@ -177,6 +177,8 @@ CHANGES = [
     ("lessons/l04/spec", ('"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'), ("l04",), NONE),
     ("lessons/l04/pages", ('Filmed("the Franka")', 'Filmed("the arm")'), ("l04",), NONE),
     ("lessons/l02/plots", CONSTANT, ("l02",), NONE),
+    ("lessons/l04/tables", CONSTANT, ("l04",), NONE),
+    ("lessons/l02/mistakes", CONSTANT, ("l02",), NONE),
     ("lessons/l02/checks", ('"""The engine\'s mass', '"""The mass'), ("l02",), NONE),
     ("lessons/l02/text", DOCSTRING, NONE, NONE),
     ("lessons/l02/checks", ('"""Named checks', '"""The checks'), NONE, NONE),

@@ -64,7 +64,7 @@ CHOSEN = "Chosen, not measured. ledger"
 
 SHOW = """\
 from IPython.display import display
-of = {"function": "robo_genesis.lessons.l04.text.metric_table", "arguments": []}
+of = {"function": "robo_genesis.lessons.l04.tables.metric_table", "arguments": []}
 def show(name):
     data = {"text/markdown": f"| {name} |\\n| --- |\\n| 7 |"}
     display(data, metadata={"robo_genesis": of}, raw=True)

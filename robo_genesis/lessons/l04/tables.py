@@ -1,0 +1,274 @@
+"""Tables of L04: the robot, the metrics, and what the studies of the stepped joint measured."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from robo_genesis.core.comparison import HELD_BY, compare, order
+from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.tables import markdown
+from robo_genesis.core.tables import metric_table as by_case
+from robo_genesis.core.text import format_value
+from robo_genesis.lessons.l04 import spec, study, study_spec
+from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated
+from robo_genesis.lessons.l04.theory import overshoot_share
+
+MEASURES = False
+
+CLOSE = "too close to call"
+"""The outcome where two values differ by less than the margin."""
+
+ENGINE_LABELS = {"Genesis": "Genesis"} | {
+    name: f"MuJoCo {name}" for name in study_spec.SECOND_INTEGRATORS
+}
+
+NOUNS, UNITS = StepMetrics.about("noun"), StepMetrics.about("unit")
+
+
+def share_text(share: float) -> str:
+    """Write a share for a reader: `12.3 %`."""
+    return f"{100 * share:.1f} %"
+
+
+def margin_text(metric: str) -> str:
+    """Write the margin of a metric with its unit."""
+    return f"{spec.MARGINS[metric]:g} {'samples' if UNITS[metric] == '1' else UNITS[metric]}"
+
+
+def damping_word(zeta: float) -> str:
+    """Name the regime of a damping ratio."""
+    if abs(zeta - 1) < 5e-3:
+        return "critically damped"
+    return "underdamped" if zeta < 1 else "overdamped"
+
+
+def model_table(run: Experiment) -> str:
+    """Return the engine's counts of the robot."""
+    return markdown([run.readings["model"]])
+
+
+def joint_table(run: Experiment) -> str:
+    """Return the joints by name with their DOFs and limits."""
+    return markdown(run.joints.rows())
+
+
+def metric_table(run: Experiment) -> str:
+    """Return the metrics of all cases of the lab."""
+    return by_case({name: run.metrics[name] for name in spec.CASES})
+
+
+def compared_metrics(run: Experiment) -> str:
+    """Return the metrics of G1 to G3."""
+    return by_case({name: run.metrics[name] for name in study_spec.COMPARED})
+
+
+def force_ranges(run: Experiment) -> str:
+    """Return the gains and the force range of each joint in the baseline."""
+    limits, joints = run.traces["baseline"].effort_limit, run.joints
+    return markdown(
+        [
+            {
+                "joint": name,
+                "KP [effort per rad or m]": float(spec.BASELINE.kp[k]),
+                "KV [effort·s per rad or m]": float(spec.BASELINE.kv[k]),
+                "range, read back": f"{-limits[k]:g} … {limits[k]:g} {joints.effort_units[k]}",
+            }
+            for k, name in enumerate(joints.names)
+        ]
+    )
+
+
+def first_demand(run: Experiment) -> str:
+    """Compare for each case the demand of the PD law at t = 0 with the clipped effort."""
+    k, rows = spec.ENTRY, []
+    for name, case in study_spec.COMPARED.items():
+        trace = run.traces[name]
+        rows.append(
+            {
+                "case": name,
+                "demand at t = 0": f"{case.kp[k] * (case.q_target[k] - trace.q[0, k]):.0f} N·m",
+                "clipped effort": f"{trace.start_control_force[k]:.0f} N·m",
+                "at the same limit until": format_value(study.at_limit_until(trace), "s"),
+            }
+        )
+    return markdown(rows)
+
+
+def outcomes_of_predictions(run: Experiment) -> str:
+    """Return the outcome of each prediction of the lesson; a close one is too close to call."""
+    rows = []
+    for (one, other), metric, claim, margin in spec.RELATIONS:
+        found = compare(metric, run.metrics[one], run.metrics[other], spec.RESOLUTION, margin)
+        close = found.order == "equal" and found.first != found.second
+        held = {found.order, order(found.first, found.second, 0)} <= {*HELD_BY[claim]}
+        if found.order is None:
+            outcome = "cannot be judged"
+        elif close:
+            outcome = f"held ({CLOSE})" if held else CLOSE
+        else:
+            outcome = "held" if held else "**did not hold**"
+        rows.append(
+            {
+                "prediction": f"{found.label}: {other} {claim} than {one}",
+                "measured": _change((found.first, found.second), metric),
+                "margin": margin_text(metric),
+                "outcome": outcome,
+            }
+        )
+    return markdown(rows)
+
+
+def _change(values: Iterable[float | None], metric: str) -> str:
+    """Write a metric of two cases: `0.12 s → 0.11 s`."""
+    return " → ".join(format_value(value, UNITS[metric]) for value in values)
+
+
+def gravity_table(run: Experiment) -> str:
+    """Return for each case KP × final error beside the gravity effort, and how the case ended."""
+    rows = []
+    for name, case in spec.CASES.items():
+        m, effort = run.metrics[name], run.readings[study.GROUP][f"gravity_{name}"]
+        support = float(case.kp[spec.ENTRY]) * m.final_error
+        rows.append(
+            {
+                "case": name,
+                "KP × final error": format_value(support, "N·m"),
+                "gravity, engine": format_value(effort, "N·m"),
+                "difference": share_text(abs(support - effort) / abs(effort)),
+                "final velocity": format_value(m.final_velocity, "rad/s"),
+                "settled from": format_value(m.settling_time, "s"),
+            }
+        )
+    return markdown(rows)
+
+
+def mass_table(run: Experiment) -> str:
+    """Return the inertia of the stepped joint, and the masses with a commanded position."""
+    head, unit = f"`get_mass_mat`, {spec.STEPPED_JOINT}", "kg·m²"
+    readings = run.readings[study.GROUP]
+    rows = [{head: "without effort, less h · d", unit: readings["inertia_Genesis"]}]
+    for kv in study.COMPARED_KV:
+        term = f"that, less h (d + KV) = {study.implicit_term(run, kv):g}"
+        mass = readings[f"mass_KV_{kv:g}"]
+        rows.append({head: f"position commanded, KV = {kv:g}", unit: mass})
+        rows.append({head: term, unit: study.without_term(run, kv)})
+    return markdown(rows)
+
+
+def ideal_table(run: Experiment) -> str:
+    """Return the linear joint's parameters and overshoot for each compared case."""
+    return markdown(
+        [
+            {
+                "case": case,
+                "KP [N·m/rad]": ideal.kp,
+                "KV + passive damping [N·m·s/rad]": ideal.damping,
+                "ζ": f"{ideal.zeta:.2f}",
+                "ideal joint": damping_word(ideal.zeta),
+                "ideal overshoot [share of step]": share_text(ideal.overshoot),
+            }
+            for case in study_spec.COMPARED
+            for ideal in [study.ideal(run, case)]
+        ]
+    )
+
+
+def step_size_table(run: Experiment) -> str:
+    """Return overshoot and distance from theory at both heights of the step."""
+    rows = []
+    for case in study_spec.SMALL_STEPPED:
+        ideal = study.ideal(run, case)
+        row: dict[str, Any] = {"case": case, "overshoot, ideal": share_text(ideal.overshoot)}
+        for height, kind in ((study_spec.SMALL_STEP, "small"), (spec.STEP, "")):
+            share = study.share(run, case, kind)
+            distance = float(abs(share - ideal.response(run.traces[case].t)).max())
+            row[f"overshoot, +{height:g} rad"] = share_text(overshoot_share(share))
+            row[f"largest distance, +{height:g} rad"] = share_text(distance)
+        rows.append(row)
+    return markdown(rows)
+
+
+def stepped_table(run: Experiment) -> str:
+    """Return the overshoots of the ideal joint, of the stepped model and of the engine."""
+    rows = []
+    small = study_spec.SMALL_STEP
+    for height, cases in ((small, study_spec.SMALL_STEPPED), (spec.STEP, study_spec.COMPARED)):
+        for case in cases:
+            values = [
+                share_text(value / height) if height == small else format_value(value, "rad")
+                for value in study.overshoots(run, case, height)
+            ]
+            heads = ("run", "ideal joint", "stepped model", "Genesis")
+            rows.append(dict(zip(heads, [f"{case}, +{height:g} rad", *values], strict=True)))
+    return markdown(rows)
+
+
+def explicit_table(run: Experiment) -> str:
+    """Return for G2 the explicit damping ratio of each joint, and its clipped samples in MuJoCo."""
+    ratio, engines = study.damping_ratio("G2"), study.by_engine(run, "G2")
+    counts = {
+        name: is_saturated(engines[name].control_force, engines[name].effort_limit).sum(axis=0)
+        for name in study_spec.SECOND_INTEGRATORS
+    }
+    return markdown(
+        [
+            {"joint": joint, "h (KV + d) / I": f"{ratio[k]:.2f}"}
+            | {f"clipped, {name}": format_value(int(of[k]), "1") for name, of in counts.items()}
+            for k, joint in enumerate(run.joints.names)
+        ]
+    )
+
+
+def first_step_table(run: Experiment) -> str:
+    """Return for each compared case the stepped joint's speed after the first step, by engine."""
+    rows = []
+    for case, settings in study_spec.COMPARED.items():
+        kv = float(settings.kv[spec.ENTRY])
+        speeds = {
+            "alone, with the term": study.first_speed(run, case, kv),
+            "alone, without it": study.first_speed(run, case, 0.0),
+        } | {
+            ENGINE_LABELS[engine]: float(trace.qd[0, spec.ENTRY])
+            for engine, trace in study.by_engine(run, case).items()
+        }
+        rows.append({"case": case} | {n: format_value(v, "rad/s") for n, v in speeds.items()})
+    return markdown(rows)
+
+
+def convergence_table(run: Experiment) -> str:
+    """Return for each solver step G2's overshoot in both engines; unstable runs are marked."""
+    found = {engine: study.overshoot_by_substeps(run, engine) for engine in study.ENGINES}
+    return markdown(
+        [
+            {"substeps": n, "h": f"{1000 * spec.G2.dt / n:g} ms"}
+            | {
+                ENGINE_LABELS[engine]: format_value(values[n], "rad")
+                + " (unstable)" * study.unstable(run, engine, n)
+                for engine, values in found.items()
+            }
+            for n in study_spec.SUBSTEPS_STUDIED
+        ]
+    )
+
+
+def relation_table(run: Experiment) -> str:
+    """Return for each ordering that the lesson claims its state and values in each engine."""
+    rows = []
+    for relation in spec.RELATIONS:
+        (first, second), metric, order, _ = relation
+        row: dict[str, Any] = {"claim": f"{NOUNS[metric]}: {second} {order} than {first}"}
+        for engine in study.ENGINES:
+            found = study.compared(run, engine)
+            values = _change((getattr(found[case], metric) for case in (first, second)), metric)
+            state, _ = study.relation_outcome(run, engine, relation)
+            shown = "unstable" if study.unstable(run, engine) else state
+            row[ENGINE_LABELS[engine]] = f"{shown}: {values}"
+        rows.append(row)
+    return markdown(rows)
+
+
+def metrics_by_engine(run: Experiment) -> str:
+    """Return all metrics of G1 to G3, one table for each engine."""
+    return "\n".join(
+        f"**{label}**\n\n{by_case(study.compared(run, engine))}"
+        for engine, label in ENGINE_LABELS.items()
+    )

@@ -1,0 +1,56 @@
+"""Sentences about one metric of two cases, and values with their units."""
+
+import pytest
+
+from robo_genesis.core.comparison import compare_values
+from robo_genesis.core.text import comparison_sentence, format_value, prediction_sentence
+
+NAMES, ADVICE = ("G1", "G2"), "Look at the window."
+
+
+def test_values_are_written_with_their_unit():
+    written = [format_value(*of) for of in (
+        (None, "s"), (0.04472, "rad"), (87, "N·m"), (1, "1"), (19, "1"), (-1e-5, "rad"),
+    )]  # fmt: skip
+    assert written == [
+        "not observed", "0.0447 rad", "87.00 N·m", "1 sample", "19 samples", "0.0000 rad",
+    ]  # fmt: skip
+
+
+def rise_times(*values, margin=0.0):
+    """Compare the rise times of two cases."""
+    return compare_values("rise time", "s", *values, {"s": 0.005}, margin)
+
+
+@pytest.mark.parametrize(
+    ("values", "margin", "says"),
+    [
+        ((0.4, 0.3), 0, "goes down (G1 0.40 s, G2 0.30 s)."),
+        ((0.4, 0.4), 0.015, "does not change measurably (G1 0.40 s, G2 0.40 s)."),
+        ((0.4, 0.404), 0, "does not change measurably (G1 0.40 s, G2 0.40 s)."),
+        ((0.12, 0.11), 0.015,
+         "is too close to call: G1 0.12 s, G2 0.11 s, within the margin of 0.015 s."),
+        ((0.4, None), 0, "was observed for G1 alone (G1 0.40 s, G2 not observed); within this "
+                         "window G2 is the slower one, by how much is unknown."),
+        ((None, None), 0, "was not observed in either case, so this window cannot rank them."),
+    ],
+)  # fmt: skip
+def test_a_comparison_says_what_was_measured_or_not_observed(values, margin, says):
+    assert comparison_sentence(NAMES, rise_times(*values, margin=margin)) == f"The rise time {says}"
+
+
+@pytest.mark.parametrize(
+    ("predicted", "values", "says"),
+    [
+        ("no later", (0.4, 0.3), "Held in this run."),
+        ("no later", (0.4, 0.4), "Held in this run."),
+        ("no later", (0.4, None), f"**Did not hold**: measured higher. {ADVICE}"),
+        ("later", (0.3, 0.4), "Held in this run."),
+        ("later", (0.4, 0.4), f"**Did not hold**: measured equal. {ADVICE}"),
+        ("lower", (None, 0.4), "Held in this run."),
+        ("higher", (None, None), "Cannot be judged: not observed in either case."),
+    ],
+)
+def test_a_prediction_is_compared_with_the_measured_order(predicted, values, says):
+    sentence = prediction_sentence(NAMES, rise_times(*values), predicted, ADVICE)
+    assert sentence == f"Predicted: rise time {predicted} in G2 than in G1. {says}"
