@@ -5,6 +5,7 @@ from typing import Any
 
 from robo_genesis.core import text as quantities
 from robo_genesis.core.checks import Check
+from robo_genesis.core.comparison import HELD_BY, Comparison
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.text import decimal, format_value
 
@@ -90,3 +91,36 @@ def check_table(outcomes: Sequence[Check]) -> str:
 def checks_of_run(run: Any) -> str:
     """Return the table of the named checks of an experiment."""
     return check_table(run.outcomes())
+
+
+def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
+    """Return a sentence that compares one metric of two cases."""
+    label, unit = comparison.label, comparison.unit
+    first, second = (format_value(v, unit) for v in (comparison.first, comparison.second))
+    values = f"{names[0]} {first}, {names[1]} {second}"
+    if comparison.order is None:
+        return f"The {label} was not observed in either case, so this window cannot rank them."
+    if None in (comparison.first, comparison.second):
+        seen, unseen = names if comparison.second is None else names[::-1]
+        return (
+            f"The {label} was observed for {seen} alone ({values}); within this window "
+            f"{unseen} is the slower one, by how much is unknown."
+        )
+    if comparison.order == "equal" and comparison.margin and first != second:
+        margin = f"{comparison.margin:g} {'samples' if unit == '1' else unit}"
+        return f"The {label} is too close to call: {values}, within the margin of {margin}."
+    verb = {"lower": "goes down", "higher": "goes up", "equal": "does not change measurably"}
+    return f"The {label} {verb[comparison.order]} ({values})."
+
+
+def prediction_sentence(
+    names: tuple[str, str], comparison: Comparison, predicted: str, advice: str
+) -> str:
+    """Return the outcome of a prediction; `advice` follows one that did not hold."""
+    label = comparison.label
+    claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
+    if comparison.order is None:
+        return f"{claim}. Cannot be judged: not observed in either case."
+    if comparison.order in HELD_BY[predicted]:
+        return f"{claim}. Held in this run."
+    return f"{claim}. **Did not hold**: measured {comparison.order}. {advice}"

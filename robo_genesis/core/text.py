@@ -4,8 +4,6 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from robo_genesis.core.comparison import HELD_BY, Comparison
-
 MEASURES = False
 
 NOT_OBSERVED = "not observed"
@@ -114,36 +112,3 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
 def time_digits(dt: float) -> int:
     """Return the number of digits after the point of times k · `dt` [s], at least two."""
     return next((n for n in (2, 3, 4, 5) if abs(round(dt, n) - dt) < 1e-9), 6)
-
-
-def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
-    """Return a sentence that compares one metric of two cases."""
-    label, unit = comparison.label, comparison.unit
-    first, second = (format_value(v, unit) for v in (comparison.first, comparison.second))
-    values = f"{names[0]} {first}, {names[1]} {second}"
-    if comparison.order is None:
-        return f"The {label} was not observed in either case, so this window cannot rank them."
-    if None in (comparison.first, comparison.second):
-        seen, unseen = names if comparison.second is None else names[::-1]
-        return (
-            f"The {label} was observed for {seen} alone ({values}); within this window "
-            f"{unseen} is the slower one, by how much is unknown."
-        )
-    if comparison.order == "equal" and comparison.margin and first != second:
-        margin = f"{comparison.margin:g} {'samples' if unit == '1' else unit}"
-        return f"The {label} is too close to call: {values}, within the margin of {margin}."
-    verb = {"lower": "goes down", "higher": "goes up", "equal": "does not change measurably"}
-    return f"The {label} {verb[comparison.order]} ({values})."
-
-
-def prediction_sentence(
-    names: tuple[str, str], comparison: Comparison, predicted: str, advice: str
-) -> str:
-    """Return the outcome of a prediction; `advice` follows one that did not hold."""
-    label = comparison.label
-    claim = f"Predicted: {label} {predicted} in {names[1]} than in {names[0]}"
-    if comparison.order is None:
-        return f"{claim}. Cannot be judged: not observed in either case."
-    if comparison.order in HELD_BY[predicted]:
-        return f"{claim}. Held in this run."
-    return f"{claim}. **Did not hold**: measured {comparison.order}. {advice}"

@@ -3,7 +3,8 @@
 import pytest
 
 from robo_genesis.core.comparison import compare_values
-from robo_genesis.core.text import comparison_sentence, format_value, prediction_sentence
+from robo_genesis.core.tables import comparison_sentence, prediction_sentence
+from robo_genesis.core.text import format_value
 
 NAMES, ADVICE = ("G1", "G2"), "Look at the window."
 

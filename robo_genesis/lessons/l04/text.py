@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 from robo_genesis.core.comparison import Comparison, compare
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.text import Block, comparison_sentence, format_value, prediction_sentence
+from robo_genesis.core.tables import comparison_sentence, prediction_sentence
+from robo_genesis.core.text import Block, format_value
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import SATURATION_THRESHOLD, SETTLING_BAND, StepMetrics
 from robo_genesis.lessons.l04.study_spec import AT_REST, COMPARED

@@ -37,7 +37,8 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core.comparison import Comparison, compare_values
-from robo_genesis.core.text import SCALED, comparison_sentence, format_value
+from robo_genesis.core.tables import comparison_sentence
+from robo_genesis.core.text import SCALED, format_value
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
 from robo_genesis.pipeline.pages.built import page_outputs
