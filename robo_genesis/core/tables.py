@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from robo_genesis.core import text as quantities
+from robo_genesis.core import text
 from robo_genesis.core.checks import Check
 from robo_genesis.core.comparison import HELD_BY, Comparison
 from robo_genesis.core.metrics import CaseMetrics
@@ -58,7 +58,7 @@ def number_table(first: str, heads: Mapping[str, int], rows: Mapping[str, Iterab
 
 def six_digits(metrics: Mapping[str, CaseMetrics]) -> str:
     """Return metrics as rows and cases as columns, each value with six digits and its unit."""
-    return metric_table(metrics, lambda *value: quantities.six_digits(*value).replace("-", "−"))
+    return metric_table(metrics, lambda *value: text.six_digits(*value).replace("-", "−"))
 
 
 def metric_table(

@@ -23,7 +23,7 @@ from robo_genesis.evidence.picture_file import write_picture
 from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import write_traces
 from robo_genesis.sim import session
-from robo_genesis.sim.accelerator import driver_version
+from robo_genesis.sim.backends import driver_version
 from robo_genesis.sim.camera.frames import Renderer
 
 PACKAGE = Path(__file__).resolve().parents[1]

@@ -18,13 +18,12 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.sim import torch_probe
+from robo_genesis.sim.backends import DRIVERS, driver_version
 from robo_genesis.sim.diagnosis import DoubtError, StepError, StepResult, run_steps
 
 PROBE_SECONDS = 180
 """Until Torch must have answered."""
 
-DRIVERS = {"amdgpu": "amdgpu", "cuda": "nvidia"}
-"""Kernel module of each accelerator's driver."""
 
 VISIBILITY = ("ROCR_VISIBLE_DEVICES", "HIP_VISIBLE_DEVICES", "CUDA_VISIBLE_DEVICES")
 ROCM_FOLDERS = ("/opt/rocm", "/opt/rocm-7.0.0", "/opt/rocm-6.0.0")
@@ -254,14 +253,3 @@ def _ended(status: int, errors: bytes) -> str:
         return f"killed by {signal.Signals(-status).name}"
     lines = errors.decode("utf8", errors="replace").strip().splitlines()
     return lines[-1] if lines else f"status {status}"
-
-
-def driver_version(backend: str, root: Path = Path("/")) -> str | None:
-    """Return the version of the kernel driver of a backend, None if it names none.
-
-    Args:
-        backend: the actual backend.
-        root: the root of the file system.
-    """
-    path = root / "sys" / "module" / DRIVERS.get(backend, backend) / "version"
-    return path.read_text().strip() if path.is_file() else None

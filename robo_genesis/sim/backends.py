@@ -1,6 +1,7 @@
 """The backends of the engine, and what Quadrants and Torch report on each."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 BACKENDS = {
@@ -10,6 +11,9 @@ BACKENDS = {
     "metal": (("metal",), "mps"),
 }
 """Actual backend → architectures of Quadrants, device of Torch. ROCm calls its device `cuda`."""
+
+DRIVERS = {"amdgpu": "amdgpu", "cuda": "nvidia"}
+"""Kernel module of each accelerator's driver."""
 
 
 def contradictions(backend: Any) -> Iterator[tuple[str, object, object]]:
@@ -30,3 +34,14 @@ def contradictions(backend: Any) -> Iterator[tuple[str, object, object]]:
     needed = {"amdgpu": (True, False), "cuda": (False, True)}.get(backend.actual, builds)
     if builds != needed:
         yield f"whether Torch has (HIP, CUDA) for {backend.actual}", builds, needed
+
+
+def driver_version(backend: str, root: Path = Path("/")) -> str | None:
+    """Return the version of the kernel driver of a backend, None if it names none.
+
+    Args:
+        backend: the actual backend.
+        root: the root of the file system.
+    """
+    path = root / "sys" / "module" / DRIVERS.get(backend, backend) / "version"
+    return path.read_text().strip() if path.is_file() else None

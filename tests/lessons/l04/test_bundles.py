@@ -8,10 +8,10 @@ import pytest
 from bundles import written
 from lessons.l04.conftest import PAGES, of_page
 from lessons.lesson_bundles import altered, in_json, judged_again, pop, refused, without_run
-from robo_genesis.site.explorer import explorer_html
 
 from robo_genesis.lessons.l04 import LESSON, spec, study_spec
 from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.site.figures.explorer import Recorded
 
 RUN, OTHER = "grid_step_50mrad_KP_4375_KV_150", "grid_step_50mrad_KP_4375_KV_200"
 
@@ -72,4 +72,6 @@ def test_another_judgement_changes_a_verdict_and_nothing_else(studied, monkeypat
 
 
 def test_a_page_can_show_the_explorer_of_another_page_s_runs(sound):
-    assert "(the case G2)" in explorer_html("l04", sound["batch"])
+    data = Recorded("l04", sound["batch"]).explored()
+    cells = (cell for one in data["maps"] for row in one["rows"] for cell in row["cells"])
+    assert [cell["tag"] for cell in cells if cell["opens"]] == ["G2"]

@@ -14,8 +14,7 @@ import numpy as np
 import pytest
 from sphinx.errors import ConfigError
 
-from robo_genesis.core import project, trace
-from robo_genesis.core import text as quantities
+from robo_genesis.core import project, text, trace
 from robo_genesis.evidence import bundle, fields, npz_archive, trace_files
 from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import write_traces
@@ -80,7 +79,7 @@ def test_a_kept_table_is_of_one_state_of_all_code_that_shapes_it(
     monkeypatch.setattr(files, "derived", lambda kind, inputs, make: keys.append(inputs) or make())
     ((_, table, _),) = files._arrays(run, own)
     assert next(csv.reader(table.open()))[0] == "t [s]"
-    for module in (files, trace_files, fields, bundle, npz_archive, trace, quantities):
+    for module in (files, trace_files, fields, bundle, npz_archive, trace, text):
         assert Path(module.__file__).read_bytes() in keys[0], module.__name__
 
 
