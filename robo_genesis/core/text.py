@@ -4,6 +4,8 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 MEASURES = False
 
 NOT_OBSERVED = "not observed"
@@ -33,8 +35,11 @@ def scaled_value(value: float, unit: str) -> str:
     """
     if unit not in SCALES | DIGITS:
         raise LookupError(f"No text has the unit {unit!r}. Valid: {', '.join(SCALES | DIGITS)}.")
-    text = f"{SCALES.get(unit, 1.0) * value:#.3g}".removesuffix(".")
-    return f"{text if 'e' not in text else f'{float(text):.0f}'} {unit}"
+    scaled = SCALES.get(unit, 1.0) * value
+    text = f"{scaled:#.3g}".removesuffix(".")
+    if "e" in text:  # three digits of a large number, or more places of a small one
+        text = f"{float(text):.0f}" if abs(scaled) >= 1 else np.format_float_positional(float(text))
+    return f"{text} {unit}"
 
 
 def format_value(value: float | None, unit: str) -> str:

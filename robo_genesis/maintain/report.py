@@ -17,8 +17,8 @@ from robo_genesis.evidence.document import Document, Part
 from robo_genesis.evidence.rows import SEVERITY, worst
 from robo_genesis.maintain.pin import locked_versions
 from robo_genesis.pipeline.bundles.status import Status, recorded_folders, recorded_status
-from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.folder import OUTPUTS, read_record
+from robo_genesis.pipeline.pages.book import code_digest, find_pages
+from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, read_record
 from robo_genesis.pipeline.pages.results import find_bundle
 from robo_genesis.pipeline.pages.store import folders
 
@@ -96,9 +96,13 @@ def read_build(root: Path, version: str, site: Path) -> EngineBuild:
     bundles, book = {}, root / "book"
     for page in find_pages(book):
         for folder in folders(root / ".cache" / STORE, page):
-            record = read_record(folder)
+            try:
+                record = read_record(folder)
+            except PageRefused:  # of an older form, or damaged: no build of today
+                continue
             bundle = find_bundle(folder / OUTPUTS, record.run_id)
-            if bundle and record.engine == version:
+            current = record.engine == version and record.code == code_digest(page)
+            if bundle and current:
                 bundles[f"{page.lesson}/{page.page}/{bundle.name}"] = bundle
                 break
     lock = (root / "requirements.lock").read_text("utf8")
@@ -109,10 +113,11 @@ def compare_builds(old: EngineBuild, new: EngineBuild) -> Refresh:
     """Compare what two engine versions made of one checkout."""
     comparisons, missing = [], {}
     for name in sorted(old.bundles | new.bundles):
+        if name not in old.bundles or name not in new.bundles:
+            missing[name] = "In one build only."
+            continue
         try:
             comparisons.append(compare(old.bundles[name], new.bundles[name]))
-        except KeyError:
-            missing[name] = "In one build only."
         except BundleRefused as error:
             missing[name] = str(error)
     versions = old.version, new.version

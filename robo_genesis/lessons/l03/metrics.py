@@ -70,7 +70,7 @@ class BounceMetrics(CaseMetrics):
     first_kept: float | None = metric("%", "energy kept at the first bounce", *ENERGY)
     later_kept: float | None = metric("%", f"energy left after {BOUNCES_COUNTED} bounces", *ENERGY)
     flight_drift: float | None = metric(
-        "J", "largest change of the kept energy in a flight", *ENERGY
+        "J", "largest change of the conserved energy in a flight", *ENERGY
     )
     flight_change: float | None = metric(
         "J", "largest change of the total energy in a flight", *ENERGY

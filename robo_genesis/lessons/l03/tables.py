@@ -220,7 +220,7 @@ def engines(run: Experiment) -> Iterator[Row]:
         yield {
             "run": described(run.cases[pair[0]], pair[1] == study_spec.OWN_DEFAULTS),
             "rebound or hop [mm]": " and ".join(heights),
-            "farthest apart [µm]": f"{1e6 * distance.max():.2f}",
+            "farthest apart": readable(distance.max(), "m"),
             "over 0.05 mm from": since,
             "contacts there": " and ".join(counts),
         }

@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.text import NOT_OBSERVED, Block, format_value
+from robo_genesis.core.text import MICRO, NOT_OBSERVED, Block, format_value
 
 MEASURES = False
 
@@ -86,7 +86,7 @@ def conclusions(run: Experiment) -> str:
 
 
 def readable(value: float | None, unit: str) -> str:
-    """Write a value with a unit of its size: `6.43 mm` and `0.4104 m`."""
+    """Write a value with a unit of its size and three digits: `6.43 mm`; a longer one in metres."""
     small, limit = SHORT.get(unit, ("", 0.0))
     if value is None:
         return NOT_OBSERVED
@@ -94,8 +94,9 @@ def readable(value: float | None, unit: str) -> str:
         return f"0 {small}"
     if not small or abs(value) >= limit:
         return format_value(value, unit).replace("-", "−")
-    text = f"{1000 * value:.3f}" if abs(value) < 1e-3 else f"{1000 * value:.2f}"
-    return f"{text} {small}".replace("-", "−")
+    tiny = MICRO.get(unit, f"µ{unit}")
+    factor, unit = (1e6, tiny) if abs(value) < 1e-5 else (1e3, small)
+    return f"{factor * value:#.3g} {unit}".removesuffix(".").replace("-", "−")
 
 
 def milliseconds(seconds: float) -> str:

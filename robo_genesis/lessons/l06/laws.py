@@ -16,7 +16,7 @@ hold each other; that force, up to 0.34 N here, the rule does not know."""
 
 
 def laws_of_motion(run: Experiment) -> Iterator[Finding]:
-    """At each sample links, forces and, without a load, velocities are those of the own robot."""
+    """At each sample links, forces and, without a load, velocities are those of its own robot."""
     for name, world in run.cases.items():
         trace = run.traces[name]
         what = trace, world.commanding(trace.target), run.links

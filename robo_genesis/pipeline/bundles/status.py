@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.core import project
+from robo_genesis.core.checks import FAILED
 from robo_genesis.core.comparison import HELD, Relation, outcome
 from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence import bundle, copies
@@ -13,6 +14,7 @@ from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.compare import specification
 from robo_genesis.pipeline.bundles import keys as evidence_key
 from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.pipeline.pages.guards import contradicted
 from robo_genesis.sim.backends import BACKENDS
 
 RECORDED_PAGE = "lab"
@@ -146,8 +148,12 @@ def bundle_status(
         summary = SUMMARIES.get(code, UNREADABLE)
         if code == "stale":
             summary = why_stale(bundle.read_manifest(folder), book, root)
+        reason = str(refusal)
+        if code == FAILED:
+            about = bundle.read_manifest(folder).predicate
+            reason += contradicted(book, f"{about.lesson}/{about.page}", reason)
         state = STATE_OF_CODE.get(code, "refused")
-        return Status(state, backend, str(refusal), None, code, summary)
+        return Status(state, backend, reason, None, code, summary)
     claims = specification(manifest.predicate.lesson, manifest.predicate.page).relations
     lines = not_shown(bundle.by_full_name(bundle.read_metrics(folder)), claims)
     if not lines:

@@ -234,6 +234,8 @@ class Live:
 
 
 def end(process: subprocess.Popen[str]) -> None:
-    """End a process by SIGTERM, and wait for it."""
+    """End a process, and the group that it leads if it has one, by SIGTERM; wait for it."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGTERM)
     process.terminate()
     process.wait()

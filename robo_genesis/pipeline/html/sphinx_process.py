@@ -10,6 +10,7 @@ import io
 import json
 import multiprocessing
 import os
+import signal
 import subprocess
 import sys
 import traceback
@@ -54,7 +55,7 @@ class SphinxProcess:
             [sys.executable, "-m", __name__, str(book), str(log)],
             env={**os.environ, "PYTHONPATH": str(ROOT)},
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-            preexec_fn=end_with_parent(),
+            start_new_session=True, preexec_fn=end_with_parent(),
         )  # fmt: skip
 
     def __enter__(self) -> Self:
@@ -66,8 +67,13 @@ class SphinxProcess:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        self.process.kill()
-        self.process.communicate()
+        """End the process and what it started: a child would keep the pipes open."""
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        for pipe in (self.process.stdin, self.process.stdout):
+            with suppress(OSError):
+                pipe.close()  # type: ignore[union-attr]
+        self.process.wait()
 
     def render(
         self, folder: Path, built: "BuiltPages", meanwhile: Callable[[], None] = lambda: None

@@ -33,7 +33,7 @@ BOUNDARY = 60
 NEAR = 0.1
 """Difference up to which coordinates count as equal [px]: other processors round differently."""
 PLACE = re.compile(
-    r'(?<=\s)(?:d|points|[xy][12]?|c[xy]|width|height|viewBox)="[^"]*"|translate\([^)]*\)'
+    r'(?<=\s)(?:d|points|[xy][12]?|c[xy]|width|height|viewBox)="[^"]*"|translate\([^()]*\)'
 )
 """The coordinates of a drawing."""
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
@@ -198,7 +198,7 @@ def difference_of(found: str, valid: str, drawn: bool) -> str | None:
     if drawn:
         found, at = _without_places(found)
         valid, expected = _without_places(valid)
-        if found == valid:
+        if found == valid and len(at) == len(expected):
             far = (pair for pair in zip(at, expected, strict=True) if abs(pair[0] - pair[1]) > NEAR)
             return next((f"found the coordinate {a}, expected {b}" for a, b in far), None)
     pairs = enumerate(zip(found, valid, strict=False))

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 GUARD = re.compile(r"\s*\{guard\}`([^`]+)`")
+DECLARED = re.compile(r"^robo_genesis:\s*\{?\s*lesson: *(\w+),?\s*page: *(\w+)", re.MULTILINE)
 START = re.compile(r"(?<=[.!?])\s+(?=\S)|\n\s*(?:[-*]|\d+\.|\|)\s|\n\s*\n|\|")
 
 
@@ -34,17 +35,22 @@ def guarded_sentences(text: str) -> Iterator[Guarded]:
         yield Guarded(text.count("\n", 0, match.start()) + 1, sentence, match[1])
 
 
-def contradicted(file: Path, message: str) -> str:
-    """Return which sentences of a page a message of failed checks contradicts, as a message.
+def contradicted(book: Path, lesson_page: str, message: str) -> str:
+    """Return which sentences of the book a message of failed checks contradicts, as a message.
 
     Args:
-        file: the source of the page.
-        message: it has the names of failed checks in brackets.
+        book: the folder of the pages.
+        lesson_page: whose checks failed: `l04/lab`.
+        message: it has the names of the failed checks in brackets.
     """
-    failed = set(re.findall(r"\[(\w+)\]", message))
-    said = [
-        f"{file.name}, line {found.line}, says “{found.sentence}” ({found.check})"
-        for found in guarded_sentences(file.read_text("utf8"))
-        if found.check.split()[-1] in failed
-    ]
+    failed, said = set(re.findall(r"\[(\w+)\]", message)), []
+    for file in sorted(book.glob("[!_]*/**/*.md")):
+        text = file.read_text("utf8")
+        front = DECLARED.search(text)
+        own = front is not None and "/".join(front.groups()) == lesson_page
+        for found in guarded_sentences(text):
+            place, _, check = found.check.rpartition(" ")
+            if check in failed and (place == lesson_page or (own and not place)):
+                name = file.relative_to(book).as_posix()
+                said.append(f"{name}, line {found.line}, says “{found.sentence}” ({check})")
     return f" Write again what the runs contradict: {'; '.join(said)}." if said else ""

@@ -149,7 +149,8 @@ def at_cell(
     same = ran and ran.source == cells[index].source  # no comment was added after the run
     failing = min(_failing_line(ran), len(lines)) if same else 1
     if error == CheckFailed.__name__:
-        message += contradicted(page.path, message)
+        book = page.path.parents[page.docname.count("/")]
+        message += contradicted(book, f"{page.lesson}/{page.page}", message)
     return Failure(
         error,
         message,

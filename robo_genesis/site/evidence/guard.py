@@ -23,17 +23,28 @@ class Guard(SphinxRole):
     def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
         """Return nothing, or an error with the name, the choices or the values."""
         place, _, check = self.text.rpartition(" ")
-        lesson_page = place or measuring_page(self.env.docname)
-        folder = page_outputs(lesson_page) / project.BUILD_BACKEND
-        found = {c.name: c for c in bundle.read_manifest(folder).predicate.checks}
-        problem = None
-        if check not in found:
-            problem = f"{lesson_page} has no check {check!r}. Choices: {', '.join(found)}."
-        elif not found[check].passed:
-            problem = f"the check {check} of {lesson_page} found {found[check].found}."
+        try:
+            problem = problem_of(place or measuring_page(self.env.docname), check)
+        except bundle.BundleRefused as error:
+            problem = str(error)
         if problem:
             return [], [self.inliner.reporter.error(f"guard: {problem}", line=self.lineno)]
         return [], []
+
+
+def problem_of(lesson_page: str, check: str) -> str | None:
+    """Return why a check of a page guards nothing, None if it passed.
+
+    Raises:
+        BundleRefused: the page has no bundle that can be read.
+    """
+    folder = page_outputs(lesson_page) / project.BUILD_BACKEND
+    found = {c.name: c for c in bundle.read_manifest(folder).predicate.checks}
+    if check not in found:
+        return f"{lesson_page} has no check {check!r}. Choices: {', '.join(found)}."
+    if not found[check].passed:
+        return f"the check {check} of {lesson_page} found {found[check].found}."
+    return None
 
 
 def setup(app: Sphinx) -> None:

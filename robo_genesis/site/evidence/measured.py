@@ -76,7 +76,9 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
         check, _, label = name.partition(":")
         findings = {c.name: c.found for c in predicate.checks}
         value = _chosen(lesson_page, check, label, findings, ":")
-        text = scaled_value(float(value), unit) if unit else quoted(value)
+        if unit and not isinstance(value, int | float):
+            raise LookupError(f"{lesson_page} has {name} = {quoted(value)}, which has no unit.")
+        text = scaled_value(value, unit) if unit else quoted(value)
         return text, f"{origin}, found by the check {check}"
     group, _, metric = name.partition(".")
     record = _chosen(lesson_page, group, metric, bundle.read_metrics(folder), ".")
@@ -89,7 +91,7 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
             f"Valid is {SCALED.get(given, 'no other unit')}, for a value that was measured."
         )
     else:
-        text = scaled_value(value, unit)
+        text = format_value(value, unit) if unit == given else scaled_value(value, unit)
     return text, f"{origin}, from {', '.join(record.source)}"
 
 

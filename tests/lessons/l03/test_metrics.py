@@ -169,8 +169,9 @@ def test_measured_curves_are_solid(experiments):
 @pytest.mark.parametrize(
     ("value", "unit", "words"),
     [
-        (0.006431, "m", "6.43 mm"), (-2.5e-5, "m", "−0.025 mm"), (0.41040, "m", "0.4104 m"),
-        (0.00123, "J", "1.23 mJ"), (0.22, "s", "0.22 s"), (None, "m", "not observed"),
+        (0.006431, "m", "6.43 mm"), (-2.5e-5, "m", "−0.0250 mm"), (0.41040, "m", "0.4104 m"),
+        (0.00123, "J", "1.23 mJ"), (2.5e-7, "J", "0.250 µJ"), (0.22, "s", "0.22 s"),
+        (None, "m", "not observed"),
     ],
 )  # fmt: skip
 def test_a_value_has_a_unit_of_its_size(value, unit, words):

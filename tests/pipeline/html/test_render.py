@@ -1,3 +1,9 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -109,3 +115,24 @@ def test_sphinx_executes_nothing_and_names_the_page(tmp_path):
     with pytest.raises(RenderError, match=r"page\.md is not executed, and Sphinx executes nothing"):
         build(tmp_path)
     assert not trace.exists()
+
+
+FORKS = "import os, time; os.fork() or time.sleep(60); time.sleep(60)"
+
+
+def test_a_child_of_sphinx_does_not_outlive_it(tmp_path):
+    """A child keeps the pipe open, for which an interrupted build would wait."""
+    sphinx = SphinxProcess.__new__(SphinxProcess)
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    sphinx.process = subprocess.Popen(
+        [sys.executable, "-c", FORKS], start_new_session=True, **pipes
+    )
+    with sphinx:
+        pass
+    assert sphinx.process.returncode == -signal.SIGKILL
+    deadline = time.monotonic() + 30
+    with suppress(ProcessLookupError):  # the group ends with its last process
+        while True:
+            os.killpg(sphinx.process.pid, 0)
+            assert time.monotonic() < deadline
+            time.sleep(0.05)

@@ -1,5 +1,8 @@
+import pytest
+
 from robo_genesis.pipeline.pages.guards import contradicted, guarded_sentences
 
+FRONT = "---\nrobo_genesis: {lesson: l04, page: lecture}\n---\n"
 PAGE = """# Title
 
 KP grows: the
@@ -8,6 +11,7 @@ sentence follows. {guard}`l04/lab order`{guard}`sag`
 
 - one item is lower {guard}`order`
 """
+WRITE = " Write again what the runs contradict: "
 
 
 def test_a_guard_belongs_to_the_sentence_in_front_of_it():
@@ -19,11 +23,17 @@ def test_a_guard_belongs_to_the_sentence_in_front_of_it():
     ]
 
 
-def test_a_failed_check_names_the_sentences_that_it_guards(tmp_path):
-    page = tmp_path / "lecture.md"
-    page.write_text(PAGE)
-    assert contradicted(page, "L04 CHECK: FAILED [order] x is 1, expected 2") == (
-        " Write again what the runs contradict: lecture.md, line 5, says “Another sentence "
-        "follows.” (l04/lab order); lecture.md, line 7, says “one item is lower” (order)."
-    )
-    assert contradicted(page, "L04 CHECK: FAILED [other] x is 1") == ""
+@pytest.mark.parametrize(
+    ("page", "said"),
+    [
+        ("l04/lecture", f"{WRITE}a/lecture.md, line 10, says “one item is lower” (order)."),
+        ("l04/lab", f"{WRITE}a/lecture.md, line 8, says “Another sentence follows.” (order)."),
+        ("l05/lab", ""),
+    ],
+)
+def test_a_failed_check_names_the_sentences_that_it_guards_on_all_pages(tmp_path, page, said):
+    file = tmp_path / "a" / "lecture.md"
+    file.parent.mkdir()
+    file.write_text(FRONT + PAGE)
+    assert contradicted(tmp_path, page, "L04 CHECK: FAILED [order] x is 1, expected 2") == said
+    assert contradicted(tmp_path, page, "L04 CHECK: FAILED [other] x is 1") == ""

@@ -10,6 +10,7 @@ from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.site.evidence import measured
+from robo_genesis.site.evidence.guard import problem_of
 from robo_genesis.site.evidence.measured import measured as insert
 from robo_genesis.site.evidence.measured import state_words, status_fold, visit_status
 
@@ -77,3 +78,10 @@ def test_the_words_of_the_line_are_text_and_not_markup():
         '<details class="status-line"><summary>'
         '<span class="status-word state-stale">x&lt;y run: stale</span></summary>'
     ]
+
+
+def test_a_guard_names_what_is_wrong_with_its_check(outputs):
+    assert problem_of("l04/lab", "control_law") is None
+    assert "no check 'control_lav'. Choices: " in str(problem_of("l04/lab", "control_lav"))
+    with pytest.raises(BundleRefused, match=r"manifest\.json is not in"):
+        problem_of("l04/elsewhere", "control_law")
