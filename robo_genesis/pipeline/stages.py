@@ -4,11 +4,9 @@
 """
 
 import os
-import shutil
-import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -27,7 +25,7 @@ from robo_genesis.pipeline.html.address import site_address, site_root
 from robo_genesis.pipeline.html.checks import Site, run_checks
 from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.kept import discard
-from robo_genesis.pipeline.html.publish import add_bundles, publish
+from robo_genesis.pipeline.html.publish import add_bundles, publish, staging_folder
 from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import LOG, SphinxProcess
 from robo_genesis.pipeline.html.sums import write_sums
@@ -142,24 +140,6 @@ def run_build(build: Build) -> list[str]:
         progress("publish", str(html))
         ran = sum(result.status == "executed" for result in results)
         return [f"Site: {html / 'index.html'}", *summary(executed=ran)]
-
-
-@contextmanager
-def staging_folder(cache: Path) -> Iterator[Path]:
-    """Make the folder in which one build renders; remove it in the end.
-
-    The build lock must be held: folders of killed builds are removed first. A process that a killed
-    build left would write into its own folder and not into this one.
-
-    Args:
-        cache: folder of the caches.
-    """
-    for left in cache.glob(f"{project.STAGING}*"):
-        shutil.rmtree(left, ignore_errors=True)
-    with tempfile.TemporaryDirectory(
-        prefix=f"{project.STAGING}-", dir=cache, ignore_cleanup_errors=True
-    ) as own:
-        yield Path(own)
 
 
 def export_one(name: str, to: Path | None, build: Build) -> list[str]:

@@ -1,12 +1,14 @@
 """Publish a rendered site in one move: built beside the old one, swapped in by renames."""
 
 import shutil
-from collections.abc import Callable, Iterable
+import tempfile
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from robo_genesis.core.files import replaced
-from robo_genesis.core.project import PUBLISHED
+from robo_genesis.core.project import PUBLISHED, STAGING
 from robo_genesis.pipeline.html.draft import Draft
 
 if TYPE_CHECKING:  # commands that need only names load no Jupyter
@@ -53,3 +55,21 @@ def publish(book: Path, folder: Path, finish: Callable[[Path], None] = lambda fo
         shutil.move(folder, following)
         finish(following)
     return book / PUBLISHED / "html"
+
+
+@contextmanager
+def staging_folder(cache: Path) -> Iterator[Path]:
+    """Make the folder in which one build renders; remove it in the end.
+
+    The build lock must be held: folders of killed builds are removed first. A process that a killed
+    build left would write into its own folder and not into this one.
+
+    Args:
+        cache: folder of the caches.
+    """
+    for left in cache.glob(f"{STAGING}*"):
+        shutil.rmtree(left, ignore_errors=True)
+    with tempfile.TemporaryDirectory(
+        prefix=f"{STAGING}-", dir=cache, ignore_cleanup_errors=True
+    ) as own:
+        yield Path(own)
