@@ -3,8 +3,7 @@
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-
-import numpy as np
+from decimal import Decimal
 
 MEASURES = False
 
@@ -38,7 +37,7 @@ def scaled_value(value: float, unit: str) -> str:
     scaled = SCALES.get(unit, 1.0) * value
     text = f"{scaled:#.3g}".removesuffix(".")
     if "e" in text:  # three digits of a large number, or more places of a small one
-        text = f"{float(text):.0f}" if abs(scaled) >= 1 else np.format_float_positional(float(text))
+        text = f"{Decimal(text):f}".rstrip("0" if abs(scaled) < 1 else "").removesuffix(".")
     return f"{text} {unit}"
 
 

@@ -14,7 +14,12 @@ from robo_genesis.core.project import BOOK, CACHE, ROOT
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import kernel_environment
-from robo_genesis.pipeline.pages.sources import import_closure, measures, measuring_modules
+from robo_genesis.pipeline.pages.sources import (
+    import_closure,
+    lesson_modules,
+    measures,
+    measuring_modules,
+)
 from robo_genesis.pipeline.pages.syntax import PACKAGE
 
 IMPORTING = {"__import__", "eval", "exec", "exec_module", "import_module", "run_module", "run_path"}
@@ -83,7 +88,7 @@ def loaded_modules(lab, tmp_path):
 def test_a_run_loads_only_modules_that_the_keys_know(lab, tmp_path):
     loaded = set(loaded_modules(lab, tmp_path))
     imports = lab.code.imports
-    reached = import_closure([f"{PACKAGE}.lessons.{lab.lesson}", *imports])
+    reached = import_closure([*lesson_modules(lab.lesson, ROOT), *imports])
     assert loaded <= reached.keys()
     computing = computing_modules(lab.lesson, {name: reached[name] for name in loaded})
     assert {f"lessons.{lab.lesson}.metrics", "sim.session"} <= computing

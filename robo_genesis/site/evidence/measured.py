@@ -30,7 +30,7 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 from robo_genesis.core import project
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.text import MICRO, SCALED, format_value, quoted, scaled_value
+from robo_genesis.core.text import MICRO, SCALED, format_value, listed, quoted, scaled_value
 from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,
@@ -78,7 +78,7 @@ def measured(lesson_page: str, name: str) -> tuple[str, str]:
         value = _chosen(lesson_page, check, label, findings, ":")
         if unit and not isinstance(value, int | float):
             raise LookupError(f"{lesson_page} has {name} = {quoted(value)}, which has no unit.")
-        text = scaled_value(value, unit) if unit else quoted(value)
+        text = scaled_value(value, unit) if unit else listed(quoted(value).split(", "))
         return text, f"{origin}, found by the check {check}"
     group, _, metric = name.partition(".")
     record = _chosen(lesson_page, group, metric, bundle.read_metrics(folder), ".")
@@ -126,7 +126,8 @@ class Measured(SphinxRole):
         except (LookupError, bundle.BundleRefused) as error:
             message = self.inliner.reporter.error(f"measured: {error}", line=self.lineno)
             return [], [message]
-        node = measured_value(self.rawtext, text, classes=["measured"], provenance=origin)
+        classes = ["measured", *(["measured-list"] if ", " in text else [])]
+        node = measured_value(self.rawtext, text, classes=classes, provenance=origin)
         return [node], []
 
 

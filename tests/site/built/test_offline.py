@@ -61,7 +61,7 @@ def test_the_archive_is_a_whole_site_without_itself(unpacked, site):
 def test_links_inside_the_site_name_files_so_that_they_work_from_disk(site):
     wrong = []
     pages = Site(site).pages.items()
-    for path, address in ((path, url) for path, page in pages for url, _ in page.addresses):
+    for path, address in ((path, url) for path, page in pages for url in page.addresses):
         url = address.partition("#")[0].partition("?")[0]
         leads = not url.startswith("/") and path.parent.joinpath(url).is_file()
         if url and ":" not in url and path.name not in SERVED_ONLY and not leads:
