@@ -9,7 +9,7 @@ from robo_genesis.core import project
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.site.evidence import measured
+from robo_genesis.site.evidence import guard, measured
 from robo_genesis.site.evidence.guard import problem_of
 from robo_genesis.site.evidence.measured import measured as insert
 from robo_genesis.site.evidence.measured import state_words, status_fold, visit_status
@@ -85,3 +85,10 @@ def test_a_guard_names_what_is_wrong_with_its_check(outputs):
     assert "no check 'control_lav'. Choices: " in str(problem_of("l04/lab", "control_lav"))
     with pytest.raises(BundleRefused, match=r"manifest\.json is not in"):
         problem_of("l04/elsewhere", "control_law")
+
+
+def test_a_check_that_failed_guards_nothing(outputs, monkeypatch):
+    failed = SimpleNamespace(name="sag", passed=False, found={"sag_m": 0.1})
+    manifest = SimpleNamespace(predicate=SimpleNamespace(checks=[failed]))
+    monkeypatch.setattr(guard.bundle, "read_manifest", lambda folder: manifest)
+    assert problem_of("l04/lab", "sag") == "the check sag of l04/lab found {'sag_m': 0.1}."
