@@ -1,7 +1,7 @@
 """One array of one run of a built bundle altered, and everything that follows from it made right.
 
 The forger keeps the types of data and computes metrics, checks and digests again. A try is refused
-if the arrays form no run, a rule of plausibility is broken, or a check fails.
+if the arrays form no run, a law is broken, or a check fails.
 """
 
 from collections.abc import Iterator
