@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding, at_most, equal, within
-from robo_genesis.core.exercises import as_test, compared
+from robo_genesis.core.exercises import Counted, as_test, compared
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03.metrics import LandingMetrics, SlideMetrics, clearance
 from robo_genesis.sim.arm.joints import to_numpy
@@ -61,10 +61,10 @@ def push(
         case: gives speed, time to settle and outer step.
     """
     built.reset()
-    counted = _CountingScene(built)
+    counted = Counted(built, "step")
     before = to_numpy(cube.get_pos())
     push_cube(counted, cube, case.speed, case.settle)
-    yield equal("steps_before_the_push", counted.steps, round(case.settle / case.dt))
+    yield equal("steps_before_the_push", counted.calls, round(case.settle / case.dt))
     velocity = np.append(to_numpy(cube.get_vel()), to_numpy(cube.get_ang()))
     expected = np.array([case.speed, 0, 0, 0, 0, 0])
     names = ("v_x", "v_y", "v_z", "w_x", "w_y", "w_z")
@@ -72,20 +72,6 @@ def push(
         yield within(name, float(value), float(right), 1e-3)
     moved = float(abs(to_numpy(cube.get_pos())[0] - before[0]))
     yield at_most("moved_before_the_push_m", moved, 1e-3)
-
-
-class _CountingScene:
-    """A scene that counts its steps."""
-
-    def __init__(self, built: Any) -> None:
-        self.built, self.steps = built, 0
-
-    def step(self) -> None:
-        self.steps += 1
-        self.built.step()
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.built, name)
 
 
 @as_test

@@ -122,6 +122,18 @@ def share(run: Experiment, case: str, kind: str = "") -> FloatArray:
     return step_share(step, run.traces[f"{case}_hold"], spec.ENTRY)
 
 
+def off_ideal(run: Experiment, case: str, kind: str = "") -> float:
+    """Return the largest distance of such a response from the ideal joint's, as a share."""
+    response = ideal(run, case).response(run.traces[case].t)
+    return float(np.abs(share(run, case, kind) - response).max())
+
+
+def supports(run: Experiment, case: str) -> tuple[float, float]:
+    """Return KP × final error of a case, and the gravity effort at its end [N·m]."""
+    kp = float(spec.CASES[case].kp[spec.ENTRY])
+    return kp * run.metrics[case].final_error, run.readings[GROUP][f"gravity_{case}"]
+
+
 def model_overshoot(run: Experiment, case: str, height: float) -> float:
     """Return the overshoot of the stepped model of one joint at the run's samples [rad].
 

@@ -44,7 +44,7 @@ def test_an_absent_backend_raises_by_name_and_falls_back_in_general(lab):
 
 
 GONE = ["GenesisException", "Backend ~~<gs.cuda>~~ not available on this machine."]
-FALLS = ["WARNING", "Backend ~~<gs.gpu>~~ not available on this machine. Falling back to CPU."]
+FALLS = "Backend ~~<gs.gpu>~~ not available on this machine. Falling back to CPU."
 
 
 @pytest.mark.parametrize(
