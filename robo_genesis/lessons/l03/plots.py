@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.plotting import LINE, legend_above, look
+from robo_genesis.core.plotting import LINE, legend_above, look, solid
 from robo_genesis.lessons.l03 import checks, spec, theory
 from robo_genesis.lessons.l03.metrics import (
     BounceMetrics,
@@ -48,11 +48,6 @@ EQUAL_BELOW = {"high_on_050": {"linewidth": 4.0, "alpha": 0.45}}
 BOUNCES_SHOWN = {"bounce_sub1": "second", "bounce_sub2": "other", "bounce_sub100": "third"}
 WINDOW = (0.18, 0.44)
 """Around the landing of the lab [s]."""
-
-
-def solid(mark: str, **more: Any) -> dict[str, Any]:
-    """Return the line style of measured data: the colour of a mark, without its dashes."""
-    return look(mark) | {"linestyle": "-"} | more
 
 
 def steps_axis(ax: Axes, steps: Iterable[float]) -> None:

@@ -4,10 +4,19 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, noted, within
+from robo_genesis.core.checks import (
+    Finding,
+    above,
+    at_most,
+    below,
+    equal,
+    noted,
+    within,
+    within_share,
+)  # fmt: skip
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l03 import checks, spec, study_spec, theory
-from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics
+from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics, at_shared_times
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 GROUP = "time_constant"
@@ -56,9 +65,8 @@ def time_constants(run: Experiment) -> Iterator[Finding]:
 def records_each_step(run: Experiment) -> Iterator[Finding]:
     """With every solver step recorded, the baseline falls as with every second one."""
     name = study_spec.AS_BASELINE
-    fine, coarse = run.traces[name].link_pos, run.traces["baseline"].link_pos
-    shared = fine[:: spec.BASELINE.substeps, 0, 2]
-    difference = float(np.abs(shared - coarse[: len(shared), 0, 2]).max())
+    fine, coarse = at_shared_times(run.traces[name], run.traces["baseline"], "link_pos")
+    difference = float(np.abs(fine - coarse)[:, 2].max())
     yield at_most(f"{name}.distance_to_baseline_m", difference, spec.SAME_STATE)
 
 
@@ -67,16 +75,11 @@ def rebound_goes(run: Experiment) -> Iterator[Finding]:
     smaller steps studied, none does from any of the nine heights.
     """
     for name in study_spec.STEP_CASES:
-        rebounds = [found.rebound for *_, found in row(run, name)]
-        highest = max(rebounds)
-        label, step = f"{name}.highest_rebound_m", case_of(name).h
-        if step > spec.BASELINE.h:
-            yield noted(label, highest)
-        elif step == spec.BASELINE.h:
-            yield noted(label, highest)
+        rebounds, step = [found.rebound for *_, found in row(run, name)], case_of(name).h
+        limit = CLEAR if step < spec.BASELINE.h else np.inf
+        yield at_most(f"{name}.highest_rebound_m", max(rebounds), limit)
+        if step == spec.BASELINE.h:
             yield above(f"{name}.lowest_rebound_m", min(rebounds), CLEAR)
-        else:
-            yield at_most(label, highest, CLEAR)
 
 
 def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
@@ -117,9 +120,8 @@ def default_cone_hops(run: Experiment) -> Iterator[Finding]:
 
 def by_formula(run: Experiment, name: str) -> Finding:
     """Require the hop of one solver step, within 25 %."""
-    expected = theory.hop(run.cases[name])
-    allowed = study_spec.HOP_SHARE * expected
-    return within(f"{name}.hop_m", run.metrics[name].hop, expected, allowed)
+    hop, expected = run.metrics[name].hop, theory.hop(run.cases[name])
+    return within_share(f"{name}.hop_m", hop, expected, study_spec.HOP_SHARE)
 
 
 def hop_follows_step(run: Experiment) -> Iterator[Finding]:
@@ -128,12 +130,10 @@ def hop_follows_step(run: Experiment) -> Iterator[Finding]:
     """
     for step, cases in study_spec.HOP_STEP_CASES.items():
         for name in cases:
-            if step in study_spec.HOP_APPLIES:
-                yield by_formula(run, name)
-            else:
-                coarse = run.metrics[name.replace(step, "hop_5000us")].hop
-                limit = study_spec.HOP_LEFT * coarse
-                yield at_most(f"{name}.hop_m", run.metrics[name].hop, limit)
+            left = study_spec.HOP_LEFT * run.metrics[name.replace(step, "hop_5000us")].hop
+            applies = step in study_spec.HOP_APPLIES
+            fine = at_most(f"{name}.hop_m", run.metrics[name].hop, left)
+            yield by_formula(run, name) if applies else fine
 
 
 def hop_follows_speed(run: Experiment) -> Iterator[Finding]:

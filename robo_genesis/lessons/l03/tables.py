@@ -209,7 +209,7 @@ def stops_by_step(run: Experiment) -> Iterator[Row]:
 def engines(run: Experiment) -> Iterator[Row]:
     """Return how far each pair of runs is apart, and from when they are farther than 0.05 mm."""
     for pair in (*study_spec.ENGINE_PAIRS.items(), ("baseline", study_spec.OWN_DEFAULTS)):
-        distance = study_deeper.distance_between(run.traces, *pair)
+        distance = study_deeper.distance_between(*(run.traces[name] for name in pair))
         excess = np.flatnonzero(distance > study_spec.ENGINES_APART)
         since, counts = "never", ["–", "–"]
         if len(excess):
