@@ -1,5 +1,7 @@
 """The tests of the student's functions: right ones pass, and typical wrong ones fail."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import torch
@@ -53,16 +55,7 @@ def scene_with(**mistake):
 
 
 def without_reset(scene, box, steps):
-    heights, speeds = [box.get_pos()[2].item()], [box.get_vel()[2].item()]
-    for _ in range(steps):
-        scene.step()
-        heights.append(box.get_pos()[2].item())
-        speeds.append(box.get_vel()[2].item())
-    return heights, speeds
-
-
-def read_once(scene, box, steps):
-    return tuple([values[0]] * (steps + 1) for values in OURS(scene, box, steps))
+    return OURS(SimpleNamespace(step=scene.step, reset=lambda: None), box, steps)
 
 
 CASES = {
@@ -71,7 +64,6 @@ CASES = {
         "one substep": scene_with(substeps=1),
         "another dt": scene_with(dt=0.02),
         "the default density": scene_with(rho=600),
-        "a larger box": scene_with(size=0.2, rho=62.5),
         "the underside at half a metre": scene_with(height=0.55),
         "no ground": scene_with(ground=False),
         "fixed": scene_with(fixed=True),
@@ -81,9 +73,8 @@ CASES = {
         "right": OURS,
         "without the first state": lambda *of: [values[1:] for values in OURS(*of)],
         "without a reset": without_reset,
-        "read once": read_once,
+        "read once": lambda *of: [[values[0]] * len(values) for values in OURS(*of)],
         "speed downwards": lambda *of: (OURS(*of)[0], [-speed for speed in OURS(*of)[1]]),
-        "one step more": lambda scene, box, steps: OURS(scene, box, steps + 1),
         "heights alone": lambda *of: OURS(*of)[:1],
     },
     "usable_frame": {
@@ -92,13 +83,11 @@ CASES = {
         "extremes": lambda rgb: FRAME(rgb) and rgb[..., 0].max() > 30,
         "any dtype": lambda rgb: rgb.shape == (540, 720, 3) and bool((rgb != rgb[0, 0]).any()),
         "any shape": lambda rgb: bool((rgb != rgb[0, 0]).any()) and rgb.dtype == np.uint8,
-        "most pixels": lambda rgb: FRAME(rgb) and float((rgb != rgb[0, 0]).mean()) > 0.01,
     },
     "stepped": {
         "right": STEPPED,
         "explicit Euler": lambda g, h, n: g * h**2 * np.arange(n + 1) * np.arange(-1, n) / 2,
         "the school formula": lambda g, h, n: continuous_drop(h * np.arange(n + 1), g),
-        "the last distance alone": lambda g, h, n: STEPPED(g, h, n)[-1],
         "without the start": lambda g, h, n: STEPPED(g, h, n)[1:],
         "another gravity": lambda g, h, n: STEPPED(9.81, h, n),
     },
