@@ -42,9 +42,7 @@ def stepped(case, step, h=0.005, steps=240, **forces):
     [
         ("G1", 0.005, {}, 0.031 * 0.005),
         ("G2", 0.005, {}, 0.145 * 0.005),
-        ("G1", 0.25, {"limit": 87.0, "gravity": 22.09}, 0.0),
         ("G2", 0.25, {"limit": 87.0, "gravity": 22.09}, 0.0536),
-        ("G3", 0.25, {"limit": 87.0, "gravity": 22.09}, 0.0),
     ],
 )
 def test_the_stepped_joint_overshoots_by_known_amounts(case, step, forces, overshoot):
