@@ -88,10 +88,8 @@ def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
     for name in sorted(study_spec.STEP_CASES, key=share_of_step, reverse=True):
         shares = depth_shares(run, name)
         scatter, label = float(np.ptp(shares)), f"{name}.scatter_of_depth_share"
-        if share_of_step(name) >= 0.5:
-            yield above(label, scatter, study_spec.SCATTER_COARSE)
-        else:
-            yield below(label, scatter, limit)
+        coarse = above(label, scatter, study_spec.SCATTER_COARSE)
+        yield coarse if share_of_step(name) >= 0.5 else below(label, scatter, limit)
         limit = min(limit, scatter)
         yield noted(f"{name}.smallest_depth_share", min(shares))
     yield at_most("scatter_left", limit, study_spec.SCATTER_FINE)
@@ -141,10 +139,8 @@ def hop_follows_speed(run: Experiment) -> Iterator[Finding]:
     previous = 0.0
     for name, case in study_spec.HOP_SPEED_CASES.items():
         found = run.metrics[name].hop
-        if case.speed <= study_spec.SLOW:
-            yield at_most(f"{name}.hop_m", found, study_spec.INVISIBLE)
-        else:
-            yield by_formula(run, name)
+        slow = at_most(f"{name}.hop_m", found, study_spec.INVISIBLE)
+        yield slow if case.speed <= study_spec.SLOW else by_formula(run, name)
         yield above(f"{name}.higher_than_slower_m", found - previous, 0.0)
         previous = found
 

@@ -212,9 +212,6 @@ ENGINES_APART = 5e-5
 FINEST = 6
 """Number of the smallest steps that are compared for convergence, all at most T / 10."""
 
-CLOSE = 0.01
-"""Share of Coulomb's distance within which a stopping distance is close to it."""
-
 UNSETTLED = 0.05
 """Change at half the step, or spread over the finest steps, from which a stopping distance depends
 on the step, as a share of Coulomb's distance."""

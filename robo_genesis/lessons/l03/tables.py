@@ -30,11 +30,11 @@ def as_table(rows: Callable[[Experiment], Iterable[Row]]) -> Callable[[Experimen
     """
 
     @wraps(rows)
-    def table(run: Experiment) -> str:
-        kept = [{k: BEFORE_UNIT.sub("\u00a0", of) for k, of in row.items()} for row in rows(run)]
-        return tables.markdown(kept)
+    def unbroken(run: Experiment) -> Iterator[Row]:
+        for row in rows(run):
+            yield {head: BEFORE_UNIT.sub("\u00a0", cell) for head, cell in row.items()}
 
-    return table
+    return tables.as_table(unbroken)
 
 
 def span(values: Sequence[float], digits: int = 2) -> str:

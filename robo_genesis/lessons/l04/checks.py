@@ -33,13 +33,11 @@ def mapping(run: Experiment) -> Iterator[Finding]:
 
 def configuration(run: Experiment) -> Iterator[Finding]:
     """Start, target, gains and limits have one finite value per joint; joint types have units."""
-    given = {
-        f"{case}.{name}": (getattr(values, name), False)
-        for case, values in spec.CASES.items()
-        for name in ("q_start", "q_target", "kp", "kv", "effort_limit")
-    }
-    given |= {f"limits.{name}": (getattr(run.joints, name), True) for name in ("lower", "upper")}
-    for name, (values, recorded) in given.items():
+    fields = ("q_start", "q_target", "kp", "kv", "effort_limit")
+    chosen = {f"{n}.{name}": getattr(of, name) for n, of in spec.CASES.items() for name in fields}
+    limits = {f"limits.{name}": getattr(run.joints, name) for name in ("lower", "upper")}
+    for name, values in (chosen | limits).items():
+        recorded = name in limits
         yield equal(f"{name}.shape", np.shape(values), (len(run.joints.names),), recorded)
         yield equal(f"{name}.not_finite", int((~np.isfinite(values)).sum()), 0, recorded)
     unknown = set(run.joints.types) - (POSITION_UNIT.keys() & EFFORT_UNIT.keys())

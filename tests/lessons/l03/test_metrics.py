@@ -1,5 +1,6 @@
 """Known answers: theory, energy, clearance, metrics, and the tables and figures of them."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -141,11 +142,8 @@ def test_a_distance_between_runs_takes_shared_times_and_no_lanes(experiments):
 
 def test_the_table_of_both_engines_says_when_runs_separate(experiments):
     rows = tables.engines(experiments["contact"]).splitlines()[2:]
-    assert len(rows) == len(study_spec.ENGINE_PAIRS) + 1
-    assert rows[0].startswith("| landing, h = 5\u00a0ms |")
-    assert rows[0].endswith("| never | – and – |")
-    assert rows[-1].startswith("| landing, h = 5 ms, MuJoCo's own contact |")
-    assert "never" not in rows[-1]
+    assert re.fullmatch(r"\| landing, h = 5\u00a0ms \|.*\| never \| – and – \|", rows[0])
+    assert re.match(r"\| landing, h = 5 ms, MuJoCo's own contact \|(?!.*never)", rows[-1])
 
 
 def test_a_stop_that_was_not_observed_is_said_and_not_drawn(experiments):
