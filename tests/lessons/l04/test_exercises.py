@@ -9,6 +9,7 @@ from lessons.exercise_cells import solutions
 from robo_genesis.lessons.l04 import exercises, spec
 
 SOLVED = solutions("l04") | solutions("l04", "formula")
+RECORD = SOLVED["record"]
 OURS = {"resolver": "resolve", "control_loop": "record", "pd_law": "pd_effort",
         "step_response": "measure", "stepped": "stepped"}  # fmt: skip
 
@@ -35,19 +36,13 @@ class Playback:
         return lambda dofs: tensor
 
 
-def recording(first=True, more=0, dt=0.01, getter="get_dofs_control_force", once=False):
-    """Return a loop with one mistake."""
+def altered(k, change):
+    """Return a loop that records one array otherwise."""
 
-    def record(scene, robot, dofs, q_target, steps):
-        q, qd, force = [robot.get_dofs_position(dofs).numpy()] * first, [], []
-        for k in range(steps + more):
-            if not (once and k):
-                robot.control_dofs_position(q_target, dofs)
-            scene.step()
-            for values, name in ((q, "get_dofs_position"), (qd, "get_dofs_velocity"),
-                                 (force, getter)):  # fmt: skip
-                values.append(getattr(robot, name)(dofs).numpy())
-        return np.arange(len(q)) * dt, np.stack(q), np.stack(qd), np.stack(force)
+    def record(*given):
+        found = list(RECORD(*given))
+        found[k] = change(found[k])
+        return found
 
     return record
 
@@ -75,8 +70,8 @@ WRONG = {
         lambda robot, names: sorted(SOLVED["resolve"](robot, names)),
     ],
     "control_loop": [
-        recording(first=False), recording(more=-1), recording(dt=0.005), recording(once=True),
-        recording(getter="get_dofs_force"),
+        altered(0, lambda t: t / 2), altered(1, lambda q: q[1:]), altered(3, lambda force: -force),
+        lambda *given: RECORD(*given[:-1], given[-1] - 1),  # a command is missing
     ],
     "pd_law": [
         lambda e, v, kp, kv, limit: kp * e - kv * v,  # not clipped

@@ -53,7 +53,6 @@ FALLS = "Backend ~~<gs.gpu>~~ not available on this machine. Falling back to CPU
         ((GONE, "cpu", [FALLS]), True, "Backend <gs.cuda> not available"),
         ((GONE, "amdgpu", []), True, "started on `amdgpu`; its warnings (0): none"),
         ((GONE, "cpu", [FALLS, FALLS]), False, "its warnings (2)"),
-        ((["ValueError", "not available"], "cpu", [FALLS]), False, "`ValueError`"),
         ((None, None, []), False, "`gs.init(backend=gs.cuda)` raised nothing."),
     ],
 )
