@@ -98,7 +98,7 @@ def within(label: str, found: float | None, expected: float, tolerance: float) -
     return Finding(label, found, bool(passed), f"{expected:g} ± {tolerance:g}")
 
 
-def within_share(label: str, found: float | None, expected: float, share: float) -> Finding:
+def nearly(label: str, found: float | None, expected: float, share: float) -> Finding:
     """Require a value that differs from the expected one by no more than a share of it."""
     return within(label, found, expected, share * abs(expected))
 

@@ -14,19 +14,14 @@ from robo_genesis.core.checks import (
     factors,
     masses,
     model_counts,
+    nearly,
     within,
-    within_share,
 )  # fmt: skip
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.lessons.l03 import spec, theory
 from robo_genesis.lessons.l03.laws import laws_of_motion
-from robo_genesis.lessons.l03.metrics import (
-    BounceMetrics,
-    LandingMetrics,
-    SlideMetrics,
-    at_shared_times,
-)  # fmt: skip
+from robo_genesis.lessons.l03.metrics import BounceMetrics, LandingMetrics, SlideMetrics, aligned
 from robo_genesis.sim.bodies.contacts import SETTINGS, TOP
 from robo_genesis.sim.common_checks import posture, stamps
 
@@ -96,7 +91,7 @@ def equal_step_equal_states(run: Experiment) -> Iterator[Finding]:
         if run.cases[short].h != run.cases[long].h or run.cases[short].dt == run.cases[long].dt:
             continue
         for name in ("link_pos", "link_quat", "link_vel", "link_ang"):
-            one, other = at_shared_times(run.traces[short], run.traces[long], name)
+            one, other = aligned(run.traces[short], run.traces[long], name)
             error = np.abs(one - other).max()
             yield at_most(f"{short}.{name}_against_{long}", error, spec.SAME_STATE)
 
@@ -134,7 +129,7 @@ def near_coulomb(run: Experiment) -> Iterator[Finding]:
     """Each stopping distance is within 20 % of v² / (2 μ g) with the larger coefficient."""
     for name, found in measured(run, SlideMetrics).items():
         expected, label = theory.coulomb_distance(run.cases[name]), f"{name}.stop_distance_m"
-        yield within_share(label, found.stop_distance, expected, spec.COULOMB_SHARE)
+        yield nearly(label, found.stop_distance, expected, spec.COULOMB_SHARE)
 
 
 def level_in_flight(run: Experiment) -> Iterator[Finding]:

@@ -109,7 +109,7 @@ def clearance(trace: BodyTrace, case: ContactCase) -> FloatArray:
     return z - case.size / 2 * np.abs(upward).sum(axis=0) - TOP
 
 
-def at_shared_times(fine: BodyTrace, coarse: BodyTrace, name: str) -> tuple[FloatArray, FloatArray]:
+def aligned(fine: BodyTrace, coarse: BodyTrace, name: str) -> tuple[FloatArray, FloatArray]:
     """Return an array of two runs of one body, (k, …), at the states that both recorded."""
     every = round(coarse.dt / fine.dt)
     one, other = getattr(fine, name)[::every, 0], getattr(coarse, name)[:, 0]

@@ -10,13 +10,8 @@ import numpy as np
 
 from robo_genesis.core.exercises import Mistake
 from robo_genesis.core.trace import ContactTrace
-from robo_genesis.lessons.l03.metrics import (
-    STOP_SPEED,
-    at_shared_times,
-    clearance,
-    slide_metrics,
-    stopped_at,
-)  # fmt: skip
+from robo_genesis.lessons.l03 import metrics
+from robo_genesis.lessons.l03.metrics import STOP_SPEED, clearance, slide_metrics, stopped_at
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase, build_world, run_world, time_constant
 
 MEASURES = False
@@ -32,7 +27,7 @@ def equal_steps(fine: ContactTrace, coarse: ContactTrace) -> Mistake:
         fine: a run.
         coarse: the same motion with fewer states.
     """
-    by_time = np.subtract(*at_shared_times(fine, coarse, "link_pos"), dtype=np.float64)[..., 2]
+    by_time = np.subtract(*metrics.aligned(fine, coarse, "link_pos"), dtype=np.float64)[..., 2]
     n = len(by_time)
     heights = [trace.link_pos[:n, 0, 2].astype(np.float64) for trace in (fine, coarse)]
     apart, at_equal_times = np.abs(heights[0] - heights[1]).max(), np.abs(by_time).max()

@@ -4,19 +4,10 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import (
-    Finding,
-    above,
-    at_most,
-    below,
-    equal,
-    noted,
-    within,
-    within_share,
-)  # fmt: skip
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l03 import checks, spec, study_spec, theory
-from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics, at_shared_times
+from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics, aligned
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 GROUP = "time_constant"
@@ -65,7 +56,7 @@ def time_constants(run: Experiment) -> Iterator[Finding]:
 def records_each_step(run: Experiment) -> Iterator[Finding]:
     """With every solver step recorded, the baseline falls as with every second one."""
     name = study_spec.AS_BASELINE
-    fine, coarse = at_shared_times(run.traces[name], run.traces["baseline"], "link_pos")
+    fine, coarse = aligned(run.traces[name], run.traces["baseline"], "link_pos")
     difference = float(np.abs(fine - coarse)[:, 2].max())
     yield at_most(f"{name}.distance_to_baseline_m", difference, spec.SAME_STATE)
 
@@ -119,7 +110,7 @@ def default_cone_hops(run: Experiment) -> Iterator[Finding]:
 def by_formula(run: Experiment, name: str) -> Finding:
     """Require the hop of one solver step, within 25 %."""
     hop, expected = run.metrics[name].hop, theory.hop(run.cases[name])
-    return within_share(f"{name}.hop_m", hop, expected, study_spec.HOP_SHARE)
+    return nearly(f"{name}.hop_m", hop, expected, study_spec.HOP_SHARE)
 
 
 def hop_follows_step(run: Experiment) -> Iterator[Finding]:

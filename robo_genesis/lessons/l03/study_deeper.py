@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, noted, within, within_share
+from robo_genesis.core.checks import Finding, above, at_most, nearly, noted, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import checks, study, study_spec, theory
-from robo_genesis.lessons.l03.metrics import CLEAR, SlideMetrics, at_shared_times
+from robo_genesis.lessons.l03.metrics import CLEAR, SlideMetrics, aligned
 
 LANES = {"low": "low_on_050", "high": "high_on_050"}
 """By cube, its push at the coarsest step."""
@@ -30,7 +30,7 @@ def distance_between(first: ContactTrace, second: ContactTrace) -> FloatArray:
 
     The distance of their starts is subtracted: some cubes lie side by side in one scene.
     """
-    difference = np.subtract(*at_shared_times(first, second, "link_pos"), dtype=np.float64)
+    difference = np.subtract(*aligned(first, second, "link_pos"), dtype=np.float64)
     return np.asarray(np.linalg.norm(difference - difference[0], axis=1))
 
 
@@ -44,7 +44,7 @@ def stops_nearly_right(run: Experiment) -> Iterator[Finding]:
     """The cube with the friction of the surface still stops near v² / (2 μ g)."""
     name = LANES["low"]
     found, expected = run.metrics[name].stop_distance, theory.coulomb_distance(run.cases[name])
-    yield within_share(f"{name}.stop_distance_m", found, expected, study_spec.NEARLY)
+    yield nearly(f"{name}.stop_distance_m", found, expected, study_spec.NEARLY)
 
 
 def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
@@ -54,7 +54,7 @@ def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
         mu = theory.pair_friction(case)
         yield above(f"{name}.lost_m_s", lost, study_spec.BLOW * mu * case.gravity * case.dt)
         label = f"{name}.mu_times_gained_m_s"
-        yield within_share(label, mu * gained, lost, study_spec.RATIO_TOLERANCE)
+        yield nearly(label, mu * gained, lost, study_spec.RATIO_TOLERANCE)
 
 
 def the_cone_alone_hops(run: Experiment) -> Iterator[Finding]:
@@ -90,7 +90,7 @@ def engines_land_alike(run: Experiment) -> Iterator[Finding]:
     """With equal settings, cubes land in MuJoCo as in the engine, at every shared sample."""
     for name, other in study_spec.ENGINE_PAIRS.items():
         if name not in checks.measured(run, SlideMetrics):
-            one, two = at_shared_times(run.traces[name], run.traces[other], "link_pos")
+            one, two = aligned(run.traces[name], run.traces[other], "link_pos")
             difference = float(np.abs(one - two)[:, 2].max())
             label = f"{name}.distance_to_{other}_m"
             yield at_most(label, difference, study_spec.ENGINES_APART)
@@ -120,7 +120,7 @@ def release_speed(run: Experiment) -> Iterator[Finding]:
     for scene in study_spec.RELEASE_CASES:
         for name, case, found in study.row(run, scene):
             expected, label = theory.release_speed(case), f"{name}.upward_speed_m_s"
-            yield within_share(label, found.upward_speed, expected, study_spec.RELEASE_SHARE)
+            yield nearly(label, found.upward_speed, expected, study_spec.RELEASE_SHARE)
 
 
 def stiff_contacts_rebound(run: Experiment) -> Iterator[Finding]:
@@ -130,7 +130,7 @@ def stiff_contacts_rebound(run: Experiment) -> Iterator[Finding]:
     for scene in study_spec.RELEASE_CASES:
         for name, case, found in study.row(run, scene):
             expected, label = theory.rebound(case), f"{name}.rebound_m"
-            as_linear = within_share(label, found.rebound, expected, study_spec.REBOUND_SHARE)
+            as_linear = nearly(label, found.rebound, expected, study_spec.REBOUND_SHARE)
             yield as_linear if expected else at_most(label, found.rebound, CLEAR)
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, noted, within
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted
 from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import format_value
@@ -61,7 +61,7 @@ def gravity_support(run: Experiment) -> Iterator[Finding]:
         yield noted(f"{case}.final_velocity_rad_s", velocity)
         if abs(velocity) <= study_spec.AT_REST:
             at_rest.append(case)
-            yield within(label, support, effort, study_spec.GRAVITY_AGREEMENT * abs(effort))
+            yield nearly(label, support, effort, study_spec.GRAVITY_AGREEMENT)
         else:
             yield noted(label, support)
     yield Finding("cases_at_rest", at_rest, bool(at_rest), "at least one", recorded=False)

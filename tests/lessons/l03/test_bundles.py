@@ -5,14 +5,7 @@ from pathlib import Path
 
 import pytest
 from bundles import written
-from lessons.lesson_bundles import (
-    in_archive,
-    judged_again,
-    metric,
-    pop,
-    refused,
-    table,
-)  # fmt: skip
+from lessons.lesson_bundles import in_archive, judged_again, metric, pop, refused, table
 from spoilers import predicate
 
 from robo_genesis.core.comparison import same_arrays

@@ -5,17 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.body_runs import body_at, slide_on_corners
-from lessons.changed_runs import (
-    case,
-    copied,
-    failed,
-    frames,
-    put,
-    reading,
-    trace,
-    with_reading,
-    with_trace,
-)  # fmt: skip
+from lessons.changed_runs import case, copied, failed, frames, put, reading, trace
 
 from robo_genesis.lessons.l03 import LESSON, spec, study, study_spec, text
 from robo_genesis.lessons.l03.metrics import case_metrics
@@ -62,7 +52,7 @@ def deeper(position):
 def equal_tables(run):
     """Return the run after the change that the lab proposes; its answer names what fails."""
     for name in ("low_on_030", "high_on_030"):
-        run = with_reading(run, "surface_friction", name, 0.5)
+        run = reading("surface_friction", name, 0.5)(run)
         run = copied(name, name.replace("030", "050"))(run)
     return run
 
@@ -72,7 +62,7 @@ def never_rebounding(run):
         height = run.traces[name].link_pos[:, 0, 2]
         landed = np.maximum.accumulate(height < REST)
         stays = np.minimum(height[landed], REST)
-        run = with_trace(run, name, link_pos=put((landed, 0, 2), stays))
+        run = trace(name, link_pos=put((landed, 0, 2), stays))(run)
     return run
 
 

@@ -4,17 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lessons.changed_runs import (
-    case,
-    copied,
-    frames,
-    metric,
-    put,
-    reading,
-    trace,
-    with_fields,
-    with_trace,
-)  # fmt: skip
+from lessons.changed_runs import case, copied, frames, metric, put, reading, trace, with_fields
 
 from robo_genesis.core.checks import CheckFailed, evaluate, require
 from robo_genesis.lessons.l04 import LAB, spec, study, study_spec
@@ -35,7 +25,7 @@ def overshoot(name, value):
 
     def change(run):
         highest = run.traces[name].q[:, K].argmax(), K
-        return with_trace(run, name, q=put(highest, run.traces[name].target[0, K] + value))
+        return trace(name, q=put(highest, run.traces[name].target[0, K] + value))(run)
 
     return change
 
@@ -49,7 +39,7 @@ def as_theory(run):
     """Let the large step follow the ideal curve."""
     response = study.ideal(run, "G1").response(run.traces["G1"].t)
     ideal = run.traces["G1_hold"].q[:, K] + spec.STEP * response
-    return with_trace(run, "G1", q=put((slice(None), K), ideal))
+    return trace("G1", q=put((slice(None), K), ideal))(run)
 
 
 SPOILERS = {
