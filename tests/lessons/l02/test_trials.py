@@ -8,7 +8,7 @@ import pytest
 from lessons.exercise_cells import page_of
 
 from robo_genesis.core.project import BOOK
-from robo_genesis.lessons.l02 import life_cycle, mistakes, spec, trials
+from robo_genesis.lessons.l02 import life_cycle, mistakes, spec
 from robo_genesis.lessons.l02.spec import AFTER, BEFORE
 
 
@@ -46,17 +46,6 @@ def test_every_call_is_tried_on_both_sides_and_belongs_to_one(rendered):
     assert life_cycle.counts(attempts) == life_cycle.expected(rendered)
     row = {"call": "`scene.step`", BEFORE: "GenesisException: Not built.", AFTER: "accepted"}
     assert row in life_cycle.rows(attempts)
-
-
-def geom(faces):
-    return SimpleNamespace(get_trimesh=lambda: SimpleNamespace(faces=np.zeros((faces, 3))))
-
-
-def test_triangles_and_pieces_are_counted():
-    tray = SimpleNamespace(vgeoms=[geom(260)], geoms=[geom(100), geom(244)], n_dofs=6, n_qs=7,
-                           morph=object(), get_mass=lambda: 0.5)  # fmt: skip
-    (row,) = trials.shape_rows({"tray": tray})
-    assert [*row.values()] == ["tray", "object", 260, 344, 2, 0.5, 6, 7]
 
 
 CASE = spec.BASELINE

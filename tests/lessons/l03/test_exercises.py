@@ -119,7 +119,6 @@ WRONG = {
     },
     "push": {
         "before it settles": push_first,
-        "not settled": pushed(ALONG_X, lambda seconds: 0),
         "settled in milliseconds": pushed(ALONG_X, lambda seconds: round(1000 * seconds)),
         "along y": pushed((0, 1, 0, 0, 0, 0)),
         "all DOFs": pushed((1,) * 6),
