@@ -31,10 +31,7 @@ HEIGHTS_STUDIED = tuple(round(1.0 + 0.0066 * k, 4) for k in range(-4, 5))
 
 
 def side_by_side(
-    name: str,
-    heights: tuple[float, ...] = HEIGHTS_STUDIED,
-    duration: float = 0.4,
-    **settings: Any,
+    name: str, heights: tuple[float, ...] = HEIGHTS_STUDIED, duration: float = 0.4, **settings: Any
 ) -> dict[str, ContactCase]:
     """Return a landing from each height, in one row, named by the height in 0.1 mm."""
     return {
