@@ -1,8 +1,6 @@
 import control
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
@@ -73,23 +71,6 @@ def test_saturation_counts_either_sign_from_the_threshold_on(make_trace, force, 
 def test_what_cannot_be_measured_is_refused(make_trace, target, message):
     with pytest.raises(ValueError, match=message):
         step_metrics(make_trace([0, 0, 0], target), 0)
-
-
-# Multiples of 2⁻⁸ add and subtract without rounding.
-DYADIC = st.integers(-1024, 1024).map(lambda k: k / 256)
-POSITIONS = st.lists(DYADIC, min_size=2, max_size=30)
-
-
-@given(q=POSITIONS, more=POSITIONS, shift=DYADIC)
-def test_a_shift_changes_nothing_and_a_longer_window_keeps_what_was_seen(
-    make_trace, q, more, shift
-):
-    target = q[0] + STEP
-    short = step_metrics(make_trace(q, target), 0)
-    assert step_metrics(make_trace(np.array(q) + shift, target + shift), 0) == short
-    longer = step_metrics(make_trace(q + more, target), 0)
-    assert short.rise_time in (None, longer.rise_time)
-    assert longer.overshoot >= short.overshoot
 
 
 def test_records_are_the_metrics_with_class_and_source(experiment):
