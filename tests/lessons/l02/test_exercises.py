@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import torch
 from lessons.body_runs import make_drop
 from lessons.exercise_cells import solutions
+from lessons.fake_scenes import FakeBody, FakeScene
 
 from robo_genesis.lessons.l02 import exercises, spec
 from robo_genesis.sim.bodies.free_fall import continuous_drop
@@ -15,41 +15,12 @@ SOLVED = solutions("l02")
 OURS, FRAME, STEPPED = SOLVED["record"], SOLVED["usable_frame"], SOLVED["stepped"]
 
 
-class FallingBox:
-    """A scene and its box, which falls by semi-implicit Euler until it lies on a ground."""
+def scene_with(rho=500, size=0.1, height=0.5, ground=True, fixed=False, **settings):
+    """Return a function that makes the scene, with mistakes."""
 
-    def __init__(self, substeps=2, dt=0.01, rho=500, size=0.1, height=0.5, ground=True,
-                 fixed=False, is_built=True):  # fmt: skip
-        self.dt, self.substeps, self.is_built, self.fixed = dt, substeps, is_built, fixed
-        self.mass, self.height = rho * size**3, height
-        self.lowest = size / 2 if ground else -np.inf
-        self.reset()
-
-    def reset(self):
-        self.z, self.v = self.height, 0.0
-
-    def step(self):
-        h = self.dt / self.substeps
-        for _ in range(0 if self.fixed else self.substeps):
-            self.v -= 9.81 * h
-            self.z += self.v * h
-            if self.z < self.lowest:
-                self.z, self.v = self.lowest, 0.0
-
-    def get_mass(self):
-        return self.mass
-
-    def get_pos(self):
-        return torch.tensor([0.0, 0.0, self.z], dtype=torch.float64)
-
-    def get_vel(self):
-        return torch.tensor([0.0, 0.0, self.v], dtype=torch.float64)
-
-
-def scene_with(**mistake):
     def make(gs):
-        box = FallingBox(**mistake)
-        return box, box
+        box = FakeBody(rho * size**3, height, size / 2 if ground else -np.inf, fixed)
+        return FakeScene(box, **settings), box
 
     return make
 
@@ -96,8 +67,8 @@ CASES = {
 
 @pytest.mark.parametrize(("name", "how"), [(n, how) for n, of in CASES.items() for how in of])
 def test_only_the_right_solution_passes(name, how):
-    box = FallingBox()
-    box.step()  # the student's record starts from any state
-    more = {"scene": (None, spec.BASELINE), "record": (box, box, make_drop(spec.BASELINE))}
+    scene, box = scene_with()(None)
+    scene.step()  # the student's record starts from any state
+    more = {"scene": (None, spec.BASELINE), "record": (scene, box, make_drop(spec.BASELINE))}
     (check,) = getattr(exercises, name)(CASES[name][how], *more.get(name, ()))
     assert check.passed == (how == "right"), check.detail
