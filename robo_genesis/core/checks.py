@@ -98,6 +98,11 @@ def within(label: str, found: float | None, expected: float, tolerance: float) -
     return Finding(label, found, bool(passed), f"{expected:g} ± {tolerance:g}")
 
 
+def nearly(label: str, found: float | None, expected: float, share: float) -> Finding:
+    """Require a value that differs from the expected one by no more than a share of it."""
+    return within(label, found, expected, share * abs(expected))
+
+
 def at_most(label: str, found: float | None, limit: float) -> Finding:
     """Require a value up to the limit."""
     passed = found is not None and found <= limit

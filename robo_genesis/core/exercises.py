@@ -5,7 +5,7 @@ A test of a student's function judges what the function returns; a mistake is ju
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import wraps
+from functools import partial, wraps
 from inspect import signature
 from typing import Any, ParamSpec
 
@@ -53,6 +53,23 @@ def refused(call: Callable[[], Any]) -> Exception | None:
 def quoted(error: Exception | None) -> str:
     """Quote an exception by type and message, or say that there was none."""
     return f"`{type(error).__name__}`: {error}" if error else "No exception was raised."
+
+
+class Counted:
+    """An object that counts the calls of one of its methods, and is otherwise as it was."""
+
+    def __init__(self, counted: Any, method: str) -> None:
+        """Wrap an object; `method` is the name of the method."""
+        self.counted, self.method, self.calls = counted, method, 0
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what the object has."""
+        found = getattr(self.counted, name)
+        return partial(self._count, found) if name == self.method else found
+
+    def _count(self, method: Callable[..., Any], *given: Any, **named: Any) -> Any:
+        self.calls += 1
+        return method(*given, **named)
 
 
 CLAIM = "The function does what its docstring says."

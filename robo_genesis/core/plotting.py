@@ -51,6 +51,11 @@ def look(name: str, **more: Any) -> dict[str, Any]:
     return {"color": mark.light, "linestyle": (0, mark.dashes) if mark.dashes else "-", **more}
 
 
+def solid(name: str, **more: Any) -> dict[str, Any]:
+    """Return the line style of measured data: the colour of a mark, without its dashes."""
+    return look(name, **{"linestyle": "-", **more})
+
+
 TARGET = look("target", linewidth=1.4)
 LIMIT = look("limit", linewidth=1.4)
 

@@ -1,11 +1,13 @@
 """Markdown tables of measured values, metrics and checks."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import wraps
 from typing import Any
 
 from robo_genesis.core import text
 from robo_genesis.core.checks import Check
 from robo_genesis.core.comparison import HELD_BY, Comparison
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
 from robo_genesis.core.text import decimal, format_value
 
@@ -34,6 +36,18 @@ def _cell(value: Any) -> str:
         text = f"{value:.4f}".rstrip("0").rstrip(".")
         return "0" if text == "-0" else text.replace("-", "−")
     return str(value)
+
+
+def as_table(
+    rows: Callable[[Experiment], Iterable[Mapping[str, Any]]],
+) -> Callable[[Experiment], str]:
+    """Make a function that returns a Markdown table of one that yields its rows."""
+
+    @wraps(rows)
+    def table(run: Experiment) -> str:
+        return markdown([*rows(run)])
+
+    return table
 
 
 def number_table(first: str, heads: Mapping[str, int], rows: Mapping[str, Iterable[Any]]) -> str:

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 
 def failed(run):
     """Return the names of the checks that fail; a changed array may break a law of motion too."""
@@ -9,12 +11,67 @@ def failed(run):
     return {check.name for check in run.outcomes() if not check.passed} - laws
 
 
+def with_fields(of, fields):
+    """Return an object with other fields: values, or changes of a copy of the present array."""
+    new = {n: v(np.array(getattr(of, n))) if callable(v) else v for n, v in fields.items()}
+    return replace(of, **new)
+
+
 def with_trace(run, name, **arrays):
     """Return the run with other arrays in one trace."""
-    return replace(run, traces={**run.traces, name: replace(run.traces[name], **arrays)})
+    return replace(run, traces={**run.traces, name: with_fields(run.traces[name], arrays)})
 
 
 def with_reading(run, group, name, value):
     """Return the run with another value that the engine reported."""
     readings = run.readings | {group: run.readings[group] | {name: value}}
     return replace(run, readings=readings)
+
+
+# What follows returns a function that changes a run, for tables of spoiled runs.
+
+
+def put(index, value):
+    """Return a change of some elements of an array."""
+
+    def change(array):
+        array[index] = value
+        return array
+
+    return change
+
+
+def trace(name, **arrays):
+    return lambda run: with_trace(run, name, **arrays)
+
+
+def copied(name, other):
+    """Give one run the arrays of another one."""
+    return lambda run: replace(run, traces={**run.traces, name: run.traces[other]})
+
+
+def reading(group, name, value):
+    return lambda run: with_reading(run, group, name, value)
+
+
+def case(name, **fields):
+    """Give one run other settings, but the same arrays."""
+
+    def change(run):
+        one = run.page.runs[name]
+        runs = {**run.page.runs, name: replace(one, case=with_fields(one.case, fields))}
+        return replace(run, page=replace(run.page, runs=runs))
+
+    return change
+
+
+def metric(name, **fields):
+    """Give one run other metrics than those of its arrays."""
+    return lambda run: replace(
+        run, accepted={**run.metrics, name: replace(run.metrics[name], **fields)}
+    )
+
+
+def frames(**names):
+    """Take each named camera frame from another one of the run."""
+    return lambda run: replace(run, frames={n: run.frames[of] for n, of in names.items()})

@@ -11,7 +11,6 @@ from spoilers import edit, predicate, seal
 
 from robo_genesis.core import project
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.shown import mime_data
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.npz_archive import write_archive
@@ -21,8 +20,6 @@ from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.bundles import keys as evidence_key
 from robo_genesis.pipeline.bundles.status import bundle_status
 from robo_genesis.pipeline.bundles.verify import verify_bundle
-from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.bound import accepted_experiment, calls_of
 from robo_genesis.site.takeaways.files import csv_text
 
 
@@ -134,22 +131,3 @@ def altered(check):
         found[next(iter(found))] += 1e-3
 
     return in_json("manifest.json", alter)
-
-
-def differing_outputs(folder, run, book) -> list[str]:
-    """Return the functions whose output differs between a run and the run that a bundle gives.
-
-    They are all functions that the page of the bundle shows.
-    """
-    manifest = bundle.read_manifest(folder)
-    names = (manifest.predicate.lesson, manifest.predicate.page)
-    (page,) = (page for page in find_pages(book) if (page.lesson, page.page) == names)
-    again = accepted_experiment(folder, manifest)
-    calls = [call for cell in calls_of(page) for call in cell]
-    assert len(calls) > 5
-    return [
-        call.function
-        for call in calls
-        if mime_data(call.function, run, call.arguments)
-        != mime_data(call.function, again, call.arguments)
-    ]

@@ -109,6 +109,14 @@ def clearance(trace: BodyTrace, case: ContactCase) -> FloatArray:
     return z - case.size / 2 * np.abs(upward).sum(axis=0) - TOP
 
 
+def aligned(fine: BodyTrace, coarse: BodyTrace, name: str) -> tuple[FloatArray, FloatArray]:
+    """Return an array of two runs of one body, (k, …), at the states that both recorded."""
+    every = round(coarse.dt / fine.dt)
+    one, other = getattr(fine, name)[::every, 0], getattr(coarse, name)[:, 0]
+    shared = min(len(one), len(other))
+    return one[:shared], other[:shared]
+
+
 def flights(trace: BodyTrace, case: ContactCase) -> Iterator[slice]:
     """Yield the intervals of states in which the body is clear of the surface, in order."""
     clear = np.concatenate([[False], clearance(trace, case) > 0, [False]])

@@ -10,6 +10,7 @@ import numpy as np
 
 from robo_genesis.core.exercises import Mistake
 from robo_genesis.core.trace import ContactTrace
+from robo_genesis.lessons.l03 import metrics
 from robo_genesis.lessons.l03.metrics import STOP_SPEED, clearance, slide_metrics, stopped_at
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase, build_world, run_world, time_constant
 
@@ -26,26 +27,21 @@ def equal_steps(fine: ContactTrace, coarse: ContactTrace) -> Mistake:
         fine: a run.
         coarse: the same motion with fewer states.
     """
-    every = round(coarse.dt / fine.dt)
-    n = min(len(coarse.t), (len(fine.t) - 1) // every + 1)
-    z, z_coarse = (trace.link_pos[:, 0, 2].astype(np.float64) for trace in (fine, coarse))
-    by_number = np.abs(z[:n] - z_coarse[:n]).max()
-    by_time = np.abs(z[::every][:n] - z_coarse[:n]).max()
-    numbers = np.arange(n, dtype=float)
-    return Mistake(
-        "equal_steps",
-        shown=bool(by_number > 0.01 and by_time < 1e-5),
-        evidence=(
-            f"In {n - 1} steps one run covers {fine.t[n - 1]:g} s and the other "
-            f"{coarse.t[n - 1]:g} s. At equal step numbers they are up to "
-            f"{1000 * by_number:.0f} mm apart, at equal times {1e6 * by_time:.2g} µm."
-        ),
-        curves={
-            f"dt = {1000 * dt:g} ms, by step number": (numbers, heights[:n])
-            for dt, heights in ((fine.dt, z), (coarse.dt, z_coarse))
-        },
-        axis="number of the step",
+    by_time = np.subtract(*metrics.aligned(fine, coarse, "link_pos"), dtype=np.float64)[..., 2]
+    n = len(by_time)
+    heights = [trace.link_pos[:n, 0, 2].astype(np.float64) for trace in (fine, coarse)]
+    apart, at_equal_times = np.abs(heights[0] - heights[1]).max(), np.abs(by_time).max()
+    text = (
+        f"In {n - 1} steps one run covers {fine.t[n - 1]:g} s and the other {coarse.t[n - 1]:g} s. "
+        f"At equal step numbers they are up to {1000 * apart:.0f} mm apart, at equal times "
+        f"{1e6 * at_equal_times:.2g} µm."
     )
+    curves = {
+        f"dt = {1000 * trace.dt:g} ms, by step number": (np.arange(n, dtype=float), z)
+        for trace, z in zip((fine, coarse), heights, strict=True)
+    }
+    shown = bool(apart > 0.01 and at_equal_times < 1e-5)
+    return Mistake("equal_steps", shown, text, curves, axis="number of the step")
 
 
 def no_contact_inside(trace: ContactTrace, case: ContactCase) -> Mistake:
@@ -53,14 +49,11 @@ def no_contact_inside(trace: ContactTrace, case: ContactCase) -> Mistake:
     clear = clearance(trace, case)
     empty = np.flatnonzero((trace.contacts[:, 0] == 0) & (clear < -INSIDE))
     k = int(empty[np.argmin(clear[empty])]) if len(empty) else 0
-    return Mistake(
-        "no_contact_inside",
-        shown=bool(len(empty)),
-        evidence=(
-            f"At {trace.t[k]:.2f} s the engine reports {trace.contacts[k, 0]} contact points; "
-            f"the cube's underside is {-1000 * clear[k]:.1f} mm below the surface."
-        ),
+    text = (
+        f"At {trace.t[k]:.2f} s the engine reports {trace.contacts[k, 0]} contact points; "
+        f"the cube's underside is {-1000 * clear[k]:.1f} mm below the surface."
     )
+    return Mistake("no_contact_inside", bool(len(empty)), text)
 
 
 def single_sample_stop(trace: ContactTrace, case: ContactCase) -> Mistake:
@@ -71,17 +64,14 @@ def single_sample_stop(trace: ContactTrace, case: ContactCase) -> Mistake:
     later = float(np.abs(speed[first:]).max())
     when = "never" if stop is None else f"at {trace.t[stop]:.2f} s"
     above = float(trace.link_pos[first, 0, 2]) - case.rest_height
-    return Mistake(
-        "single_sample_stop",
-        shown=bool(len(slow) and first != stop and later > 10 * STOP_SPEED),
-        evidence=(
-            f"The first slow sample is at {trace.t[first]:.2f} s. Then the cube's centre is "
-            f"{1000 * above:.1f} mm above that of a cube at rest on the surface, and later the "
-            f"cube moves at up to {later:.2f} m/s. By the rule with a hold it stops {when}."
-        ),
-        curves={"speed along x": (trace.t, speed)},
-        quantity="velocity [m/s]",
+    text = (
+        f"The first slow sample is at {trace.t[first]:.2f} s. Then the cube's centre is "
+        f"{1000 * above:.1f} mm above that of a cube at rest on the surface, and later the "
+        f"cube moves at up to {later:.2f} m/s. By the rule with a hold it stops {when}."
     )
+    shown = bool(len(slow) and first != stop and later > 10 * STOP_SPEED)
+    curves = {"speed along x": (trace.t, speed)}
+    return Mistake("single_sample_stop", shown, text, curves, "velocity [m/s]")
 
 
 def unused_stiffness(gs: Any, case: ContactCase, seconds: float, default: ContactTrace) -> Mistake:
@@ -93,19 +83,16 @@ def unused_stiffness(gs: Any, case: ContactCase, seconds: float, default: Contac
         seconds: the time constant [s].
         default: the run of that case.
     """
-    stiff = replace(case, spring=(seconds, 1.0))
-    world = build_world(gs, {"stiff": stiff})
+    world = build_world(gs, {"stiff": replace(case, spring=(seconds, 1.0))})
     found = time_constant(world)
     difference = np.abs(run_world(world)["stiff"].link_pos - default.link_pos).max()
-    return Mistake(
-        "unused_stiffness",
-        shown=bool(difference < 1e-6 and abs(found - seconds) < 1e-9),
-        evidence=(
-            f"{1000 * seconds:g} ms was set at a solver step of {1000 * case.h:g} ms, and the "
-            f"geom returns {1000 * found:g} ms. The motion differs by {1e6 * difference:.2g} µm "
-            f"from that with the engine's default of {2000 * case.h:g} ms."
-        ),
+    text = (
+        f"{1000 * seconds:g} ms was set at a solver step of {1000 * case.h:g} ms, and the "
+        f"geom returns {1000 * found:g} ms. The motion differs by {1e6 * difference:.2g} µm "
+        f"from that with the engine's default of {2000 * case.h:g} ms."
     )
+    shown = bool(difference < 1e-6 and abs(found - seconds) < 1e-9)
+    return Mistake("unused_stiffness", shown, text)
 
 
 def smaller_friction(gs: Any, case: ContactCase, friction: float, before: ContactTrace) -> Mistake:
@@ -120,15 +107,11 @@ def smaller_friction(gs: Any, case: ContactCase, friction: float, before: Contac
     world = build_world(gs, {"changed": replace(case, friction=friction)})
     trace = run_world(world)["changed"]
     was, now = (slide_metrics(of, case).final_distance for of in (before, trace))
-    return Mistake(
-        "smaller_friction",
-        shown=bool(abs(now - was) < 1e-3),
-        evidence=(
-            f"The cube's own friction was {case.friction:g} and is now {friction:g}; the surface "
-            f"has {case.surface_friction:g}. The cube travelled {was:.4f} m and now travels "
-            f"{now:.4f} m."
-        ),
+    text = (
+        f"The cube's own friction was {case.friction:g} and is now {friction:g}; the surface has "
+        f"{case.surface_friction:g}. The cube travelled {was:.4f} m and now travels {now:.4f} m."
     )
+    return Mistake("smaller_friction", bool(abs(now - was) < 1e-3), text)
 
 
 def tunnel(gs: Any, case: ContactCase) -> Mistake:
@@ -137,14 +120,11 @@ def tunnel(gs: Any, case: ContactCase) -> Mistake:
     z = trace.link_pos[:, 0, 2].astype(np.float64)
     above = np.flatnonzero(z > TOP + case.size / 2)
     speed = float(np.abs(trace.link_vel[above[-1], 0, 2]))
-    return Mistake(
-        "tunnel",
-        shown=bool(z[-1] < TOP - case.size and trace.contacts.max() == 0),
-        evidence=(
-            f"The cube's centre ends at {z[-1]:.2f} m, the surface is at {TOP:g} m; "
-            f"{int((trace.contacts > 0).sum())} samples report a contact. Just before the surface, "
-            f"at {speed:.1f} m/s, the cube moves {100 * speed * case.h:.0f} cm in one solver step "
-            f"of {1000 * case.h:g} ms."
-        ),
-        curves={"height of the centre": (trace.t, z)},
+    text = (
+        f"The cube's centre ends at {z[-1]:.2f} m, the surface is at {TOP:g} m; "
+        f"{int((trace.contacts > 0).sum())} samples report a contact. Just before the surface, "
+        f"at {speed:.1f} m/s, the cube moves {100 * speed * case.h:.0f} cm in one solver step "
+        f"of {1000 * case.h:g} ms."
     )
+    shown = bool(z[-1] < TOP - case.size and trace.contacts.max() == 0)
+    return Mistake("tunnel", shown, text, {"height of the centre": (trace.t, z)})

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.plotting import LINE, legend_above, look
+from robo_genesis.core.plotting import LINE, legend_above, look, solid
 from robo_genesis.lessons.l03 import checks, spec, theory
 from robo_genesis.lessons.l03.metrics import (
     BounceMetrics,
@@ -21,38 +21,26 @@ from robo_genesis.sim.bodies.contacts import TOP
 
 MEASURES = False
 
-LANDING_MARKS = {
-    "baseline": "baseline",
-    "dt10_sub1": "first",
-    "dt20_sub2": "third",
-    "dt20_sub1": "second",
-}
-SAMPLE_MARKS = {
-    "baseline": {"marker": "o", "markersize": 3},
-    "dt10_sub1": {"marker": "o", "markersize": 3},
-    "dt20_sub2": {"marker": "s", "markersize": 7, "markerfacecolor": "none", "linewidth": 0.8},
-    "dt20_sub1": {"marker": "^", "markersize": 3},
-}
-"""Markers of the samples: two of these landings coincide, and one stays visible through the other's
-markers."""
+DOT = {"marker": "o", "markersize": 3}
+LANDINGS: Mapping[str, tuple[str, Mapping[str, Any]]] = {
+    "baseline": ("baseline", DOT),
+    "dt10_sub1": ("first", DOT),
+    "dt20_sub2": (
+        "third", {"marker": "s", "markersize": 7, "markerfacecolor": "none", "linewidth": 0.8}),
+    "dt20_sub1": ("second", {"marker": "^", "markersize": 3}),
+}  # fmt: skip
+"""By landing, its mark and the style of its samples: two of these landings coincide, and one stays
+visible through the other's markers."""
 
 SLIDE_MARKS = {
-    "low_on_050": "first",
-    "high_on_050": "second",
-    "low_on_030": "third",
-    "high_on_030": "other",
-}
+    "low_on_050": "first", "high_on_050": "second", "low_on_030": "third", "high_on_030": "other",
+}  # fmt: skip
 EQUAL_BELOW = {"high_on_050": {"linewidth": 4.0, "alpha": 0.45}}
 """Style of a curve that lies below an equal one."""
 
 BOUNCES_SHOWN = {"bounce_sub1": "second", "bounce_sub2": "other", "bounce_sub100": "third"}
 WINDOW = (0.18, 0.44)
 """Around the landing of the lab [s]."""
-
-
-def solid(mark: str, **more: Any) -> dict[str, Any]:
-    """Return the line style of measured data: the colour of a mark, without its dashes."""
-    return look(mark) | {"linestyle": "-"} | more
 
 
 def steps_axis(ax: Axes, steps: Iterable[float]) -> None:
@@ -80,11 +68,11 @@ def posture(run: Experiment) -> Figure:
 def landings(run: Experiment) -> Figure:
     """Draw the clearance below each dropped cube at every sample, zero at the surface."""
     figure, ax = plotting.axes(4.6)
-    for name, mark in LANDING_MARKS.items():
+    for name, (mark, samples) in LANDINGS.items():
         trace, case = run.traces[name], run.cases[name]
         label = f"{spec.LABELS[name]}, h = {1000 * case.h:g} ms"
         clear = 1000 * clearance(trace, case)
-        ax.plot(trace.t, clear, label=label, **solid(mark, **SAMPLE_MARKS[name]))
+        ax.plot(trace.t, clear, label=label, **solid(mark, **samples))
     ax.axhline(0, **LINE)
     ax.set(xlim=WINDOW, ylim=(-26, 32), xlabel="time [s]", ylabel="clearance [mm]")
     ax.set_title("Below zero, the cube is in the table", loc="left")
@@ -99,7 +87,7 @@ def contact_counts(run: Experiment) -> Figure:
     """
     figure = plotting.figure(4)
     axes = figure.subplots(4, 1, sharex=True, sharey=True)
-    for ax, (name, mark) in zip(axes, LANDING_MARKS.items(), strict=True):
+    for ax, (name, (mark, _)) in zip(axes, LANDINGS.items(), strict=True):
         t, counts = run.traces[name].t, run.traces[name].contacts[:, 0]
         deepest = int(clearance(run.traces[name], run.cases[name]).argmin())
         ax.step(t, counts, where="post", **solid(mark))

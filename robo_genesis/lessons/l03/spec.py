@@ -106,12 +106,6 @@ COARSE_SHARE = 1.5
 DEPTH_TOLERANCE = 1e-4
 """Tolerance of a reported depth against that of the positions [m]: corners differ a little."""
 
-SETTLED_START = 2e-3
-"""Tolerance of a settled cube's position against its start [m]: it sinks in."""
-
-START_SPEED = 1e-6
-"""Tolerance of the first speed against that of the case [m/s]."""
-
 VIEW = CAMERA | {"pos": (1.3, -1.5, 1.25), "lookat": (0.0, 0.0, 0.87), "fov": 16}
 """The lesson's camera, close enough to show the cube large and its whole path."""
 

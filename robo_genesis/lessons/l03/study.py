@@ -4,10 +4,10 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, noted, within
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l03 import checks, spec, study_spec, theory
-from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics
+from robo_genesis.lessons.l03.metrics import CLEAR, LandingMetrics, aligned
 from robo_genesis.sim.bodies.contacts import ContactCase
 
 GROUP = "time_constant"
@@ -56,9 +56,8 @@ def time_constants(run: Experiment) -> Iterator[Finding]:
 def records_each_step(run: Experiment) -> Iterator[Finding]:
     """With every solver step recorded, the baseline falls as with every second one."""
     name = study_spec.AS_BASELINE
-    fine, coarse = run.traces[name].link_pos, run.traces["baseline"].link_pos
-    shared = fine[:: spec.BASELINE.substeps, 0, 2]
-    difference = float(np.abs(shared - coarse[: len(shared), 0, 2]).max())
+    fine, coarse = aligned(run.traces[name], run.traces["baseline"], "link_pos")
+    difference = float(np.abs(fine - coarse)[:, 2].max())
     yield at_most(f"{name}.distance_to_baseline_m", difference, spec.SAME_STATE)
 
 
@@ -67,16 +66,11 @@ def rebound_goes(run: Experiment) -> Iterator[Finding]:
     smaller steps studied, none does from any of the nine heights.
     """
     for name in study_spec.STEP_CASES:
-        rebounds = [found.rebound for *_, found in row(run, name)]
-        highest = max(rebounds)
-        label, step = f"{name}.highest_rebound_m", case_of(name).h
-        if step > spec.BASELINE.h:
-            yield noted(label, highest)
-        elif step == spec.BASELINE.h:
-            yield noted(label, highest)
+        rebounds, step = [found.rebound for *_, found in row(run, name)], case_of(name).h
+        limit = CLEAR if step < spec.BASELINE.h else np.inf
+        yield at_most(f"{name}.highest_rebound_m", max(rebounds), limit)
+        if step == spec.BASELINE.h:
             yield above(f"{name}.lowest_rebound_m", min(rebounds), CLEAR)
-        else:
-            yield at_most(label, highest, CLEAR)
 
 
 def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
@@ -85,10 +79,8 @@ def scatter_shrinks(run: Experiment) -> Iterator[Finding]:
     for name in sorted(study_spec.STEP_CASES, key=share_of_step, reverse=True):
         shares = depth_shares(run, name)
         scatter, label = float(np.ptp(shares)), f"{name}.scatter_of_depth_share"
-        if share_of_step(name) >= 0.5:
-            yield above(label, scatter, study_spec.SCATTER_COARSE)
-        else:
-            yield below(label, scatter, limit)
+        coarse = above(label, scatter, study_spec.SCATTER_COARSE)
+        yield coarse if share_of_step(name) >= 0.5 else below(label, scatter, limit)
         limit = min(limit, scatter)
         yield noted(f"{name}.smallest_depth_share", min(shares))
     yield at_most("scatter_left", limit, study_spec.SCATTER_FINE)
@@ -117,9 +109,8 @@ def default_cone_hops(run: Experiment) -> Iterator[Finding]:
 
 def by_formula(run: Experiment, name: str) -> Finding:
     """Require the hop of one solver step, within 25 %."""
-    expected = theory.hop(run.cases[name])
-    allowed = study_spec.HOP_SHARE * expected
-    return within(f"{name}.hop_m", run.metrics[name].hop, expected, allowed)
+    hop, expected = run.metrics[name].hop, theory.hop(run.cases[name])
+    return nearly(f"{name}.hop_m", hop, expected, study_spec.HOP_SHARE)
 
 
 def hop_follows_step(run: Experiment) -> Iterator[Finding]:
@@ -128,12 +119,10 @@ def hop_follows_step(run: Experiment) -> Iterator[Finding]:
     """
     for step, cases in study_spec.HOP_STEP_CASES.items():
         for name in cases:
-            if step in study_spec.HOP_APPLIES:
-                yield by_formula(run, name)
-            else:
-                coarse = run.metrics[name.replace(step, "hop_5000us")].hop
-                limit = study_spec.HOP_LEFT * coarse
-                yield at_most(f"{name}.hop_m", run.metrics[name].hop, limit)
+            left = study_spec.HOP_LEFT * run.metrics[name.replace(step, "hop_5000us")].hop
+            applies = step in study_spec.HOP_APPLIES
+            fine = at_most(f"{name}.hop_m", run.metrics[name].hop, left)
+            yield by_formula(run, name) if applies else fine
 
 
 def hop_follows_speed(run: Experiment) -> Iterator[Finding]:
@@ -141,10 +130,8 @@ def hop_follows_speed(run: Experiment) -> Iterator[Finding]:
     previous = 0.0
     for name, case in study_spec.HOP_SPEED_CASES.items():
         found = run.metrics[name].hop
-        if case.speed <= study_spec.SLOW:
-            yield at_most(f"{name}.hop_m", found, study_spec.INVISIBLE)
-        else:
-            yield by_formula(run, name)
+        slow = at_most(f"{name}.hop_m", found, study_spec.INVISIBLE)
+        yield slow if case.speed <= study_spec.SLOW else by_formula(run, name)
         yield above(f"{name}.higher_than_slower_m", found - previous, 0.0)
         previous = found
 

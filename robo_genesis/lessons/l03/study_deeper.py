@@ -1,15 +1,15 @@
 """Studies of the deeper pages: cones, steps and a second engine; the release of a landing."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, noted, within
+from robo_genesis.core.checks import Finding, above, at_most, nearly, noted, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import checks, study, study_spec, theory
-from robo_genesis.lessons.l03.metrics import CLEAR, SlideMetrics
+from robo_genesis.lessons.l03.metrics import CLEAR, SlideMetrics, aligned
 
 LANES = {"low": "low_on_050", "high": "high_on_050"}
 """By cube, its push at the coarsest step."""
@@ -25,15 +25,12 @@ def first_impulses(run: Experiment, name: str) -> tuple[float, float]:
     return float(before[0] - after[0]), float(after[2] - before[2] + case.gravity * case.dt)
 
 
-def distance_between(traces: Mapping[str, ContactTrace], first: str, second: str) -> FloatArray:
+def distance_between(first: ContactTrace, second: ContactTrace) -> FloatArray:
     """Return the distance between the centres of two runs at each shared state, (n+1,) [m].
 
     The distance of their starts is subtracted: some cubes lie side by side in one scene.
     """
-    one, other = (traces[n].link_pos[:, 0].astype(np.float64) for n in (first, second))
-    every = round(traces[second].dt / traces[first].dt)
-    shared = min(len(one[::every]), len(other))
-    difference = one[::every][:shared] - other[:shared]
+    difference = np.subtract(*aligned(first, second, "link_pos"), dtype=np.float64)
     return np.asarray(np.linalg.norm(difference - difference[0], axis=1))
 
 
@@ -47,7 +44,7 @@ def stops_nearly_right(run: Experiment) -> Iterator[Finding]:
     """The cube with the friction of the surface still stops near v² / (2 μ g)."""
     name = LANES["low"]
     found, expected = run.metrics[name].stop_distance, theory.coulomb_distance(run.cases[name])
-    yield within(f"{name}.stop_distance_m", found, expected, study_spec.NEARLY * expected)
+    yield nearly(f"{name}.stop_distance_m", found, expected, study_spec.NEARLY)
 
 
 def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
@@ -56,8 +53,8 @@ def hop_is_paid_by_friction(run: Experiment) -> Iterator[Finding]:
         case, (lost, gained) = run.cases[name], first_impulses(run, name)
         mu = theory.pair_friction(case)
         yield above(f"{name}.lost_m_s", lost, study_spec.BLOW * mu * case.gravity * case.dt)
-        allowed = study_spec.RATIO_TOLERANCE * lost
-        yield within(f"{name}.mu_times_gained_m_s", mu * gained, lost, allowed)
+        label = f"{name}.mu_times_gained_m_s"
+        yield nearly(label, mu * gained, lost, study_spec.RATIO_TOLERANCE)
 
 
 def the_cone_alone_hops(run: Experiment) -> Iterator[Finding]:
@@ -93,9 +90,8 @@ def engines_land_alike(run: Experiment) -> Iterator[Finding]:
     """With equal settings, cubes land in MuJoCo as in the engine, at every shared sample."""
     for name, other in study_spec.ENGINE_PAIRS.items():
         if name not in checks.measured(run, SlideMetrics):
-            pair = [run.traces[n].link_pos[:, 0, 2] for n in (name, other)]
-            shared = min(map(len, pair))
-            difference = float(np.abs(pair[0][:shared] - pair[1][:shared]).max())
+            one, two = aligned(run.traces[name], run.traces[other], "link_pos")
+            difference = float(np.abs(one - two)[:, 2].max())
             label = f"{name}.distance_to_{other}_m"
             yield at_most(label, difference, study_spec.ENGINES_APART)
 
@@ -123,9 +119,8 @@ def release_speed(run: Experiment) -> Iterator[Finding]:
     """
     for scene in study_spec.RELEASE_CASES:
         for name, case, found in study.row(run, scene):
-            expected = theory.release_speed(case)
-            allowed = study_spec.RELEASE_SHARE * expected
-            yield within(f"{name}.upward_speed_m_s", found.upward_speed, expected, allowed)
+            expected, label = theory.release_speed(case), f"{name}.upward_speed_m_s"
+            yield nearly(label, found.upward_speed, expected, study_spec.RELEASE_SHARE)
 
 
 def stiff_contacts_rebound(run: Experiment) -> Iterator[Finding]:
@@ -135,11 +130,8 @@ def stiff_contacts_rebound(run: Experiment) -> Iterator[Finding]:
     for scene in study_spec.RELEASE_CASES:
         for name, case, found in study.row(run, scene):
             expected, label = theory.rebound(case), f"{name}.rebound_m"
-            if expected:
-                allowed = study_spec.REBOUND_SHARE * expected
-                yield within(label, found.rebound, expected, allowed)
-            else:
-                yield at_most(label, found.rebound, CLEAR)
+            as_linear = nearly(label, found.rebound, expected, study_spec.REBOUND_SHARE)
+            yield as_linear if expected else at_most(label, found.rebound, CLEAR)
 
 
 OF_ENERGY = (

@@ -31,10 +31,7 @@ HEIGHTS_STUDIED = tuple(round(1.0 + 0.0066 * k, 4) for k in range(-4, 5))
 
 
 def side_by_side(
-    name: str,
-    heights: tuple[float, ...] = HEIGHTS_STUDIED,
-    duration: float = 0.4,
-    **settings: Any,
+    name: str, heights: tuple[float, ...] = HEIGHTS_STUDIED, duration: float = 0.4, **settings: Any
 ) -> dict[str, ContactCase]:
     """Return a landing from each height, in one row, named by the height in 0.1 mm."""
     return {
@@ -138,21 +135,22 @@ OWN_DEFAULTS = "mujoco_own_baseline"
 IN_MUJOCO = {ENGINE_PAIRS[name]: case for name, case in BY_BOTH.items()} | {OWN_DEFAULTS: BASELINE}
 
 
-def flat(*groups: dict[str, dict[str, ContactCase]]) -> dict[str, ContactCase]:
-    """Return the cases of grouped scenes by name."""
-    return {
-        name: case for group in groups for scene in group.values() for name, case in scene.items()
-    }
+def flat(scenes: dict[str, dict[str, ContactCase]]) -> dict[str, ContactCase]:
+    """Return the cases of scenes by name."""
+    return {name: case for cases in scenes.values() for name, case in cases.items()}
 
 
-CASES_OF = {
-    "lecture": DROPPED | flat(STEP_CASES, STIFF_CASES) | ELLIPTIC | HOPPED | flat(HOP_STEP_CASES)
-    | HOP_SPEED_CASES,
-    "contact": BY_BOTH | ELLIPTIC | FINER_SLIDES | flat(STOP_CASES),
-    "energy": BOUNCES | flat(RELEASE_CASES),
-    "mistakes": LANDINGS | HOPPED,
+SCENES = {
+    "lecture": {"dropped": DROPPED, **STEP_CASES, **STIFF_CASES, "elliptic": ELLIPTIC,
+                "hopped": HOPPED, **HOP_STEP_CASES, "hop_speeds": HOP_SPEED_CASES},
+    "contact": {"by_both": BY_BOTH, "elliptic": ELLIPTIC, "finer": FINER_SLIDES, **STOP_CASES},
+    "energy": {"bounces": BOUNCES, **RELEASE_CASES},
+    "mistakes": {"landings": LANDINGS, "hopped": HOPPED},
 }  # fmt: skip
-"""The runs in Genesis of each page."""
+"""The runs in Genesis of each page, by scene or by the studies that belong together."""
+
+CASES_OF = {page: flat(scenes) for page, scenes in SCENES.items()}
+"""The same without scenes."""
 
 # What only judges
 
@@ -211,9 +209,6 @@ ENGINES_APART = 5e-5
 FINEST = 6
 """Number of the smallest steps that are compared for convergence, all at most T / 10."""
 
-CLOSE = 0.01
-"""Share of Coulomb's distance within which a stopping distance is close to it."""
-
 UNSETTLED = 0.05
 """Change at half the step, or spread over the finest steps, from which a stopping distance depends
 on the step, as a share of Coulomb's distance."""
@@ -224,25 +219,13 @@ RELEASE_SHARE = 0.1
 REBOUND_SHARE = 0.25
 """Tolerance of a rebound against that of a linear contact, as a share."""
 
-GROUPS: dict[str, dict[str, Any]] = {
-    "lecture": {
-        "scenes": {name: list(of) for name, of in (STEP_CASES | STIFF_CASES).items()},
-        "as_baseline": AS_BASELINE,
-        "hops": {name: list(of) for name, of in HOP_STEP_CASES.items()},
-        "hop_speeds": list(HOP_SPEED_CASES),
-    },
-    "contact": {
-        "in_mujoco": sorted(IN_MUJOCO),
-        "with_its_own_contact": OWN_DEFAULTS,
-        "engine_pairs": ENGINE_PAIRS,
-        "stops": {name: list(of) for name, of in STOP_CASES.items()},
-    },
-    "energy": {"releases": {name: list(of) for name, of in RELEASE_CASES.items()}},
-    "mistakes": {},
-}
-"""By page, the roles of its runs."""
-
 
 def parameters(page: str) -> dict[str, Any]:
     """Return every configured input of a page's own runs as JSON values, for the evidence key."""
-    return {"studies": {"cases": case_inputs(CASES_OF[page]), **GROUPS[page]}}
+    found: dict[str, Any] = {
+        "cases": case_inputs(CASES_OF[page]),
+        "scenes": {name: list(cases) for name, cases in SCENES[page].items()},
+    }
+    if page == "contact":
+        found |= {"engine_pairs": ENGINE_PAIRS, "with_its_own_contact": OWN_DEFAULTS}
+    return {"studies": found}

@@ -30,11 +30,11 @@ def as_table(rows: Callable[[Experiment], Iterable[Row]]) -> Callable[[Experimen
     """
 
     @wraps(rows)
-    def table(run: Experiment) -> str:
-        kept = [{k: BEFORE_UNIT.sub("\u00a0", of) for k, of in row.items()} for row in rows(run)]
-        return tables.markdown(kept)
+    def unbroken(run: Experiment) -> Iterator[Row]:
+        for row in rows(run):
+            yield {head: BEFORE_UNIT.sub("\u00a0", cell) for head, cell in row.items()}
 
-    return table
+    return tables.as_table(unbroken)
 
 
 def span(values: Sequence[float], digits: int = 2) -> str:
@@ -209,7 +209,7 @@ def stops_by_step(run: Experiment) -> Iterator[Row]:
 def engines(run: Experiment) -> Iterator[Row]:
     """Return how far each pair of runs is apart, and from when they are farther than 0.05 mm."""
     for pair in (*study_spec.ENGINE_PAIRS.items(), ("baseline", study_spec.OWN_DEFAULTS)):
-        distance = study_deeper.distance_between(run.traces, *pair)
+        distance = study_deeper.distance_between(*(run.traces[name] for name in pair))
         excess = np.flatnonzero(distance > study_spec.ENGINES_APART)
         since, counts = "never", ["–", "–"]
         if len(excess):

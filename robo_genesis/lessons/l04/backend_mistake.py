@@ -1,10 +1,7 @@
 """A request for a backend that this machine does not have: by name, and for any accelerator."""
 
-import json
-import subprocess
-import sys
-
 from robo_genesis.core.exercises import Mistake
+from robo_genesis.sim.fresh_process import last_value, run_python
 
 MEASURES = False
 
@@ -15,7 +12,7 @@ from robo_genesis.sim.session import plain_theme
 
 kept = []
 keep = logging.Handler()
-keep.emit = lambda record: kept.append([record.levelname, record.getMessage()])
+keep.emit = lambda record: kept.append(record.getMessage())
 logging.getLogger("genesis").addHandler(keep)
 raised = found = None
 try:
@@ -38,19 +35,14 @@ def absent_backend(hip_version: str | None) -> Mistake:
         hip_version: of the installed Torch, as the probe reads it; None without ROCm.
 
     Raises:
-        RuntimeError: the process failed.
+        StartError: the process failed.
     """
     name = "cuda" if hip_version else "amdgpu"
-    done = subprocess.run(
-        [sys.executable, "-c", REQUEST, name], capture_output=True, text=True, check=False
-    )
-    if done.returncode:
-        raise RuntimeError(f"The engine did not start in its own process:\n{done.stderr}")
-    return absent_backend_failure(name, **json.loads(done.stdout.splitlines()[-1]))
+    return absent_backend_failure(name, **last_value(run_python(["-c", REQUEST, name], {})))
 
 
 def absent_backend_failure(
-    name: str, raised: list[str] | None, found: str | None, warnings: list[list[str]]
+    name: str, raised: list[str] | None, found: str | None, warnings: list[str]
 ) -> Mistake:
     """Return the failure from the results of the two requests.
 
@@ -58,11 +50,11 @@ def absent_backend_failure(
         name: the backend that was requested by name.
         raised: type and message of its exception, None if there was none.
         found: the backend after the request for `gs.gpu`.
-        warnings: level and message of each line that the engine logged at this request.
+        warnings: the lines that the engine logged at this request.
     """
     if raised is None:
         return Mistake("absent_backend", False, f"`gs.init(backend=gs.{name})` raised nothing.")
-    plain = [text.replace("~", "") for _, text in warnings]
+    plain = [text.replace("~", "") for text in warnings]
     fell_back = found != "cpu" or (len(plain) == 1 and "Falling back to CPU" in plain[0])
     refused = raised[0] == "GenesisException" and "not available" in raised[1]
     return Mistake(

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.checks import Finding, at_most, equal
-from robo_genesis.core.exercises import as_test, compared, refused, same_array
+from robo_genesis.core.exercises import Counted, as_test, compared, refused, same_array
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY
@@ -64,23 +64,6 @@ def _joint(*dofs: int, qpos: int | None = None) -> SimpleNamespace:
     )  # fmt: skip
 
 
-class Counted:
-    """A robot that counts its position commands."""
-
-    def __init__(self, robot: Any):
-        """Wrap an entity of the engine."""
-        self.robot, self.commands = robot, 0
-
-    def control_dofs_position(self, *arguments: Any, **named: Any) -> None:
-        """Count the command, and give it to the robot."""
-        self.commands += 1
-        self.robot.control_dofs_position(*arguments, **named)
-
-    def __getattr__(self, name: str) -> Any:
-        """Return what the robot has."""
-        return getattr(self.robot, name)
-
-
 @as_test
 def control_loop(
     record: Callable[..., Any], scene: Any, robot: Any, joints: JointMap, case: ControlCase,
@@ -91,10 +74,9 @@ def control_loop(
     Call it after a reset to the case. The function returns t (n+1,), q (n+1, d), qd (n, d) and the
     control force (n, d).
     """
-    dofs, counted = joints.dofs_idx_local.tolist(), Counted(robot)
-    target = case.q_target.copy()
-    found = list(record(scene, counted, dofs, target, case.steps))
-    yield equal("number_of_commands", counted.commands, case.steps)
+    dofs, counted = joints.dofs_idx_local.tolist(), Counted(robot, "control_dofs_position")
+    found = list(record(scene, counted, dofs, case.q_target.copy(), case.steps))
+    yield equal("number_of_commands", counted.calls, case.steps)
     expected = trace.t, trace.q, trace.qd, trace.control_force
     yield equal("number_of_arrays", len(found), len(expected))
     for name, values, right in zip(("t", "q", "qd", "force"), found, expected, strict=True):
@@ -107,14 +89,14 @@ def pd_law(
 ) -> Iterator[Finding]:
     """Check `law(error, qd, kp, kv, limit)` with every recorded control force of joint4."""
     for number, (trace, case) in enumerate(traces):
-        k = ENTRY
-        error, limit = case.q_target[k] - trace.q[1:, k], float(trace.effort_limit[k])
-        gains = float(case.kp[k]), float(case.kv[k])
-        found = [law(e, v, *gains, limit) for e, v in zip(error, trace.qd[:, k], strict=True)]
-        apart = np.abs(np.array(found, dtype=float) - trace.control_force[:, k]).max()
+        error, qd, force = case.q_target - trace.q[1:], trace.qd, trace.control_force
+        constant = [float(of[ENTRY]) for of in (case.kp, case.kv, trace.effort_limit)]
+        found = [law(e, v, *constant) for e, v in zip(error[:, ENTRY], qd[:, ENTRY], strict=True)]
+        apart = np.abs(np.array(found, dtype=float) - force[:, ENTRY]).max()
         yield at_most(f"run_{number}.distance_to_control_force", apart, LAW)
-    yield equal("demand_of_1000_with_limit_87", float(law(1.0, 0.0, 1e3, 0.0, 87.0)), 87.0)
-    yield equal("demand_of_-1000_with_limit_87", float(law(-1.0, 0.0, 1e3, 0.0, 87.0)), -87.0)
+    for sign in (1.0, -1.0):
+        clipped = float(law(sign, 0.0, 1e3, 0.0, 87.0))
+        yield equal(f"demand_of_{1e3 * sign:g}_with_limit_87", clipped, 87.0 * sign)
 
 
 @as_test
@@ -129,13 +111,12 @@ def step_response(
         q, target = trace.q[:, ENTRY].astype(float), float(trace.target[0, ENTRY])
         expected = of.rise_time, of.overshoot, of.settling_time
         yield from compared(f"run_{number}", RESPONSE, measure(trace.t, q, target), expected, TINY)
-    t = np.arange(6) * 0.01
-    slow = np.linspace(0.0, 0.1, 6)
-    yield from compared("never_rises", RESPONSE, measure(t, slow, 0.25), (None, 0.0, None), TINY)
-    late = np.array([0.0, 0.25, 0.25, 0.25, 0.25, 0.30])
-    yield from compared(
-        "leaves_at_the_end", RESPONSE, measure(t, late, 0.25), (0.01, 0.05, None), TINY
-    )
+    for name, q, expected in (
+        ("never_rises", np.linspace(0.0, 0.1, 6), (None, 0.0, None)),
+        ("leaves_at_the_end", np.array([0.0, *[0.25] * 4, 0.30]), (0.01, 0.05, None)),
+    ):
+        found = measure(np.arange(6) * 0.01, q, 0.25)
+        yield from compared(name, RESPONSE, found, expected, TINY)
 
 
 @as_test
@@ -145,8 +126,5 @@ def stepped(model: Callable[..., Any]) -> Iterator[Finding]:
         inertia, kp, kv, d, limit, g, step, h, n = arguments
         joint = IdealJoint(inertia, kv + d, kp)
         expected = stepped_joint(joint, d, step, h, n, limit=limit, gravity=g)
-        found = np.asarray(model(*arguments), dtype=float)
-        yield equal(f"{name}.number_of_positions", found.size, n + 1)
-        if found.size == n + 1:
-            apart = float(np.abs(found.ravel() - expected).max())
-            yield at_most(f"{name}.distance_to_the_model", apart, TINY)
+        found = np.ravel(np.asarray(model(*arguments), dtype=float))
+        yield from same_array(name, found, expected, TINY)

@@ -3,14 +3,14 @@
 The script asks what a chosen run will show before it shows the run beside the last one.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from robo_genesis.core import tables
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.tables import as_table
 from robo_genesis.core.text import decimal, format_value
 from robo_genesis.lessons.l04.metrics import StepMetrics
 from robo_genesis.lessons.l04.spec import ENTRY, MARGINS, RESOLUTION, STEPPED_JOINT
@@ -99,16 +99,16 @@ def _map(run: Experiment, step: float, start: float, limit: float) -> dict[str, 
             for k, kp in reversed([*enumerate(KP)])
         ],
         "axes": {
-            "q": _axis((start - room, highest + room), (start, start + step / 2, target), 3,
+            "q": _axis((start, start + step / 2, target), (start - room, highest + room), 3,
                        {target: "target"}),
-            "force": _axis((-1.15 * limit, 1.15 * limit), (-limit, 0.0, limit), 0,
+            "force": _axis((-limit, 0.0, limit), (-1.15 * limit, 1.15 * limit), 0,
                            {-limit: "limit", limit: "limit"}),
         },
     }  # fmt: skip
 
 
 def _axis(
-    ends: tuple[float, float], ticks: Iterable[float], digits: int, levels: Mapping[float, str]
+    ticks: Sequence[float], ends: Sequence[float], digits: int, levels: Mapping[float, str]
 ) -> dict[str, Any]:
     """Return the value axis of a curve; `levels` are marks of the palette by their value."""
     return {
@@ -163,18 +163,15 @@ def _written(measured: StepMetrics) -> dict[str, str]:
     return {name: format_value(value, unit) for name, value, unit in measured.items()}
 
 
-def table(run: Experiment) -> str:
+@as_table
+def table(run: Experiment) -> Iterator[dict[str, str]]:
     """Return all runs of the grid, one row a point, with the metrics of the explorer."""
-    rows = []
     for point in POINTS:
         measured = run.metrics[point.name]
-        gains = {"step [rad]": point.step, "KP": point.kp, "KV": point.kv}
-        rows.append(
-            {head: f"{value:g}" for head, value in gains.items()}
-            | {
-                "case": NAMES.get(point, ""),
-                "overshoot, share": share_text(measured.overshoot / point.step),
-            }
-            | {LABELS[name]: _written(measured)[name] for name in SHOWN if name != REPEATED}
-        )
-    return tables.markdown(rows)
+        yield {
+            "step [rad]": f"{point.step:g}",
+            "KP": f"{point.kp:g}",
+            "KV": f"{point.kv:g}",
+            "case": NAMES.get(point, ""),
+            "overshoot, share": share_text(measured.overshoot / point.step),
+        } | {LABELS[name]: _written(measured)[name] for name in SHOWN if name != REPEATED}

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core.checks import Finding, above, at_most, below, equal, noted, within
+from robo_genesis.core.checks import Finding, above, at_most, below, equal, nearly, noted
 from robo_genesis.core.comparison import HELD
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.text import format_value
@@ -54,15 +54,14 @@ def clipped_start(run: Experiment) -> Iterator[Finding]:
 def gravity_support(run: Experiment) -> Iterator[Finding]:
     """Where a case ends nearly at rest, KP × final error agrees with the gravity effort."""
     at_rest = []
-    for case, m in ((case, run.metrics[case]) for case in spec.CASES):
-        support = float(spec.CASES[case].kp[spec.ENTRY]) * m.final_error
-        effort = run.readings[study.GROUP][f"gravity_{case}"]
+    for case in spec.CASES:
+        (support, effort), velocity = study.supports(run, case), run.metrics[case].final_velocity
         label = f"{case}.support_Nm"
         yield noted(f"{case}.gravity_Nm", effort)
-        yield noted(f"{case}.final_velocity_rad_s", m.final_velocity)
-        if abs(m.final_velocity) <= study_spec.AT_REST:
+        yield noted(f"{case}.final_velocity_rad_s", velocity)
+        if abs(velocity) <= study_spec.AT_REST:
             at_rest.append(case)
-            yield within(label, support, effort, study_spec.GRAVITY_AGREEMENT * abs(effort))
+            yield nearly(label, support, effort, study_spec.GRAVITY_AGREEMENT)
         else:
             yield noted(label, support)
     yield Finding("cases_at_rest", at_rest, bool(at_rest), "at least one", recorded=False)
@@ -79,11 +78,9 @@ def ends_at_rest(run: Experiment) -> Iterator[Finding]:
 def same_beginning(run: Experiment) -> Iterator[Finding]:
     """The longer run of G2 begins with exactly the samples of G2."""
     short, long = run.traces["G2"], run.traces[study_spec.LONGER]
-    same = [long.steps > short.steps]
-    for name in ("q", "qd", "control_force"):
-        first = getattr(short, name)
-        same.append(np.array_equal(first, getattr(long, name)[: len(first)]))
-    yield equal("same_samples", all(same), True, recorded=False)
+    pairs = [[getattr(of, name) for of in (short, long)] for name in ("q", "qd", "control_force")]
+    same = all(np.array_equal(one, other[: len(one)]) for one, other in pairs)
+    yield equal("same_samples", same and long.steps > short.steps, True, recorded=False)
 
 
 def same_metrics(run: Experiment) -> Iterator[Finding]:

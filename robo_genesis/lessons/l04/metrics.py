@@ -28,27 +28,25 @@ def is_saturated(control_force: FloatArray | float, limit: FloatArray | float) -
     return np.asarray(np.abs(control_force) >= SATURATION_THRESHOLD * limit)
 
 
+RESPONSE = ("q_rad_or_m", "target_rad_or_m")
+EFFORT = ("control_force_Nm_or_N", "effort_limit_Nm_or_N")
+"""Arrays of a bundle that several metrics are computed from."""
+
+
 @dataclass(frozen=True, slots=True)
 class StepMetrics(CaseMetrics):
     """Step response of one joint in the window; None where a metric was not observed."""
 
-    initial_error: float = metric("rad", "initial error", "q_rad_or_m", "target_rad_or_m")
-    rise_time: float | None = metric("s", "rise time", "q_rad_or_m", "target_rad_or_m", "t_s")
-    overshoot: float = metric("rad", "overshoot", "q_rad_or_m", "target_rad_or_m")
-    settling_time: float | None = metric(
-        "s", "settling time", "q_rad_or_m", "target_rad_or_m", "t_s"
-    )
-    final_error: float = metric("rad", "final error", "q_rad_or_m", "target_rad_or_m")
+    initial_error: float = metric("rad", "initial error", *RESPONSE)
+    rise_time: float | None = metric("s", "rise time", *RESPONSE, "t_s")
+    overshoot: float = metric("rad", "overshoot", *RESPONSE)
+    settling_time: float | None = metric("s", "settling time", *RESPONSE, "t_s")
+    final_error: float = metric("rad", "final error", *RESPONSE)
     final_velocity: float = metric("rad/s", "final velocity", "qd_rad_s_or_m_s")
     peak_speed: float = metric("rad/s", "peak speed", "qd_rad_s_or_m_s")
     peak_control: float = metric("N·m", "peak control", "control_force_Nm_or_N")
-    saturation_samples: int = metric(
-        "1", "saturation", "control_force_Nm_or_N", "effort_limit_Nm_or_N",
-        noun="number of saturated samples",
-    )  # fmt: skip
-    saturation_duration: float = metric(
-        "s", "saturation, seconds", "control_force_Nm_or_N", "effort_limit_Nm_or_N", "t_s"
-    )
+    saturation_samples: int = metric("1", "saturation", *EFFORT, noun="number of saturated samples")
+    saturation_duration: float = metric("s", "saturation, seconds", *EFFORT, "t_s")
 
 
 def step_metrics(trace: Trace, entry: int) -> StepMetrics:
@@ -64,13 +62,10 @@ def step_metrics(trace: Trace, entry: int) -> StepMetrics:
         entry: column of the joint in the trace's arrays.
 
     Raises:
-        ValueError: the step is zero or negative (rise and overshoot are one-sided), the target
-            changes during the run, or the arrays have no column `entry`.
+        ValueError: the step is zero or negative (rise and overshoot are one-sided), or the target
+            changes during the run.
+        IndexError: the arrays have no column `entry`.
     """
-    if not 0 <= entry < trace.q.shape[1]:
-        raise ValueError(
-            f"entry is {entry}, expected 0 to {trace.q.shape[1] - 1}: a joint's column."
-        )
     q = trace.q[:, entry].astype(np.float64)
     target = trace.target[:, entry].astype(np.float64)
     if not (target == target[0]).all():

@@ -63,15 +63,11 @@ class Arm:
 
 
 def failure(
-    name: str,
-    shown: Any,
-    evidence: str,
-    curves: Mapping[str, FloatArray] | None = None,
-    unit: str = "rad",
+    name: str, shown: Any, evidence: str, curves: Mapping[str, FloatArray] | None = None
 ) -> Mistake:
     """Return the result of a mistake; the curves are positions at each sample, by label."""
     drawn = {label: (np.arange(len(q)) * DT, q) for label, q in (curves or {}).items()}
-    return Mistake(name, bool(shown), evidence, drawn, f"position [{unit}]")
+    return Mistake(name, bool(shown), evidence, drawn, "position [rad]")
 
 
 def wrong_index(arm: Arm, case: ControlCase) -> Mistake:
@@ -155,15 +151,15 @@ def fingers_without_gains(arm: Arm, case: ControlCase, opening: float) -> Mistak
     arm.robot.set_dofs_kv(case.kv.copy(), arm.dofs)
     own = run()
     off_unset, off_own = (abs(q[-1] - opening) for q in (unset, own))
-    return failure(
+    found = failure(
         "fingers_without_gains",
         off_unset > 0.5 * opening and off_own < SMALL * opening,
         f"Commanded to {arm.position(opening, finger)}, `{arm.joints.names[finger]}` ended at "
         f"{arm.position(unset[-1], finger)} before gains were set and at "
         f"{arm.position(own[-1], finger)} with gains of its own.",
         {"before gains are set": unset, "with gains set": own},
-        "m",
     )
+    return replace(found, quantity="position [m]")
 
 
 def assigned_each_step(arm: Arm, case: ControlCase) -> Mistake:
@@ -247,15 +243,12 @@ def time_shift(trace: Trace) -> Mistake:
     late = {name: getattr(trace, name)[1:] for name in names}
     right = step_metrics(trace, ENTRY)
     shifted = step_metrics(replace(trace, t=trace.t[:-1], **late), ENTRY)  # the mistake
-    pairs = {
-        "rise time": (shifted.rise_time, right.rise_time),
-        "settling time": (shifted.settling_time, right.settling_time),
-    }
-    texts = [
-        f"{name} {format_value(early, 's')} instead of {format_value(time, 's')}"
-        for name, (early, time) in pairs.items()
-    ]
-    gaps = [b - a for a, b in pairs.values() if a is not None and b is not None]
+    texts, gaps = [], []
+    for name in ("rise_time", "settling_time"):
+        early, time = (getattr(of, name) for of in (shifted, right))
+        values = [format_value(value, "s") for value in (early, time)]
+        texts.append(f"{name.replace('_', ' ')} {' instead of '.join(values)}")
+        gaps += [time - early] if None not in (early, time) else []
     return failure(
         "time_shift",
         gaps and np.allclose(gaps, trace.dt, rtol=0, atol=1e-9),

@@ -1,7 +1,6 @@
 """Figures of lesson L04: functions of the experiment; no numerics, no show()."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,7 +9,7 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import marks_of
-from robo_genesis.core.plotting import BAND, LIMIT, LINE, look
+from robo_genesis.core.plotting import BAND, LIMIT, LINE, look, solid
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.text import format_value
 from robo_genesis.core.trace import Trace
@@ -48,18 +47,16 @@ def posture(run: Experiment) -> Figure:
 
 def assigned(run: Experiment) -> Figure:
     """Draw the stepped joint with assigned states and with a commanded target, over time."""
-    figure, written, commanded = plotting.figure(3.4), run.traces[ASSIGNED], run.traces["baseline"]
-    ax = figure.subplots()
+    figure, ax = plotting.axes(3.4)
+    written, commanded = run.traces[ASSIGNED], run.traces["baseline"]
     _target(ax, float(commanded.target[0, ENTRY]))
-    crosses = {"color": look("other")["color"], "linestyle": "", "marker": "x", "markersize": 4}
-    ax.plot(written.t[::4], written.q[::4, ENTRY], label="assigned: set_dofs_position", **crosses)
-    name = "commanded: control_dofs_position"
-    ax.plot(commanded.t, commanded.q[:, ENTRY], label=name, **solid("baseline"))
-    for trace, text, mark, label in (
-        (written, "set_dofs_position", "other", (0.6, (10, -20))),
-        (commanded, "control_dofs_position", "baseline", (0.27, (2, -18))),
+    crosses = solid("other", linestyle="", marker="x", markersize=4)
+    for trace, every, text, style, label in (
+        (written, 4, "set_dofs_position", crosses, (0.6, (10, -20))),
+        (commanded, 1, "control_dofs_position", solid("baseline"), (0.27, (2, -18))),
     ):
-        _direct(ax, trace.t, trace.q[:, ENTRY], text, look(mark)["color"], label)
+        ax.plot(trace.t[::every], trace.q[::every, ENTRY], **style)
+        _direct(ax, trace.t, trace.q[:, ENTRY], text, style["color"], label)
     title = f"Assigned or commanded, {STEPPED_JOINT}"
     _finish(ax, title, "q [rad]", float(commanded.t[-1]))
     return figure
@@ -95,7 +92,7 @@ def _response(
             values = getattr(traces[name], field)[:, ENTRY]
             t = traces[name].t[-len(values) :]
             t, values = t[t <= until], values[t <= until]
-            ax.plot(t, values, label=name, marker=".", markersize=5, **solid(mark))
+            ax.plot(t, values, marker=".", markersize=5, **solid(mark))
             if labels:
                 _direct(ax, t, values, name, look(mark)["color"], labels[panel][name])
         _finish(ax, f"{panel.capitalize()} of {STEPPED_JOINT}", ylabel, until)
@@ -105,14 +102,13 @@ def _response(
 
 def baseline_forces(run: Experiment) -> Figure:
     """Draw both force getters of the baseline: they answer different questions."""
-    figure, trace, until = plotting.figure(3.4), run.traces["baseline"], 0.6
-    ax = figure.subplots()
+    (figure, ax), trace, until = plotting.axes(3.4), run.traces["baseline"], 0.6
     _limits(ax, trace, until)
     for name, array, mark, label in (
         ("get_dofs_control_force", trace.control_force, "baseline", (0.14, (0, 32))),
         ("get_dofs_force", trace.internal_force, "other", (0.25, (4, -20))),
     ):
-        ax.plot(trace.t_step, array[:, ENTRY], label=name, marker=".", markersize=5, **solid(mark))
+        ax.plot(trace.t_step, array[:, ENTRY], marker=".", markersize=5, **solid(mark))
         _direct(ax, trace.t_step, array[:, ENTRY], name, solid(mark)["color"], label)
     _finish(ax, f"Forces on {STEPPED_JOINT}", "force [N·m]", until)
     return figure
@@ -120,9 +116,9 @@ def baseline_forces(run: Experiment) -> Figure:
 
 def defined(run: Experiment) -> Figure:
     """Draw the position of the example with its rise and settling time, overshoot, final error."""
-    figure, trace, m = plotting.figure(4), run.traces[EXAMPLE], run.metrics[EXAMPLE]
-    ax, q, target = figure.subplots(), trace.q[:, ENTRY], float(trace.target[0, ENTRY])
-    _target(ax, target, SETTLING_BAND)
+    (figure, ax), trace, m = plotting.axes(4), run.traces[EXAMPLE], run.metrics[EXAMPLE]
+    q = trace.q[:, ENTRY]
+    _target(ax, float(trace.target[0, ENTRY]), SETTLING_BAND)
     ax.plot(trace.t, q, marker=".", markersize=6, **solid("further"))
     times = (
         (m.rise_time, "rise time, 90 % of the step:", 0.2, (0.2, 1)),
@@ -138,11 +134,6 @@ def defined(run: Experiment) -> Figure:
     _note(ax, (START, float(q[last])), f"final error: {error}", 0.62, (0.8, 1))
     _finish(ax, f"Position of {STEPPED_JOINT} in the example", "q [rad]", START)
     return figure
-
-
-def solid(mark: str, **more: Any) -> dict[str, Any]:
-    """Return the look of measured data: the colour of a mark, and a solid line."""
-    return look(mark, **{"linestyle": "-", **more})
 
 
 def _direct(
@@ -174,15 +165,13 @@ def _note(
 
 def _target(ax: Axes, value: float, band: float | None = None) -> None:
     """Draw the target with its settling band, and name both: at the right edge below the band."""
+    name, place, offset, side = "target", (0.0, value), (4, -4), "left"
     if band is not None:
         ax.axhspan(value - band, value + band, color=BAND, zorder=0)
+        name, place, offset, side = f"target ±{band:g} rad", (1.0, value - band), (-4, -4), "right"
     ax.axhline(value, **LINE)
-    name = "target" if band is None else f"target ±{band:g} rad"
-    end: dict[str, Any] = {"xycoords": ax.get_yaxis_transform(), "textcoords": "offset points"}
-    if band is None:
-        ax.annotate(name, (0, value), (4, -4), va="top", **end)
-    else:
-        ax.annotate(name, (1, value - band), (-4, -4), ha="right", va="top", **end)
+    ax.annotate(name, place, offset, xycoords=ax.get_yaxis_transform(),
+                textcoords="offset points", ha=side, va="top")  # fmt: skip
 
 
 def _limits(ax: Axes, trace: Trace, until: float) -> None:

@@ -62,22 +62,17 @@ ONE_FACTOR = {("G1", "G2"): [f"kp[{STEPPED_JOINT}]"], ("G2", "G3"): [f"kv[{STEPP
 
 PREDICTIONS = {
     ("G1", "G2"): (
-        ("rise_time", "no later"),
-        ("peak_speed", "higher"),
-        ("overshoot", "higher"),
+        ("rise_time", "no later"), ("peak_speed", "higher"), ("overshoot", "higher"),
         ("saturation_samples", "higher"),
     ),
     ("G2", "G3"): (("peak_speed", "lower"), ("overshoot", "lower"), ("rise_time", "later")),
-}
+}  # fmt: skip
 """Written down before the runs: how the second case of a pair compares with the first."""
 
 MARGINS = {
-    "rise_time": 1.5 * DT,
-    "settling_time": 1.5 * DT,
-    "peak_speed": 0.05,
-    "overshoot": 1e-3,
+    "rise_time": 1.5 * DT, "settling_time": 1.5 * DT, "peak_speed": 0.05, "overshoot": 1e-3,
     "saturation_samples": 1.5,
-}
+}  # fmt: skip
 """An order counts as shown when the difference exceeds this margin. The margins are above
 `RESOLUTION`, because a time or a count may fall one sample to either side."""
 
@@ -89,18 +84,10 @@ RELATIONS = tuple(
 """The orderings that the lesson claims. A refreshed run must still show them."""
 
 TOLERANCES = {
-    "rad": (1e-4, 1e-3),
-    "rad/s": (1e-3, 1e-3),
-    "s": (DT / 2, 0.0),
-    "N·m": (1e-2, 1e-3),
-    "kg·m²": (1e-4, 1e-3),
-    "N·m·s/rad": (1e-6, 0.0),
-    "initial_error": (1e-6, 0.0),
-    "m": (1e-4, 1e-3),
-    "m/s": (1e-3, 1e-3),
-    "N": (1e-2, 1e-3),
-    "link_quat_wxyz": (1e-4, 0.0),
-}
+    "rad": (1e-4, 1e-3), "rad/s": (1e-3, 1e-3), "s": (DT / 2, 0.0), "N·m": (1e-2, 1e-3),
+    "kg·m²": (1e-4, 1e-3), "N·m·s/rad": (1e-6, 0.0), "initial_error": (1e-6, 0.0),
+    "m": (1e-4, 1e-3), "m/s": (1e-3, 1e-3), "N": (1e-2, 1e-3), "link_quat_wxyz": (1e-4, 0.0),
+}  # fmt: skip
 """By unit, or by metric or array: (atol, rtol) of a value between engine versions
 or backends. A time on the grid of samples must not move at all; counts are exact."""
 

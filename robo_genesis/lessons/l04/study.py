@@ -12,12 +12,7 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, is_saturated, step_metrics
-from robo_genesis.lessons.l04.theory import (
-    IdealJoint,
-    overshoot_share,
-    step_share,
-    stepped_joint,
-)
+from robo_genesis.lessons.l04.theory import IdealJoint, overshoot_share, step_share, stepped_joint
 from robo_genesis.sim.arm import dynamics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase, run_case
@@ -78,11 +73,9 @@ def read_gravity(
     scene: Any, robot: Any, joints: JointMap, traces: Mapping[str, Trace]
 ) -> dict[str, float]:
     """Read the gravity effort at the end state of each case, in Genesis."""
-    found = {}
-    for name in spec.CASES:
-        efforts = dynamics.gravity_effort(scene, robot, joints, traces[name].q[-1])
-        found[f"gravity_{name}"] = float(efforts[spec.ENTRY])
-    return found
+    ends = {f"gravity_{name}": traces[name].q[-1] for name in spec.CASES}
+    efforts = {n: dynamics.gravity_effort(scene, robot, joints, q) for n, q in ends.items()}
+    return {name: float(of[spec.ENTRY]) for name, of in efforts.items()}
 
 
 def read_second_engine() -> dict[str, float]:
@@ -120,6 +113,18 @@ def share(run: Experiment, case: str, kind: str = "") -> FloatArray:
     """Return a response as a share of its step: the lesson's, or with `kind` the small one."""
     step = run.traces[f"{case}_{kind}" if kind else case]
     return step_share(step, run.traces[f"{case}_hold"], spec.ENTRY)
+
+
+def off_ideal(run: Experiment, case: str, kind: str = "") -> float:
+    """Return the largest distance of such a response from the ideal joint's, as a share."""
+    response = ideal(run, case).response(run.traces[case].t)
+    return float(np.abs(share(run, case, kind) - response).max())
+
+
+def supports(run: Experiment, case: str) -> tuple[float, float]:
+    """Return KP × final error of a case, and the gravity effort at its end [N·m]."""
+    kp = float(spec.CASES[case].kp[spec.ENTRY])
+    return kp * run.metrics[case].final_error, run.readings[GROUP][f"gravity_{case}"]
 
 
 def model_overshoot(run: Experiment, case: str, height: float) -> float:
@@ -242,9 +247,7 @@ def run_name(engine: str, case: str, substeps: int) -> str:
 
 def relation_outcome(run: Experiment, engine: str, relation: Relation) -> tuple[str, str]:
     """Return whether an engine's runs show one claimed ordering, and the two values."""
-    numbers = {
-        f"{case}.{name}": Value(value, unit)
-        for case, metrics in compared(run, engine).items()
-        for name, value, unit in metrics.items()
-    }
-    return outcome(numbers, relation)
+    cases, metric, *_ = relation
+    unit, found = StepMetrics.about("unit")[metric], compared(run, engine)
+    values = {f"{case}.{metric}": Value(getattr(found[case], metric), unit) for case in cases}
+    return outcome(values, relation)

@@ -9,23 +9,12 @@ from matplotlib.figure import Figure
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.palette import MARKS, PARTS
-from robo_genesis.core.plotting import LINE, look
+from robo_genesis.core.plotting import LINE, look, solid
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.lessons.l04 import spec, study
+from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.explorer import NAMES
-from robo_genesis.lessons.l04.plots import solid
 from robo_genesis.lessons.l04.spec import CASE_MARKS
-from robo_genesis.lessons.l04.study_spec import (
-    COMPARED,
-    KP,
-    KV,
-    POINTS,
-    SMALL_STEP,
-    SMALL_STEPPED,
-    STEP_SIZES,
-    SUBSTEPS_STUDIED,
-    GridPoint,
-)
+from robo_genesis.lessons.l04.study_spec import KP, KV, SMALL_STEP, STEP_SIZES, GridPoint
 from robo_genesis.lessons.l04.tables import ENGINE_LABELS
 
 MEASURES = False
@@ -54,7 +43,7 @@ def theory(run: Experiment) -> Figure:
             "ideal joint": start + spec.STEP * study.ideal(run, name).response(t),
             "measured": run.traces[name].q[:, spec.ENTRY],
         }
-        for name in COMPARED
+        for name in study_spec.COMPARED
     }
     return _beside_ideal(7, t, curves, start + spec.STEP, "q of joint4 [rad]")
 
@@ -68,7 +57,7 @@ def step_size(run: Experiment) -> Figure:
             f"+{SMALL_STEP:g} rad": study.share(run, name, "small"),
             f"+{spec.STEP:g} rad": study.share(run, name),
         }
-        for name in SMALL_STEPPED
+        for name in study_spec.SMALL_STEPPED
     }
     return _beside_ideal(5.6, t, shares, 1.0, "share of the step")
 
@@ -103,8 +92,8 @@ def overshoot_by_step(run: Experiment) -> Figure:
 
     The mark of an unstable run is hollow, and no line leads there.
     """
-    figure = plotting.figure(3.8)
-    ax, steps = figure.subplots(), 1000 * spec.G2.dt / np.array(SUBSTEPS_STUDIED)
+    figure, ax = plotting.axes(3.8)
+    steps = 1000 * spec.G2.dt / np.array(study_spec.SUBSTEPS_STUDIED)
     for engine, label in ENGINE_LABELS.items():
         style = ENGINE_STYLES[label] | {"markersize": 6}
         found = study.overshoot_by_substeps(run, engine)
@@ -132,13 +121,11 @@ def grid_saturation(run: Experiment) -> Figure:
     Readers read the number in a cell, the colour only helps.
     """
     figure = plotting.figure(6.8)
-    counts = [run.metrics[point.name].saturation_samples for point in POINTS]
+    counts = [run.metrics[point.name].saturation_samples for point in study_spec.POINTS]
     maps = np.reshape(counts, (len(STEP_SIZES), len(KP), len(KV)))
     for ax, step, cells in zip(figure.subplots(2, 2).flat, STEP_SIZES, maps, strict=True):
-        ax.pcolormesh(
-            cells, cmap=SHADES, vmin=0, vmax=maps.max(), edgecolors=PARTS["grid"].light,
-            linewidth=1,
-        )  # fmt: skip
+        lines = {"edgecolors": PARTS["grid"].light, "linewidth": 1}
+        ax.pcolormesh(cells, cmap=SHADES, vmin=0, vmax=maps.max(), **lines)
         for (row, column), count in np.ndenumerate(cells):
             name = NAMES.get(GridPoint(step, KP[row], KV[column]))
             text = f"{name}\n{count}" if name else f"{count}"

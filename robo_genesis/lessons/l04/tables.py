@@ -1,11 +1,11 @@
 """Tables of L04: the robot, the metrics, and what the studies of the stepped joint measured."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from robo_genesis.core.comparison import HELD_BY, compare, order
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.tables import markdown
+from robo_genesis.core.tables import as_table, markdown
 from robo_genesis.core.tables import metric_table as by_case
 from robo_genesis.core.text import format_value
 from robo_genesis.lessons.l04 import spec, study, study_spec
@@ -20,6 +20,8 @@ CLOSE = "too close to call"
 ENGINE_LABELS = {"Genesis": "Genesis"} | {
     name: f"MuJoCo {name}" for name in study_spec.SECOND_INTEGRATORS
 }
+
+Row = dict[str, Any]
 
 NOUNS, UNITS = StepMetrics.about("noun"), StepMetrics.about("unit")
 
@@ -61,41 +63,36 @@ def compared_metrics(run: Experiment) -> str:
     return by_case({name: run.metrics[name] for name in study_spec.COMPARED})
 
 
-def force_ranges(run: Experiment) -> str:
+@as_table
+def force_ranges(run: Experiment) -> Iterator[Row]:
     """Return the gains and the force range of each joint in the baseline."""
     limits, joints = run.traces["baseline"].effort_limit, run.joints
-    return markdown(
-        [
-            {
-                "joint": name,
-                "KP [effort per rad or m]": float(spec.BASELINE.kp[k]),
-                "KV [effort·s per rad or m]": float(spec.BASELINE.kv[k]),
-                "range, read back": f"{-limits[k]:g} … {limits[k]:g} {joints.effort_units[k]}",
-            }
-            for k, name in enumerate(joints.names)
-        ]
-    )
+    for k, name in enumerate(joints.names):
+        yield {
+            "joint": name,
+            "KP [effort per rad or m]": float(spec.BASELINE.kp[k]),
+            "KV [effort·s per rad or m]": float(spec.BASELINE.kv[k]),
+            "range, read back": f"{-limits[k]:g} … {limits[k]:g} {joints.effort_units[k]}",
+        }
 
 
-def first_demand(run: Experiment) -> str:
+@as_table
+def first_demand(run: Experiment) -> Iterator[Row]:
     """Compare for each case the demand of the PD law at t = 0 with the clipped effort."""
-    k, rows = spec.ENTRY, []
+    k = spec.ENTRY
     for name, case in study_spec.COMPARED.items():
         trace = run.traces[name]
-        rows.append(
-            {
-                "case": name,
-                "demand at t = 0": f"{case.kp[k] * (case.q_target[k] - trace.q[0, k]):.0f} N·m",
-                "clipped effort": f"{trace.start_control_force[k]:.0f} N·m",
-                "at the same limit until": format_value(study.at_limit_until(trace), "s"),
-            }
-        )
-    return markdown(rows)
+        yield {
+            "case": name,
+            "demand at t = 0": f"{case.kp[k] * (case.q_target[k] - trace.q[0, k]):.0f} N·m",
+            "clipped effort": f"{trace.start_control_force[k]:.0f} N·m",
+            "at the same limit until": format_value(study.at_limit_until(trace), "s"),
+        }
 
 
-def outcomes_of_predictions(run: Experiment) -> str:
+@as_table
+def outcomes_of_predictions(run: Experiment) -> Iterator[Row]:
     """Return the outcome of each prediction of the lesson; a close one is too close to call."""
-    rows = []
     for (one, other), metric, claim, margin in spec.RELATIONS:
         found = compare(metric, run.metrics[one], run.metrics[other], spec.RESOLUTION, margin)
         close = found.order == "equal" and found.first != found.second
@@ -106,15 +103,12 @@ def outcomes_of_predictions(run: Experiment) -> str:
             outcome = f"held ({CLOSE})" if held else CLOSE
         else:
             outcome = "held" if held else "**did not hold**"
-        rows.append(
-            {
-                "prediction": f"{found.label}: {other} {claim} than {one}",
-                "measured": _change((found.first, found.second), metric),
-                "margin": margin_text(metric),
-                "outcome": outcome,
-            }
-        )
-    return markdown(rows)
+        yield {
+            "prediction": f"{found.label}: {other} {claim} than {one}",
+            "measured": _change((found.first, found.second), metric),
+            "margin": margin_text(metric),
+            "outcome": outcome,
+        }
 
 
 def _change(values: Iterable[float | None], metric: str) -> str:
@@ -122,148 +116,124 @@ def _change(values: Iterable[float | None], metric: str) -> str:
     return " → ".join(format_value(value, UNITS[metric]) for value in values)
 
 
-def gravity_table(run: Experiment) -> str:
+@as_table
+def gravity_table(run: Experiment) -> Iterator[Row]:
     """Return for each case KP × final error beside the gravity effort, and how the case ended."""
-    rows = []
-    for name, case in spec.CASES.items():
-        m, effort = run.metrics[name], run.readings[study.GROUP][f"gravity_{name}"]
-        support = float(case.kp[spec.ENTRY]) * m.final_error
-        rows.append(
-            {
-                "case": name,
-                "KP × final error": format_value(support, "N·m"),
-                "gravity, engine": format_value(effort, "N·m"),
-                "difference": share_text(abs(support - effort) / abs(effort)),
-                "final velocity": format_value(m.final_velocity, "rad/s"),
-                "settled from": format_value(m.settling_time, "s"),
-            }
-        )
-    return markdown(rows)
+    for name, m in ((name, run.metrics[name]) for name in spec.CASES):
+        support, effort = study.supports(run, name)
+        yield {
+            "case": name,
+            "KP × final error": format_value(support, "N·m"),
+            "gravity, engine": format_value(effort, "N·m"),
+            "difference": share_text(abs(support - effort) / abs(effort)),
+            "final velocity": format_value(m.final_velocity, "rad/s"),
+            "settled from": format_value(m.settling_time, "s"),
+        }
 
 
-def mass_table(run: Experiment) -> str:
+@as_table
+def mass_table(run: Experiment) -> Iterator[Row]:
     """Return the inertia of the stepped joint, and the masses with a commanded position."""
     head, unit = f"`get_mass_mat`, {spec.STEPPED_JOINT}", "kg·m²"
     readings = run.readings[study.GROUP]
-    rows = [{head: "without effort, less h · d", unit: readings["inertia_Genesis"]}]
+    yield {head: "without effort, less h · d", unit: readings["inertia_Genesis"]}
     for kv in study.COMPARED_KV:
         term = f"that, less h (d + KV) = {study.implicit_term(run, kv):g}"
-        mass = readings[f"mass_KV_{kv:g}"]
-        rows.append({head: f"position commanded, KV = {kv:g}", unit: mass})
-        rows.append({head: term, unit: study.without_term(run, kv)})
-    return markdown(rows)
+        yield {head: f"position commanded, KV = {kv:g}", unit: readings[f"mass_KV_{kv:g}"]}
+        yield {head: term, unit: study.without_term(run, kv)}
 
 
-def ideal_table(run: Experiment) -> str:
+@as_table
+def ideal_table(run: Experiment) -> Iterator[Row]:
     """Return the linear joint's parameters and overshoot for each compared case."""
-    return markdown(
-        [
-            {
-                "case": case,
-                "KP [N·m/rad]": ideal.kp,
-                "KV + passive damping [N·m·s/rad]": ideal.damping,
-                "ζ": f"{ideal.zeta:.2f}",
-                "ideal joint": damping_word(ideal.zeta),
-                "ideal overshoot [share of step]": share_text(ideal.overshoot),
-            }
-            for case in study_spec.COMPARED
-            for ideal in [study.ideal(run, case)]
-        ]
-    )
+    for case in study_spec.COMPARED:
+        ideal = study.ideal(run, case)
+        yield {
+            "case": case,
+            "KP [N·m/rad]": ideal.kp,
+            "KV + passive damping [N·m·s/rad]": ideal.damping,
+            "ζ": f"{ideal.zeta:.2f}",
+            "ideal joint": damping_word(ideal.zeta),
+            "ideal overshoot [share of step]": share_text(ideal.overshoot),
+        }
 
 
-def step_size_table(run: Experiment) -> str:
+@as_table
+def step_size_table(run: Experiment) -> Iterator[Row]:
     """Return overshoot and distance from theory at both heights of the step."""
-    rows = []
     for case in study_spec.SMALL_STEPPED:
         ideal = study.ideal(run, case)
-        row: dict[str, Any] = {"case": case, "overshoot, ideal": share_text(ideal.overshoot)}
+        row = {"case": case, "overshoot, ideal": share_text(ideal.overshoot)}
         for height, kind in ((study_spec.SMALL_STEP, "small"), (spec.STEP, "")):
-            share = study.share(run, case, kind)
-            distance = float(abs(share - ideal.response(run.traces[case].t)).max())
+            share, distance = study.share(run, case, kind), study.off_ideal(run, case, kind)
             row[f"overshoot, +{height:g} rad"] = share_text(overshoot_share(share))
             row[f"largest distance, +{height:g} rad"] = share_text(distance)
-        rows.append(row)
-    return markdown(rows)
+        yield row
 
 
-def stepped_table(run: Experiment) -> str:
+@as_table
+def stepped_table(run: Experiment) -> Iterator[Row]:
     """Return the overshoots of the ideal joint, of the stepped model and of the engine."""
-    rows = []
-    small = study_spec.SMALL_STEP
+    heads, small = ("ideal joint", "stepped model", "Genesis"), study_spec.SMALL_STEP
     for height, cases in ((small, study_spec.SMALL_STEPPED), (spec.STEP, study_spec.COMPARED)):
         for case in cases:
-            values = [
-                share_text(value / height) if height == small else format_value(value, "rad")
-                for value in study.overshoots(run, case, height)
-            ]
-            heads = ("run", "ideal joint", "stepped model", "Genesis")
-            rows.append(dict(zip(heads, [f"{case}, +{height:g} rad", *values], strict=True)))
-    return markdown(rows)
+            found = study.overshoots(run, case, height)
+            yield {"run": f"{case}, +{height:g} rad"} | {
+                head: share_text(of / height) if height == small else format_value(of, "rad")
+                for head, of in zip(heads, found, strict=True)
+            }
 
 
-def explicit_table(run: Experiment) -> str:
+@as_table
+def explicit_table(run: Experiment) -> Iterator[Row]:
     """Return for G2 the explicit damping ratio of each joint, and its clipped samples in MuJoCo."""
     ratio, engines = study.damping_ratio("G2"), study.by_engine(run, "G2")
-    counts = {
-        name: is_saturated(engines[name].control_force, engines[name].effort_limit).sum(axis=0)
-        for name in study_spec.SECOND_INTEGRATORS
-    }
-    return markdown(
-        [
-            {"joint": joint, "h (KV + d) / I": f"{ratio[k]:.2f}"}
-            | {f"clipped, {name}": format_value(int(of[k]), "1") for name, of in counts.items()}
-            for k, joint in enumerate(run.joints.names)
-        ]
-    )
+    for k, joint in enumerate(run.joints.names):
+        row = {"joint": joint, "h (KV + d) / I": f"{ratio[k]:.2f}"}
+        for name in study_spec.SECOND_INTEGRATORS:
+            clipped = is_saturated(engines[name].control_force, engines[name].effort_limit)
+            row[f"clipped, {name}"] = format_value(int(clipped[:, k].sum()), "1")
+        yield row
 
 
-def first_step_table(run: Experiment) -> str:
+@as_table
+def first_step_table(run: Experiment) -> Iterator[Row]:
     """Return for each compared case the stepped joint's speed after the first step, by engine."""
-    rows = []
     for case, settings in study_spec.COMPARED.items():
-        kv = float(settings.kv[spec.ENTRY])
         speeds = {
-            "alone, with the term": study.first_speed(run, case, kv),
+            "alone, with the term": study.first_speed(run, case, float(settings.kv[spec.ENTRY])),
             "alone, without it": study.first_speed(run, case, 0.0),
         } | {
             ENGINE_LABELS[engine]: float(trace.qd[0, spec.ENTRY])
             for engine, trace in study.by_engine(run, case).items()
         }
-        rows.append({"case": case} | {n: format_value(v, "rad/s") for n, v in speeds.items()})
-    return markdown(rows)
+        yield {"case": case} | {n: format_value(v, "rad/s") for n, v in speeds.items()}
 
 
-def convergence_table(run: Experiment) -> str:
+@as_table
+def convergence_table(run: Experiment) -> Iterator[Row]:
     """Return for each solver step G2's overshoot in both engines; unstable runs are marked."""
-    found = {engine: study.overshoot_by_substeps(run, engine) for engine in study.ENGINES}
-    return markdown(
-        [
-            {"substeps": n, "h": f"{1000 * spec.G2.dt / n:g} ms"}
-            | {
-                ENGINE_LABELS[engine]: format_value(values[n], "rad")
-                + " (unstable)" * study.unstable(run, engine, n)
-                for engine, values in found.items()
-            }
-            for n in study_spec.SUBSTEPS_STUDIED
-        ]
-    )
+    for n in study_spec.SUBSTEPS_STUDIED:
+        row = {"substeps": n, "h": f"{1000 * spec.G2.dt / n:g} ms"}
+        for engine, label in ENGINE_LABELS.items():
+            overshoot = study.overshoot_by_substeps(run, engine)[n]
+            mark = " (unstable)" * study.unstable(run, engine, n)
+            row[label] = format_value(overshoot, "rad") + mark
+        yield row
 
 
-def relation_table(run: Experiment) -> str:
+@as_table
+def relation_table(run: Experiment) -> Iterator[Row]:
     """Return for each ordering that the lesson claims its state and values in each engine."""
-    rows = []
     for relation in spec.RELATIONS:
         (first, second), metric, order, _ = relation
-        row: dict[str, Any] = {"claim": f"{NOUNS[metric]}: {second} {order} than {first}"}
-        for engine in study.ENGINES:
+        row = {"claim": f"{NOUNS[metric]}: {second} {order} than {first}"}
+        for engine, label in ENGINE_LABELS.items():
             found = study.compared(run, engine)
             values = _change((getattr(found[case], metric) for case in (first, second)), metric)
             state, _ = study.relation_outcome(run, engine, relation)
-            shown = "unstable" if study.unstable(run, engine) else state
-            row[ENGINE_LABELS[engine]] = f"{shown}: {values}"
-        rows.append(row)
-    return markdown(rows)
+            row[label] = f"{'unstable' if study.unstable(run, engine) else state}: {values}"
+        yield row
 
 
 def metrics_by_engine(run: Experiment) -> str:

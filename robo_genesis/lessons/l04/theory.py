@@ -20,21 +20,11 @@ class IdealJoint:
     | `inertia` | I, effective inertia [kg·m²] |
     | `damping` | D = KV + the joint's passive damping [N·m·s/rad] |
     | `kp` | KP [N·m/rad] |
-
-    Raises:
-        ValueError: inertia or KP is not positive, or the damping is negative.
     """
 
     inertia: float
     damping: float
     kp: float
-
-    def __post_init__(self) -> None:
-        if not (self.inertia > 0 and self.kp > 0 and self.damping >= 0):
-            raise ValueError(
-                f"inertia={self.inertia}, kp={self.kp}, damping={self.damping}: inertia and KP "
-                "must be positive, damping must not be negative. Give them in SI units."
-            )
 
     @property
     def omega(self) -> float:

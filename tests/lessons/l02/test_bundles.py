@@ -3,17 +3,9 @@
 import shutil
 from pathlib import Path
 
-import numpy as np
 import pytest
 from bundles import written
-from lessons.lesson_bundles import (
-    in_archive,
-    in_json,
-    metric,
-    pop,
-    refused,
-    without_run,
-)  # fmt: skip
+from lessons.lesson_bundles import in_archive, in_json, pop, refused
 
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.evidence import bundle
@@ -52,22 +44,11 @@ def test_runs_of_bodies_and_of_joints_are_not_exchanged(sound, folder):
         read_run(folder, bundle.read_arrays(folder), "G1", BodyTrace)
 
 
-def invented_contacts(folder):
-    contacts = np.zeros((21, 1), np.int32)
-    in_archive("baseline", lambda arrays: arrays.update(contacts=contacts))(folder)
-    described = {"dims": ["state", "link"], "shape": [21, 1], "dtype": "int32", "unit": "1"}
-    in_json("arrays.json", lambda a: a["cases"]["baseline"]["variables"].update(
-        contacts=described | {"long_name": "contact points"}))(folder)  # fmt: skip
-
-
 SPOILED = {
-    "contacts that nobody checks": ("labels", invented_contacts),
     "one more link": ("labels", in_json(
         "arrays.json", lambda a: a["coords"].update(link=[spec.LINK, "lid"]))),
-    "a run of the study is missing": ("cases", without_run("substeps_10")),
     "a position was moved": ("motion", in_archive(
         "baseline", lambda a: a["link_pos_m"][5:6].__iadd__(1e-3))),
-    "no mass": ("metrics", metric("body", "mass", None)),
     "a call that was never tried": (
         "metrics", pop("metrics.json", "life_cycle", "camera.render after build")),
     "no picture of the trays": ("frames", lambda f: (f / "frames" / "trays.png").unlink()),

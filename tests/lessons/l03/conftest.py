@@ -10,8 +10,7 @@ from lessons.body_runs import slide_on_corners
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import ContactTrace
 from robo_genesis.lessons.l03 import LESSON, spec, study, study_spec, theory
-from robo_genesis.sim.bodies import contacts
-from robo_genesis.sim.bodies.contacts import ContactCase
+from robo_genesis.sim.bodies.contacts import SETTINGS
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 MASSES = {"cube": spec.BASELINE.mass, "ball": spec.DROPPED_BALL.mass}
@@ -19,18 +18,12 @@ SECONDS = {name: theory.contact_seconds(study.case_of(name)) for name in study.R
 CLEAN = study_spec.ELLIPTIC | study_spec.FINER_SLIDES
 
 
-def settings(cases: Mapping[str, ContactCase]) -> dict[str, dict[str, float]]:
-    """Return the settings of cases as scenes with these cases have them."""
-    return {
-        name: {case: getattr(of, name) for case, of in cases.items()} for name in contacts.SETTINGS
-    }
-
-
 def readings_of(page: str) -> dict[str, Mapping[str, float]]:
     """Return the engine's values of sound runs of a page."""
     declared = LESSON.pages[page].readings(True)
     cases = {n: c for n, c in LESSON.pages[page].cases.items() if n not in study_spec.IN_MUJOCO}
-    known = {"model": spec.EXPECTED_MODEL, "mass": MASSES, study.GROUP: SECONDS, **settings(cases)}
+    known = {"model": spec.EXPECTED_MODEL, "mass": MASSES, study.GROUP: SECONDS}
+    known |= {name: {n: getattr(of, name) for n, of in cases.items()} for name in SETTINGS}
     return {
         group: {name: known[group][name] for name in of.units} for group, of in declared.items()
     }

@@ -3,23 +3,12 @@
 import shutil
 from pathlib import Path
 
-import numpy as np
 import pytest
 from bundles import written
-from lessons.lesson_bundles import (
-    altered,
-    differing_outputs,
-    in_archive,
-    judged_again,
-    metric,
-    pop,
-    refused,
-    table,
-)  # fmt: skip
+from lessons.lesson_bundles import in_archive, judged_again, metric, pop, refused, table
 from spoilers import predicate
 
-from robo_genesis.core.project import BOOK
-from robo_genesis.core.trace import ContactTrace
+from robo_genesis.core.comparison import same_arrays
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace
@@ -46,34 +35,20 @@ def test_a_sound_one_is_accepted(bundles, page):
     assert names == [check.__name__ for check in LESSON.pages[page].checks]
 
 
-@pytest.mark.parametrize("page", [page for page in LESSON.pages if page != "mistakes"])
-def test_what_a_page_shows_follows_from_its_bundle(bundles, experiments, page):
-    assert differing_outputs(bundles[page], experiments[page], BOOK) == []
-
-
 def test_contacts_are_read_as_they_were_recorded(bundles, contact_traces):
     found = read_any_trace(bundles["lab"], bundle.read_arrays(bundles["lab"]), "baseline")
-    assert isinstance(found, ContactTrace)
-    assert found.contacts.dtype == np.int32
-    for name in ("contacts", "penetration"):
-        assert np.array_equal(getattr(found, name), getattr(contact_traces["baseline"], name))
+    assert same_arrays(found, contact_traces["baseline"])
     rows = table(bundles["lab"], "dt20_sub1")
     assert len(rows) == 76
     assert rows[-1]["contacts body [1]"] == "4"
     assert float(rows[-1]["penetration body [m]"]) > 0
 
 
-def test_each_page_compares_with_itself_by_its_own_cases(bundles):
-    claims = {}
-    for page, folder in bundles.items():
-        found = compare(folder, folder)
-        assert found.state == "equal"
-        sections = {section.title: section for section in found.sections}
-        claims[page] = sections["Relations"].rows if "Relations" in sections else []
-    assert len(claims["lab"]) == len(spec.RELATIONS)
-    assert [claim.what for claim in claims["lecture"]] == [
-        "stop_distance: high_on_050 lower than low_on_050, held in both"
-    ]
+@pytest.mark.parametrize(("page", "claims"), [("lab", 2), ("lecture", 1), ("energy", 0)])
+def test_a_page_compares_with_itself_by_its_own_cases(bundles, page, claims):
+    found = compare(bundles[page], bundles[page])
+    assert found.state == "equal"
+    assert sum(len(of.rows) for of in found.sections if of.title == "Relations") == claims
 
 
 def changed(case, name, change):
@@ -96,11 +71,6 @@ SPOILED = {
     "a start elsewhere": ("lab", "start", changed(
         "baseline", "link_pos_m", lambda a: a[:, 0, 1].__iadd__(0.01))),
     "contacts that were never read": ("lab", "labels", without_contacts),
-    "a count of contacts was written": ("lab", "contact", changed(
-        "low_on_050", "contacts", lambda a: a.fill(4))),
-    "a friction that was not read": (
-        "lab", "metrics", pop("metrics.json", "friction", "low_on_050")),
-    "a finding that was altered": ("lab", "checks", altered("near_coulomb")),
     "the lecture's parameters": ("lab", "stale", predicate(
         parameters=spec.parameters() | study_spec.parameters("lecture"))),
     "a cube that slows down in the air": ("lecture", "motion", changed(
@@ -108,16 +78,10 @@ SPOILED = {
     "a cube that turns without turning": ("lecture", "motion", changed(
         "h_20000us_10000", "link_ang_rad_s", lambda a: a[5, 0].__iadd__(1e-3))),
     "another time constant": ("lecture", "checks", metric("time_constant", "h_20000us", 0.01)),
-    "a cube that was laid down": ("lecture", "contact", changed(
-        "low_on_050", "link_pos_m", lambda a: a[:, 0, 2].fill(0.765))),
     "a run of Genesis in the place of one of MuJoCo": (
         "contact", "second-engine", copied("mujoco_baseline", "baseline")),
     "a hop of Genesis as one of MuJoCo, a little moved": ("contact", "second-engine", changed(
         "mujoco_low_on_050", "link_vel_m_s", lambda a: a[40:, 0, 0].__iadd__(1e-2))),
-    "a coarser push that is the finer one": (
-        "contact", "contact", copied("stop_500us_low", "stop_250us_low")),
-    "the landing on a softer contact": (
-        "energy", "contact", copied("release_5ms_10000", "release_10ms_10000")),
 }  # fmt: skip
 
 
@@ -129,22 +93,10 @@ def test_a_spoiled_bundle_is_refused_by_its_code(copy, name):
     assert refused(folder).startswith(code)
 
 
-JUDGEMENTS = {
-    "lab": (
-        spec,
-        {
-            "EXPECTED_MODEL": (spec.EXPECTED_MODEL | {"links": 2}, "structure"),
-            "FINER": ((("baseline", "dt20_sub1"),), "one_factor"),
-            "LEVEL_SHARE": (-1.0, "level_in_flight"),
-            "COARSE_SHARE": (1e9, "energy_converges"),
-        },
-    ),
-    "energy": (study_spec, {"REBOUND_SHARE": (-1.0, "stiff_contacts_rebound")}),
-}
-
-
-@pytest.mark.parametrize("page", JUDGEMENTS)
-def test_another_judgement_changes_a_verdict_and_nothing_else(bundles, monkeypatch, page):
-    module, judgements = JUDGEMENTS[page]
-    changes = [(module, name, *of) for name, of in judgements.items()]
-    judged_again(bundles[page], monkeypatch, changes)
+def test_another_judgement_changes_a_verdict_and_nothing_else(copy, monkeypatch):
+    judgements = [
+        (spec, "EXPECTED_MODEL", spec.EXPECTED_MODEL | {"links": 2}, "structure"),
+        (spec, "FINER", (("baseline", "dt20_sub1"),), "one_factor"),
+        (spec, "COARSE_SHARE", 1e9, "energy_converges"),
+    ]
+    judged_again(copy("lab"), monkeypatch, judgements)

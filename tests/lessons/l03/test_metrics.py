@@ -1,5 +1,6 @@
 """Known answers: theory, energy, clearance, metrics, and the tables and figures of them."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -21,16 +22,13 @@ REST = spec.BASELINE.rest_height
         (theory.coulomb_distance(PUSH), 0.4),  # 4 / 10 m
         (theory.apparent_friction(PUSH, 0.4), 0.5),
         ([rule(0.2, 0.8) for rule in theory.RULES.values()], [0.8, 0.2, 0.5, 0.4]),
-        (theory.kept_at_bounces(0.0), 1),
         (theory.kept_at_bounces(0.001), np.exp(-2 * np.pi * 0.001)),
         (theory.impact_speed(spec.BASELINE), np.sqrt(2 * 9.81 * 0.235)),
         (theory.contact_seconds(spec.BASELINE), 0.01),
-        (theory.contact_seconds(spec.LANDINGS["dt20_sub1"]), 0.04),
         (theory.contact_seconds(replace(spec.BASELINE, time_constant=0.002)), 0.01),  # two steps
         (theory.rebound(spec.BASELINE), 0),
         (theory.upward_blow(replace(spec.PUSHED, speed=1.0)), 0.4),  # 2 · 0.5 · 0.5 / 1.25 m/s
         (theory.hop(replace(spec.PUSHED, speed=1.0)), 0.16 / 19.62),
-        (theory.hop(replace(spec.PUSHED, substeps=1)), theory.hop(spec.PUSHED)),  # T = 2 h in both
         (theory.hop(spec.PUSHED), 4 * theory.hop(replace(spec.PUSHED, substeps=4))),
     ],
 )
@@ -122,7 +120,6 @@ def test_metrics_of_a_slide_on_corners():
     case = study_spec.ELLIPTIC["low_on_050_elliptic"]
     found = slide_metrics(slide_on_corners(case), case)
     assert found.stop_distance == pytest.approx(theory.stepped_distance(case), abs=1e-4)
-    assert (found.hop, found.airborne, found.spin) == (0, 0, 0)
     assert found.first_speed == pytest.approx(2 - 0.5 * 9.81 * 0.01, rel=1e-6)
 
 
@@ -138,18 +135,15 @@ def test_the_kept_share_is_that_of_the_flights(contact_traces):
 
 def test_a_distance_between_runs_takes_shared_times_and_no_lanes(experiments):
     traces = experiments["contact"].traces
-    fine = study_deeper.distance_between(traces, "dt10_sub1", "mujoco_dt20_sub1")
+    fine = study_deeper.distance_between(traces["dt10_sub1"], traces["mujoco_dt20_sub1"])
     assert len(fine) == 76  # every second state of the finer one
     assert fine[0] == 0
 
 
 def test_the_table_of_both_engines_says_when_runs_separate(experiments):
     rows = tables.engines(experiments["contact"]).splitlines()[2:]
-    assert len(rows) == len(study_spec.ENGINE_PAIRS) + 1
-    assert rows[0].startswith("| landing, h = 5\u00a0ms |")
-    assert rows[0].endswith("| never | – and – |")
-    assert rows[-1].startswith("| landing, h = 5 ms, MuJoCo's own contact |")
-    assert "never" not in rows[-1]
+    assert re.fullmatch(r"\| landing, h = 5\u00a0ms \|.*\| never \| – and – \|", rows[0])
+    assert re.match(r"\| landing, h = 5 ms, MuJoCo's own contact \|(?!.*never)", rows[-1])
 
 
 def test_a_stop_that_was_not_observed_is_said_and_not_drawn(experiments):
@@ -158,12 +152,6 @@ def test_a_stop_that_was_not_observed_is_said_and_not_drawn(experiments):
     without = replace(run, accepted=run.metrics | {"low_on_050": gone})
     assert "not observed" in tables.slides(without)
     assert [len(plots.stopping_distances(of).axes[0].patches) for of in (run, without)] == [4, 3]
-
-
-def test_measured_curves_are_solid(experiments):
-    for figure in (plots.landings, plots.contact_counts, plots.pushed, plots.ball_energies):
-        lines = [line for ax in figure(experiments["lab"]).axes for line in ax.lines]
-        assert {line.get_linestyle() for line in lines} == {"-"}
 
 
 @pytest.mark.parametrize(

@@ -52,7 +52,6 @@ def as_other(folder):
         ("integrator", pop("metrics.json", "readings", "inertia_MuJoCo"), "metrics: .*inertia_Mu"),
         ("lecture", in_json("metrics.json", lambda m: m["readings"]["gravity_G2"].update(
             value=30.0)), "checks: .*gravity_support"),
-        ("formula", pop("manifest.json", "predicate", "checks", -1), "checks: "),
         ("integrator", altered("one_limit"), "checks: "),
     ],
 )  # fmt: skip

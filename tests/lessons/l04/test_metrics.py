@@ -1,8 +1,6 @@
 import control
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
@@ -64,42 +62,22 @@ def test_saturation_counts_either_sign_from_the_threshold_on(make_trace, force, 
 
 
 @pytest.mark.parametrize(
-    ("target", "entry", "message"),
+    ("target", "message"),
     [
-        (0.0, 0, "positive step"),
-        ([0.25, 0.3], 0, "target changes"),
-        (STEP, 1, "entry is 1, expected 0 to 0"),
+        (0.0, "positive step"),
+        ([0.25, 0.3], "target changes"),
     ],
 )
-def test_what_cannot_be_measured_is_refused(make_trace, target, entry, message):
+def test_what_cannot_be_measured_is_refused(make_trace, target, message):
     with pytest.raises(ValueError, match=message):
-        step_metrics(make_trace([0, 0, 0], target), entry)
-
-
-# Multiples of 2⁻⁸ add and subtract without rounding.
-DYADIC = st.integers(-1024, 1024).map(lambda k: k / 256)
-POSITIONS = st.lists(DYADIC, min_size=2, max_size=30)
-
-
-@given(q=POSITIONS, more=POSITIONS, shift=DYADIC)
-def test_a_shift_changes_nothing_and_a_longer_window_keeps_what_was_seen(
-    make_trace, q, more, shift
-):
-    target = q[0] + STEP
-    short = step_metrics(make_trace(q, target), 0)
-    assert step_metrics(make_trace(np.array(q) + shift, target + shift), 0) == short
-    longer = step_metrics(make_trace(q + more, target), 0)
-    assert short.rise_time in (None, longer.rise_time)
-    assert longer.overshoot >= short.overshoot
+        step_metrics(make_trace([0, 0, 0], target), 0)
 
 
 def test_records_are_the_metrics_with_class_and_source(experiment):
-    found, m = experiment.records(), experiment.metrics["G1"]
+    found, overshoot = experiment.records(), experiment.metrics["G1"].overshoot
     assert [*found] == ["model", *spec.CASES]
     source = ["q_rad_or_m", "target_rad_or_m"]
-    expected = {"value": m.overshoot, "unit": "rad", "class": "value", "from": source}
+    expected = {"value": overshoot, "unit": "rad", "class": "value", "from": source}
     assert found["G1"]["overshoot"] == expected
-    assert found["G1"]["saturation_samples"]["class"] == "exact"
-    assert found["model"]["links"] == expected | {
-        "value": 11, "unit": "1", "class": "exact", "from": ["engine"],
-    }  # fmt: skip
+    expected = {"value": 11, "unit": "1", "class": "exact", "from": ["engine"]}
+    assert found["model"]["links"] == expected

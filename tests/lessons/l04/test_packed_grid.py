@@ -47,5 +47,7 @@ def test_metrics_measures_and_sentence_of_a_point(study_runs):
     assert explorer.CELLS.keys() == spec.MARGINS.keys() - {"settling_time"}
     for name, measure, found in zip(explorer.CELLS, data["measures"], cell["numbers"], strict=True):
         assert (measure["margin"], found) == (spec.MARGINS[name], getattr(measured, name))
+    rise, peak = f"{1000 * measured.rise_time:.0f}", f"{measured.peak_speed:.2f}"
+    assert cell["texts"][1::2] == [rise, peak]
     rows = explorer.table(study_runs).splitlines()[2:]
     assert [k for k, row in enumerate(rows) if "| G2 |" in row] == [number]

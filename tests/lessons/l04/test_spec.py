@@ -7,7 +7,7 @@ import pytest
 from robo_genesis.core import project
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.pipeline.pages.sources import measuring_modules
-from robo_genesis.sim.arm.franka import EFFORT_LIMIT, JOINT_NAMES, Q_START
+from robo_genesis.sim.arm.franka import JOINT_NAMES
 
 PACKAGE = Path(spec.__file__).parents[2]
 PAGES = ("lecture", "formula", "integrator", "batch")
@@ -15,15 +15,9 @@ PAGES = ("lecture", "formula", "integrator", "batch")
 
 def test_the_lessons_values():
     base = spec.BASELINE
-    assert Q_START.tolist() == [0, -0.3, 0, -2.0, 0, 1.7, 0.79, 0.04, 0.04]
-    assert base.kp.tolist() == [4500, 4500, 3500, 3500, 2000, 2000, 2000, 100, 100]
-    assert base.kv.tolist() == [450, 450, 350, 350, 200, 200, 200, 10, 10]
-    assert EFFORT_LIMIT.tolist() == [87, 87, 87, 87, 12, 12, 12, 100, 100]
     assert (spec.STEPS, base.dt, base.substeps, base.seed) == (120, 0.01, 2, 0)
-    gains = {name: (case.kp[3], case.kv[3]) for name, case in spec.CASES.items()}
-    assert gains == {
-        "baseline": (3500, 350), "G1": (3500, 100), "G2": (7000, 100), "G3": (7000, 300),
-    }  # fmt: skip
+    gains = [(case.kp[3], case.kv[3]) for case in spec.CASES.values()]
+    assert gains == [(3500, 350), (3500, 100), (7000, 100), (7000, 300)]
     for case in spec.CASES.values():
         assert (case.q_target - case.q_start).tolist() == [0, 0, 0, 0.25, 0, 0, 0, 0, 0]
 
@@ -45,17 +39,13 @@ OTHER = {
     "SETTLING_BAND": 0.02,
     "SATURATION_THRESHOLD": 0.9,
 }
-JUDGEMENTS = (
-    "PREDICTIONS", "MARGINS", "RELATIONS", "TOLERANCES", "RESOLUTION", "EXPECTED_TYPES",
-    "ONE_FACTOR", "LIMIT_EXCESS",
-)  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("name", "other", "counts"),
     [
         *((name, other, True) for name, other in OTHER.items()),
-        *((name, {}, False) for name in JUDGEMENTS),
+        ("RELATIONS", (), False),
         ("EXPECTED_MODEL", {**spec.EXPECTED_MODEL, "links": 12}, False),
     ],
 )

@@ -30,12 +30,6 @@ def test_the_regimes_meet_at_critical_damping(off):
     assert near.overshoot == pytest.approx(0.0)
 
 
-@pytest.mark.parametrize("spoiled", [{"inertia": 0.0}, {"kp": 0.0}, {"damping": -1.0}])
-def test_a_joint_that_cannot_be_is_refused(spoiled):
-    with pytest.raises(ValueError, match="must be positive"):
-        IdealJoint(**({"inertia": 1.0, "damping": 1.0, "kp": 1.0} | spoiled))
-
-
 def stepped(case, step, h=0.005, steps=240, **forces):
     kp, kv = (
         float(gain[3]) for gain in (study_spec.COMPARED[case].kp, study_spec.COMPARED[case].kv)
@@ -48,9 +42,7 @@ def stepped(case, step, h=0.005, steps=240, **forces):
     [
         ("G1", 0.005, {}, 0.031 * 0.005),
         ("G2", 0.005, {}, 0.145 * 0.005),
-        ("G1", 0.25, {"limit": 87.0, "gravity": 22.09}, 0.0),
         ("G2", 0.25, {"limit": 87.0, "gravity": 22.09}, 0.0536),
-        ("G3", 0.25, {"limit": 87.0, "gravity": 22.09}, 0.0),
     ],
 )
 def test_the_stepped_joint_overshoots_by_known_amounts(case, step, forces, overshoot):
@@ -83,10 +75,3 @@ def test_the_joint_alone_is_the_equation_by_hand(study_runs, term):
     after_one = h * (87.0 - given["gravity_at_start_Genesis"]) / mass
     more = h * (87.0 - given["gravity_at_start_Genesis"] - damping * after_one) / mass
     assert study.first_speed(study_runs, "G1", term) == pytest.approx(after_one + more)
-
-
-def test_a_run_is_unstable_if_a_joint_is_clipped_in_most_samples(study_runs):
-    found = {n: study.unstable(study_runs, "Euler", n) for n in study_spec.SUBSTEPS_STUDIED}
-    assert found == {1: True, 2: True, 4: True, 10: True, 20: False, 50: False}
-    values = [study.overshoot_by_substeps(study_runs, e)[2] for e in ("Genesis", "implicitfast")]
-    assert study.spread(study_runs, 2) == max(values) - min(values)
