@@ -77,13 +77,14 @@ def half_the_step_contradicts(run: Experiment) -> Iterator[Finding]:
 
 def one_stop_converges(run: Experiment) -> Iterator[Finding]:
     """Over the steps of at most T / 10 the stopping distance of the cube with the low coefficient
-    changes by at most 5 % of Coulomb's, that of the other cube by more.
+    changes by at most 5 % of Coulomb's.
     """
-    for lane, judge in (("low", at_most), ("high", above)):
+    for lane in LANES:
         fine = [found or np.nan for found in stops_of_lane(run, lane).values()]
         spread = float(np.ptp(fine[-study_spec.FINEST :]))
         share = spread / theory.coulomb_distance(run.cases[LANES[lane]])
-        yield judge(f"{lane}.spread_share", share, study_spec.UNSETTLED)
+        label = f"{lane}.spread_share"
+        yield at_most(label, share, study_spec.UNSETTLED) if lane == "low" else noted(label, share)
 
 
 def engines_land_alike(run: Experiment) -> Iterator[Finding]:
