@@ -8,6 +8,7 @@ Exit status: 0 all verified, or no bundle; 1 any is inconclusive, stale, failed 
 
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 from robo_genesis.core.project import BOOK, PUBLISHED, ProjectError
@@ -46,11 +47,10 @@ def built(lesson: str) -> Path:
 
 def one_bundle(folder: Path) -> tuple[Status, list[str]]:
     """Return the status of one bundle, and lines for the person who recorded it."""
-    try:
+    predicate = None
+    with suppress(BundleRefused, OSError):
         bundle_files.scan(folder)
         predicate = read_manifest(folder).predicate
-    except (BundleRefused, OSError):
-        predicate = None
     lab = built(predicate.lesson) if predicate and predicate.page == RECORDED_PAGE else None
     runs = [lab] if lab and lab.is_dir() else []
     status = bundle_status(folder, book=BOOK, cpu_runs=runs)

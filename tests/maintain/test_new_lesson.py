@@ -4,7 +4,7 @@ import pytest
 import yaml
 from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
 
-from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.core.project import BOOK
 from robo_genesis.maintain.new_lesson import (
     OUTCOME,
     TEMPLATE,
@@ -95,15 +95,6 @@ def test_a_name_that_cannot_be_used_changes_nothing(small, name, message):
     assert files(small) == before
 
 
-def test_a_failure_leaves_nothing_half_written(small, monkeypatch):
-    before = files(small)
-    monkeypatch.setattr("robo_genesis.maintain.new_lesson.with_entry", lambda text, lesson: None)
-    with pytest.raises(TypeError):  # the last file cannot be written
-        add_lesson(small, "l05")
-    assert files(small) == before
-    assert not list(small.rglob("l05*"))
-
-
 @pytest.mark.parametrize(("lesson", "before"), [("l00", None), ("l07", "l06"), ("l99", "l06")])
 def test_the_lists_stay_in_order(lesson, before):
     toc = yaml.safe_load(with_chapter(TOC.read_text(), lesson))["chapters"]
@@ -127,7 +118,3 @@ def test_the_lists_stay_in_order(lesson, before):
 def test_a_list_without_lessons_is_refused():
     with pytest.raises(LessonError, match="has no line"):
         with_chapter("format: jb-book\nroot: index\n", "l05")
-
-
-def test_the_template_is_not_in_the_package():
-    assert not list((ROOT / "robo_genesis" / "maintain" / "template").rglob("*.py"))

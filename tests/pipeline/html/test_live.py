@@ -259,8 +259,6 @@ def test_what_starts_after_the_end_is_ended(tmp_path):
 def test_a_file_that_cannot_be_read_after_a_render_ends_nothing(tmp_path):
     live = Live(make_book(tmp_path), tmp_path)
     live.remember()
-    live.work.mkdir(parents=True)
-    (live.work / "executed-pages.json").write_text("{}")
     (live.book / "_toc.yml").write_text("root: [")
     live.remember()
     shutil.rmtree(live.book)
