@@ -16,18 +16,12 @@ async def serve(html: Path, wanted: int) -> None:
     await asyncio.Event().wait()
 
 
-def main() -> int | str:
-    """Serve until Ctrl-C; return a message if there is no site, or the port is in use."""
+if __name__ == "__main__":
     html = BOOK / PUBLISHED / "html"
     if not (html / "index.html").is_file():
-        return f"No site in {html}. `make book` builds it."
+        sys.exit(f"No site in {html}. `make book` builds it.")
     try:
         with suppress(KeyboardInterrupt):
             asyncio.run(serve(html, port()))
     except ProjectError as error:
-        return str(error)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        sys.exit(str(error))

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from robo_genesis.core.project import BOOK, PUBLISHED, ProjectError
+from robo_genesis.core.project import BOOK, PUBLISHED
 from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.evidence import bundle_files, report
 from robo_genesis.evidence.advice import advice
@@ -26,7 +26,7 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_folders,
     recorded_status,
 )
-from robo_genesis.pipeline.command import path
+from robo_genesis.pipeline.command import path, run_status
 
 
 def all_bundles() -> Iterator[tuple[str, Status]]:
@@ -83,17 +83,14 @@ def line(place: str, status: Status) -> str:
     return printable(f"{place:14} {status.backend:8} {status.state:12} {text}")
 
 
-def main() -> int | str:
-    """Print the lines and return the exit status, or why nothing can be verified."""
-    try:
-        more: list[str] = []
-        if bundle := path("BUNDLE"):
-            status, more = one_bundle(bundle)
-            found = [(bundle.parent.name, status)]
-        else:
-            found = list(all_bundles())
-    except (ProjectError, OSError) as error:
-        return f"Nothing can be verified: {error}"
+def main() -> int:
+    """Print the lines and return the exit status."""
+    more: list[str] = []
+    if bundle := path("BUNDLE"):
+        status, more = one_bundle(bundle)
+        found = [(bundle.parent.name, status)]
+    else:
+        found = list(all_bundles())
     if not found:
         print("No bundle is recorded in book/evidence, and none is built. `make book` builds one.")
     for place, status in found:
@@ -104,4 +101,4 @@ def main() -> int | str:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_status(main, "verified"))

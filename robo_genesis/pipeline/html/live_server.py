@@ -64,6 +64,13 @@ async def serve(live: Live, port: int) -> None:
     Raises:
         ProjectError: the port cannot be used, or another process shows a book with this cache.
     """
+
+    def in_use(process: str) -> ProjectError:
+        return ProjectError(
+            f"Another make live runs here:\n{described(process)}\n"
+            f"Stop it with Ctrl-C in its terminal or `kill {process}`."
+        )
+
     with locked(live.folder / "lock", in_use):
         at = listen(port, live.site, LiveFile, (("/live-reload", State),))
         try:
@@ -83,11 +90,3 @@ def watch(live: Live, port: int) -> None:
             State.shown = time.time_ns()
             live.remember()
             live.say(f"Shown: {', '.join(sorted(path.name for path in paths))}")
-
-
-def in_use(process: str) -> ProjectError:
-    """Return the refusal of a second `make live` with the same cache."""
-    return ProjectError(
-        f"Another make live runs here:\n{described(process)}\n"
-        f"Stop it with Ctrl-C in its terminal or `kill {process}`."
-    )

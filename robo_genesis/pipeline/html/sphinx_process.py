@@ -88,8 +88,6 @@ class SphinxProcess:
             meanwhile()
             said = self.complaints()
             self.process.wait()
-        if not said and not (folder / HTML / "index.html").is_file():
-            said = ["Sphinx wrote no home page."]
         if said:
             raise RenderError("\n".join([*said, f"The complete log is in {self.log}"]))
 

@@ -2,8 +2,7 @@
 
 import shutil
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -92,23 +91,6 @@ def record(recording: Recording) -> int:
         BuildError: a build, or another recording, runs here.
         ProjectError: checkout, environment or the folder of bundles is not fit for it.
     """
-    outcomes: list[Outcome] = []
-    with _ready(recording) as (labs, backend, progress):
-        for page in labs:
-            outcomes.append(_outcome(recording, page, backend, progress))
-            if outcomes[-1].state == "interrupted":
-                break
-    recording.say("\n".join(report(outcomes, backend, recording.evidence)))
-    return max((STATUS[outcome.state] for outcome in outcomes), default=0)
-
-
-@contextmanager
-def _ready(recording: Recording) -> Iterator[tuple[list[Page], str, Progress]]:
-    """Hold the lock of builds, and check before any run what does not depend on the lab.
-
-    Yields:
-        The labs to record, the backend that a run would find, and the lines of progress.
-    """
     if recording.expected not in (None, *BACKENDS):
         raise RecordingError(
             f"BACKEND={recording.expected!r} is not valid. Choices: {', '.join(BACKENDS)}; "
@@ -118,16 +100,32 @@ def _ready(recording: Recording) -> Iterator[tuple[list[Page], str, Progress]]:
         recover(recording.evidence)
         require_folder(recording.evidence)
         project.require_pinned_engine(recording.root)
-        pages = find_pages(recording.book)
-        labs = {str(page.lesson): page for page in pages if page.page == RECORDED_PAGE}
-        asked = [recording.lesson] if recording.lesson else [*labs]
-        if not labs.keys() >= {*asked}:
-            raise RecordingError(
-                f"LESSON={recording.lesson!r} is not valid. "
-                f"Lessons with a lab: {', '.join(sorted(labs)) or 'none'}; unset, all."
-            )
-        progress = Progress(recording.say)
-        yield [labs[name] for name in asked], _found_backend(recording, progress), progress
+        labs, progress, outcomes = _labs(recording), Progress(recording.say), list[Outcome]()
+        backend = _found_backend(recording, progress)
+        for page in labs:
+            outcomes.append(_outcome(recording, page, backend, progress))
+            if outcomes[-1].state == "interrupted":
+                break
+    recording.say("\n".join(report(outcomes, backend, recording.evidence)))
+    return max((STATUS[outcome.state] for outcome in outcomes), default=0)
+
+
+def _labs(recording: Recording) -> list[Page]:
+    """Return the lab of the given lesson, or all labs in the order of the book.
+
+    Raises:
+        RecordingError: the lesson has no lab.
+    """
+    pages = find_pages(recording.book)
+    labs = {str(page.lesson): page for page in pages if page.page == RECORDED_PAGE}
+    if not recording.lesson:
+        return [*labs.values()]
+    if recording.lesson not in labs:
+        raise RecordingError(
+            f"LESSON={recording.lesson!r} is not valid. "
+            f"Lessons with a lab: {', '.join(sorted(labs)) or 'none'}; unset, all."
+        )
+    return [labs[recording.lesson]]
 
 
 def _found_backend(recording: Recording, progress: Progress) -> str:
