@@ -211,13 +211,10 @@ def test_a_page_that_fails_is_reported_once_and_its_last_run_is_shown(tmp_path):
     live = Live(book, tmp_path / "cache", said.append, execute=True)
     assert [live.built(pages).folders for _ in range(2)] == [{"page": last}] * 2
     begin, report, end = said
-    assert (begin, end.split(".")[0]) == (
-        "page: runs ...",
-        "page: the outputs of its last run are shown",
-    )
+    assert begin == "page: runs ..."
     assert "page, code cell 1, line 11: raise OSError('no robot')" in report
-    assert "OSError: no robot" in report
     assert "nothing was exported" not in report
+    assert end.startswith("page: the outputs of its last run are shown.")
 
 
 def test_what_starts_after_the_end_is_ended(tmp_path):
