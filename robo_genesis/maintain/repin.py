@@ -28,8 +28,8 @@ from robo_genesis.pipeline.command import ANSI, Progress, end_with_parent, say
 from robo_genesis.pipeline.pages.kernels import kill_with_descendants
 from robo_genesis.pipeline.worktree import environment, worktree
 
-TAIL, LINES = 25, 200
-"""How many last lines of a log an error shows, and the report."""
+LINES = 50
+"""How many last lines of a log an error and the report show."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +146,7 @@ class Trial:
             )
             pages = self.write_report(head, remedy, *lines)
             places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
-            raise RepinError("\n".join([*lines[-TAIL:], *places, "", f"{head}. {remedy}"]))
+            raise RepinError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
 
     def write_report(self, *failed: str) -> list[Path]:
         """Compare what both versions built, as far as they did, and write the report."""
