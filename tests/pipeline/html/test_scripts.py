@@ -37,7 +37,6 @@ def problems(site, body="", head="", name="index.html") -> list[str]:
     "body",
     [
         f"<script>{KNOWN}</script>",
-        f'<script type="module">{KNOWN}</script>',
         "<script type=\"module\">DOCUMENTATION_OPTIONS.pagename = 'index';</script>",
         '<script type="application/json">{"a": [1, "b"]}</script>',
         '<script defer="" src="_static/a.js?v=1"></script><script src="searchindex.js"></script>',
