@@ -1,7 +1,7 @@
 from pathlib import Path
 
 import pytest
-from tiny_book import LAB_FRONT, cell, make_book, notebook, published_marker, write_bundle
+from tiny_book import LAB_FRONT, cell, make_book, notebook, published_marker
 
 from robo_genesis.core import files as core_files
 from robo_genesis.pipeline.html.draft import Draft
@@ -30,7 +30,9 @@ def names(book: Path) -> set[str]:
 def test_site_and_bundles_are_published_together_and_labs_apart_from_other_pages(tmp_path, draft):
     lecture = notebook(cell("2"), front=LAB_FRONT.replace("page: lab", "page: lecture"))
     book = make_book(tmp_path, lab=notebook(cell("1"), front=LAB_FRONT), lecture=lecture)
-    bundle = write_bundle(tmp_path / "outputs", "a")
+    bundle = tmp_path / "outputs" / "cpu"
+    bundle.mkdir(parents=True)
+    (bundle / "manifest.json").touch()
     published_marker(book)
     results = [PageResult(page, "executed", 1.0, "a", bundle) for page in find_pages(book)]
     add_bundles(draft, results)
