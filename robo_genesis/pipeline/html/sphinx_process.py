@@ -155,11 +155,10 @@ def main() -> None:
     import yaml
 
     with suppress(Exception):  # reported by the render
-        importlib.import_module("jupyter_book.config")
-        importlib.import_module("sphinx.application")
         config = yaml.safe_load((book / "_config.yml").read_text("utf8"))
-        for extension in config["sphinx"]["config"]["extensions"]:
-            importlib.import_module(extension)
+        extensions = config["sphinx"]["config"]["extensions"]
+        for name in ("jupyter_book.config", "sphinx.application", *extensions):
+            importlib.import_module(name)
     warnings, again, app = io.StringIO(), set[str](), None
     for line in sys.stdin:
         place, variables, pages, last = json.loads(line)
