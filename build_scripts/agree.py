@@ -4,12 +4,10 @@ Environment: FIRST and SECOND, folders that `make execute` filled on two machine
 Exit status: 0 equal, 1 different or not comparable, 130 interrupted.
 """
 
-import argparse
 import sys
 
 from robo_genesis.pipeline.agreement import agree
 from robo_genesis.pipeline.command import path, run
 
 if __name__ == "__main__":
-    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     sys.exit(run(lambda: agree(path("FIRST"), path("SECOND")), "accepted"))

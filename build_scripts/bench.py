@@ -1,6 +1,11 @@
 """Measure the course's commands against bare counterparts: `make bench`.
 
-A row may have a limit for the ratio of its medians.
+| row | the course's command | bare counterpart |
+|---|---|---|
+| unchanged | `make book`, nothing changed | Sphinx with kept doctrees |
+| prose | `make book`, one page's prose edited | the same |
+| live | `make live`, until it serves an edit | the same |
+| lab | `make execute` of the last lab, kernels compiled | nbclient on its cells |
 
 Environment: ROWS (names of rows, by default all) and RUNS (of each side, by default 3). It checks
 the last commit out in `.cache/bench`, with the compiled kernels and the executed pages of this
@@ -12,47 +17,28 @@ import os
 import subprocess
 import sys
 import time
-import urllib.request
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack
 from functools import partial
-from pathlib import Path
 from shlex import quote
 from statistics import median
+from timeit import timeit
+from urllib.request import urlopen
 
 from robo_genesis.core import project
-from robo_genesis.core.project import ProjectError
-from robo_genesis.pipeline.command import run
+from robo_genesis.pipeline.command import positive, run
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK
 from robo_genesis.pipeline.pages.store import folders
 from robo_genesis.pipeline.worktree import environment, worktree
 
-TREE = project.CACHE / "bench"
-LONGEST = 300
-"""Seconds until `make live` must show an edit."""
-SETTINGS = ("RENDER", "JOBS", "SITE_URL", project.RENDER, project.BACKEND)
-"""Further variables that would change a measured command."""
+LIMITS = {"unchanged": 1.5, "prose": 1.5, "live": 0.7, "lab": 1.2}
+"""The limit of the ratio of medians, by the name of the row."""
 
-ROWS = {
-    "unchanged": ("make book, nothing changed", "bare Sphinx", 1.5),
-    "prose": ("make book, one page's prose edited", "bare Sphinx, kept doctrees", 1.5),
-    "live": ("make live, until it serves an edit", "bare Sphinx, kept doctrees", 0.7),
-    "verify": ("make verify", "start of Python, NumPy and pydantic", None),
-    "lab": ("make execute, last lab, kernels compiled", "nbclient on its cells", 1.2),
-    "jobs": ("make book, empty caches, JOBS=2", "the same with JOBS=1", None),
-}
-"""Name to the course's command, its bare counterpart, and the limit of the ratio of their medians,
-None where the row has none."""
-
+TREE, STORE = project.CACHE / "bench", project.CACHE / project.STORE
 PYTHON = quote(sys.executable)
-MAKE, LIVE = f"make PYTHON={PYTHON}", ["make", f"PYTHON={sys.executable}", "live"]
+MAKE = f"make PYTHON={PYTHON}"
 SPHINX = f"{PYTHON} -m sphinx -c bare book bare/html"
-COLD = (  # without a site, there is work
-    "rm -rf cold book/_build && mkdir cold && ln -s ../../npm cold && "
-    f"JOBS={{}} {PYTHON} build_scripts/book.py --cache cold"
-)
 LAB = f"rm -rf warm/{project.STORE} && {PYTHON} build_scripts/execute.py --cache warm"
 NBCLIENT = "import nbclient, nbformat, sys; nbclient.execute(nbformat.read(sys.argv[1], 4))"
 BARE_CONFIG = """\
@@ -72,26 +58,22 @@ def shell(line: str, says: str = "", **variables: str) -> None:
     Raises:
         ProjectError: it failed, or its output lacks the words `says`.
     """
-    given = environment(TREE, *SETTINGS) | variables
+    given = environment(TREE) | variables
     done = subprocess.run(line, shell=True, cwd=TREE, env=given, capture_output=True, text=True)
     if done.returncode or says not in done.stdout:
-        output = "\n".join(f"{done.stdout}{done.stderr}".splitlines()[-15:])
-        raise ProjectError(f"{line}: status {done.returncode}, expected {says!r} in:\n{output}")
+        found = f"status {done.returncode}, {says!r} expected in:\n{done.stdout}{done.stderr}"
+        raise project.ProjectError(f"{line}: {found}")
 
 
-def executed(page: Page) -> Path:
-    """Return the folder of the last run of a page."""
-    return folders(project.CACHE / project.STORE, page)[0]
-
-
-def bare_sphinx() -> dict[str, str]:
-    """Build the site, then its pages by bare Sphinx; return the variables that Sphinx needs."""
+def bare_sphinx() -> partial[None]:
+    """Build the site, then its pages by bare Sphinx; return what runs bare Sphinx again."""
     shell(f"{MAKE} book && mkdir -p bare")
     (TREE / "bare" / "conf.py").write_text(BARE_CONFIG, "utf8")
-    newest = {page.docname: executed(page) for page in find_pages(TREE / "book")}
+    newest = {page.docname: folders(STORE, page)[0] for page in find_pages(TREE / "book")}
     built = BuiltPages(folders=newest).write(TREE / "bare" / "executed-pages.json")
-    shell(SPHINX, **built)
-    return built
+    again = partial(shell, SPHINX, **built)
+    again()
+    return again
 
 
 def add_sentence(page: Page) -> str:
@@ -101,87 +83,78 @@ def add_sentence(page: Page) -> str:
     return sentence
 
 
-def served(address: str, page: Page) -> None:
+def build_edited(page: Page) -> None:
+    """Edit a page and build the site."""
+    add_sentence(page)
+    shell(f"{MAKE} book", "Pages: 0 executed")
+
+
+def serve_edited(page: Page, address: str) -> None:
     """Edit a page and wait until an address has the new sentence."""
-    sentence, end = add_sentence(page).encode(), time.monotonic() + LONGEST
-    while sentence not in urllib.request.urlopen(address).read():
-        if time.monotonic() > end:
-            raise ProjectError(f"make live did not show {sentence!r} within {LONGEST} s.")
+    sentence = add_sentence(page).encode()
+    while sentence not in urlopen(address).read():
         time.sleep(0.02)
 
 
-@contextmanager
-def sides(name: str) -> Iterator[tuple[Callable[[], object], ...]]:
-    """Prepare a row; give what runs the course's command, and what runs the bare counterpart."""
-    page = [page for page in find_pages(TREE / "book") if page.page == "lab"][-1]
-    if name == "unchanged":
-        bare = partial(shell, SPHINX, "no targets are out of date", **bare_sphinx())
-        yield partial(shell, f"{MAKE} book", "Nothing changed"), bare
-    elif name == "prose":  # both sides see the same edit
-        bare = partial(shell, SPHINX, "build succeeded", **bare_sphinx())
-        yield lambda: add_sentence(page) and shell(f"{MAKE} book", "Pages: 0 executed"), bare
-    elif name == "live":
-        bare = partial(shell, SPHINX, "build succeeded", **bare_sphinx())
-        given = environment(TREE, *SETTINGS) | {"PORT": "0"}
-        with subprocess.Popen(LIVE, cwd=TREE, env=given, stdout=subprocess.PIPE, text=True) as live:
-            try:
-                lines = (line.split()[0] for line in live.stdout or () if line.startswith("http"))
-                address = next(lines, "make live ended without an address: ")
-                yield partial(served, f"{address}{page.docname}.html", page), bare
-            finally:
-                live.terminate()
-    elif name == "verify":
-        bare = partial(shell, f"{PYTHON} -c 'import numpy, pydantic'")
-        yield partial(shell, f"{MAKE} verify"), bare
-    elif name == "jobs":
-        yield tuple(partial(shell, COLD.format(n), "executed, 0 reused") for n in (2, 1))
-    else:
-        shell("mkdir warm && ln -s ../../engine warm")
-        course = partial(shell, LAB, PAGE=page.docname, TO="warm/exported")
-        course()  # compiles what is not compiled yet
-        notebook = quote(str(executed(page) / NOTEBOOK))
-        compiled = project.engine_cache_environment(TREE)
-        yield course, partial(shell, f'{PYTHON} -c "{NBCLIENT}" {notebook}', **compiled)
-
-
-def seconds(side: Callable[[], object]) -> float:
-    """Return the elapsed time of one side [s]."""
-    begin = time.monotonic()
-    side()
-    return time.monotonic() - begin
-
-
-def result(name: str, pairs: list[list[float]]) -> list[str]:
-    """Return the lines of a row.
+def sides(name: str, started: ExitStack) -> tuple[partial[None], partial[None]]:
+    """Prepare a row; return what runs the course's command, and what runs the bare counterpart.
 
     Args:
         name: of the row.
-        pairs: elapsed times of both sides [s].
+        started: ends, after the row, what the preparation starts.
     """
-    *labels, limit = ROWS[name]
-    sides = [*zip(*pairs, strict=True)]
-    ratio = median(sides[0]) / median(sides[1])
-    above = "ABOVE its limit" if limit and ratio > limit else "limit"
-    lines = [f"{name}: ratio {ratio:.2f}, {above} {limit or 'none'}; min, median and max [s]:"]
-    for label, side in zip(labels, sides, strict=True):
-        lines.append(f"  {min(side):8.2f} {median(side):8.2f} {max(side):8.2f}  {label}")
-    return lines
+    page = [page for page in find_pages(TREE / "book") if page.page == "lab"][-1]
+    if name == "lab":
+        shell(f"mkdir warm && ln -s ../../{project.COMPILED} warm")
+        course = partial(shell, LAB, PAGE=page.docname, TO="warm/exported")
+        course()  # compiles what is not compiled yet
+        notebook = quote(str(folders(STORE, page)[0] / NOTEBOOK))
+        compiled = project.engine_cache_environment(TREE)
+        return course, partial(shell, f'{PYTHON} -c "{NBCLIENT}" {notebook}', **compiled)
+    bare = bare_sphinx()
+    if name == "unchanged":
+        return partial(shell, f"{MAKE} book", "Nothing changed"), bare
+    if name == "prose":  # both sides see the same edit
+        return partial(build_edited, page), bare
+    command, given = ["make", f"PYTHON={sys.executable}", "live"], environment(TREE) | {"PORT": "0"}
+    live = subprocess.Popen(command, cwd=TREE, env=given, stdout=subprocess.PIPE, text=True)
+    started.enter_context(live)
+    started.callback(live.terminate)
+    address = next(line.split()[0] for line in live.stdout or () if line.startswith("http"))
+    return partial(serve_edited, page, f"{address}{page.docname}.html"), bare
+
+
+def result(name: str, pairs: list[list[float]]) -> str:
+    """Return a row with the times of all its runs.
+
+    Args:
+        name: of the row.
+        pairs: elapsed times of the course's command and of its bare counterpart [s].
+    """
+    sides = [sorted(times) for times in zip(*pairs, strict=True)]
+    ratio, limit = median(sides[0]) / median(sides[1]), LIMITS[name]
+    course, bare = (" ".join(f"{time:.2f}" for time in times) for times in sides)
+    above = "ABOVE its limit" if ratio > limit else "limit"
+    return f"{name}: ratio {ratio:.2f}, {above} {limit}; course {course} s, bare {bare} s"
+
+
+def measured(name: str, runs: int) -> str:
+    """Measure a row and return its result."""
+    print(f"{name}: preparation, then {runs} runs of each side", flush=True)
+    with ExitStack() as started:
+        both = sides(name, started)
+        return result(name, [[timeit(side, number=1) for side in both] for _ in range(runs)])
 
 
 def measure() -> list[str]:
     """Measure the rows that ROWS names, RUNS times."""
-    names = os.environ.get("ROWS", "").replace(",", " ").split() or [*ROWS]
-    runs, lines = os.environ.get("RUNS") or "3", list[str]()
-    if unknown := [name for name in names if name not in ROWS]:
-        raise ProjectError(f"ROWS names {', '.join(unknown)}. Choices: {', '.join(ROWS)}.")
-    if not (runs.isdecimal() and int(runs) > 0):
-        raise ProjectError(f"RUNS={runs!r} is not valid. Give a number from 1.")
+    names = os.environ.get("ROWS", "").replace(",", " ").split() or [*LIMITS]
+    runs = positive("RUNS", 3)
+    if unknown := [name for name in names if name not in LIMITS]:
+        valid = ", ".join(LIMITS)
+        raise project.ProjectError(f"ROWS names {', '.join(unknown)}. Choices: {valid}.")
     with worktree(project.ROOT, TREE, project.CACHE):
-        for name in names:
-            print(f"{name}: preparation, then {runs} runs of each side", flush=True)
-            with sides(name) as both:
-                lines += result(name, [[*map(seconds, both)] for _ in range(int(runs))])
-    return lines
+        return [measured(name, runs) for name in names]
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ from robo_genesis.pipeline.command import (
     collect_rarely,
     parser,
     path,
+    positive,
     run,
     run_status,
     set_contract,
@@ -40,13 +41,11 @@ def main() -> int:
     set_contract()
     release = choice("RELEASE", "0", ("0", "1")) == "1"
     choice(SOLUTIONS, "1", ("0", "1"))
-    executed, jobs = path("EXECUTED"), os.environ.get("JOBS") or None
+    executed, jobs = path("EXECUTED"), positive("JOBS", os.cpu_count() or 1)
     if release and os.environ[RENDER] == "0":
         sys.exit("RENDER='0' is not valid with RELEASE=1, which needs camera frames. Unset one.")
     if release and args.book != BOOK:
         sys.exit(f"--book {args.book} is not valid with RELEASE=1, which builds the commit's book.")
-    if jobs is not None and not (jobs.isdecimal() and int(jobs) > 0):
-        sys.exit(f"JOBS={jobs!r} is not valid. Give the number of pages that run at once, from 1.")
     if release and args.to is None:
         from robo_genesis.pipeline.fresh_checkout import release as build_fresh
 
@@ -61,7 +60,7 @@ def main() -> int:
         # Jupyter's packages are loaded only now, beside those of Sphinx.
         from robo_genesis.pipeline.stages import Build, run_build
 
-        settings = {"jobs": int(jobs) if jobs else None, "release": release, "executed": executed}
+        settings = {"jobs": jobs, "release": release, "executed": executed}
         build = Build(**vars(args), **settings, sphinx=sphinx)
         status = run(lambda: run_build(build), "published")
     sys.stdout.flush()

@@ -10,8 +10,8 @@ import os
 import sys
 
 from robo_genesis.core.project import RENDER
-from robo_genesis.pipeline.command import choice, parser, path, run, run_status
-from robo_genesis.pipeline.recording.labs import Recording, record, record_all
+from robo_genesis.pipeline.command import choice, parser, path, run_status
+from robo_genesis.pipeline.recording.labs import Recording, record
 
 if __name__ == "__main__":
     args = parser(__doc__).parse_args()
@@ -23,6 +23,4 @@ if __name__ == "__main__":
         to=path("TO"),
         **vars(args),
     )
-    if recording.lesson:
-        sys.exit(run(lambda: record(recording), "recorded"))
-    sys.exit(run_status(lambda: record_all(recording), "recorded"))
+    sys.exit(run_status(lambda: record(recording), "recorded"))

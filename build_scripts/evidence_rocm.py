@@ -7,7 +7,6 @@ checkout.
 Exit status: 0 recorded, 1 nothing was started, otherwise that of the command that failed.
 """
 
-import argparse
 import os
 import shutil
 import sys
@@ -16,7 +15,6 @@ from pathlib import Path
 from robo_genesis.pipeline.recording.rocm_container import ContainerError, Host, record
 
 if __name__ == "__main__":
-    argparse.ArgumentParser(description=__doc__.splitlines()[0]).parse_args()
     try:
         sys.exit(record(Host(Path(__file__).resolve().parents[1], shutil.which, os.environ)))
     except ContainerError as error:

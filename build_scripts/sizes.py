@@ -5,21 +5,19 @@ Exit status: 0 all pages keep their limits; 1 otherwise.
 
 import sys
 
-from robo_genesis.core.project import BOOK, ProjectError
+from robo_genesis.core.project import BOOK
+from robo_genesis.pipeline.command import run_status
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.course.sizes import report
 
 
-def main() -> int | str:
-    """Print the lines and return the exit status, or why no page could be read."""
-    try:
-        lines, problems = report(find_pages(BOOK))
-    except ProjectError as error:
-        return f"The size of pages cannot be computed: {error}"
+def main() -> int:
+    """Print the lines and return the exit status."""
+    lines, problems = report(find_pages(BOOK))
     print(*lines, sep="\n")
     print(*problems, sep="\n", end="\n" * bool(problems), file=sys.stderr)
     return 1 if problems else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_status(main, "compared"))

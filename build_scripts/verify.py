@@ -8,9 +8,10 @@ Exit status: 0 all verified, or no bundle; 1 any is inconclusive, stale, failed 
 
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
-from robo_genesis.core.project import BOOK, PUBLISHED, ProjectError
+from robo_genesis.core.project import BOOK, PUBLISHED
 from robo_genesis.core.refusals import BundleRefused, printable
 from robo_genesis.evidence import bundle_files, report
 from robo_genesis.evidence.advice import advice
@@ -25,7 +26,7 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_folders,
     recorded_status,
 )
-from robo_genesis.pipeline.command import path
+from robo_genesis.pipeline.command import path, run_status
 
 
 def all_bundles() -> Iterator[tuple[str, Status]]:
@@ -46,11 +47,10 @@ def built(lesson: str) -> Path:
 
 def one_bundle(folder: Path) -> tuple[Status, list[str]]:
     """Return the status of one bundle, and lines for the person who recorded it."""
-    try:
+    predicate = None
+    with suppress(BundleRefused, OSError):
         bundle_files.scan(folder)
         predicate = read_manifest(folder).predicate
-    except (BundleRefused, OSError):
-        predicate = None
     lab = built(predicate.lesson) if predicate and predicate.page == RECORDED_PAGE else None
     runs = [lab] if lab and lab.is_dir() else []
     status = bundle_status(folder, book=BOOK, cpu_runs=runs)
@@ -83,17 +83,14 @@ def line(place: str, status: Status) -> str:
     return printable(f"{place:14} {status.backend:8} {status.state:12} {text}")
 
 
-def main() -> int | str:
-    """Print the lines and return the exit status, or why nothing can be verified."""
-    try:
-        more: list[str] = []
-        if bundle := path("BUNDLE"):
-            status, more = one_bundle(bundle)
-            found = [(bundle.parent.name, status)]
-        else:
-            found = list(all_bundles())
-    except (ProjectError, OSError) as error:
-        return f"Nothing can be verified: {error}"
+def main() -> int:
+    """Print the lines and return the exit status."""
+    more: list[str] = []
+    if bundle := path("BUNDLE"):
+        status, more = one_bundle(bundle)
+        found = [(bundle.parent.name, status)]
+    else:
+        found = list(all_bundles())
     if not found:
         print("No bundle is recorded in book/evidence, and none is built. `make book` builds one.")
     for place, status in found:
@@ -104,4 +101,4 @@ def main() -> int | str:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run_status(main, "verified"))

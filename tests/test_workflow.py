@@ -135,14 +135,6 @@ def test_what_is_deployed_has_passed_the_gate_of_releases():
     assert step(deploy, "actions/attest@")["subject-checksums"] == f"{taken['path']}/{SUMS}"
 
 
-def test_links_to_other_sites_are_checked_weekly_on_the_whole_site():
-    links = JOBS["links"]
-    assert (links["if"], links["needs"]) == ("github.event_name == 'schedule'", "book")
-    taken = step(links, "actions/download-artifact")
-    assert taken["name"] == step(JOBS["deploy"], "actions/download-artifact")["name"]
-    assert f"'{taken['path']}/**/*.html'" in step(links, "lycheeverse/lychee-action")["args"]
-
-
 def test_the_parts_of_the_tests_are_all_of_them():
     parts = JOBS["test"]["strategy"]["matrix"]
     marks = {one["part"]: one["marks"] for one in parts["include"]}
@@ -164,32 +156,6 @@ def test_every_environment_gets_torch_for_the_cpu_from_the_address_of_the_book()
         assert flow["env"]["TORCH_INDEX"] == "${{ vars.TORCH_INDEX }}", name
 
 
-def test_compiled_kernels_are_saved_when_a_page_fails_and_restored_by_the_same_name():
-    for name in ("test", "execute"):
-        [save] = [one for one in JOBS[name]["steps"] if "cache/save" in one.get("uses", "")]
-        assert (save["if"], save["with"]["path"]) == ("always()", ".cache/engine")
-        restored = step(JOBS[name], "./.github/actions/setup")["kernels"]
-        assert save["with"]["key"].startswith(f"{restored}-${{{{ github.run_id }}}}")
-
-
-def first(steps: list[dict[str, Any]], words: str) -> int:
-    """Return the number of the first step whose action or script contains some words."""
-    texts = [one.get("uses", "") + one.get("run", "") for one in steps]
-    return next(k for k, text in enumerate(texts) if words in text)
-
-
-def test_what_others_need_comes_first():
-    """The folder of logs and packages before what is written there, and a release's tag."""
-    setup = read(SETUP)["runs"]["steps"]
-    assert first(setup, "mkdir -p .cache/pip") < first(setup, "PIP_CACHE_DIR")
-    for job in EVERY_JOB.values():
-        steps = job["steps"]
-        if any("tee .cache/" in one.get("run", "") for one in steps):
-            assert first(steps, "./.github/actions/setup") < first(steps, "tee .cache/")
-    release = FLOWS["release"]["jobs"]["book"]["steps"]
-    assert first(release, "GITHUB_REF_NAME") < first(release, "make book")
-
-
 def test_a_scheduled_run_and_one_of_a_tag_restore_nothing():
     cached = [one for one in STEPS if re.match("actions/cache(/restore)?@", one.get("uses", ""))]
     assert len(cached) == 3
@@ -199,12 +165,6 @@ def test_a_scheduled_run_and_one_of_a_tag_restore_nothing():
     assert all("github.ref_type != 'tag'" in one["if"] for one in of_setup)
     release = [one for job in FLOWS["release"]["jobs"].values() for one in job["steps"]]
     assert not any("cache" in one.get("uses", "") for one in release)
-
-
-def test_a_job_that_can_fail_leaves_its_reports():
-    for name in ("book.test", "book.execute", "book.book", "book.refresh", "release.book"):
-        kept = [one for one in EVERY_JOB[name]["steps"] if one.get("if") == "failure()"]
-        assert [one["with"]["include-hidden-files"] for one in kept] == ["true"], name
 
 
 def test_jobs_can_write_only_what_they_must():

@@ -104,14 +104,6 @@ def published_marker(book: Path) -> Path:
     return marker
 
 
-def write_bundle(outputs: Path, run_id: str, backend: str = "cpu") -> Path:
-    """Write the least that counts as the lab's bundle of a run."""
-    folder = outputs / "l04" / "lab" / backend
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "manifest.json").write_text(json.dumps({"predicate": {"run_id": run_id}}))
-    return folder
-
-
 def old_bundle(folder: Path, backend: str) -> Path:
     """Put an older bundle in place and return a file that a refused recording must leave."""
     place = folder / "kept" / "l04" / backend

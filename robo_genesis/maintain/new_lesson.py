@@ -4,10 +4,10 @@ The files below `template/` hold `$lesson` and `$LESSON` in the place of the nam
 """
 
 import re
-import shutil
 from pathlib import Path
 from string import Template
 
+from robo_genesis.core.files import write_whole
 from robo_genesis.core.project import ProjectError
 
 TEMPLATE = Path(__file__).with_name("template")
@@ -15,25 +15,15 @@ SUFFIX = ".tmpl"
 TITLE = "A robot turns one joint"
 OUTCOME = "measure how a joint turns"
 NAME = re.compile(r"l\d\d")
-CHAPTER = re.compile(r"  - file: (\S+)\s*")
-ENTRY = re.compile(r"- id: (\S+)\s*")
+CHAPTER, ENTRY = "  - file: ", "- id: "
 
 
 class LessonError(ProjectError):
     """The lesson cannot be added; the message says why, and what is valid."""
 
 
-def folders(root: Path, lesson: str) -> dict[str, Path]:
-    """Return where each folder of the template goes in a checkout."""
-    return {
-        "package": root / "robo_genesis" / "lessons" / lesson,
-        "book": root / "book" / "lessons" / f"{lesson}-new-lesson",
-        "tests": root / "tests" / "lessons" / lesson,
-    }
-
-
 def add_lesson(root: Path, lesson: str) -> list[str]:
-    """Write the files of a new lesson, all of them or none.
+    """Write the files of a new lesson, and then its lines in the two lists of the book.
 
     Args:
         root: the checkout.
@@ -44,24 +34,15 @@ def add_lesson(root: Path, lesson: str) -> list[str]:
 
     Raises:
         LessonError: the name is not valid, the lesson exists, or a list has another form.
-        OSError: a file cannot be written.
+        OSError: a file cannot be written. A next call names the folders that were made.
     """
     require_new(root, lesson)
     toc, course_map = root / "book" / "_toc.yml", root / "book" / "course_map.yml"
-    lists = {path: path.read_text("utf8") for path in (toc, course_map)}
     files = lesson_files(root, lesson)
-    files[toc] = with_chapter(lists[toc], lesson)
-    files[course_map] = with_entry(lists[course_map], lesson)
-    try:
-        for path, text in files.items():
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, "utf8")
-    except BaseException:
-        for folder in folders(root, lesson).values():
-            shutil.rmtree(folder, ignore_errors=True)
-        for path, text in lists.items():
-            path.write_text(text, "utf8")
-        raise
+    files[toc] = with_chapter(toc.read_text("utf8"), lesson)
+    files[course_map] = with_entry(course_map.read_text("utf8"), lesson)
+    for path, text in files.items():
+        write_whole(path, text.encode())
     written = [f"  {path.relative_to(root)}" for path in files]
     return [f"Lesson {lesson} was added:", *written, "Next: edit these files, then `make book`."]
 
@@ -88,9 +69,14 @@ def require_new(root: Path, lesson: str) -> None:
 def lesson_files(root: Path, lesson: str) -> dict[Path, str]:
     """Return the text of each file that the template gives."""
     words = {"lesson": lesson, "LESSON": lesson.upper()}
+    targets = {
+        "package": root / "robo_genesis" / "lessons" / lesson,
+        "book": root / "book" / "lessons" / f"{lesson}-new-lesson",
+        "tests": root / "tests" / "lessons" / lesson,
+    }
     return {
         target / path.name.removesuffix(SUFFIX): Template(path.read_text("utf8")).substitute(words)
-        for part, target in folders(root, lesson).items()
+        for part, target in targets.items()
         for path in sorted((TEMPLATE / part).glob(f"*{SUFFIX}"))
     }
 
@@ -101,17 +87,16 @@ def with_chapter(toc: str, lesson: str) -> str:
     Raises:
         LessonError: it names no lesson.
     """
-    lines = toc.splitlines()
-    chapters = _matches(CHAPTER, lines)
-    lessons = {name: k for name, k in chapters.items() if name.startswith("lessons/")}
+    head, *chapters = re.split(f"(?m)^(?={CHAPTER})", toc)
+    lessons = [k for k, text in enumerate(chapters) if text.startswith(f"{CHAPTER}lessons/")]
     if not lessons:
-        raise LessonError("book/_toc.yml has no line `  - file: lessons/...`. Add one there.")
-    later = [k for name, k in lessons.items() if name > f"lessons/{lesson}"]
-    at = min(later) if later else _end(chapters, max(lessons.values()), lines)
+        raise LessonError(f"book/_toc.yml has no line `{CHAPTER}lessons/...`. Add one there.")
+    later = [k for k in lessons if chapters[k] > f"{CHAPTER}lessons/{lesson}"]
     folder = f"lessons/{lesson}-new-lesson"
-    pages = [f"      - file: {folder}/{page}" for page in ("lab", "mistakes")]
-    lines[at:at] = [f"  - file: {folder}/lecture", "    sections:", *pages]
-    return "\n".join(lines) + "\n"
+    pages = [f"      - file: {folder}/{page}\n" for page in ("lab", "mistakes")]
+    new = "".join([f"{CHAPTER}{folder}/lecture\n    sections:\n", *pages])
+    chapters.insert(min(later, default=lessons[-1] + 1), new)
+    return "".join([head, *chapters])
 
 
 def with_entry(course_map: str, lesson: str) -> str:
@@ -120,25 +105,14 @@ def with_entry(course_map: str, lesson: str) -> str:
     Raises:
         LessonError: the map already names a page of this lesson.
     """
-    lines = course_map.splitlines()
-    entries, name = _matches(ENTRY, lines), lesson.upper()
-    new = [f"  page: lessons/{lesson}-new-lesson/lecture", f"  outcomes: [{OUTCOME}]"]
-    if name in entries:
-        at = _end(entries, entries[name], lines)
-        if any(line.startswith("  page:") for line in lines[entries[name] : at]):
-            raise LessonError(f"book/course_map.yml names a page of {name}. Remove that line.")
+    head, *entries = re.split(f"(?m)^(?={ENTRY})", course_map)
+    names, name = [entry.split()[2] for entry in entries], lesson.upper()
+    new = f"  page: lessons/{lesson}-new-lesson/lecture\n  outcomes: [{OUTCOME}]\n"
+    at = sum(other < name for other in names)
+    if name not in names:
+        entries.insert(at, f"{ENTRY}{name}\n  title: {TITLE}\n{new}")
+    elif "\n  page:" in entries[at]:
+        raise LessonError(f"book/course_map.yml names a page of {name}. Remove that line.")
     else:
-        at = min((k for entry, k in entries.items() if entry > name), default=len(lines))
-        new = [f"- id: {name}", f"  title: {TITLE}", *new]
-    lines[at:at] = new
-    return "\n".join(lines) + "\n"
-
-
-def _matches(pattern: re.Pattern[str], lines: list[str]) -> dict[str, int]:
-    """Return the number of each line that a pattern matches, by the name in it."""
-    return {m[1]: k for k, line in enumerate(lines) if (m := pattern.fullmatch(line))}
-
-
-def _end(starts: dict[str, int], start: int, lines: list[str]) -> int:
-    """Return the number of the line after the block that begins at `start`."""
-    return min((k for k in starts.values() if k > start), default=len(lines))
+        entries[at] += new
+    return "".join([head, *entries])

@@ -7,13 +7,10 @@ from pathlib import Path
 from packaging.utils import canonicalize_name
 from packaging.version import InvalidVersion, Version
 
-from robo_genesis.core import project
 from robo_genesis.core.project import ENGINE, ProjectError
 
 FILES = ("pyproject.toml", "requirements.lock")
 """What a change of the pin changes: measured results are never kept in the tree."""
-
-USAGE = "Usage: make repin GENESIS=1.2.3"
 
 
 class RepinError(ProjectError):
@@ -28,16 +25,13 @@ def wanted_version(given: str, pin: str) -> str:
         pin: the version that is pinned now.
 
     Raises:
-        RepinError: none was given, it is not a version, or it is the pin.
+        RepinError: it is not a version, or it is the pin.
     """
-    if not given:
-        raise RepinError(f"GENESIS is not given. {USAGE} (the pin is {pin}).")
     try:
         version = Version(given)
     except InvalidVersion:
-        raise RepinError(
-            f"GENESIS={given!r} is not a version. {USAGE} (the pin is {pin})."
-        ) from None
+        valid = f"Usage: make repin GENESIS=1.2.3 (the pin is {pin})."
+        raise RepinError(f"GENESIS={given!r} is not a version. {valid}") from None
     if version == Version(pin):
         raise RepinError(f"GENESIS={given} is the pin already. Give another version.")
     return str(version)
@@ -62,16 +56,6 @@ def require_locked_packages(root: Path) -> None:
         )
 
 
-def require_plain_files(root: Path) -> None:
-    """Raise RepinError if a file of the pin is a link: the new pin would change its target."""
-    links = [name for name in FILES if (root / name).is_symlink()]
-    if links:
-        raise RepinError(
-            f"{' and '.join(links)} in {root}: a link, expected the file itself, since make repin "
-            "would change the link's target. Replace the link by the file."
-        )
-
-
 def locked_versions(lock: str) -> dict[str, str]:
     """Return package to version of a lock's text."""
     return dict(line.split("==") for line in lock.splitlines() if "==" in line and line[0] != "#")
@@ -91,4 +75,3 @@ def set_pin(root: Path, old: str, new: str) -> None:
             f'{path} has "{ENGINE}=={old}" {count} times, expected once. Write the pin in one line.'
         )
     path.write_text(text, "utf8")
-    project.engine_pin(root)

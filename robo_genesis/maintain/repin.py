@@ -21,7 +21,6 @@ from robo_genesis.maintain.pin import (
     RepinError,
     locked_versions,
     require_locked_packages,
-    require_plain_files,
     set_pin,
     wanted_version,
 )
@@ -29,10 +28,8 @@ from robo_genesis.pipeline.command import ANSI, Progress, end_with_parent, say
 from robo_genesis.pipeline.pages.kernels import kill_with_descendants
 from robo_genesis.pipeline.worktree import environment, worktree
 
-HEARTBEAT = 60.0
-"""Seconds between two lines of progress of one command."""
-TAIL, LINES = 25, 200
-"""How many last lines of a log an error shows, and the report."""
+LINES = 50
+"""How many last lines of a log an error and the report show."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +55,6 @@ def run_repin(request: Repin) -> list[str]:
         ProjectError, BundleRefused: nothing was changed.
     """
     root, folder = request.root, request.cache / "repin"
-    require_plain_files(root)
     old = project.engine_pin(root)
     new = wanted_version(request.genesis, old)
     if problems := unclean(root, "make repin tries the last commit"):
@@ -138,10 +134,10 @@ class Trial:
         Raises:
             RepinError: the command failed.
         """
-        self.progress(stage, what)
         version = project.engine_pin(self.work)
         log = self.request.cache / "repin" / "logs" / f"{stage}-{version}.log"
-        if run_logged(command, self.work, log, lambda: self.progress(stage, what, "still running")):
+        self.progress(stage, what, f"log: {log}")
+        if run_logged(command, self.work, log):
             head, lines = f"Failed: {stage} {what}", last_words(log)
             remedy = (
                 f"The checkout still pins {self.old}. Give another version, or change what failed "
@@ -150,7 +146,7 @@ class Trial:
             )
             pages = self.write_report(head, remedy, *lines)
             places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
-            raise RepinError("\n".join([*lines[-TAIL:], *places, "", f"{head}. {remedy}"]))
+            raise RepinError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
 
     def write_report(self, *failed: str) -> list[Path]:
         """Compare what both versions built, as far as they did, and write the report."""
@@ -172,16 +168,13 @@ def last_words(log: Path) -> list[str]:
     return [line.rstrip() for line in after.splitlines() if line.strip()][-LINES:]
 
 
-def run_logged(
-    command: Sequence[str], folder: Path, log: Path, waiting: Callable[[], None] = lambda: None
-) -> int:
+def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
     """Run a command in a worktree with its output in a log, and return its exit status.
 
     Args:
         command: program and arguments; it ends with this process.
         folder: the worktree.
         log: file of its output, written over.
-        waiting: called once a minute while it runs.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("wb") as output:
@@ -196,12 +189,7 @@ def run_logged(
             preexec_fn=end_with_parent(signal.SIGTERM),  # make passes it on
         )
         try:
-            while process.poll() is None:
-                try:
-                    process.wait(HEARTBEAT)
-                except subprocess.TimeoutExpired:
-                    waiting()
+            return process.wait()
         finally:
             if process.poll() is None:
                 kill_with_descendants([process.pid])
-    return process.returncode

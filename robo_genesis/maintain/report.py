@@ -37,6 +37,7 @@ HIDDEN = "math, svg, .cell_input"
 BREAK = "\x1e"
 LEFT_OUT = {Path("evidence", "ledger.html"), Path("performance", "costs.html")}
 """The ledger lists digests of other pages; the costs are the times of the build itself."""
+NOTHING = "Nothing was found here."
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,22 +208,18 @@ def _parts(refresh: Refresh) -> Iterator[Part]:
     The part of the pages has one row for each. Rows that are equal are counted there and left out
     below: most of several thousand rows are.
     """
-    none = ("The trial failed before, or found nothing here.",) * 4 if refresh.failed else (
-        "No page has a bundle.", "No other package changed.", "No bundle is recorded.",
-        "No sentence of the site changed.",
-    )  # fmt: skip
     old, new = refresh.versions
     both = refresh.comparisons
     if refresh.failed:
         yield Part(refresh.failed[0], [()], remarks=refresh.failed[1:])
     rows = [(f"{one.new.lesson} {one.new.page}", one.state, report.verdict(one)) for one in both]
     rows += [(name, SEVERITY[-1], why) for name, why in refresh.missing.items()]
-    yield Part("Pages", [("page", "result", "rows"), *rows], none[0])
+    yield Part("Pages", [("page", "result", "rows"), *rows], NOTHING)
     packages = [(name, *versions) for name, versions in refresh.packages.items()]
-    yield Part("Packages", [("package", "old", "new"), *packages], none[1])
+    yield Part("Packages", [("package", "old", "new"), *packages], NOTHING)
     states = [(name, a.state, b.state, b.reason) for name, (a, b) in refresh.recorded.items()]
     head = ("bundle", f"under {old}", f"under {new}", "reason")
-    yield Part("Recorded bundles", [head, *states], none[2])
+    yield Part("Recorded bundles", [head, *states], NOTHING)
     for one in both:
         table = report.changes(one)
         if one.remarks or len(table) > 1:
@@ -230,4 +227,4 @@ def _parts(refresh: Refresh) -> Iterator[Part]:
     for page, changed in groupby(refresh.changed, key=lambda one: one[0]):
         yield Part(f"Sentences of {page}", [("old", "new"), *(one[1:] for one in changed)])
     if not refresh.changed:
-        yield Part("Sentences", [("", "")], none[3])
+        yield Part("Sentences", [("", "")], NOTHING)

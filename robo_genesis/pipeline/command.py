@@ -129,6 +129,14 @@ def port() -> int:
     return int(value)
 
 
+def positive(name: str, default: int) -> int:
+    """Return an environment variable that is a number from 1; exit with 1 on another value."""
+    value = os.environ.get(name) or str(default)
+    if not (value.isdecimal() and int(value) > 0):
+        sys.exit(f"{name}={value!r} is not valid. Give a number from 1.")
+    return int(value)
+
+
 def path(name: str) -> Path | None:
     """Return an environment variable as an absolute path, None if it is unset or empty."""
     value = os.environ.get(name)

@@ -54,18 +54,17 @@ class BuildError(project.ProjectError):
 class Build:
     """What to build, with which resources, and where progress is printed.
 
-    `jobs` None means one for each core; `verify` None is the course's own verification. `release`
-    demands a clean tree and every lesson's required evidence, and reuses no executed page of the
-    cache; `fresh_checkout` calls it so. `executed` holds all pages as another machine executed
-    them; then none is executed here. `to` is the book that gets the site, by default `book`.
-    `command` is the command that bundles name. `sphinx` loads Sphinx, by default a process that the
-    build starts.
+    `jobs` pages run at once; `verify` None is the course's own verification. `release` demands a
+    clean tree and every lesson's required evidence, and reuses no executed page of the cache;
+    `fresh_checkout` calls it so. `executed` holds all pages as another machine executed them; then
+    none is executed here. `to` is the book that gets the site, by default `book`. `command` is the
+    command that bundles name. `sphinx` loads Sphinx, by default a process that the build starts.
     """
 
     root: Path = project.ROOT
     book: Path = project.BOOK
     cache: Path = project.CACHE
-    jobs: int | None = None
+    jobs: int = os.cpu_count() or 1
     timeout: int = TIMEOUT
     verify: Verify | None = None
     release: bool = False
@@ -203,14 +202,13 @@ def _execute(
 
     A release is executed at its commit, so it reuses nothing.
     """
-    cores = os.cpu_count() or 1
     progress("execute", f"{len(pages)} pages")
     with reporting(progress) as report:
         results = execute_pages(
             pages,
             into,
             reuse=not build.release,
-            jobs=build.jobs or max(1, min(cores, len(pages))),
+            jobs=build.jobs,
             timeout=build.timeout,
             environment=kernel_environment(build.root, build.cache, build.command),
             logs=build.cache / project.LOGS,

@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from zipfile import ZipFile
 
+from robo_genesis.core.files import write_whole
 from robo_genesis.pipeline.html import archive
 
 BUILD_INFO = ".buildinfo"
@@ -85,7 +86,6 @@ class Draft:
         digest = hashlib.sha256(content).hexdigest()
         if digest == self.digests.get(name):
             return False
-        (self.html / name).parent.mkdir(parents=True, exist_ok=True)
-        (self.html / name).write_bytes(content)
+        write_whole(self.html / name, content)  # a browser of `make live` gets no part of it
         self.digests[name] = digest
         return True

@@ -16,6 +16,7 @@ from pathlib import Path
 from robo_genesis.core import project
 from robo_genesis.pipeline.command import TIMEOUT, end_with_parent, say
 from robo_genesis.pipeline.html import kept
+from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.sphinx_process import EXECUTED, HTML, SphinxProcess
 from robo_genesis.pipeline.pages.book import Page, code_digest, docnames, find_pages
 from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, BuiltPages
@@ -54,14 +55,13 @@ class Live:
         self.book, self.cache, self.say = book, cache, say
         self.execute, self.timeout = execute, timeout
         self.folder = cache / FOLDER
-        self.work, self.site, self.log = (
-            self.folder / name for name in ("work", "site", "sphinx.log")
-        )
+        self.work, self.site = self.folder / "work", self.folder / "site" / "html"
         self.sphinx: SphinxProcess | None = None
+        self.draft: Draft | None = None
         self.started: list[subprocess.Popen[str]] = []
         self.is_ended = False
-        self.named: set[str] = set()
-        self.failed: set[Path] = set()
+        self.runs = BuiltPages()
+        self.reported: set[Path] = set()
         self.seen = self.look()
 
     def look(self) -> Seen:
@@ -85,13 +85,12 @@ class Live:
     def update(self, paths: set[Path]) -> bool:
         """Render after some files changed; return whether there is a new state to show."""
         try:
-            pages = find_pages(self.book)
-            built = self.built(pages)
+            built = self.built(find_pages(self.book))
             known = {name.removesuffix(".md") for name in docnames(self.book / "_toc.yml")}
             names = [name for name in known if self.book / f"{name}.md" in paths]
-            runs = self.sphinx is not None and self.sphinx.process.poll() is None
-            if not runs or len(names) < len(paths) or self.runs_changed(built):
-                self.sphinx = self.restart(built)
+            ended = self.sphinx is None or self.sphinx.process.poll() is not None
+            if ended or len(names) < len(paths) or built != self.runs:
+                self.restart(built)
             assert self.sphinx is not None
             variables = built.write(self.work / EXECUTED) | {LAST_OUTPUTS: "1"}
             self.sphinx.order(self.work, variables, names)
@@ -111,19 +110,18 @@ class Live:
         """Return the last run of each page; execute the pages that changed, or name them."""
         found, into = BuiltPages(), places(pages, self.cache / project.STORE)
         for page in pages:
-            place = into[page.docname]
-            if self.execute and not place.is_dir() and place not in self.failed:
-                self.run_page(page, place)
+            place = into[page.docname]  # another after any change that may help
+            if not place.is_dir() and place not in self.reported:
+                self.reported.add(place)
+                if self.execute:
+                    self.run_page(page)
+                else:
+                    self.say(
+                        f"{page.docname}: its code, or code that it imports, changed after its "
+                        "last run, whose outputs are shown. make live EXECUTE=1 runs it."
+                    )
             if folder := self.last_run(page, place):
                 found.add(page, folder)
-            if place.is_dir():
-                self.named.discard(page.docname)
-            elif page.docname not in self.named and not self.execute:
-                self.named.add(page.docname)
-                self.say(
-                    f"{page.docname}: its code, or code that it imports, changed after its last "
-                    "run, whose outputs are shown. make live EXECUTE=1 runs it."
-                )
         return found
 
     def last_run(self, page: Page, place: Path) -> Path | None:
@@ -134,24 +132,17 @@ class Live:
             place: where the store has it if nothing changed. Without that folder, the newest run of
                 the same code cells is shown, and without such a run, the newest.
         """
-        stored, digest = folders(self.cache / project.STORE, page), code_digest(page)
+        digest = code_digest(page)
 
-        def has_its_code(folder: Path) -> bool:
+        def differs(folder: Path) -> tuple[bool, bool]:
             with suppress(PageRefused):
-                return read_record(folder).code == digest
-            return False
+                return folder != place, read_record(folder).code != digest
+            return True, True
 
-        if place.is_dir():
-            return place
-        return next(iter([*filter(has_its_code, stored)] or stored), None)
+        return min(folders(self.cache / project.STORE, page), key=differs, default=None)
 
-    def run_page(self, page: Page, place: Path) -> None:
-        """Execute a page as `make execute` does; report a failure, and do not try it again.
-
-        Args:
-            page: the page.
-            place: where the store will have it. It is another after any change that may help.
-        """
+    def run_page(self, page: Page) -> None:
+        """Execute a page as `make execute` does, and report a failure."""
         self.say(f"{page.docname}: runs ...")
         command = [sys.executable, str(project.ROOT / "build_scripts" / "execute.py")]
         command += ["--book", str(self.book), "--cache", str(self.cache)]
@@ -167,7 +158,6 @@ class Live:
         self.note(running)
         _, report = running.communicate()
         if running.returncode and not self.is_ended:
-            self.failed.add(place)
             self.say(report.partition("\n\nFAILED: ")[0].strip())
             self.say(
                 f"{page.docname}: the outputs of its last run are shown. It runs again when its "
@@ -185,35 +175,20 @@ class Live:
             end(process)
             raise LiveEndedError
 
-    def runs_changed(self, built: BuiltPages) -> bool:
-        """Return whether other runs are shown than those that Sphinx was started with."""
-        file = self.work / EXECUTED
-        return not file.is_file() or file.read_text("utf8") != built.model_dump_json(indent=1)
-
-    def restart(self, built: BuiltPages) -> SphinxProcess:
+    def restart(self, built: BuiltPages) -> None:
         """Start Sphinx; what it kept is used if only pages changed since the last good state."""
         if self.sphinx is not None:
             end(self.sphinx.process)
         kept.prepare(self.work, kept.read_state(self.book, built))
-        sphinx = SphinxProcess(self.book, self.log)
-        self.note(sphinx.process)
-        return sphinx
+        self.runs, self.sphinx = built, SphinxProcess(self.book, self.folder / "sphinx.log")
+        self.note(self.sphinx.process)
 
     def show(self) -> None:
         """Copy what changed to the folder that is served."""
-        html = self.work / HTML
-        new = {path.relative_to(html) for path in html.rglob("*") if path.is_file()}
-        old = {p.relative_to(self.site) for p in self.site.rglob("*") if p.is_file()}
-        for name in old - new:
-            (self.site / name).unlink()
-        for name in new:
-            source, to = html / name, self.site / name
-            # Two edits may give the same size and, where file times are coarse, the same time.
-            if name not in old or source.read_bytes() != to.read_bytes():
-                to.parent.mkdir(parents=True, exist_ok=True)
-                beside = to.with_name(f".{to.name}.next")
-                shutil.copy2(source, beside)
-                os.replace(beside, to)  # a browser gets the old file or the new one
+        if self.draft is None:
+            shutil.rmtree(self.site.parent, ignore_errors=True)  # of an earlier process
+            self.draft = Draft(self.work / HTML, self.site.parent)
+        self.draft.complete()
 
     def remember(self) -> None:
         """Mark the last state as good, so that a restart of Sphinx need not read all pages.
@@ -221,8 +196,7 @@ class Live:
         Nothing is marked if a file cannot be read, for example while an editor replaces it.
         """
         with suppress(project.ProjectError, OSError, ValueError):
-            built = BuiltPages.model_validate_json((self.work / EXECUTED).read_bytes())
-            state = kept.read_state(self.book, built)
+            state = kept.read_state(self.book, self.runs)
             if self.look() == self.seen:
                 kept.keep(self.work, state, state)
 

@@ -2,19 +2,14 @@
 
 import asyncio
 import time
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from pathlib import Path
-from typing import Any
 
-from tornado.httpserver import HTTPServer
-from tornado.netutil import bind_sockets
-from tornado.web import Application, RequestHandler, StaticFileHandler
+from tornado.web import RequestHandler
 
 from robo_genesis.core.files import locked
 from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.html.live import Live
+from robo_genesis.pipeline.html.serve import SiteFile, listen
 from robo_genesis.pipeline.pages.kernels import described
 
 INTERVAL = 0.1
@@ -40,7 +35,7 @@ class State(RequestHandler):
         self.write(str(State.shown))
 
 
-class LiveFile(StaticFileHandler):
+class LiveFile(SiteFile):
     """Sends files of the shown site; a page gets the script that reloads it."""
 
     @classmethod
@@ -58,55 +53,40 @@ class LiveFile(StaticFileHandler):
         assert self.absolute_path is not None
         return len(self.get_content(self.absolute_path))
 
-    def set_extra_headers(self, path: str) -> None:
-        """Forbid caching and guessed types."""
-        self.set_header("Cache-Control", "no-store")
-        self.set_header("X-Content-Type-Options", "nosniff")
 
-
-async def serve(live: Live, port: int, opened: Callable[[int], None] = lambda port: None) -> None:
+async def serve(live: Live, port: int) -> None:
     """Serve a book until this task is cancelled, and render it after each change.
 
     Args:
         live: the book.
         port: of localhost; 0 takes a free one.
-        opened: called with the port when there is something to show.
 
     Raises:
         ProjectError: the port cannot be used, or another process shows a book with this cache.
     """
+
+    def in_use(process: str) -> ProjectError:
+        return ProjectError(
+            f"Another make live runs here:\n{described(process)}\n"
+            f"Stop it with Ctrl-C in its terminal or `kill {process}`."
+        )
+
     with locked(live.folder / "lock", in_use):
-        files = (r"/(.*)", LiveFile, {"path": str(live.site), "default_filename": "index.html"})
-        handlers: list[Any] = [("/live-reload", State), files]
-        server = HTTPServer(Application(handlers))
+        at = listen(port, live.site, LiveFile, (("/live-reload", State),))
         try:
-            sockets = bind_sockets(port, "127.0.0.1")
-        except OSError as error:
-            raise ProjectError(f"PORT={port}: {error.strerror}. Choose a free port.") from error
-        server.add_sockets(sockets)
-        thread, loop = ThreadPoolExecutor(1), asyncio.get_running_loop()
-        try:
-            await loop.run_in_executor(thread, partial(live.update, set()))
-            opened(sockets[0].getsockname()[1])
-            while True:
-                await asyncio.sleep(INTERVAL)
-                paths: set[Path] = await loop.run_in_executor(thread, live.changed)
-                if not paths:
-                    continue
-                is_new: bool = await loop.run_in_executor(thread, partial(live.update, paths))
-                if is_new:
-                    State.shown = time.time_ns()
-                    await loop.run_in_executor(thread, live.remember)
-                    live.say(f"Shown: {', '.join(sorted(path.name for path in paths))}")
+            await asyncio.to_thread(watch, live, at)
         finally:
             live.stop()
-            server.stop()
-            thread.shutdown(cancel_futures=True)
 
 
-def in_use(process: str) -> ProjectError:
-    """Return the refusal of a second `make live` with the same cache."""
-    return ProjectError(
-        f"Another make live runs here:\n{described(process)}\n"
-        f"Stop it with Ctrl-C in its terminal or `kill {process}`."
-    )
+def watch(live: Live, port: int) -> None:
+    """Render a book, say where it is served, and render it after each change until it is ended."""
+    live.update(set())
+    live.say(f"http://localhost:{port}/ Ctrl-C ends it.")
+    while not live.is_ended:
+        time.sleep(INTERVAL)
+        paths = live.changed()
+        if paths and live.update(paths):
+            State.shown = time.time_ns()
+            live.remember()
+            live.say(f"Shown: {', '.join(sorted(path.name for path in paths))}")

@@ -50,7 +50,7 @@ VIEWER_SHA256 = "4ba524218533577b1acd9a14afa2a1584ad70290ffd15fe72a65f85aaa72a87
 MODEL = re.compile(rb'\(globalThis\.replayModels \?\?= \{\}\)\["[\w-]+"\] = "[A-Za-z0-9+/=]+";\n')
 """The whole of a script that holds the model of a replay."""
 
-LOADED_BY_SCRIPTS = ("data-model", "data-viewer")
+LOADED_BY_SCRIPTS = {"data-model", "data-viewer"}
 """Attributes whose address the script of the replays adds to the page as a script."""
 
 OTHER_PAGES = {".htm", ".mjs", ".shtml", ".xht", ".xhtml", ".xml", ".xsl", ".xslt"}
@@ -87,20 +87,32 @@ class Page:
 
 def page_problems(page: Page) -> Iterator[str]:
     """Yield each problem of a page: what it could run besides the known scripts."""
-    scripts = [tag for tag in page.parsed.find_all(True) if _name(tag) == "script"]
-    for script in scripts:
-        yield from _script(page, script)
+    scripts = 0
+    for tag in page.parsed.find_all(True):
+        name = _plain(tag.name)
+        if name == "script":
+            scripts += 1
+            yield from _script(page, tag)
+        values = {
+            name: " ".join(value) if isinstance(value, list) else str(value)
+            for name, value in tag.attrs.items()
+        }
+        yield from _element(name, values)
+        for name in LOADED_BY_SCRIPTS & values.keys():
+            if not _is_script_of(page, values[name], "replay"):
+                yield f"{name}={values[name]!r} is not a script of replay/, as replays load."
     written = page.text.lower().count("<script")
-    if written != len(scripts):
+    if written != scripts:
         yield (
-            f"the text has {written} times '<script', the parsed page {len(scripts)} scripts. "
+            f"the text has {written} times '<script', the parsed page {scripts} scripts. "
             "Escape the others as &lt;script."
         )
-    yield from _markup(page.parsed, page.text)
-    for tag in page.parsed.find_all(True):
-        for name in LOADED_BY_SCRIPTS:
-            if tag.has_attr(name) and not _is_script_of(page, str(tag[name]), "replay"):
-                yield f"{name}={str(tag[name])!r} is not a script of replay/, as replays load."
+    for comment in page.parsed.find_all(string=lambda text: isinstance(text, Comment)):
+        if EARLY_END.search(comment):
+            yield f"a comment ends early for some browsers: {comment[:80]!r}. Remove it."
+    for found in TAG_IN_TAG.findall(CONTENT.sub("", page.text)):
+        if not found.startswith("<!--"):
+            yield f"a tag contains '<': {found[:80]!r}. Escape it as &lt;."
 
 
 def file_problems(root: Path) -> Iterator[str]:
@@ -139,22 +151,6 @@ def _script(page: Page, script: Tag) -> Iterator[str]:
         )
 
 
-def _markup(page: BeautifulSoup, text: str) -> Iterator[str]:
-    """Yield what runs script without a script element, or could for another parser."""
-    for tag in page.find_all(True):
-        values = {
-            name: " ".join(value) if isinstance(value, list) else str(value)
-            for name, value in tag.attrs.items()
-        }
-        yield from _element(_name(tag), values)
-    for comment in page.find_all(string=lambda text: isinstance(text, Comment)):
-        if EARLY_END.search(comment):
-            yield f"a comment ends early for some browsers: {comment[:80]!r}. Remove it."
-    for found in TAG_IN_TAG.findall(CONTENT.sub("", text)):
-        if not found.startswith("<!--"):
-            yield f"a tag contains '<': {found[:80]!r}. Escape it as &lt;."
-
-
 def _element(tag: str, attributes: Mapping[str, str]) -> Iterator[str]:
     """Yield what an element that is not a script could run; names have no XML prefixes."""
     if tag in REFUSED:
@@ -182,10 +178,10 @@ def _drawing(text: bytes) -> Iterator[str]:
         return
     try:
         for _, element in ElementTree.iterparse(io.BytesIO(text)):
-            tag = _local(element.tag)
+            tag = _plain(element.tag)
             if tag == "script":
                 yield "the drawing contains a script. Remove it."
-            yield from _element(tag, {_local(n): v for n, v in element.attrib.items()})
+            yield from _element(tag, {_plain(n): v for n, v in element.attrib.items()})
     except ElementTree.ParseError as error:
         yield f"the drawing is not XML: {error}. Draw it again."
 
@@ -220,11 +216,6 @@ def _is_json(text: str) -> bool:
     return True
 
 
-def _name(tag: Tag) -> str:
-    """Return an element's name without a prefix of XML, in small letters."""
-    return tag.name.rpartition(":")[2].lower()
-
-
-def _local(name: str) -> str:
-    """Return a name of ElementTree without its namespace, in small letters."""
-    return name.rpartition("}")[2].lower()
+def _plain(name: str) -> str:
+    """Return a name without a prefix or namespace of XML, in small letters."""
+    return re.split("[:}]", name)[-1].lower()

@@ -1,34 +1,46 @@
-"""The handler of `make serve`: the site's own files, as static hosts send them."""
+"""The server of `make serve` and `make live`: sends a site's files as static hosts do."""
 
-from http import HTTPStatus
-from http.server import SimpleHTTPRequestHandler
 from pathlib import Path
 from typing import Any
 
-INDEXES = ("index.html", "index.htm")
-"""The files that a folder is served as."""
+from tornado.httpserver import HTTPServer
+from tornado.netutil import bind_sockets
+from tornado.web import Application, StaticFileHandler
+
+from robo_genesis.core.project import ProjectError
 
 
-class SiteHandler(SimpleHTTPRequestHandler):
-    """Sends files of the site alone: no link that leads out of it, and no list of a folder.
+class SiteFile(StaticFileHandler):
+    """Sends files of a site, and no list of a folder or file to which a link leads out of it.
 
-    Browsers take each file for the type that it is sent with.
+    Browsers take each file for the type that it is sent with, and ask for it again each time.
     """
 
-    def end_headers(self) -> None:
-        """Add the header that forbids browsers to guess another type."""
-        self.send_header("X-Content-Type-Options", "nosniff")
-        super().end_headers()
+    def set_default_headers(self) -> None:
+        """Forbid caching and guessed types."""
+        self.set_header("Cache-Control", "no-store")
+        self.set_header("X-Content-Type-Options", "nosniff")
 
-    def send_head(self) -> Any:
-        """Answer 404 where the base class would send a file outside the site."""
-        root, asked = Path(self.directory).resolve(), Path(self.translate_path(self.path))
-        for path in (asked, *(asked / name for name in INDEXES)):
-            if not path.resolve().is_relative_to(root):
-                self.send_error(HTTPStatus.NOT_FOUND, "Outside the site")
-                return None
-        return super().send_head()
 
-    def list_directory(self, path: Any) -> None:
-        """Answer 404 for a folder without a page."""
-        self.send_error(HTTPStatus.NOT_FOUND, "No page in this folder")
+def listen(
+    port: int, site: Path, handler: type[SiteFile] = SiteFile, more: tuple[Any, ...] = ()
+) -> int:
+    """Serve a site as long as the running loop of asyncio; return the port.
+
+    Args:
+        port: of localhost; 0 takes a free one.
+        site: the folder with the home page.
+        handler: of the site's files.
+        more: handlers of other addresses.
+
+    Raises:
+        ProjectError: the port cannot be used.
+    """
+    files = (r"/(.*)", handler, {"path": str(site), "default_filename": "index.html"})
+    server = HTTPServer(Application([*more, files]))
+    try:
+        sockets = bind_sockets(port, "127.0.0.1")
+    except OSError as error:
+        raise ProjectError(f"PORT={port}: {error.strerror}. Choose a free port.") from error
+    server.add_sockets(sockets)
+    return sockets[0].getsockname()[1]

@@ -17,7 +17,6 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
 
 from robo_genesis.core.project import ROOT, ProjectError
@@ -61,12 +60,7 @@ class SphinxProcess:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """End the process and what it started: a child would keep the pipes open."""
         with suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGKILL)
@@ -94,8 +88,6 @@ class SphinxProcess:
             meanwhile()
             said = self.complaints()
             self.process.wait()
-        if not said and not (folder / HTML / "index.html").is_file():
-            said = ["Sphinx wrote no home page."]
         if said:
             raise RenderError("\n".join([*said, f"The complete log is in {self.log}"]))
 
@@ -163,11 +155,10 @@ def main() -> None:
     import yaml
 
     with suppress(Exception):  # reported by the render
-        importlib.import_module("jupyter_book.config")
-        importlib.import_module("sphinx.application")
         config = yaml.safe_load((book / "_config.yml").read_text("utf8"))
-        for extension in config["sphinx"]["config"]["extensions"]:
-            importlib.import_module(extension)
+        extensions = config["sphinx"]["config"]["extensions"]
+        for name in ("jupyter_book.config", "sphinx.application", *extensions):
+            importlib.import_module(name)
     warnings, again, app = io.StringIO(), set[str](), None
     for line in sys.stdin:
         place, variables, pages, last = json.loads(line)

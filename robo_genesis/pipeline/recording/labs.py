@@ -2,8 +2,7 @@
 
 import shutil
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,7 @@ from robo_genesis.pipeline.pages.kernels import users_variables
 from robo_genesis.pipeline.pages.progress import reporting
 from robo_genesis.pipeline.pages.results import failure_report
 from robo_genesis.pipeline.pages.store import Verify, places
-from robo_genesis.pipeline.recording.report import STATUS, Outcome, checkout, look, summary, table
+from robo_genesis.pipeline.recording.report import STATUS, Outcome, report
 from robo_genesis.pipeline.stages import build_lock
 from robo_genesis.sim import accelerator
 from robo_genesis.sim.diagnosis import StepResult
@@ -34,14 +33,7 @@ COMMAND = "make evidence"
 
 
 class RecordingError(project.ProjectError):
-    """Nothing was recorded; the message is the whole report. The older bundle is unchanged.
-
-    `reason` is its first line, or the error of a page that failed.
-    """
-
-    def __init__(self, report: str, reason: str = "") -> None:
-        super().__init__(report)
-        self.reason = reason or report
+    """Nothing was recorded; the message is the whole report, and its first line the reason."""
 
 
 def probe_here(expected: str | None) -> tuple[str, list[StepResult]]:
@@ -81,65 +73,23 @@ class Recording:
         return {BACKEND: "cpu" if self.expected == "cpu" else "auto", RENDER: "1"}
 
 
-Runner = Callable[[Recording, Page, Progress], tuple[Path, Any]]
+def record(recording: Recording) -> int:
+    """Run labs in clean kernels, verify their bundles and put them in their places; print a table.
 
-
-def record(recording: Recording) -> list[str]:
-    """Run one lab in a clean kernel, verify its bundle and put it in its place.
+    Without a lesson, each lab that has no accepted bundle of this backend is run. A lab that fails
+    has its report printed at once, and the next one follows.
 
     Args:
         recording: see there.
 
     Returns:
-        The last lines for the user: where the bundle is, and what to look at before a commit.
+        The exit status: 0 every lab has a bundle, 1 some failed, 130 interrupted. An older bundle
+        is unchanged unless a new one is accepted.
 
     Raises:
-        RecordingError: the lesson or backend is not valid, another backend was found, the lab
-            failed, or its bundle was refused. The older bundle is unchanged.
+        RecordingError: the lesson or backend is not valid, or a step of the probe is broken.
         BuildError: a build, or another recording, runs here.
-        ProjectError: checkout, environment or the bundle's place is not fit for it.
-    """
-    with _ready(recording) as (labs, _, progress):
-        return summary(*record_lab(recording, labs[recording.lesson], progress))
-
-
-def record_all(recording: Recording, run: Runner | None = None) -> int:
-    """Record each lab that has no accepted bundle of this backend, and print a table of all.
-
-    A lab that fails has its report printed at once, and the next one follows.
-
-    Args:
-        recording: see there.
-        run: records one lab, by default `record_lab`.
-
-    Returns:
-        The exit status: 0 every lab has a bundle, 1 some failed, 130 interrupted.
-
-    Raises:
-        RecordingError, BuildError, ProjectError: no lab can be recorded; see `record`.
-    """
-    outcomes: list[Outcome] = []
-    with _ready(recording) as (labs, backend, progress):
-        for lesson, page in labs.items():
-            if any(one.state == "interrupted" for one in outcomes):
-                outcomes.append(Outcome(lesson, "not run"))
-            else:
-                outcomes.append(_outcome(recording, page, backend, run or record_lab, progress))
-    facts = [outcome.facts for outcome in outcomes if outcome.facts]
-    lines = [*table(outcomes, backend), *dict.fromkeys(checkout(fact.git) for fact in facts)]
-    if facts:
-        lines.append(f"Before you commit: {look(recording.evidence / '*' / backend)}")
-    for line in lines:
-        recording.say(line)
-    return max((STATUS[outcome.state] for outcome in outcomes), default=0)
-
-
-@contextmanager
-def _ready(recording: Recording) -> Iterator[tuple[dict[str, Page], str, Progress]]:
-    """Hold the lock of builds, and check before any run what does not depend on the lab.
-
-    Yields:
-        The labs by their lessons, the backend that a run would find, and the lines of progress.
+        ProjectError: checkout, environment or the folder of bundles is not fit for it.
     """
     if recording.expected not in (None, *BACKENDS):
         raise RecordingError(
@@ -150,15 +100,32 @@ def _ready(recording: Recording) -> Iterator[tuple[dict[str, Page], str, Progres
         recover(recording.evidence)
         require_folder(recording.evidence)
         project.require_pinned_engine(recording.root)
-        pages = find_pages(recording.book)
-        labs = {str(page.lesson): page for page in pages if page.page == RECORDED_PAGE}
-        if recording.lesson and recording.lesson not in labs:
-            raise RecordingError(
-                f"LESSON={recording.lesson!r} is not valid. "
-                f"Lessons with a lab: {', '.join(sorted(labs)) or 'none'}; unset, all."
-            )
-        progress = Progress(recording.say)
-        yield labs, _found_backend(recording, progress), progress
+        labs, progress, outcomes = _labs(recording), Progress(recording.say), list[Outcome]()
+        backend = _found_backend(recording, progress)
+        for page in labs:
+            outcomes.append(_outcome(recording, page, backend, progress))
+            if outcomes[-1].state == "interrupted":
+                break
+    recording.say("\n".join(report(outcomes, backend, recording.evidence)))
+    return max((STATUS[outcome.state] for outcome in outcomes), default=0)
+
+
+def _labs(recording: Recording) -> list[Page]:
+    """Return the lab of the given lesson, or all labs in the order of the book.
+
+    Raises:
+        RecordingError: the lesson has no lab.
+    """
+    pages = find_pages(recording.book)
+    labs = {str(page.lesson): page for page in pages if page.page == RECORDED_PAGE}
+    if not recording.lesson:
+        return [*labs.values()]
+    if recording.lesson not in labs:
+        raise RecordingError(
+            f"LESSON={recording.lesson!r} is not valid. "
+            f"Lessons with a lab: {', '.join(sorted(labs)) or 'none'}; unset, all."
+        )
+    return [labs[recording.lesson]]
 
 
 def _found_backend(recording: Recording, progress: Progress) -> str:
@@ -180,8 +147,9 @@ def _found_backend(recording: Recording, progress: Progress) -> str:
     return found
 
 
-def _kept(recording: Recording, lesson: str, backend: str, progress: Progress) -> Outcome | None:
+def _kept(recording: Recording, page: Page, backend: str, progress: Progress) -> Outcome | None:
     """Return the outcome of a lab whose bundle is accepted as it is, None if it needs a run."""
+    lesson = str(page.lesson)
     place = recording.evidence / lesson / backend
     runs, book, root = cpu_runs(place, {}), recording.book, recording.root
     status = bundle_status(place, lesson, RECORDED_PAGE, book=book, root=root, cpu_runs=runs)
@@ -195,22 +163,19 @@ def _kept(recording: Recording, lesson: str, backend: str, progress: Progress) -
     return Outcome(lesson, "kept", str(place), facts)
 
 
-def _outcome(
-    recording: Recording, page: Page, backend: str, run: Runner, progress: Progress
-) -> Outcome:
+def _outcome(recording: Recording, page: Page, backend: str, progress: Progress) -> Outcome:
     """Return the outcome of a lab: its bundle is kept, or it is run."""
     begin, facts = time.monotonic(), None
     try:
-        if kept := _kept(recording, str(page.lesson), backend, progress):
+        if not recording.lesson and (kept := _kept(recording, page, backend, progress)):
             return kept
-        place, facts = run(recording, page, progress)
+        place, facts = record_lab(recording, page, progress)
         state, where = "recorded", str(place)
     except KeyboardInterrupt:
         state, where = "interrupted", "the older bundle is unchanged"
     except (project.ProjectError, BundleRefused, OSError) as error:
         recording.say(f"\n{error}\n")
-        reason = getattr(error, "reason", None) or str(error) or type(error).__name__
-        state, where = "failed", reason.splitlines()[0]
+        state, where = "failed", str(error).partition("\n")[0]
     return Outcome(str(page.lesson), state, where, facts, time.monotonic() - begin)
 
 
@@ -241,25 +206,24 @@ def _execute(
     contract = recording.contract
     progress("execute", page.docname, f"{BACKEND}={contract[BACKEND]}")
     environment = kernel_environment(recording.root, recording.cache, COMMAND, **contract)
-    with reporting(progress) as report:
+    with reporting(progress) as shown:
         [result] = execute_pages(
             [page],
             places([page], folder, recording.root, environment),
             timeout=recording.timeout,
             environment=environment,
             logs=recording.cache / project.LOGS,
-            report=report,
+            report=shown,
         )
     if failure := result.failure:
-        reason = f"{failure.error}: {failure.message}"
-        raise RecordingError(failure_report([result]), reason)
+        report = failure_report([result])
+        raise RecordingError(f"{failure.error}: {failure.message}\n\n{report}")
     assert result.bundle is not None  # a lab without a bundle has failed
     return result.bundle, result.run_id
 
 
 def _accepted(recording: Recording, bundle: Path, run_id: str) -> Any:
     """Return what the manifest of a bundle says, after verifying that it is the requested run's."""
-    require_expected(recording, bundle.name)
     try:
         facts = recording.verify(bundle, run_id).predicate
         require_contract(facts, recording.contract)

@@ -1,15 +1,14 @@
-"""What `make evidence` prints in the end: the facts of one run, or a table of all labs."""
+"""What `make evidence` prints in the end: a table of labs, and what to check before a commit."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core import project
 from robo_genesis.core.refusals import printable
 
 COLUMNS = ("lab", "backend", "device", "state", "checks", "seconds", "place or reason")
-STATUS = {"recorded": 0, "kept": 0, "not run": 0, "failed": 1, "interrupted": 130}
+STATUS = {"recorded": 0, "kept": 0, "failed": 1, "interrupted": 130}
 """The exit status that each state of a lab asks for; the largest wins."""
 
 
@@ -27,38 +26,25 @@ class Outcome:
     seconds: float | None = None
 
 
-def summary(place: Path, facts: Any) -> list[str]:
-    """Return the last lines of a recording: the facts of the run, and what to check by eye.
+def report(outcomes: Sequence[Outcome], backend: str, evidence: Path) -> Iterator[str]:
+    """Yield one aligned line for each lab, its checkout, and what to check by eye.
 
     Args:
-        place: where the bundle is.
-        facts: the facts about the run in its manifest.
+        outcomes: of the labs that were tried.
+        backend: that was found.
+        evidence: the folder of all recorded bundles.
     """
-    files = [path for path in place.rglob("*") if path.is_file()]
-    size = sum(path.stat().st_size for path in files) / 1e6
-    backend, render = facts.backend, facts.render
-    drawn = " (drawn in software)" if render.software else ""
-    return [
-        f"Recorded: {place}",
-        f"Backend: requested {backend.requested}, actual {backend.actual}, "
-        f"device {backend.device_name}",
-        f"Engine: {project.ENGINE} {facts.engine.version}, "
-        f"quadrants {facts.engine.quadrants_version}, torch {backend.torch_version}",
-        f"Camera: {render.renderer}{drawn}",
-        f"Checks passed: {sum(check.passed for check in facts.checks)} of {len(facts.checks)}. "
-        f"Engine warnings kept: {len(facts.warnings)}.",
-        f"Files: {len(files)}, {size:.1f} MB",
-        checkout(facts.git),
-        f"Before you commit: {look(place)}",
-    ]
-
-
-def look(place: Path) -> str:
-    """Return what to check by eye in the folder of a bundle."""
-    return (
-        f"look at both pictures in {place / 'frames'}, read log.txt, and check that manifest.json "
-        "names nothing private of your machine."
-    )
+    rows = [COLUMNS, *(_row(outcome, backend) for outcome in outcomes)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        yield "  ".join(f"{text:{width}}" for text, width in zip(row, widths, strict=True)).rstrip()
+    facts = [outcome.facts for outcome in outcomes if outcome.facts]
+    yield from dict.fromkeys(checkout(fact.git) for fact in facts)
+    if facts:
+        yield (
+            f"Before you commit: look at both pictures in {evidence / '*' / backend / 'frames'}, "
+            "read log.txt, and check that manifest.json names nothing private of your machine."
+        )
 
 
 def checkout(git: Any) -> str:
@@ -71,16 +57,6 @@ def checkout(git: Any) -> str:
             "release refuses that. Commit or stash, then record each lab again with LESSON=name."
         )
     return f"Checkout: clean, commit {git.commit[:12]}"
-
-
-def table(outcomes: Sequence[Outcome], backend: str) -> list[str]:
-    """Return one aligned line for each lab below the names of the columns."""
-    rows = [COLUMNS, *(_row(outcome, backend) for outcome in outcomes)]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [
-        "  ".join(f"{text:{width}}" for text, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    ]
 
 
 def _row(outcome: Outcome, backend: str) -> tuple[str, ...]:

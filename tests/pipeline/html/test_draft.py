@@ -16,6 +16,8 @@ FILES = {
     "replay/model.glb": "a robot",
     "takeaways/lab/lab.ipynb": "a lab",
     "_static/site.css": "p {}",
+    "notes": "a file",
+    "figures/a": "a folder",
 }
 
 
@@ -42,13 +44,16 @@ def content(folder: Path) -> dict[str, str | None]:
 
 
 def rewrite(rendered: Path) -> None:
-    """Do what Sphinx does: change, add and remove pages, and write style sheets again."""
+    """Change, add and remove pages, write style sheets again, and exchange files and folders."""
     shutil.rmtree(rendered / "_static")
     shutil.rmtree(rendered / "takeaways")
+    shutil.rmtree(rendered / "figures")
+    for name in ("index.html", "notes"):
+        (rendered / name).unlink()
     write(
         rendered, {"_static/site.css": "p {}", "lessons/one.html": "two", "lessons/more.html": ""}
     )
-    (rendered / "index.html").unlink()
+    write(rendered, {"notes/a": "a folder", "figures": "a file"})
 
 
 @pytest.mark.parametrize("early", [True, False], ids=["prepared", "from nothing"])
@@ -79,9 +84,7 @@ def test_what_sphinx_changes_while_the_draft_copies_is_copied_again(
             path.unlink()  # it was listed before
         copied = copy(draft, name)
         before = path.stat()
-        path.write_text(
-            FILES[name].upper()
-        )  # of the same size and, as copies have it, the same time
+        path.write_text(FILES[name].upper())  # of the same size and, as copies have it, time
         os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
         return copied
 
@@ -94,16 +97,6 @@ def test_what_sphinx_changes_while_the_draft_copies_is_copied_again(
     assert {name: found.get(name) for name in FILES} == {
         name: None if name == "index.html" else text.upper() for name, text in FILES.items()
     }
-
-
-def test_a_file_may_become_a_folder_and_a_folder_a_file(tmp_path, rendered):
-    draft = Draft(rendered, tmp_path / "draft")
-    draft.prepare()
-    shutil.rmtree(rendered / "lessons")
-    (rendered / "index.html").unlink()
-    write(rendered, {"lessons": "a file", "index.html/inside": "a folder"})
-    found = content(draft.complete().html)
-    assert (found["lessons"], found["index.html/inside"]) == ("a file", "a folder")
 
 
 def test_what_cannot_be_read_in_the_end_fails(tmp_path, rendered):

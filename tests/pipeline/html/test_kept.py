@@ -5,14 +5,10 @@ import pickle
 import re
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import nbformat
 import pytest
 import yaml
-from docutils import nodes
-from docutils.utils import new_document
-from sphinx.events import EventManager
 from tiny_book import cell, make_book, notebook
 
 from robo_genesis.pipeline.html import kept
@@ -23,7 +19,7 @@ from robo_genesis.pipeline.html.sphinx_process import DOCTREES, RenderError, Sph
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK, RECORD
-from robo_genesis.site.frame.incremental import forget_own_pictures, outlines, setup
+from robo_genesis.site.frame.incremental import forget_own_pictures
 
 GLOSSARY = "# Glossary\n\n```{glossary}\ngain\n  A factor. More words.\n```\n"
 LAW = "# Law\n\n(spring)=\n## The spring\n\nA gain of two, and a rareword.\n\n{ref}`text <there>`\n"
@@ -32,9 +28,7 @@ TEXT += "\n```{lesson-status} l04\n```\n"
 FIGURE = "\n```{figure} a.svg\n%s\nA drawing\n```\n"
 CITING = "# Citing\n\nSee {numref}`drawn` and {eq}`force`.\n"
 DRAWN = "# Drawn\n" + FIGURE % ":name: drawn" + "\n$$\nF = k x\n$$ (force)\n"
-TABLE = "```{list-table} Rows\n:name: rows\n* - one\n  - two\n```\n"
 DRAWING = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>'
-STD = SimpleNamespace(get_enumerable_node_type=lambda node: isinstance(node, nodes.figure))
 SOME = State("a", {"one": "1", "two": "2"})
 
 
@@ -124,7 +118,6 @@ def test_the_home_page_is_written_again_only_if_it_shows_a_change(tmp_path):
     publish(tmp_path, BuiltPages())
     for page, change, is_written in (
         ("text.md", "\nMore words.\n", False),
-        ("index.md", "\nMore words.\n", True),
         ("text.md", "\n## A heading\n", True),
     ):
         (book / page).write_text((book / page).read_text() + change)
@@ -132,48 +125,42 @@ def test_the_home_page_is_written_again_only_if_it_shows_a_change(tmp_path):
         found = publish(tmp_path, BuiltPages())
         assert (home.stat().st_mtime_ns != before) == is_written
         assert found == publish(tmp_path, BuiltPages(), keep=False)
-    home.unlink()
-    (book / "text.md").write_text("# Text\n\nWords.\n\n## A heading\n\nWords.\n")
-    assert publish(tmp_path, BuiltPages()) == publish(tmp_path, BuiltPages(), keep=False)
 
 
-def test_figures_tables_and_code_are_numbered_across_pages_wherever_they_are(tmp_path):
-    captioned = (
-        FIGURE % ":name: drawn-%d"
-        + "\n```{code-block} python\n:caption: Code\n:name: code-%d\npass\n```\n"
-    )
-    pages = {
-        "first": "# First\n" + captioned % (1, 1) + "\n## Below\n\n```{figure} a.svg\n```\n",
-        "second": "# Second\n\n````{note}\n" + captioned % (2, 2) + "````\n\n" + TABLE,
-    }
-    (make_book(tmp_path, **pages) / "a.svg").write_text(DRAWING)
+NUMBERED = """\
+# Numbered
+
+```{figure} a.svg
+```
+
+````{note}
+```{figure} a.svg
+:name: drawn
+A drawing
+```
+
+```{code-block} python
+:caption: Code
+:name: code
+pass
+```
+````
+
+```{list-table} Rows
+:name: rows
+* - one
+  - two
+```
+"""
+
+
+def test_figures_tables_and_code_with_captions_are_numbered_wherever_they_are(tmp_path):
+    (make_book(tmp_path, page=NUMBERED) / "a.svg").write_text(DRAWING)
     publish(tmp_path, BuiltPages())
     with open(tmp_path / "kept" / DOCTREES / "environment.pickle", "rb") as stream:
-        numbers = pickle.load(stream).toc_fignumbers
-    assert numbers["first"] == {"figure": {"drawn-1": (1,)}, "code-block": {"code-1": (1,)}}
-    assert numbers["second"] == {
-        "figure": {"drawn-2": (2,)},
-        "code-block": {"code-2": (2,)},
-        "table": {"rows": (1,)},
-    }
-
-
-def test_an_outline_has_the_ids_that_later_handlers_add_and_nothing_else_without_ids(tmp_path):
-    def name_first(app: Any, doctree: nodes.document) -> None:
-        doctree[0]["ids"].append("added")
-
-    env = SimpleNamespace(docname="text", dependencies={"text": set()}, domains={"std": STD})
-    app = SimpleNamespace(pdb=False, env=env, outdir=str(tmp_path), srcdir=str(tmp_path))
-    events = EventManager(app)
-    app.connect = lambda event, does, priority=500: events.connect(event, does, priority)
-    app.setup_extension = lambda name: None
-    setup(app)
-    events.connect("doctree-read", name_first, priority=900)
-    page = new_document("text")
-    page += [nodes.figure("", nodes.caption("", text)) for text in "AB"]
-    events.emit("doctree-read", page)
-    assert outlines(env)["text"].astext() == "A"
-    assert outlines(env)["text"][0]["ids"] == ["added"]
+        numbers = pickle.load(stream).toc_fignumbers["page"]
+    kinds = {"figure": "drawn", "code-block": "code", "table": "rows"}
+    assert numbers == {kind: {name: (1,)} for kind, name in kinds.items()}
 
 
 def test_a_page_does_not_depend_on_pictures_that_reading_another_page_writes_again(tmp_path):

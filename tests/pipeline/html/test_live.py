@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-import urllib.error
 import urllib.request
 from contextlib import suppress
 from pathlib import Path
@@ -34,9 +33,7 @@ class Running:
     """A running `make live` on a folder's book; without EXECUTE=1, its executed page was run."""
 
     def __init__(self, folder: Path, code: str = "1", **settings: str):
-        (folder / "book" / "lesson").mkdir(parents=True)
-        pages = {"text": TEXT, "other": "# Other\n", "lesson/lecture": TEXT}
-        self.book, self.folder = make_book(folder, **pages, page=notebook(cell(code))), folder
+        self.book, self.folder = make_book(folder, text=TEXT, page=notebook(cell(code))), folder
         if "EXECUTE" not in settings:
             place = places(find_pages(self.book), folder / "cache" / STORE)["page"]
             run_of(folder / "other", place, code)
@@ -115,15 +112,11 @@ def test_a_bad_edit_is_reported_and_the_last_good_state_stays(live, file, conten
     else:
         write_whole(path, content.encode())  # at once, so that no half of it is seen
     live.wait(lambda: "keeps the last good state" in live.output()[begin:])
-    reported = live.said[begin:].splitlines()
     assert said in live.said[begin:]
-    assert len(reported) <= 4
+    assert len(live.said[begin:].splitlines()) <= 4
     assert live.article() == before
-    more = "\n" if file == "_toc.yml" else "\nCorrected once more.\n"
-    write_whole(path, (good + more).encode())
-    live.wait(lambda: "Shown: " in live.output()[begin:])
     write_whole(path, good.encode())
-    live.wait(lambda: live.output()[begin:].count("Shown: ") > 1)
+    live.wait(lambda: "Shown: " in live.output()[begin:])
     assert live.article() == before
 
 
@@ -152,22 +145,6 @@ def test_after_a_syntax_error_the_last_outputs_are_shown(request, where, file, c
     assert live.article("page.html") == before
 
 
-def test_a_renamed_lesson_is_shown_again_when_the_contents_name_it(live):
-    contents, before = live.book / "_toc.yml", live.article("lesson/lecture.html")
-    good = contents.read_text()
-    for old, new in (("lesson", "renamed"), ("renamed", "lesson")):
-        begin = len(live.output())
-        (live.book / old).rename(live.book / new)
-        live.wait(lambda begin=begin: "keeps the last good state" in live.output()[begin:])
-        assert f"_toc.yml names '{old}/lecture', but there is no " in live.said[begin:]
-        assert live.article(f"{old}/lecture.html") == before
-        write_whole(contents, good.replace("lesson/", f"{new}/").encode())
-        live.wait(lambda begin=begin: "Shown: " in live.output()[begin:])
-        assert live.article(f"{new}/lecture.html") == before
-        with pytest.raises(urllib.error.HTTPError, match="404"):
-            live.shown(f"{old}/lecture.html")
-
-
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_an_end_by_signal_leaves_no_process(tmp_path, sent):
     running = Running(tmp_path)
@@ -178,11 +155,6 @@ def test_an_end_by_signal_leaves_no_process(tmp_path, sent):
     assert running.process.returncode == 130
     assert "Traceback" not in report
     assert psutil.wait_procs(below, timeout=15)[1] == []
-
-
-def test_a_page_outside_of_the_site_is_not_sent(live):
-    with pytest.raises(urllib.error.HTTPError, match=r"40[34]"):
-        live.shown("..%2f..%2f..%2fbook/text.md")
 
 
 def test_invalid_settings_are_refused(tmp_path):
@@ -239,13 +211,10 @@ def test_a_page_that_fails_is_reported_once_and_its_last_run_is_shown(tmp_path):
     live = Live(book, tmp_path / "cache", said.append, execute=True)
     assert [live.built(pages).folders for _ in range(2)] == [{"page": last}] * 2
     begin, report, end = said
-    assert (begin, end.split(".")[0]) == (
-        "page: runs ...",
-        "page: the outputs of its last run are shown",
-    )
+    assert begin == "page: runs ..."
     assert "page, code cell 1, line 11: raise OSError('no robot')" in report
-    assert "OSError: no robot" in report
     assert "nothing was exported" not in report
+    assert end.startswith("page: the outputs of its last run are shown.")
 
 
 def test_what_starts_after_the_end_is_ended(tmp_path):
@@ -259,8 +228,6 @@ def test_what_starts_after_the_end_is_ended(tmp_path):
 def test_a_file_that_cannot_be_read_after_a_render_ends_nothing(tmp_path):
     live = Live(make_book(tmp_path), tmp_path)
     live.remember()
-    live.work.mkdir(parents=True)
-    (live.work / "executed-pages.json").write_text("{}")
     (live.book / "_toc.yml").write_text("root: [")
     live.remember()
     shutil.rmtree(live.book)

@@ -20,24 +20,12 @@ from robo_genesis.evidence.bundle import evidence_key
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 
 
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ({}, "lab, code cell 1, line "),
-        ({"RENDER": "0"}, "RENDER='0' is not valid for a recording, which always has camera fr"),
-    ],
-)
-def test_a_failure_is_status_1_a_report_and_the_old_bundle(tmp_path, settings, said):
-    old = old_bundle(tmp_path, "cpu")
-    make_book(tmp_path, lab=notebook(cell("1 / 0"), front=LAB_FRONT))
-    given = {"LESSON": "l04", "BACKEND": "cpu", "TO": str(tmp_path / "kept")} | settings
-    report = fails("evidence.py", tmp_path, **given)
-    assert said in report
-    assert settings or report.endswith("FAILED: nothing was recorded.\n")
-    assert old.read_text() == "old"
+def test_a_recording_without_a_camera_is_refused(tmp_path):
+    report = fails("evidence.py", tmp_path, RENDER="0")
+    assert "RENDER='0' is not valid for a recording, which always has camera fr" in report
 
 
-def test_without_a_lesson_all_labs_run_and_the_last_lines_are_their_table(tmp_path):
+def test_failures_are_status_1_the_last_lines_their_table_and_the_old_bundle_stays(tmp_path):
     old = old_bundle(tmp_path, "cpu")
     other = notebook(cell("1 / 0"), front=LAB_FRONT.replace("l04", "l03"))
     make_book(tmp_path, lab=notebook(cell("1 / 0"), front=LAB_FRONT), other=other)
@@ -58,9 +46,9 @@ def test_ctrl_c_leaves_the_old_bundle_and_no_part_of_a_new_one(tmp_path):
     process = start("evidence.py", tmp_path, **given)
     wait_for(process, started)
     process.send_signal(signal.SIGINT)
-    _, err = process.communicate(timeout=60)
+    out, _ = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert err.endswith("Interrupted: nothing was recorded.\n")
+    assert "interrupted" in out
     assert [path.name for path in old.parents[1].iterdir()] == ["cpu"]
     assert old.read_text() == "old"
     assert not (tmp_path / "cache/recording").exists()
@@ -82,5 +70,5 @@ def test_the_real_lab_recorded_on_the_cpu_is_accepted_evidence(tmp_path):
     assert facts.command == "make evidence"
     assert facts.render.mode == "camera"
     assert facts.evidence_key == evidence_key(facts.model_dump())
-    assert f"Recorded: {place}\nBackend: requested cpu, actual cpu, device " in out
-    assert f"Checks passed: {len(facts.checks)} of {len(facts.checks)}." in out
+    row = f"recorded  {len(facts.checks)} of {len(facts.checks)}"
+    assert row in out

@@ -26,25 +26,21 @@ def options(command: list[str], name: str) -> list[str]:
     return [after for word, after in pairwise(command) if word == name]
 
 
-def test_docker_gets_the_devices_their_groups_the_user_and_the_checkout():
-    build, run = commands(host(HIP_VISIBLE_DEVICES="0", SECRET="s", ROCM_PATH="/here"))
-    assert build == ["docker", "build", "--tag", run[-5], "--file", ".rocm/Dockerfile", "."]
+@pytest.mark.parametrize("engine", ["docker", "podman"])
+def test_the_container_gets_the_devices_their_groups_the_user_and_the_checkout(engine):
+    build, run = commands(host(engine, HIP_VISIBLE_DEVICES="0", SECRET="s", ROCM_PATH="/here"))
+    assert build == [engine, "build", "--tag", run[-5], "--file", ".rocm/Dockerfile", "."]
     assert run[-4:] == ["make", "evidence", "BACKEND=amdgpu", "PYTHON=python"]
     assert f"--device={NULL}" in run
-    assert options(run, "--group-add") == [str(NULL.stat().st_gid)]
-    assert options(run, "--user") == [f"{os.getuid()}:{os.getgid()}"]
     assert options(run, "--security-opt") == ["seccomp=unconfined"]
     assert options(run, "--volume") == ["/a checkout:/course"]
     given = ["HOME=/tmp", "USER=course", "HIP_VISIBLE_DEVICES", "LESSON=l04"]
     assert options(run, "--env") == given
-
-
-def test_podman_keeps_the_groups_of_the_user():
-    _, run = commands(host("podman"))
-    assert run[0] == "podman"
-    assert options(run, "--group-add") == ["keep-groups"]
-    assert options(run, "--userns") == ["keep-id"]
-    assert "--user" not in run
+    of_user = {name: options(run, name) for name in ("--group-add", "--user", "--userns")}
+    user = [f"{os.getuid()}:{os.getgid()}"]
+    docker = {"--group-add": [str(NULL.stat().st_gid)], "--user": user, "--userns": []}
+    podman = {"--group-add": ["keep-groups"], "--user": [], "--userns": ["keep-id"]}
+    assert of_user == {"docker": docker, "podman": podman}[engine]
 
 
 @pytest.mark.parametrize(
