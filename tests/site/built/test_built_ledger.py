@@ -7,7 +7,6 @@ import zipfile
 
 import pytest
 from bs4 import BeautifulSoup
-from built_site import PAGES, parsed
 
 from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.bundles.verify import verify_bundle
@@ -49,9 +48,9 @@ def differences(pages) -> tuple[set, set]:
 
 
 @pytest.fixture(scope="module")
-def pages(site) -> dict[str, BeautifulSoup]:
+def pages(parsed_pages) -> dict[str, BeautifulSoup]:
     """Every page, by its path; the ledger's own tables are not measurements."""
-    return {f"{name}.html": parsed(site, name) for name in PAGES}
+    return {f"{name}.html": page for name, page in parsed_pages.items()}
 
 
 def test_each_figure_and_measured_table_has_one_row_and_each_row_its_place(pages):

@@ -43,7 +43,8 @@ def test_the_theme_switches_and_stays_on_the_next_page(browser, base):
         if page.evaluate("document.documentElement.dataset.theme") == "dark":
             break
         page.locator("button.theme-switch-button:visible").click()
-    other = context.new_page()  # what a page from disk stores reaches another process a little later
+    # What a page from disk stores reaches another process a little later.
+    other = context.new_page()
     other.goto(f"{base}/index.html")
     other.wait_for_function("localStorage.getItem('theme') === 'dark'")
     page.goto(f"{base}/{LECTURE}")
