@@ -115,6 +115,12 @@ def parsed(site: Path, name: str) -> BeautifulSoup:
     return BeautifulSoup((site / f"{name}.html").read_text(), "html.parser")
 
 
+@pytest.fixture(scope="session")
+def parsed_pages(site) -> dict[str, BeautifulSoup]:
+    """Every page of the book by name, parsed once. No test may change them."""
+    return {name: parsed(site, name) for name in PAGES}
+
+
 @contextmanager
 def served(site: Path, handler: type[QuietHandler] = QuietHandler) -> Iterator[str]:
     """Serve the site in a thread; the value is its address."""

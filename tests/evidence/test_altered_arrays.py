@@ -96,14 +96,15 @@ def is_refused(experiment: Experiment, of: Try) -> bool:
     try:
         forged = replace(trace, **{of.array: of.value})
         traces = experiment.traces | {of.run: forged}
-        # The rules of the other runs do not read the altered one.
-        one = replace(page, runs={of.run: page.runs[of.run]})
-        laws = [check for check in page.checks if check.__name__ in LAWS]
-        if not all(c.passed for c in evaluate(laws, replace(experiment, page=one, traces=traces))):
-            return True
         run = replace(experiment, traces=traces)
+        # The laws of the other runs do not read the altered one.
+        one = replace(run, page=replace(page, runs={of.run: page.runs[of.run]}))
+        laws = [check for check in page.checks if check.__name__ in LAWS]
+        if not all(check.passed for check in evaluate(laws, one)):
+            return True
         run.records()
-        return not all(check.passed for check in run.outcomes())
+        claims = [check for check in page.checks if check not in laws]
+        return not all(check.passed for check in evaluate(claims, run))
     except (TraceError, BundleRefused, LookupError, ValueError, ArithmeticError):
         return True
 

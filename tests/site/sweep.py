@@ -11,6 +11,7 @@ from sweep_scripts import (
     LOADED,
     MIDDLE_ROWS,
     NOTE_FOCUS,
+    ONE_OF_EACH,
     OPEN_FOLDS,
     READ,
     SCROLL_BOXES,
@@ -33,9 +34,8 @@ AXE = {
     "preload": False,  # what it fetches again cannot be fetched from disk, and no rule needs it
     "resultTypes": ["violations"],
 }
-OF_COLOURS = ("color-contrast", "link-in-text-block")
-COLOURS = AXE | {"runOnly": [*OF_COLOURS]}
-SHAPES = AXE | {"rules": AXE["rules"] | {rule: {"enabled": False} for rule in OF_COLOURS}}
+COLOURS = AXE | {"runOnly": ["color-contrast", "link-in-text-block"]}
+SHAPES = AXE | {"runOnly": ["scrollable-region-focusable", "target-size"]}
 
 IN_EVERY_COLOUR = ("axe", "foreign hosts", "images", "messages", "motion", "theme")
 IN_EVERY_SHAPE = ("focus", "layout shift", "lines", "scroll boxes", "tab order", "width")
@@ -53,38 +53,36 @@ class Kind:
         scheme: The reader's colour scheme.
         size: Width and height of the window at first [px].
         narrow: Width at which it is looked at in detail, after the first reading [px].
-        axe: What axe-core looks for.
+        axe: What axe-core looks for with open folds, by the width of the window [px].
         widths: All widths at which nothing may stick out [px].
         large_text: Whether it is looked at in letters of twice the size, too.
-        colours_at: Width at which axe-core looks at the colours in the end, if `axe` does not [px].
     """
 
     rules: tuple[str, ...]
     scheme: str
     size: tuple[int, int]
     narrow: int
-    axe: dict[str, Any]
+    axe: dict[int, dict[str, Any]]
     widths: tuple[int, ...] = ()
     large_text: bool = False
-    colours_at: int | None = None
 
 
 WIDTHS = (768, 1280, 1920, 3840)
 KINDS = {
-    "light": Kind(RULES, "light", (1280, 800), 1280, AXE, WIDTHS, large_text=True),
+    "light": Kind(RULES, "light", (1280, 800), 1280, {1280: AXE}, WIDTHS, large_text=True),
     "phone": Kind(
         (*IN_EVERY_COLOUR, *IN_EVERY_SHAPE),
         "dark",
         (390, 700),
         narrow=320,
-        axe=SHAPES,
+        axe={320: SHAPES, 1280: COLOURS},
         widths=(390, 320),
-        colours_at=1280,
     ),
 }
 """The phone reads from disk, in the dark. Shape does not depend on the scheme, so the desktop looks
-at it at widths that the phone does not have. Colours hardly depend on the shape, so the dark ones
-are looked at where the phone's page has been made as wide as a desktop."""
+at it at widths that the phone does not have. Nothing in an article is hidden on the phone alone, so
+axe-core looks there only at what depends on the shape. Colours hardly do, so the dark ones are
+looked at where the phone's page has been made as wide as a desktop."""
 
 EVERY_STATE = {"index.html", "lessons/l02-life-cycle/lecture.html"}
 """Pages on which axe-core looks for everything with closed folds and with large text, too (it skips
@@ -116,6 +114,7 @@ class Visit:
         page.clock.install()  # it runs as ever, and can be put forward
         self._resize(page, kind.narrow)
         self.note("motion", page.evaluate(MOVING))
+        page.evaluate(ONE_OF_EACH)
         self._with_closed_folds(page)
         self._with_open_folds(page)
         page.close()
@@ -169,7 +168,6 @@ class Visit:
     def _with_open_folds(self, page: Page) -> None:
         page.evaluate(OPEN_FOLDS)
         settle(page)
-        self.note("axe", violations(page, **self.kind.axe))
         self.note("scroll boxes", page.evaluate(SCROLL_BOXES))
         for width in self.kind.widths:
             page.set_viewport_size({"width": width, "height": self.kind.size[1]})
@@ -178,9 +176,10 @@ class Visit:
             self.note("width", ["wider than the window"] if layout["wide"] else [], f"{width} px")
             self.note("width", layout["out"], f"{width} px")
             self.note("lines", layout["long"], f"{width} px")
-        if self.kind.colours_at:
-            self._resize(page, self.kind.colours_at)
-            self.note("axe", violations(page, **COLOURS), f"{self.kind.colours_at} px")
+        page.eval_on_selector_all(MIDDLE_ROWS, "rows => rows.forEach(row => row.remove())")
+        for width, options in self.kind.axe.items():
+            self._resize(page, width)
+            self.note("axe", violations(page, **options), f"{width} px")
 
 
 def focus_complaints(page: Page) -> list[str]:

@@ -68,7 +68,20 @@ IMAGES = """async () => {
 TAB_ORDER = """() => [...document.querySelectorAll("*")].filter(element => element.tabIndex > 0)
   .map(element => element.outerHTML.slice(0, 100))"""
 MIDDLE_ROWS = "tr:nth-child(n+11):nth-last-child(n+11)"
-"""Not gone through by Tab: a table shows with the ten rows at either end how it takes the focus."""
+"""Neither gone through by Tab nor looked at by axe-core: a table shows with the ten rows at either
+end how it takes the focus, and what its cells are like."""
+
+ONE_OF_EACH = """() => {
+  document.querySelectorAll("article svg :is(path, use)").forEach(curve => curve.remove());
+  const seen = new Set();
+  for (const token of document.querySelectorAll("article pre span[class]")) {
+    const kind = `${token.parentElement.className} > ${token.className}`;
+    if (seen.has(kind)) token.replaceWith(...token.childNodes);
+    seen.add(kind);
+  }
+}"""
+"""Takes out what has neither text nor size of its own: curves, and in code the words of a kind that
+is there already."""
 
 NOTE_FOCUS = """() => {
   const visited = new Set();

@@ -1,28 +1,41 @@
 """What a reader finds on the built pages."""
 
 import json
+import re
 import subprocess
+from pathlib import Path
 
 import pytest
-from built_site import LESSON_PAGES, parsed
+from built_site import LESSON_PAGES
 
 from robo_genesis.core import project
 from robo_genesis.lessons import LESSONS, find_page
 from robo_genesis.pipeline import npm
 from robo_genesis.pipeline.html.sums import SUMS
+from robo_genesis.site.course.course_map import read_map
 
 pytestmark = pytest.mark.engine
 PIN = project.engine_pin()
+TESTS = Path(__file__).parents[2]
+ANCHORS = [TESTS / "site" / "anchors.txt", *sorted(TESTS.glob("lessons/*/anchors.txt"))]
+"""The anchors of each lesson's pages are a file beside the lesson's tests."""
+
+PLACES = (
+    "article section[id], article section > span[id], article p[id], article p > span[id], "
+    "article figure[id], article dt[id]"
+)
+NUMBERED = re.compile(r"id\d+$")
 
 
 @pytest.mark.parametrize(
     ("lesson", "name"),
     [(le, name) for (le, page), name in LESSON_PAGES.items() if page in ("lecture", "lab")],
 )
-def test_status_is_computed_and_says_what_is_missing(site, lesson, name):
-    line = parsed(site, name).select_one(".status-line > summary").get_text()
+def test_status_is_computed_and_says_what_is_missing(parsed_pages, lesson, name):
+    page = parsed_pages[name]
+    line = page.select_one(".status-line > summary").get_text()
     assert line == f"Measured on CPU with Genesis {PIN}"
-    status = parsed(site, name).select_one(".lesson-status").get_text()
+    status = page.select_one(".lesson-status").get_text()
     count = len(find_page(lesson, "lab").checks)
     assert f"cpu-verified Lab in a clean notebook kernel, Genesis {PIN}" in status
     assert f"{count} of {count} checks passed" in status
@@ -68,3 +81,45 @@ def test_build_ends_with_what_it_was_made_of(build_output):
     expected = ["Site: ", "Engine: genesis-world", "requested cpu, actual cpu", "render camera"]
     expected += ["executed", "reused", "Checks passed: "]
     assert [words for words in expected if words not in tail] == []
+
+
+@pytest.fixture(scope="module")
+def anchors(parsed_pages) -> set[str]:
+    """Return page#anchor of each heading, figure and term that a reader may link to.
+
+    Recorded runs come and go with the machines that made them, so what is in their panels is none.
+    """
+    return {
+        f"{name}#{tag['id']}"
+        for name, page in parsed_pages.items()
+        if not name.startswith("evidence/")
+        for tag in page.select(PLACES)
+        if not NUMBERED.match(tag["id"]) and not tag.find_parent(class_="evidence-panel")
+    }
+
+
+def published_anchors() -> set[str]:
+    return {anchor for file in ANCHORS for anchor in file.read_text().split()}
+
+
+def test_anchors_that_were_published_stay(anchors):
+    published = published_anchors()
+    assert len(published) > 100
+    gone = sorted(published - anchors)
+    assert gone == [], "Links elsewhere lead there: keep the old name as a target `(name)=` above."
+
+
+def test_new_anchors_are_kept_from_now_on(anchors):
+    new = sorted(anchors - published_anchors())
+    assert new == [], "Add these lines to anchors.txt in tests/lessons/lNN or tests/site."
+
+
+def test_the_page_on_evidence_shows_a_measurement_and_leads_to_its_three_pages(parsed_pages):
+    page = parsed_pages["evidence/index"]
+    (featured,) = (lesson.id.lower() for lesson in read_map(project.BOOK) if lesson.featured)
+    expected = [f"glance-{featured}-{picture}" for picture in ("response", "final")]
+    figures = page.select(".glance figure")
+    assert [figure["id"] for figure in figures] == expected
+    assert all("Measured on cpu" in figure.get_text() for figure in figures)
+    links = {a["href"] for a in page.select("article a[href]")}
+    assert {"ledger.html", "trust.html", "recording.html"} <= links
