@@ -168,8 +168,11 @@ def test_a_second_server_with_the_same_cache_is_refused_with_the_process(live):
 
 
 def test_sphinx_is_started_again_after_it_was_killed(live):
-    for child in psutil.Process(live.process.pid).children():
+    children = psutil.Process(live.process.pid).children()
+    for child in children:
         child.kill()
+    # Until its child has ended, the process of make live would give it the next order.
+    live.wait(lambda: all(c.status() == psutil.STATUS_ZOMBIE for c in children if c.is_running()))
     (live.book / "text.md").write_text(TEXT + "\nWords after the kill.\n")
     live.wait(lambda: "Words after the kill." in live.shown())
 
