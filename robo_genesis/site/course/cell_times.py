@@ -8,25 +8,20 @@ from pathlib import Path
 
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import tables
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, page_record
+from robo_genesis.site.pages import PageDirective
 
 
-class CellTimes(SphinxDirective):
+class CellTimes(PageDirective):
     """Show a table with one row for each executed page of the book."""
 
-    def run(self) -> list[nodes.Node]:
-        """Return the table; a page without recorded times is an error of the build."""
-        rows = []
-        for page in find_pages(Path(self.env.srcdir)):
-            try:
-                seconds = cell_seconds(page)
-            except LookupError as error:
-                raise self.error(f"cell-times: {error}") from error
-            rows.append(row(page.docname, seconds))
+    def shown(self) -> list[nodes.Node]:
+        """Return the table."""
+        pages = find_pages(Path(self.env.srcdir))
+        rows = [row(page.docname, cell_seconds(page)) for page in pages]
         return self.parse_text_to_nodes(tables.markdown(rows))
 
 

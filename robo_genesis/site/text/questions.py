@@ -34,7 +34,6 @@ from typing import Any
 from docutils import nodes
 from docutils.parsers.rst.directives import unchanged
 from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core.comparison import Comparison, compare_values
 from robo_genesis.core.tables import comparison_sentence
@@ -44,6 +43,7 @@ from robo_genesis.lessons import find_lesson
 from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, measured
 from robo_genesis.site.figures.case_labels import label
+from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.text.question_nodes import (
     choice,
     depart_choice,
@@ -90,17 +90,14 @@ def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict
     return " ".join(question.split()), causes
 
 
-class Question(SphinxDirective):
+class Question(PageDirective):
     """Ask for something that was measured."""
 
     has_content = True
 
-    def run(self) -> list[nodes.Node]:
-        """Return the question; an unknown page, case, metric or key is an error."""
-        try:
-            text, node = self.ask()
-        except (LookupError, bundle.BundleRefused) as error:
-            raise self.error(f"{self.name}: {error}") from error
+    def shown(self) -> list[nodes.Node]:
+        """Return the question with a number that no other has."""
+        text, node = self.ask()
         question, messages = self.parse_inline(text, lineno=self.lineno)
         node += question
         node["number"] = self.env.new_serialno("choice")
