@@ -31,10 +31,7 @@ def cell_seconds(page: Page) -> list[float]:
     Raises:
         LookupError: the store lacks the page, or the time of one of its cells.
     """
-    try:
-        seconds = page_record(page.docname).cell_seconds
-    except KeyError:
-        raise LookupError(f"{page.docname} is not executed. Build with `make book`.") from None
+    seconds = page_record(page.docname).cell_seconds
     code = (cell.source for cell in page.notebook.cells if cell.cell_type == "code")
     cells = sum(bool(source.strip()) for source in code)
     if not seconds or (len(seconds) != cells and LAST_OUTPUTS not in os.environ):

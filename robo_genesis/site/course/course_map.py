@@ -9,11 +9,12 @@
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
 from docutils import nodes
+from pydantic import TypeAdapter
+from pydantic.dataclasses import dataclass
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
@@ -29,10 +30,10 @@ LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
 
 
 class CourseMapError(ValueError):
-    """The map cannot be used; the message names the line and the reason."""
+    """The map cannot be used; the message names the lesson and the reason."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, config={"extra": "forbid"})
 class Lesson:
     """One lesson.
 
@@ -53,24 +54,14 @@ def read_map(book: Path) -> list[Lesson]:
     """Return the lessons of a book's map in their order.
 
     Raises:
-        CourseMapError: the file is not a list of lessons, an id occurs twice, a lesson needs one
-            that does not come before it, a published one has no outcomes, or two are featured.
+        ValidationError: the file is not a list of lessons.
+        CourseMapError: an id occurs twice, a lesson needs one that does not come before it, a
+            published one has no outcomes, or two are featured.
     """
     rows = yaml.safe_load((book / FILE).read_text("utf8"))
-    lessons: list[Lesson] = []
-    for row in rows if isinstance(rows, list) else [rows]:
-        try:
-            needs, outcomes = row.get("needs"), row.get("outcomes", [])
-            if not isinstance(outcomes, list):
-                raise TypeError("outcomes is not a list")
-            lists = {"needs": None if needs is None else tuple(needs), "outcomes": tuple(outcomes)}
-            lesson = Lesson(**row | lists)
-        except (AttributeError, TypeError) as error:
-            raise CourseMapError(
-                f"{FILE} has {row!r}; a lesson has id, title and perhaps needs, page, outcomes and "
-                "featured."
-            ) from error
-        known = [earlier.id for earlier in lessons]
+    lessons = TypeAdapter(list[Lesson]).validate_python(rows)
+    for place, lesson in enumerate(lessons):
+        known = [earlier.id for earlier in lessons[:place]]
         if lesson.id in known:
             raise CourseMapError(f"{FILE} names {lesson.id} twice.")
         unknown = [need for need in lesson.needs or () if need not in known]
@@ -84,7 +75,6 @@ def read_map(book: Path) -> list[Lesson]:
                 f"{FILE}: {lesson.id} is published and has no outcomes. Add `outcomes:` with up to "
                 "three things that a student can do after it."
             )
-        lessons.append(lesson)
     featured = [lesson.id for lesson in lessons if lesson.featured]
     if len(featured) > 1:
         raise CourseMapError(f"{FILE} features {' and '.join(featured)}; keep one `featured`.")

@@ -154,8 +154,6 @@ def history_html(file: Path) -> str:
 def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     """Insert the time below the title, except on the home page, and the history at the end."""
     section = document.next_node(nodes.section)
-    if section is None:
-        return
     if docname != app.config.root_doc:
         time = f"About {minutes_of(app.env, docname)}."
         section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))

@@ -18,7 +18,7 @@ from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import badge_node
 from robo_genesis.site.evidence.plain_nodes import Cell, paragraph, table
-from robo_genesis.site.evidence.provenance import all_items, all_runs, measured_pages
+from robo_genesis.site.evidence.provenance import ITEMS, all_runs, measured_pages
 from robo_genesis.site.pages import PageDirective
 
 LEDGER = "evidence/ledger"
@@ -88,7 +88,7 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
     """Return the table of all figures and tables on the pages, in the order of the pages."""
     env, runs = app.env, all_runs(Path(app.srcdir))
     rows, anchors = [], []
-    for item in (item for name in _reading_order(env) for item in all_items(env).get(name, [])):
+    for item in (item for name in _reading_order(env) for item in env.metadata[name][ITEMS]):
         place = app.builder.get_relative_uri(docname, item.docname)
         is_table = item.data is not None
         file = f"{DOWNLOADS}/{item.file}" if is_table else f"_images/{env.images[item.file][1]}"
@@ -153,11 +153,11 @@ def scroll(
 
 def write_downloads(app: Sphinx, exception: Exception | None) -> None:
     """Write the tables and bundles that the ledger links to."""
-    if exception is not None or app.builder.format != "html" or LEDGER not in app.env.found_docs:
+    if exception is not None or LEDGER not in app.env.found_docs:
         return
     folder = Path(app.outdir) / DOWNLOADS
     folder.mkdir(parents=True, exist_ok=True)
-    for item in chain.from_iterable(all_items(app.env).values()):
+    for item in chain.from_iterable(page.get(ITEMS, ()) for page in app.env.metadata.values()):
         if item.data is not None:
             (folder / item.file).write_bytes(item.data)
     for run in all_runs(Path(app.srcdir)).values():

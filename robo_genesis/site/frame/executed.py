@@ -54,8 +54,7 @@ class ExecutedPage(NotebookClientBase):
 
     def docname(self) -> str:
         """Return the name of the page."""
-        page = Path(str(self.path)).with_suffix("")
-        return page.relative_to(self.sources).as_posix() if self.path else ""
+        return Path(self.path).relative_to(self.sources).with_suffix("").as_posix()
 
 
 def shorten_tracebacks(cell: NotebookNode) -> None:

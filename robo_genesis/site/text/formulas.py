@@ -173,8 +173,6 @@ def css() -> str:
 
 def write_css(app: Sphinx) -> None:
     """Write style sheet and licence where Sphinx collects the site's own."""
-    if app.builder.format != "html":
-        return
     folder = Path(app.outdir) / "_static"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / STYLE).write_text(css(), "utf8")
