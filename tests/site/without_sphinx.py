@@ -1,6 +1,7 @@
 """Directives where Sphinx does not run: a folder, a parser of Markdown, and a page of one block."""
 
 import shutil
+from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 from types import SimpleNamespace
@@ -28,7 +29,8 @@ class Panel(panel.Evidence):
     def __init__(self, book, **options):
         self.options = options
         app = SimpleNamespace(outdir=book / "_build" / "html")
-        env = SimpleNamespace(srcdir=book, app=app, docname="lessons/page")
+        named = {"docname": "lessons/page", "metadata": defaultdict(dict)}
+        env = SimpleNamespace(srcdir=book, app=app, **named)
         self.state = SimpleNamespace(
             document=SimpleNamespace(settings=SimpleNamespace(env=env, record_dependencies=None))
         )

@@ -143,33 +143,21 @@ def found(document, book):
 
 
 @pytest.mark.parametrize(
-    ("text", "name"),
+    ("text", "said"),
     [
-        ('A <span class="evidence-badge state-verified">amdgpu-verified</span>.', "evidence-badge"),
-        ("<div\n  class='x evidence&#45;badge'>cpu-verified</div>", "evidence-badge"),
-        ("[amdgpu-verified]{.evidence-badge}", "evidence-badge"),
-        ("{.evidence-badge}\namdgpu-verified", "evidence-badge"),
-        ("```{container} evidence-badge\namdgpu-verified\n```", "evidence-badge"),
-        ("```{raw} html\n<b class='evidence-badge'>x</b>\n```", "evidence-badge"),
-        ("[7 rad]{.measured}", "measured"),
-        ("[7 rad]{.provenance}", "provenance"),
-    ],
-)
-def test_an_imitated_class_is_recognized_however_it_is_written(text, name, tmp_path):
-    (problem,) = found(read(text), tmp_path)
-    assert problem.startswith(f"a page may not set the class {name}: only the build sets it.")
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
+        ("<div\n  class='x evidence&#45;badge'>cpu-verified</div>", "the class evidence-badge"),
+        ("[amdgpu-verified]{.evidence-badge}", "the class evidence-badge"),
+        ("```{container} evidence-badge\namdgpu-verified\n```", "the class evidence-badge"),
+        ("```{raw} html\n<b class='evidence-badge'>x</b>\n```", "the class evidence-badge"),
+        ("[7 rad]{.measured}", "the class measured"),
+        ("[7 rad]{.provenance}", "the class provenance"),
         ('<img src="a.svg">', "the page has <img> as raw HTML"),
         ("![x](lessons/../evidence/l04/cpu/a.png) ![y](b.svg)", "Use the {evidence} directive"),
     ],
 )
-def test_a_picture_that_avoids_the_directives_is_refused(text, message, tmp_path):
+def test_an_imitated_result_is_refused_however_it_is_written(text, said, tmp_path):
     (problem,) = found(read(text), tmp_path)
-    assert message in problem
+    assert said in problem
 
 
 def test_the_site_s_own_badges_and_harmless_html_pass(tmp_path):

@@ -57,8 +57,7 @@ CELLS = (
 )
 OTHERS = {
     "lab": [
-        "a cell outputs <table> as raw HTML, which would have no line in the ledger. "
-        "Display Markdown (robo_genesis.core.tables) or a figure.",
+        "a cell outputs <table> as raw HTML, which would have no line in the ledger. Display Mark",
         "a cell outputs <img> as raw HTML",
         "a cell tagged inputs shows a picture",
         "a page may not set the class evidence-badge",

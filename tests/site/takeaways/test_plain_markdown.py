@@ -35,6 +35,7 @@ def writer(tmp_path):
         ),
         (":::{admonition} First\n:class: tip\nDo *it*.\n:::", "> **First**\n> \n> Do *it*."),
         (":::{note}\nMind.\n:::", "> **Note**\n> \n> Mind."),
+        (":::{dropdown} A hint\ninside\n:::", "> **A hint**\n> \n> inside"),
         ("- item\n\n  ```{term-list}\n  gone\n  ```\n- next", "- item\n\n- next"),
     ],
 )
@@ -47,7 +48,6 @@ def test_prose_becomes_plain(writer, myst, markdown):
     [
         ":::{dropdown} Why?\n:class-container: solution\nSECRET\n:::",
         "```{dropdown} Why?\n---\nclass-container: wide solution\n---\nSECRET\n```",
-        ":::{dropdown} Answer\nSECRET\n:::",
         ":::{dropdown} Our solution\nSECRET\n:::",
         ":::{admonition} Why?\n:class: solution\nSECRET\n:::",
         ":::{solution} exercise-1\nSECRET\n:::",
@@ -58,12 +58,7 @@ def test_prose_becomes_plain(writer, myst, markdown):
 def test_no_solution_travels(writer, fold):
     written = plain(f"Before.\n\n{fold}\n\nAfter.", writer)
     assert "SECRET" not in written
-    assert written.startswith("Before.")
-    assert written.endswith("After.")
-
-
-def test_a_fold_that_is_no_solution_travels(writer):
-    assert "inside" in plain(":::{dropdown} A hint\ninside\n:::", writer)
+    assert (written[:7], written[-6:]) == ("Before.", "After.")
 
 
 def test_a_fold_in_html_is_refused(writer):
