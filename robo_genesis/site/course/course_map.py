@@ -20,7 +20,7 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 
 from robo_genesis.core.text import listed
-from robo_genesis.site.course.facts import LAB, Minutes, minutes_of
+from robo_genesis.site.course.facts import LAB, MINUTES, Minutes
 from robo_genesis.site.evidence.plain_nodes import bullets, marked, paragraph
 from robo_genesis.site.pages import PageDirective, PageRole
 
@@ -208,7 +208,7 @@ def anchor(lesson: str) -> str:
 
 def total_minutes(env: BuildEnvironment, pages: list[str]) -> Minutes:
     """Return the time that some pages take together."""
-    found = [minutes_of(env, page) for page in pages]
+    found: list[Minutes] = [env.metadata[page][MINUTES] for page in pages]
     read, work = sum(time.read for time in found), sum(time.work for time in found)
     return Minutes(read, work, sheet=any(time.sheet for time in found))
 

@@ -5,9 +5,9 @@ all pages are read.
 """
 
 from collections.abc import Sequence
+from html import escape
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
@@ -17,7 +17,7 @@ from sphinx.util.osutil import relative_uri
 from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import badge_node
-from robo_genesis.site.evidence.plain_nodes import Cell, paragraph, table
+from robo_genesis.site.evidence.plain_nodes import Cell, between, paragraph, table
 from robo_genesis.site.evidence.provenance import ITEMS, all_runs, measured_pages
 from robo_genesis.site.pages import PageDirective
 
@@ -31,10 +31,6 @@ COLUMNS = (
 
 class ledger_part(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes so
     """Placeholder for the list of runs or items until all pages are read."""
-
-
-class scroll_box(nodes.container):  # noqa: N801
-    """A box that scrolls a wide table and accepts the keyboard's focus."""
 
 
 class Ledger(PageDirective):
@@ -148,7 +144,13 @@ def scroll(
     label: str, head: Sequence[str], rows: Sequence[Sequence[Cell]], anchors: Sequence[str] = ()
 ) -> nodes.Node:
     """Return a table in a scroll box; see `plain_nodes.table`."""
-    return scroll_box("", table(head, rows, anchors), label=label)
+    return scroll_box(label, table(head, rows, anchors))
+
+
+def scroll_box(label: str, *inside: nodes.Node) -> between:
+    """Return a box that scrolls a wide table and accepts the keyboard's focus."""
+    named = f'aria-label="{escape(label)}" class="scroll-box" role="region" tabindex="0"'
+    return between("", *inside, opening=f"<div {named}>\n", closing="</div>\n")
 
 
 def write_downloads(app: Sphinx, exception: Exception | None) -> None:
@@ -165,16 +167,9 @@ def write_downloads(app: Sphinx, exception: Exception | None) -> None:
             (folder / ledger_data.archive_name(run)).write_bytes(ledger_data.archive(run.folder))
 
 
-def visit_scroll_box(self: Any, node: scroll_box) -> None:
-    """Open the box."""
-    given = {"role": "region", "tabindex": "0", "aria-label": node["label"]}
-    self.body.append(self.starttag(node, "div", CLASS="scroll-box", **given))
-
-
 def setup(app: Sphinx) -> None:
     """Register the directive, its nodes and the two later steps."""
     app.add_directive("ledger", Ledger)
     app.add_node(ledger_part)
-    app.add_node(scroll_box, html=(visit_scroll_box, lambda self, _: self.body.append("</div>\n")))
     app.connect("doctree-resolved", fill_in)
     app.connect("build-finished", write_downloads)

@@ -16,7 +16,7 @@ Roles and a directive, as pages write them:
 
 import importlib.metadata
 import pickle
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from hashlib import sha256
@@ -42,7 +42,7 @@ from robo_genesis.pipeline.bundles.status import (
 )
 from robo_genesis.pipeline.pages.built import built_pages, page_outputs
 from robo_genesis.site.evidence.ledger_data import PageRun
-from robo_genesis.site.evidence.plain_nodes import bullets
+from robo_genesis.site.evidence.plain_nodes import WRITERS, between, bullets
 from robo_genesis.site.pages import PageRole
 
 T = TypeVar("T")
@@ -192,10 +192,6 @@ def badge_node(status: Status) -> nodes.Node:
     return evidence_badge("", status.badge, classes=["evidence-badge", f"state-{status.state}"])
 
 
-class status_fold(nodes.General, nodes.Element):  # noqa: N801
-    """A fold whose line gives the state of each run; `line` holds (state, words) of each."""
-
-
 def state_words(status: Status) -> str:
     """Return the state of a run in a few words; only an accepted run counts as measured."""
     if status.state == "verified" and status.manifest is not None:
@@ -216,8 +212,16 @@ class LessonStatus(SphinxDirective):
         """Return the fold; inside it is one line per backend."""
         statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
         known = [status for status in statuses if status.state != "missing"] or statuses
-        words = [(status.state, state_words(status)) for status in known]
-        return [status_fold("", status_list(statuses), line=words)]
+        opening = f'<details class="status-line"><summary>{status_line(known)}</summary>'
+        return [between("", status_list(statuses), opening=opening, closing="</details>")]
+
+
+def status_line(statuses: Iterable[Status]) -> str:
+    """Return the states of runs as a line of HTML."""
+    return " · ".join(
+        f'<span class="status-word state-{status.state}">{escape(state_words(status))}</span>'
+        for status in statuses
+    )
 
 
 def status_list(statuses: Sequence[Status]) -> nodes.bullet_list:
@@ -262,15 +266,6 @@ def visit_measured(self: Any, node: measured_value) -> None:
     self.body.append(self.starttag(node, "span", "", tabindex="0", role="note", **provenance))
 
 
-def visit_status(self: Any, node: status_fold) -> None:
-    """Open the fold behind its line."""
-    words = " · ".join(
-        f'<span class="status-word state-{state}">{escape(text)}</span>'
-        for state, text in node["line"]
-    )
-    self.body.append(f'<details class="status-line"><summary>{words}</summary>')
-
-
 def setup(app: Sphinx) -> None:
     """Register roles, directive and writer."""
     app.add_role("measured", Measured())
@@ -278,5 +273,5 @@ def setup(app: Sphinx) -> None:
     app.add_role("engine-release", EngineRelease())
     app.add_role("engine-package", EnginePackage())
     app.add_directive("lesson-status", LessonStatus)
-    app.add_node(status_fold, html=(visit_status, lambda self, _: self.body.append("</details>")))
+    app.add_node(between, html=WRITERS)
     app.add_node(measured_value, html=(visit_measured, lambda self, _: self.body.append("</span>")))

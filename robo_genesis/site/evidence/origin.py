@@ -17,8 +17,8 @@ MADE_BY_CELL = {"cell_code", "mime_bundle", "glued"}
 """What MyST-NB and `Glued` call the parts of a page that are the output of a cell."""
 
 
-def above(node: nodes.Node, kind: type = nodes.Element) -> Iterator[Any]:
-    """Yield the ancestors of a node that have one type, the nearest first."""
+def above(node: nodes.Node, kind: type | tuple[type, ...] = nodes.Element) -> Iterator[Any]:
+    """Yield the ancestors of a node that have some type, the nearest first."""
     while node.parent is not None:
         node = node.parent
         if isinstance(node, kind):

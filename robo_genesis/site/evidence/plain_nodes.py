@@ -1,4 +1,4 @@
-"""Nodes from text of a bundle, which no parser of markup may see: it could contain a script."""
+"""Nodes that no parser of markup makes; text of a bundle could contain a script."""
 
 import os
 import re
@@ -14,6 +14,18 @@ from sphinx.environment import BuildEnvironment
 MARKED = re.compile(r"\*\*([^*]+)\*\*|`([^`]+)`")
 Cell: TypeAlias = str | nodes.Node | Sequence[str | nodes.Node]
 KINDS = (nodes.Text, partial(nodes.strong, ""), partial(nodes.literal, ""))
+
+
+class between(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes in lower case
+    """Nodes between two pieces of the site's own HTML, `opening` and `closing`."""
+
+
+def _write(part: str, self: Any, node: between) -> None:
+    self.body.append(node[part])
+
+
+WRITERS = (partial(_write, "opening"), partial(_write, "closing"))
+"""What Sphinx calls before and after such nodes."""
 
 
 def marked(text: str) -> list[nodes.Node]:

@@ -189,7 +189,7 @@ def fold(directive: SphinxDirective, found: Mapping[str, Sequence[Mapping[str, A
     shown: list[nodes.Node] = [html("<details><summary>All answers as tables</summary>")]
     for caption, rows in found.items():
         table = directive.parse_text_to_nodes(tables.markdown(rows))
-        shown += [nodes.paragraph("", caption), scroll_box("", *table, label=caption)]
+        shown += [nodes.paragraph("", caption), scroll_box(caption, *table)]
     return [*shown, html("</details>")]
 
 

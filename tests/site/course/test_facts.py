@@ -8,7 +8,7 @@ from docutils.core import publish_doctree
 from tiny_book import git
 
 from robo_genesis.site.course import facts
-from robo_genesis.site.text.question_nodes import choice
+from robo_genesis.site.text.question_nodes import question
 
 
 def commit(folder, text, subject):
@@ -58,7 +58,7 @@ def code(text, *tags):
 
 def test_work_is_in_visible_code_questions_functions_and_a_lab_s_work_sheet(tmp_path):
     document = publish_doctree("Text.\n\n::\n\n  typed = 1\n")
-    document += [code("a\n\nb"), code("c", "hide-input"), code("d", "inputs"), choice()]
+    document += [code("a\n\nb"), code("c", "hide-input"), code("d", "inputs"), question()]
     document += code("def f():\n    raise NotImplementedError")
     lab, work = tmp_path / "lab.md", facts.work_minutes(5, 1, 1, sheet=False)
     assert work == 0.5 + facts.MINUTES_A_QUESTION + facts.MINUTES_A_FUNCTION + facts.MINUTES_A_RUN

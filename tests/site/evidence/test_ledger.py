@@ -41,12 +41,6 @@ def test_a_picture_of_pixels_is_a_camera_frame(tmp_path, name, content, kind):
     assert ledger_data.picture_kind(tmp_path / name) == kind
 
 
-def test_without_an_accepted_bundle_nothing_is_called_measured(tmp_path):
-    run = PageRun("l04/lab", tmp_path, Status("refused", "cpu", "files: gone", None, "files"))
-    assert ledger_data.provenance("table", [run]) == "No accepted evidence: cpu-refused."
-    assert ledger_data.provenance("figure", [run, run]).endswith(": cpu-refused, cpu-refused.")
-
-
 @pytest.mark.parametrize(
     ("recorded", "key", "command"),
     [

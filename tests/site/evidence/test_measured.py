@@ -11,7 +11,7 @@ from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.site.evidence import guard, measured
 from robo_genesis.site.evidence.guard import require_passed
 from robo_genesis.site.evidence.measured import measured as insert
-from robo_genesis.site.evidence.measured import state_words, status_fold, visit_status
+from robo_genesis.site.evidence.measured import status_line
 
 ORIGIN = f"Measured by l04/lab on cpu, Genesis {project.engine_pin()}, run "
 
@@ -69,11 +69,8 @@ def test_a_state_is_computed_once_for_a_kept_folder(tmp_path, monkeypatch, spoil
 )
 def test_the_line_of_an_accepted_run_alone_has_its_engine_and_no_markup(state, backend, words):
     predicate = SimpleNamespace(engine=SimpleNamespace(version="9.8.7"))
-    status, page = Status(state, backend, "", SimpleNamespace(predicate=predicate)), []
-    node = status_fold("", line=[(state, state_words(status))])
-    visit_status(SimpleNamespace(body=page), node)
-    span = f'<span class="status-word state-{state}">{words}</span>'
-    assert page == [f'<details class="status-line"><summary>{span}</summary>']
+    status = Status(state, backend, "", SimpleNamespace(predicate=predicate))
+    assert status_line([status]) == f'<span class="status-word state-{state}">{words}</span>'
 
 
 def test_only_a_check_that_passed_guards_a_sentence(outputs, monkeypatch):

@@ -90,8 +90,8 @@ def test_controls_are_named_by_what_they_show_and_the_sidebar_is_a_landmark(tmp_
         tmp_path,
         '<button class="search-button-field" aria-label="Search">Search <kbd>K</kbd></button>'
         '<details class="hide"><summary aria-label="Toggle hidden content">Show source</summary>'
-        '</details><button class="other" aria-label="Color mode"><i class="fa-solid fa-sun"></i>'
-        '</button><div id="pst-primary-sidebar"><nav class="bd-docs-nav"><ul><li><a href="#">L04: joints</a>'
+        '</details><button aria-label="Color mode"><i class="fa-solid fa-sun"></i></button>'
+        '<div id="pst-primary-sidebar"><nav class="bd-docs-nav"><ul><li><a href="#">L04: joints</a>'
         "<details><summary><i class='fa-solid fa-chevron-down'></i></summary></details></li></ul>",
     )
     labels = [tag.get("aria-label") for tag in found.select("button, summary")]

@@ -139,15 +139,6 @@ def test_a_valid_repository_on_github_alone_offers_a_codespace(given, valid, off
     assert bool(codespace(given)) == bool(offered)
 
 
-def test_a_package_that_cannot_be_built_says_why(tmp_path):
-    for name in ("README.md", "LICENSE"):
-        (tmp_path / name).write_text("")
-    (tmp_path / "robo_genesis").mkdir()
-    (tmp_path / "pyproject.toml").write_text("[project]\nname = 3\n")
-    with pytest.raises(project.ProjectError, match="must contain"):
-        build_wheel(tmp_path, tmp_path)
-
-
 def test_a_notebook_begins_with_its_origin_and_the_commands_that_run_it():
     commands = run_commands("robo.whl", "https://example.org/cpu", "lab.ipynb")
     page = SimpleNamespace(notebook=new_notebook(cells=[new_markdown_cell("# A lab\n\nText.")]))
