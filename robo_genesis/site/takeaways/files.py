@@ -1,7 +1,5 @@
 """Files that a reader takes from a lab: notebooks, arrays with units, figures, the package."""
 
-import csv
-import io
 import re
 import shutil
 import tomllib
@@ -23,6 +21,7 @@ from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
 from robo_genesis.evidence.trace_files import fields_of, read_any_trace
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import import_closure
+from robo_genesis.site.evidence.ledger_data import csv_bytes
 from robo_genesis.site.takeaways.notebooks import (
     executed_notebook,
     student_notebook,
@@ -186,11 +185,7 @@ def csv_text(trace: TimeSeries, described: Arrays, case: str) -> str:
             labels = _labels(field, described.cases[case].variables[name], described)
             for label, column in zip(labels, _by_state(trace, field, dims), strict=True):
                 columns[label] = ["" if value is None else str(value) for value in column]
-    stream = io.StringIO()
-    writer = csv.writer(stream)
-    writer.writerow(columns)
-    writer.writerows(zip(*columns.values(), strict=True))
-    return stream.getvalue()
+    return csv_bytes([list(columns), *zip(*columns.values(), strict=True)]).decode()
 
 
 def _by_state(trace: TimeSeries, field: str, dims: list[str]) -> list[tuple[np.generic, ...]]:

@@ -5,15 +5,11 @@ from built_site import parsed
 from docutils import nodes
 from docutils.core import publish_doctree
 from myst_parser.parsers.docutils_ import Parser
+from small_book import draft_of, executed
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
 from robo_genesis.pipeline.bundles.status import Status
-from robo_genesis.pipeline.html.render import render
-from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.pipeline.pages.execute import execute_pages
-from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site.evidence.measured import badge_node
 from robo_genesis.site.evidence.refusals import problems
 
@@ -96,11 +92,7 @@ def html(tmp_path_factory):
         for name, title, cells in (("lab", "A", AS_MEASURED), ("lecture", "B", AS_PRINTED))
     }  # fmt: skip
     book = make_book(folder, **pages, **{"evidence/ledger": "# Ledger\n\n```{ledger} items\n```\n"})
-    pages = find_pages(book)
-    results = execute_pages(pages, places(pages, folder / "store"))
-    assert [result.status for result in results] == ["executed"] * 2
-    sphinx = SphinxProcess(book, folder / "render.log")
-    return render(sphinx, folder / "staging", BuiltPages.of(results)).html
+    return draft_of(book, folder, executed(find_pages(book), folder)).html
 
 
 def lines_and_rows(html, name):
@@ -126,7 +118,7 @@ def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(html):
     assert lines == [CHOSEN] + [PRINTED] * 7
     assert "Its caption." in page.select_one("figcaption:has(.provenance)").get_text()
     assert kinds(rows) == ["settings", *["printed"] * 7]
-    assert [row.select("td")[3].get_text() for row in rows] == ["no run"] * 8
+    assert {row.select("td")[3].get_text() for row in rows} == {"no run"}
     anchors = [row.a["href"].split("#")[1] for row in rows]
     assert [page.find(id=anchor).name for anchor in anchors] == [
         "table", "table", "svg", "figure", "svg", "svg", "table", "table",

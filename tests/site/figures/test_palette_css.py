@@ -1,6 +1,5 @@
 """The style sheet has the palette for both themes, and names of cases on pages are marked."""
 
-
 import pytest
 from docutils import nodes
 from docutils.utils import new_document
