@@ -82,5 +82,5 @@ def test_only_a_check_that_passed_guards_a_sentence(outputs, monkeypatch):
     failed = SimpleNamespace(name="sag", passed=False, found={"sag_m": 0.1})
     manifest = SimpleNamespace(predicate=SimpleNamespace(checks=[failed]))
     monkeypatch.setattr(guard.bundle, "read_manifest", lambda folder: manifest)
-    with pytest.raises(ValueError, match="the check sag of l04/lab found {'sag_m': 0.1}."):
+    with pytest.raises(ValueError, match=r"the check sag of l04/lab found .*0\.1"):
         require_passed("l04/lab", "sag")
