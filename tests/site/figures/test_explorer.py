@@ -176,9 +176,12 @@ def test_the_last_run_stays_beside_the_chosen_one(open_block, folder, tmp_path):
         one |= {"setting": f"height {one['run']}", "axes": {"q": axis}}
         for row in one["rows"]:
             row["cells"] = [c | {"q": [0, c["answer"], 2 * c["answer"]]} for c in row["cells"]]
+    words = {"lower": "earlier", "higher": "later", "margin": 0.0, "within": "5 ms"}
+    data["measures"][0] |= {"noun": "time", "column": 0} | words
     page = open_block(block_of(tmp_path, folder, data))
-    assert page.locator(".ghost").count() == 0
     page.get_by_role("gridcell", name="z 0, x 0.3, accepted").tap()
+    assert page.locator(".ghost").count() == 0
+    page.get_by_role("button", name="Skip").click()
     assert texts(page, "dd.last") == ["last run: 20", "last run: 0.500"]
     label = page.locator(".ghost-label").text_content()
     assert label == "last run: z 0, x 0.2, accepted"
