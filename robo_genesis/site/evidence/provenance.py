@@ -28,7 +28,7 @@ from robo_genesis.site.evidence.origin import INPUTS, above, cell_of, origin
 
 TITLE = 80
 """Longest title in the ledger, in characters."""
-ITEMS = "ledger_items"
+ITEMS = "robo_genesis_items"
 """The name of a page's items in its metadata."""
 
 logger = logging.getLogger(__name__)

@@ -42,7 +42,7 @@ REPLAYS, TAKEAWAYS = "replay", "takeaways"
 HEADS = (nodes.caption, nodes.title, nodes.literal_block)
 """What a numbered figure, table or code block has for children."""
 
-OUTLINE, FILES = "outline", "files"
+OUTLINE, FILES = "robo_genesis_outline", "robo_genesis_files"
 """Metadata of a page: see `outline` and `note_files`."""
 
 OWN = {"og:description", "source_map", "wordcount", OUTLINE, FILES}

@@ -14,10 +14,7 @@ from robo_genesis.site.text import glossary
 
 TEXT = {
     r"$\foo{x}$": r"uses \\foo, which latex2mathml does not know",
-    "{doc}`nowhere`": "nowhere",
-    "[missing](#away)": "away",
     "{py:func}`module`": "reference target not found: module",
-    "{nosuchrole}`x`": "nosuchrole",
     "{lesson}`Two <l02/lectur>`": "l02 has no page 'lectur'; choices: lecture",
     "{lesson}`l02/lecture`": "'l02/lecture' is not a link; write `some words <l04/lecture>`",
     "```{course-map}\n```": "the book has no page gone",

@@ -22,7 +22,6 @@ def writer(tmp_path):
         ("{term}`DOF`, {ref}`this part <there>`, {numref}`fig-a`", "DOF, this part, the figure"),
         ("{engine-source}`engine/scene.py`", "`genesis/engine/scene.py`"),
         ("```{lesson-status} l04\n```\n\nText.", "Text."),
-        ("```{unheard-of}\nSome words.\n```\n\nText.", "Text."),
         ("| a | b |\n| - | - |\n| {term}`x` | 1 |", "| a | b |\n| - | - |\n| x | 1 |"),
         ("```python\n{measured}`kept`\n```", "```python\n{measured}`kept`\n```"),
         ("```{code-block} python\nx = 1\n```", "```python\nx = 1\n```"),
