@@ -6,11 +6,13 @@ import gc
 import os
 import re
 import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from robo_genesis.core.project import BACKEND, BOOK, BUILD_BACKEND, CACHE, RENDER, ProjectError
 from robo_genesis.core.refusals import BundleRefused
@@ -104,6 +106,24 @@ def end_with_parent(sent: signal.Signals = signal.SIGKILL) -> Callable[[], None]
             os.kill(os.getpid(), sent)
 
     return ask
+
+
+def output_of(command: Sequence[str], refusal: str, **options: Any) -> str:
+    """Run a command that ends with this process, and return what it prints.
+
+    Args:
+        command: the program and its arguments.
+        refusal: how the message begins if the command fails.
+        options: of `subprocess.run`.
+
+    Raises:
+        ProjectError: it failed; the message holds its output.
+    """
+    options |= {"capture_output": True, "text": True, "preexec_fn": end_with_parent()}
+    done = subprocess.run(command, check=False, **options)
+    if done.returncode:
+        raise ProjectError(f"{refusal}:\n{done.stdout}{done.stderr}")
+    return done.stdout
 
 
 def choice(name: str, default: str, choices: tuple[str, ...], reason: str = "") -> str:

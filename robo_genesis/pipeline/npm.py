@@ -6,13 +6,12 @@ Node.js and npm themselves come from PyPI, so a machine needs nothing but Python
 import hashlib
 import json
 import shutil
-import subprocess
 import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 
 from robo_genesis.core.project import CACHE, ROOT, ProjectError
-from robo_genesis.pipeline.command import end_with_parent
+from robo_genesis.pipeline.command import output_of
 
 LOCK = ("package.json", "package-lock.json")
 SETTINGS = ".npmrc"
@@ -128,17 +127,8 @@ def locked(name: str, root: Path = ROOT) -> dict[str, str]:
 
 def _install(folder: Path) -> None:
     npm = node().parents[1] / "lib/node_modules/npm/bin/npm-cli.js"
-    command = [str(node()), str(npm), "ci"]
-    done = subprocess.run(
-        command,
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=False,
-        preexec_fn=end_with_parent(),
+    refusal = (
+        "npm ci failed. It needs package.json and package-lock.json that agree, and the network "
+        "once. It said"
     )
-    if done.returncode != 0:
-        raise ProjectError(
-            f"npm ci failed with status {done.returncode}:\n{done.stdout}{done.stderr}\n"
-            "It needs package.json and package-lock.json that agree, and the network once."
-        )
+    output_of([str(node()), str(npm), "ci"], refusal, cwd=folder)

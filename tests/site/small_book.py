@@ -6,12 +6,15 @@ from pathlib import Path
 import yaml
 from tiny_book import cell, make_book, notebook
 
+from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
-from robo_genesis.pipeline.pages.book import find_pages
+from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
+from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.folder import write_page
 from robo_genesis.pipeline.pages.results import PageResult
+from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site.course.course_map import FILE
 from robo_genesis.site.text import glossary
 
@@ -96,17 +99,32 @@ SECONDS = {"timed": [0.26, 12.345, 3.0], "other": [2.0]}
 """Seconds of the cells of the executed pages."""
 
 
+def as_executed(page: Page, folder: Path, seconds: list[float]) -> PageResult:
+    """Return the result of a page whose cells took these times and left no outputs."""
+    ran, place = deepcopy(page.notebook), folder / "store" / page.docname
+    ran.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
+    run = {"run_id": "0" * 32, "command": None, "seconds": 1.0}
+    write_page(place, page, ran, folder, cell_seconds=seconds, **run)
+    return PageResult(page, "reused", 0.0, "0" * 32, folder=place)
+
+
+def executed(pages: list[Page], folder: Path) -> list[PageResult]:
+    """Execute pages, and return their results."""
+    results = execute_pages(pages, places(pages, folder / "store"))
+    assert {result.status for result in results} == {"executed"}
+    return results
+
+
+def draft_of(book: Path, folder: Path, results: list[PageResult]) -> Draft:
+    """Render a book."""
+    sphinx = SphinxProcess(book, folder / "render.log")
+    return render(sphinx, folder / "staging", BuiltPages.of(results))
+
+
 def render_with(book: Path, folder: Path, seconds: dict[str, list[float]]) -> Path:
     """Render a book whose executed pages took these times, pack the site and return its folder."""
-    results = []
-    for found in find_pages(book):
-        ran, place = deepcopy(found.notebook), folder / "store" / found.docname
-        ran.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
-        run = {"run_id": "0" * 32, "command": None, "seconds": 1.0}
-        write_page(place, found, ran, folder, cell_seconds=seconds[found.docname], **run)
-        results.append(PageResult(found, "reused", 0.0, "0" * 32, folder=place))
-    sphinx = SphinxProcess(book, folder / "render.log")
-    draft = render(sphinx, folder / "staging", BuiltPages.of(results))
+    results = [as_executed(page, folder, seconds[page.docname]) for page in find_pages(book)]
+    draft = draft_of(book, folder, results)
     draft.pack()
     return draft.html
 

@@ -1,6 +1,7 @@
 """Directives where Sphinx does not run: a folder, a parser of Markdown, and a page of one block."""
 
 import shutil
+from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,7 +15,7 @@ from myst_parser.parsers.docutils_ import Parser
 from robo_genesis.core.project import BOOK
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.site.evidence import panel
-from robo_genesis.site.evidence.ledger import scroll_box
+from robo_genesis.site.evidence.plain_nodes import between
 from robo_genesis.site.figures import palette_css
 from robo_genesis.site.replay import viewer
 
@@ -28,7 +29,8 @@ class Panel(panel.Evidence):
     def __init__(self, book, **options):
         self.options = options
         app = SimpleNamespace(outdir=book / "_build" / "html")
-        env = SimpleNamespace(srcdir=book, app=app, docname="lessons/page")
+        named = {"docname": "lessons/page", "metadata": defaultdict(dict)}
+        env = SimpleNamespace(srcdir=book, app=app, **named)
         self.state = SimpleNamespace(
             document=SimpleNamespace(settings=SimpleNamespace(env=env, record_dependencies=None))
         )
@@ -48,7 +50,7 @@ def page_of(block: nodes.Node, folder: Path, scripts: Sequence[str], sheets: Seq
     """
     document = new_document("page")
     document += block.deepcopy()
-    for box in list(document.findall(scroll_box)):  # whose writer is Sphinx's
+    for box in list(document.findall(between)):  # whose writer is Sphinx's
         box.replace_self(nodes.container("", *box.children))
     for image in document.findall(nodes.image):  # which Sphinx copies
         image["uri"] = (folder / "book" / image["uri"][1:]).resolve().as_uri()

@@ -8,25 +8,20 @@ from pathlib import Path
 
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import tables
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import LAST_OUTPUTS, page_record
+from robo_genesis.site.pages import PageDirective
 
 
-class CellTimes(SphinxDirective):
+class CellTimes(PageDirective):
     """Show a table with one row for each executed page of the book."""
 
-    def run(self) -> list[nodes.Node]:
-        """Return the table; a page without recorded times is an error of the build."""
-        rows = []
-        for page in find_pages(Path(self.env.srcdir)):
-            try:
-                seconds = cell_seconds(page)
-            except LookupError as error:
-                raise self.error(f"cell-times: {error}") from error
-            rows.append(row(page.docname, seconds))
+    def shown(self) -> list[nodes.Node]:
+        """Return the table."""
+        pages = find_pages(Path(self.env.srcdir))
+        rows = [row(page.docname, cell_seconds(page)) for page in pages]
         return self.parse_text_to_nodes(tables.markdown(rows))
 
 
@@ -36,10 +31,7 @@ def cell_seconds(page: Page) -> list[float]:
     Raises:
         LookupError: the store lacks the page, or the time of one of its cells.
     """
-    try:
-        seconds = page_record(page.docname).cell_seconds
-    except KeyError:
-        raise LookupError(f"{page.docname} is not executed. Build with `make book`.") from None
+    seconds = page_record(page.docname).cell_seconds
     code = (cell.source for cell in page.notebook.cells if cell.cell_type == "code")
     cells = sum(bool(source.strip()) for source in code)
     if not seconds or (len(seconds) != cells and LAST_OUTPUTS not in os.environ):

@@ -9,30 +9,31 @@
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 
 import yaml
 from docutils import nodes
+from pydantic import TypeAdapter
+from pydantic.dataclasses import dataclass
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
-from sphinx.util.docutils import SphinxDirective, SphinxRole
 
 from robo_genesis.core.text import listed
-from robo_genesis.site.course.facts import LAB, Minutes, minutes_of
-from robo_genesis.site.evidence.plain_nodes import marked
+from robo_genesis.site.course.facts import LAB, MINUTES, Minutes
+from robo_genesis.site.evidence.plain_nodes import bullets, marked, paragraph
+from robo_genesis.site.pages import PageDirective, PageRole
 
 FILE = "course_map.yml"
 LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
 """A link to a lesson's page: its words, the lesson and the page."""
 
 
-class CourseMapError(Exception):
-    """The map cannot be used; the message names the line and the reason."""
+class CourseMapError(ValueError):
+    """The map cannot be used; the message names the lesson and the reason."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, config={"extra": "forbid"})
 class Lesson:
     """One lesson.
 
@@ -53,24 +54,14 @@ def read_map(book: Path) -> list[Lesson]:
     """Return the lessons of a book's map in their order.
 
     Raises:
-        CourseMapError: the file is not a list of lessons, an id occurs twice, a lesson needs one
-            that does not come before it, a published one has no outcomes, or two are featured.
+        ValidationError: the file is not a list of lessons.
+        CourseMapError: an id occurs twice, a lesson needs one that does not come before it, a
+            published one has no outcomes, or two are featured.
     """
     rows = yaml.safe_load((book / FILE).read_text("utf8"))
-    lessons: list[Lesson] = []
-    for row in rows if isinstance(rows, list) else [rows]:
-        try:
-            needs, outcomes = row.get("needs"), row.get("outcomes", [])
-            if not isinstance(outcomes, list):
-                raise TypeError("outcomes is not a list")
-            lists = {"needs": None if needs is None else tuple(needs), "outcomes": tuple(outcomes)}
-            lesson = Lesson(**row | lists)
-        except (AttributeError, TypeError) as error:
-            raise CourseMapError(
-                f"{FILE} has {row!r}; a lesson has id, title and perhaps needs, page, outcomes and "
-                "featured."
-            ) from error
-        known = [earlier.id for earlier in lessons]
+    lessons = TypeAdapter(list[Lesson]).validate_python(rows)
+    for place, lesson in enumerate(lessons):
+        known = [earlier.id for earlier in lessons[:place]]
         if lesson.id in known:
             raise CourseMapError(f"{FILE} names {lesson.id} twice.")
         unknown = [need for need in lesson.needs or () if need not in known]
@@ -84,27 +75,27 @@ def read_map(book: Path) -> list[Lesson]:
                 f"{FILE}: {lesson.id} is published and has no outcomes. Add `outcomes:` with up to "
                 "three things that a student can do after it."
             )
-        lessons.append(lesson)
     featured = [lesson.id for lesson in lessons if lesson.featured]
     if len(featured) > 1:
         raise CourseMapError(f"{FILE} features {' and '.join(featured)}; keep one `featured`.")
     return lessons
 
 
-class MapDirective(SphinxDirective):
+class MapDirective(PageDirective):
     """Base of the directives that read the map."""
 
     def lessons(self) -> list[Lesson]:
-        """Return the lessons; an unusable map or a missing page is an error of the build."""
+        """Return the lessons.
+
+        Raises:
+            CourseMapError: the map is not valid, or the book lacks one of its pages.
+        """
         book = Path(self.env.srcdir)
         self.env.note_dependency(str(book / FILE))
-        try:
-            lessons = read_map(book)
-        except (CourseMapError, OSError, yaml.YAMLError) as error:
-            raise self.error(f"{self.name}: {error}") from error
+        lessons = read_map(book)
         gone = [x.page for x in lessons if x.page and x.page not in self.env.found_docs]
         if gone:
-            raise self.error(f"{self.name}: the book has no page {', '.join(gone)}.")
+            raise CourseMapError(f"the book has no page {', '.join(gone)}.")
         return lessons
 
 
@@ -114,31 +105,27 @@ class Featured(MapDirective):
     required_arguments = 1
     has_content = True
 
-    def run(self) -> list[nodes.Node]:
+    def shown(self) -> list[nodes.Node]:
         """Return the content; without the lesson it is not even parsed."""
         featured = [lesson.id for lesson in self.lessons() if lesson.featured and lesson.page]
         return self.parse_content_to_nodes() if self.arguments == featured else []
 
 
-class LessonLink(SphinxRole):
+class LessonLink(PageRole):
     """Link to a page of a lesson; without that lesson, the words alone remain."""
 
-    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        """Return the link; a page that the lesson does not have is an error of the build."""
+    def shown(self) -> list[nodes.Node]:
+        """Return the link or the words."""
         found = LINK.fullmatch(self.text)
         if found is None:
-            return self.refused(f"{self.text!r} is not a link; write `some words <l04/lecture>`")
+            raise ValueError(f"{self.text!r} is not a link; write `some words <l04/lecture>`.")
         words, lesson, page = found.groups()
         pages = lesson_pages(self.env.found_docs, lesson)
-        if pages and page not in pages:
-            return self.refused(f"{lesson} has no page {page!r}; choices: {', '.join(pages)}")
         if not pages:
-            return [nodes.Text(words)], []
-        return [page_link(self.env.docname, pages[page], words)], []
-
-    def refused(self, message: str) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        """Return an error of the build."""
-        return [], [self.inliner.reporter.error(f"lesson: {message}.", line=self.lineno)]
+            return [nodes.Text(words)]
+        if page not in pages:
+            raise LookupError(f"{lesson} has no page {page!r}; choices: {', '.join(pages)}.")
+        return [page_link(self.env.docname, pages[page], words)]
 
 
 def lesson_pages(docnames: Iterable[str], lesson: str) -> dict[str, str]:
@@ -162,7 +149,7 @@ class page_minutes(nodes.inline):  # noqa: N801 - docutils names nodes in lower 
 class CourseMap(MapDirective):
     """Show the published lessons as cards, and the planned ones as a list."""
 
-    def run(self) -> list[nodes.Node]:
+    def shown(self) -> list[nodes.Node]:
         """Return the cards and the list, without the list where no lesson is planned."""
         lessons = self.lessons()
         cards = [self.card(lesson) for lesson in lessons if lesson.page]
@@ -176,11 +163,10 @@ class CourseMap(MapDirective):
         """Return the card of a published lesson."""
         assert lesson.page is not None
         title = page_link(self.env.docname, lesson.page, lesson.title)
-        outcomes = (nodes.paragraph("", "", *marked(text)) for text in lesson.outcomes)
         return nodes.list_item(
             "",
-            nodes.paragraph("", "", nodes.strong("", f"{lesson.id} "), title),
-            nodes.bullet_list("", *(nodes.list_item("", line) for line in outcomes)),
+            paragraph(nodes.strong("", f"{lesson.id} "), title),
+            bullets(*map(marked, lesson.outcomes)),
             *needs_line(lesson),
             *self.times(lesson, lesson.page),
             ids=[anchor(lesson.id)],
@@ -190,26 +176,20 @@ class CourseMap(MapDirective):
         """Return a line for the lecture, for the lab, and for the other pages together."""
         pages = lesson_pages(self.env.found_docs, lesson.id.lower())
         others = [page for name, page in pages.items() if name != LAB and page != lecture]
-        rows: list[tuple[nodes.Node, list[str]]] = [
-            (page_link(self.env.docname, lecture, "Lecture"), [lecture])
+        linked = {"Lecture": lecture} | ({"Lab": pages[LAB]} if LAB in pages else {})
+        rows: list[tuple[str | nodes.Node, list[str]]] = [
+            (page_link(self.env.docname, page, word), [page]) for word, page in linked.items()
         ]
-        if LAB in pages:
-            rows.append((page_link(self.env.docname, pages[LAB], "Lab"), [pages[LAB]]))
         if others:
-            more = "1 more page" if len(others) == 1 else f"{len(others)} more pages"
-            rows.append((nodes.Text(more), others))
+            rows.append((f"{len(others)} more page{'s' * (len(others) > 1)}", others))
         return [
-            nodes.paragraph(
-                "", "", what, nodes.Text(": "), page_minutes(pages=of), classes=["time"]
-            )
-            for what, of in rows
+            paragraph(what, ": ", page_minutes(pages=of), classes=["time"]) for what, of in rows
         ]
 
 
 def planned_line(lesson: Lesson) -> nodes.list_item:
     """Return the line of a planned lesson: its name and title, without a link."""
-    name = nodes.strong("", f"{lesson.id} ")
-    line = nodes.paragraph("", "", name, nodes.Text(lesson.title))
+    line = paragraph(nodes.strong("", f"{lesson.id} "), lesson.title)
     return nodes.list_item("", line, ids=[anchor(lesson.id)])
 
 
@@ -228,7 +208,7 @@ def anchor(lesson: str) -> str:
 
 def total_minutes(env: BuildEnvironment, pages: list[str]) -> Minutes:
     """Return the time that some pages take together."""
-    found = [minutes_of(env, page) for page in pages]
+    found: list[Minutes] = [env.metadata[page][MINUTES] for page in pages]
     read, work = sum(time.read for time in found), sum(time.work for time in found)
     return Minutes(read, work, sheet=any(time.sheet for time in found))
 

@@ -13,11 +13,10 @@ from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.environment import BuildEnvironment
 
 from robo_genesis.core.git import git_or_none
 from robo_genesis.site.evidence.origin import above
-from robo_genesis.site.text.question_nodes import choice
+from robo_genesis.site.text.question_nodes import question
 
 WORDS_A_MINUTE = 200
 """A slow pace, for technical prose; code, tables and formulas are not counted."""
@@ -110,15 +109,9 @@ def count_minutes(document: nodes.document, page: Path) -> Minutes:
         if not any(HIDDEN.intersection(cell["cell_metadata"].get("tags", ())) for cell in cells):
             lines += sum(bool(line.strip()) for line in part.astext().splitlines())
             functions += STUB in part.astext()
-    questions, sheet = len(list(document.findall(choice))), has_sheet(page)
+    questions, sheet = len(list(document.findall(question))), has_sheet(page)
     read = max(1, round(count_words(document) / WORDS_A_MINUTE))
     return Minutes(read, round(work_minutes(lines, questions, functions, sheet)), sheet)
-
-
-def minutes_of(env: BuildEnvironment, docname: str) -> Minutes:
-    """Return the time that a page takes which was read."""
-    found: Minutes = env.metadata[docname][MINUTES]
-    return found
 
 
 @lru_cache(maxsize=8)
@@ -154,10 +147,8 @@ def history_html(file: Path) -> str:
 def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     """Insert the time below the title, except on the home page, and the history at the end."""
     section = document.next_node(nodes.section)
-    if section is None:
-        return
     if docname != app.config.root_doc:
-        time = f"About {minutes_of(app.env, docname)}."
+        time = f"About {app.env.metadata[docname][MINUTES]}."
         section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))
     section += nodes.raw("", history_html(Path(app.env.doc2path(docname))), format="html")
 

@@ -1,19 +1,16 @@
 """The size of each page in its source, and the limits for its kind; `make lint` compares them."""
 
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from docutils.parsers.rst.directives.misc import TestDirective
 from myst_parser.parsers.directives import parse_directive_text
 from nbformat import NotebookNode
-from sphinx.config import Config
-from sphinx.directives.code import LiteralIncludeReader
 
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.site.course.facts import HIDDEN, STUB, WORDS_A_MINUTE, has_sheet, work_minutes
-from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER
+from robo_genesis.site.takeaways.plain_markdown import ADMONITIONS, DIRECTIVE, PARSER, excerpt
 from robo_genesis.site.text.left_out import without_docstrings
 
 COLUMN = 80
@@ -24,7 +21,7 @@ MEASURES = {
     "longest": "lines in its longest visible cell", "plots": "plots",
     "minutes": "minutes to read and to work", "widest": "characters in its widest line of code",
 }  # fmt: skip
-"""What is counted, in words."""
+"""What is counted on a page, in words."""
 
 LIMITS = {
     "lecture": {"words": 3300, "cells": 12, "longest": 15, "plots": 7, "minutes": 45},
@@ -40,20 +37,8 @@ PLOT = re.compile(r"\bplots?\.\w+|_plots\.\w+|\bsubplots\(")
 QUESTION = re.compile(r"^ *[`:]{3,}\{(?:choice|number)\}", re.MULTILINE)
 
 
-@dataclass(frozen=True, slots=True)
-class Size:
-    """The size of one page; the fields are those of `MEASURES`."""
-
-    words: int
-    cells: int
-    longest: int
-    plots: int
-    minutes: int
-    widest: int
-
-
-def size(notebook: NotebookNode, file: Path) -> Size:
-    """Return the size of a page.
+def size(notebook: NotebookNode, file: Path) -> dict[str, int]:
+    """Return the size of a page by the names of `MEASURES`.
 
     Args:
         notebook: the page's source.
@@ -63,19 +48,19 @@ def size(notebook: NotebookNode, file: Path) -> Size:
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
     visible = [c for c in code if not HIDDEN.intersection(c.metadata.get("tags", ()))]
     lines = [sum(bool(line.strip()) for line in cell.source.splitlines()) for cell in visible]
-    widths = (0, *(len(line) for cell in visible for line in cell.source.splitlines()))
+    widths = [0, *(len(line) for cell in visible for line in cell.source.splitlines())]
     words = sum(map(count_words, texts))
     questions = sum(len(QUESTION.findall(text)) for text in texts)
     functions = sum(STUB in cell.source for cell in visible)
     work = work_minutes(sum(lines), questions, functions, has_sheet(file))
-    return Size(
-        words=words,
-        cells=len(visible),
-        longest=max(lines, default=0),
-        plots=sum(bool(PLOT.search(cell.source)) for cell in code),
-        minutes=round(words / WORDS_A_MINUTE + work),
-        widest=max((*widths, *(width for t in texts for width in excerpt_widths(t, file.parent)))),
-    )
+    return {
+        "words": words,
+        "cells": len(visible),
+        "longest": max(lines, default=0),
+        "plots": sum(bool(PLOT.search(cell.source)) for cell in code),
+        "minutes": round(words / WORDS_A_MINUTE + work),
+        "widest": max(sum((excerpt_widths(t, file.parent) for t in texts), widths)),
+    }
 
 
 def count_words(text: str) -> int:
@@ -94,23 +79,19 @@ def count_words(text: str) -> int:
     return words
 
 
-def excerpt_widths(text: str, folder: Path) -> Iterator[int]:
-    """Yield the widest line of each excerpt of the package, as the page shows it."""
-    for path, body in INCLUDE.findall(text):
-        options = parse_directive_text(TestDirective, path, body).options
-        if "dedent" in options:
-            options["dedent"] = int(options["dedent"])
-        code, _ = LiteralIncludeReader(str((folder / path).resolve()), options, Config()).read()
-        yield max(map(len, without_docstrings(code).splitlines()), default=0)
+def excerpt_widths(text: str, folder: Path) -> list[int]:
+    """Return the widths of all lines of the excerpts of the package, as the page shows them."""
+    shown = (without_docstrings(excerpt(folder, *include)) for include in INCLUDE.findall(text))
+    return [len(line) for code in shown for line in code.splitlines()]
 
 
-def excess(found: Size, kind: str) -> list[str]:
+def excess(found: Mapping[str, int], kind: str) -> list[str]:
     """Return a phrase for each number of a page that is over the limit for its kind."""
     limits = {**LIMITS.get(kind, {}), "widest": COLUMN}
     return [
         f"{number:,} {MEASURES[name]} (at most {limit:,})"
         for name, limit in limits.items()
-        if (number := getattr(found, name)) > limit
+        if (number := found[name]) > limit
     ]
 
 
@@ -123,7 +104,7 @@ def report(pages: Iterable[Page]) -> tuple[list[str], list[str]]:
     lines, problems = [], []
     for page in pages:
         found = size(page.notebook, page.path)
-        numbers = ", ".join(f"{getattr(found, name):,} {what}" for name, what in MEASURES.items())
+        numbers = ", ".join(f"{found[name]:,} {what}" for name, what in MEASURES.items())
         lines.append(f"{page.docname}: {numbers}")
         if over := excess(found, page.path.stem.partition("-")[0]):
             problems.append(

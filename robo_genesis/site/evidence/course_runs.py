@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from docutils import nodes
 from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core.declaration import Compared, Moving
@@ -25,8 +26,10 @@ from robo_genesis.pipeline.pages.built import LAST_OUTPUTS
 from robo_genesis.site.course.course_map import MapDirective, page_link
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import READABLE, lesson_statuses, page_run, status_list
-from robo_genesis.site.evidence.panel import Picture, drawn_picture, figure, frames
+from robo_genesis.site.evidence.panel import drawn_figure, frames
+from robo_genesis.site.evidence.plain_nodes import paragraph
 from robo_genesis.site.evidence.provenance import all_runs
+from robo_genesis.site.pages import PageDirective
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -71,43 +74,37 @@ def measured_line(runs: Iterable[PageRun]) -> str:
 class CourseStatus(MapDirective):
     """Show the state of the runs of each published lesson's lab."""
 
-    def run(self) -> list[nodes.Node]:
+    def shown(self) -> list[nodes.Node]:
         """Return a title and a list for each lesson."""
         found: list[nodes.Node] = []
         for lesson in (lesson for lesson in self.lessons() if lesson.page):
             assert lesson.page is not None
             title = page_link(self.env.docname, lesson.page, lesson.title)
-            found.append(nodes.paragraph("", "", nodes.strong("", f"{lesson.id} "), title))
+            found.append(paragraph(nodes.strong("", f"{lesson.id} "), title))
             statuses = lesson_statuses(Path(self.env.srcdir), lesson.id.lower())
             found.append(status_list(statuses))
         return found
 
 
-class Glance(SphinxDirective):
+class Glance(PageDirective):
     """Show pictures of a lesson's accepted run on CPU."""
 
     required_arguments = 1
 
-    def run(self) -> list[nodes.Node]:
-        """Return the figures.
-
-        Errors are a lesson without an accepted run of this build, and one that compares no cases.
-        """
+    def shown(self) -> list[nodes.Node]:
+        """Return the figures."""
         lesson = self.arguments[0]
         compared = compared_cases(lesson)
         if compared is None:
-            raise self.error(
-                f"glance: {lesson} compares no cases. Declare `compared` in its LESSON."
-            )
+            raise LookupError(f"{lesson} compares no cases. Declare `compared` in its LESSON.")
         run = page_run(Path(self.env.srcdir), lesson)
         predicate = shown_predicate(run)
         if predicate is None:
-            raise self.error(f"glance: {lesson} has no accepted run: {run.status.reason}")
+            raise LookupError(f"{lesson} has no accepted run: {run.status.reason}")
         box = nodes.container(classes=["glance"], evidence_runs=(run.key,))
-        camera = frames(run.folder, filmed(lesson), run.status.backend)
-        last = (frame for frame in camera if frame.name == "final")
-        for picture in (response(run.folder, compared), *last):
-            box += figure(self, f"glance-{lesson}-{picture.name}", picture)
+        prefix, shown = f"glance-{lesson}", filmed(lesson)
+        box += response(self.env, prefix, run.folder, compared)
+        box += frames(self.env, prefix, run.folder, shown, run.status.backend, ["final"])
         if predicate.render.mode != "camera":
             box += nodes.paragraph("", "SKIP: rendering was off, so there is no camera frame.")
         return [box]
@@ -123,7 +120,9 @@ def shown_predicate(run: PageRun) -> Predicate | None:
     return run.predicate
 
 
-def response(folder: Path, compared: Compared | Moving) -> Picture:
+def response(
+    env: BuildEnvironment, prefix: str, folder: Path, compared: Compared | Moving
+) -> nodes.figure:
     """Return the first channel of the compared cases, drawn from a bundle's arrays."""
     from robo_genesis.core import plotting  # it loads slowly
 
@@ -138,7 +137,7 @@ def response(folder: Path, compared: Compared | Moving) -> Picture:
         ax.set_title(ax.get_title(loc="left"), loc="left", pad=6)
         ax.legend(loc="upper right" if fall else "lower right")
 
-    return drawn_picture(3.2, draw, runs.alt, runs.caption)
+    return drawn_figure(env, prefix, 3.2, draw, runs.alt, runs.caption)
 
 
 def setup(app: Sphinx) -> None:

@@ -5,21 +5,21 @@ all pages are read.
 """
 
 from collections.abc import Sequence
+from html import escape
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
-from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
 from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import badge_node
-from robo_genesis.site.evidence.plain_nodes import table
-from robo_genesis.site.evidence.provenance import all_items, all_runs, measured_pages
+from robo_genesis.site.evidence.plain_nodes import Cell, between, paragraph, table
+from robo_genesis.site.evidence.provenance import ITEMS, all_runs, measured_pages
+from robo_genesis.site.pages import PageDirective
 
 LEDGER = "evidence/ledger"
 DOWNLOADS = "_downloads/evidence"
@@ -33,20 +33,16 @@ class ledger_part(nodes.General, nodes.Element):  # noqa: N801 - docutils names 
     """Placeholder for the list of runs or items until all pages are read."""
 
 
-class scroll_box(nodes.container):  # noqa: N801
-    """A box that scrolls a wide table and accepts the keyboard's focus."""
-
-
-class Ledger(SphinxDirective):
+class Ledger(PageDirective):
     """List all runs, or all figures and tables of the site."""
 
     required_arguments = 1
 
-    def run(self) -> list[nodes.Node]:
+    def shown(self) -> list[nodes.Node]:
         """Return the placeholder."""
         part = self.arguments[0]
         if part not in ("runs", "items"):
-            raise self.error(f"ledger: {part!r} is not valid. Choices: runs, items.")
+            raise ValueError("the choices are runs and items.")
         return [ledger_part(part=part)]
 
 
@@ -69,23 +65,18 @@ def fill_in(app: Sphinx, doctree: nodes.document, docname: str) -> None:
 def run_block(docname: str, run: PageRun) -> nodes.Node:
     """Return a run's facts and its bundle, or why it is missing and the command that creates it."""
     block = nodes.container(ids=[run_anchor(run.key)], classes=["run-block"])
-    title = nodes.strong("", run.page)
-    block += nodes.paragraph("", "", title, nodes.Text(" "), badge_node(run.status))
+    block += paragraph(nodes.strong("", run.page), " ", badge_node(run.status))
     if run.status.summary or run.predicate is None:
-        block += nodes.paragraph("", run.status.summary or run.status.reason)
+        block += paragraph(run.status.summary or run.status.reason)
     if run.predicate is None:
         block += nodes.literal_block(run.command, run.command, language="console")
         return block
-    facts: dict[str, nodes.Node] = {
-        name: nodes.Text(value)
-        for name, value in ledger_data.facts(run.status.backend, run.predicate).items()
-    }
+    facts: dict[str, Cell] = {**ledger_data.facts(run.status.backend, run.predicate)}
     facts["evidence key"] = _digest(run.predicate.evidence_key)
     name = ledger_data.archive_name(run)
     facts["bundle"] = _link(name, relative_uri(f"{docname}.html", f"{DOWNLOADS}/{name}"))
     facts["its sha256"] = _digest(ledger_data.sha256(ledger_data.archive(run.folder)))
-    rows = [[nodes.Text(name), fact] for name, fact in facts.items()]
-    block += scroll(f"Run {run.page} on {run.status.backend}", (), rows)
+    block += scroll(f"Run {run.page} on {run.status.backend}", (), list(facts.items()))
     return block
 
 
@@ -93,7 +84,7 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
     """Return the table of all figures and tables on the pages, in the order of the pages."""
     env, runs = app.env, all_runs(Path(app.srcdir))
     rows, anchors = [], []
-    for item in (item for name in _reading_order(env) for item in all_items(env).get(name, [])):
+    for item in (item for name in _reading_order(env) for item in env.metadata[name][ITEMS]):
         place = app.builder.get_relative_uri(docname, item.docname)
         is_table = item.data is not None
         file = f"{DOWNLOADS}/{item.file}" if is_table else f"_images/{env.images[item.file][1]}"
@@ -101,7 +92,8 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
         rows.append(
             [
                 _link(item.title, f"{place}#{item.anchor}"),
-                *map(nodes.Text, (item.kind, page)),
+                item.kind,
+                page,
                 *_of_runs([runs[key] for key in item.runs]),
                 _digest(item.sha256),
                 _link("CSV" if is_table else "picture", relative_uri(f"{docname}.html", file)),
@@ -111,24 +103,19 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
     return scroll("Figures and tables", COLUMNS, rows, anchors)
 
 
-def _of_runs(runs: Sequence[PageRun]) -> list[list[nodes.Node]]:
+def _of_runs(runs: Sequence[PageRun]) -> list[Cell]:
     """Return five cells with a paragraph for each run."""
-    if not runs:
-        return [[nodes.Text(text)] for text in ("no run", *"––––")]
-    return [list(cell) for cell in zip(*map(_of_run, runs), strict=True)]
+    return [*zip(*map(_of_run, runs), strict=True)] if runs else ["no run", *"––––"]
 
 
-def _of_run(run: PageRun) -> list[nodes.Node]:
+def _of_run(run: PageRun) -> list[str | nodes.Node]:
     badge, predicate = badge_node(run.status), run.predicate
     if predicate is None:
-        return [nodes.Text("–"), badge, *map(nodes.Text, "–––")]
+        return ["–", badge, *"–––"]
     facts = ledger_data.facts(run.status.backend, predicate)
-    return [
-        _link(facts["run"], f"#{run_anchor(run.key)}"),
-        badge,
-        nodes.Text(predicate.engine.version),
-        *(nodes.Text(facts[name]) for name in ("started (UTC)", "checks passed")),
-    ]
+    link = _link(facts["run"], f"#{run_anchor(run.key)}")
+    more = (facts[name] for name in ("started (UTC)", "checks passed"))
+    return [link, badge, predicate.engine.version, *more]
 
 
 def run_anchor(key: str) -> str:
@@ -154,22 +141,25 @@ def _link(text: str, address: str) -> nodes.Node:
 
 
 def scroll(
-    label: str,
-    head: Sequence[str],
-    rows: Sequence[Sequence[nodes.Node | Sequence[nodes.Node]]],
-    anchors: Sequence[str] = (),
+    label: str, head: Sequence[str], rows: Sequence[Sequence[Cell]], anchors: Sequence[str] = ()
 ) -> nodes.Node:
     """Return a table in a scroll box; see `plain_nodes.table`."""
-    return scroll_box("", table(head, rows, anchors), label=label)
+    return scroll_box(label, table(head, rows, anchors))
+
+
+def scroll_box(label: str, *inside: nodes.Node) -> between:
+    """Return a box that scrolls a wide table and accepts the keyboard's focus."""
+    named = f'aria-label="{escape(label)}" class="scroll-box" role="region" tabindex="0"'
+    return between("", *inside, opening=f"<div {named}>\n", closing="</div>\n")
 
 
 def write_downloads(app: Sphinx, exception: Exception | None) -> None:
     """Write the tables and bundles that the ledger links to."""
-    if exception is not None or app.builder.format != "html" or LEDGER not in app.env.found_docs:
+    if exception is not None or LEDGER not in app.env.found_docs:
         return
     folder = Path(app.outdir) / DOWNLOADS
     folder.mkdir(parents=True, exist_ok=True)
-    for item in chain.from_iterable(all_items(app.env).values()):
+    for item in chain.from_iterable(page.get(ITEMS, ()) for page in app.env.metadata.values()):
         if item.data is not None:
             (folder / item.file).write_bytes(item.data)
     for run in all_runs(Path(app.srcdir)).values():
@@ -177,16 +167,9 @@ def write_downloads(app: Sphinx, exception: Exception | None) -> None:
             (folder / ledger_data.archive_name(run)).write_bytes(ledger_data.archive(run.folder))
 
 
-def visit_scroll_box(self: Any, node: scroll_box) -> None:
-    """Open the box."""
-    given = {"role": "region", "tabindex": "0", "aria-label": node["label"]}
-    self.body.append(self.starttag(node, "div", CLASS="scroll-box", **given))
-
-
 def setup(app: Sphinx) -> None:
     """Register the directive, its nodes and the two later steps."""
     app.add_directive("ledger", Ledger)
     app.add_node(ledger_part)
-    app.add_node(scroll_box, html=(visit_scroll_box, lambda self, _: self.body.append("</div>\n")))
     app.connect("doctree-resolved", fill_in)
     app.connect("build-finished", write_downloads)

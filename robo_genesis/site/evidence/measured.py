@@ -16,7 +16,7 @@ Roles and a directive, as pages write them:
 
 import importlib.metadata
 import pickle
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from hashlib import sha256
@@ -26,7 +26,7 @@ from typing import Any, TypeVar, cast
 
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective, SphinxRole
+from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
 from robo_genesis.core.files import write_whole
@@ -42,6 +42,8 @@ from robo_genesis.pipeline.bundles.status import (
 )
 from robo_genesis.pipeline.pages.built import built_pages, page_outputs
 from robo_genesis.site.evidence.ledger_data import PageRun
+from robo_genesis.site.evidence.plain_nodes import WRITERS, between, bullets
+from robo_genesis.site.pages import PageRole
 
 T = TypeVar("T")
 BACKEND = project.BUILD_BACKEND
@@ -115,20 +117,15 @@ class measured_value(nodes.inline):  # noqa: N801 - docutils names nodes in lowe
     """A measured value in prose; its attribute `provenance` names its run."""
 
 
-class Measured(SphinxRole):
-    """Insert one measured value; an unknown one is an error of the build."""
+class Measured(PageRole):
+    """Insert one measured value."""
 
-    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+    def shown(self) -> list[nodes.Node]:
         """Return the value as text that carries its provenance."""
         lesson_page, _, name = self.text.partition(" ")
-        try:
-            text, origin = measured(lesson_page, name)
-        except (LookupError, bundle.BundleRefused) as error:
-            message = self.inliner.reporter.error(f"measured: {error}", line=self.lineno)
-            return [], [message]
+        text, origin = measured(lesson_page, name)
         classes = ["measured", *(["measured-list"] if ", " in text else [])]
-        node = measured_value(self.rawtext, text, classes=classes, provenance=origin)
-        return [node], []
+        return [measured_value(self.rawtext, text, classes=classes, provenance=origin)]
 
 
 def stored(name: str, compute: Callable[[], T]) -> T:
@@ -195,10 +192,6 @@ def badge_node(status: Status) -> nodes.Node:
     return evidence_badge("", status.badge, classes=["evidence-badge", f"state-{status.state}"])
 
 
-class status_fold(nodes.General, nodes.Element):  # noqa: N801
-    """A fold whose line gives the state of each run; `line` holds (state, words) of each."""
-
-
 def state_words(status: Status) -> str:
     """Return the state of a run in a few words; only an accepted run counts as measured."""
     if status.state == "verified" and status.manifest is not None:
@@ -219,48 +212,52 @@ class LessonStatus(SphinxDirective):
         """Return the fold; inside it is one line per backend."""
         statuses = lesson_statuses(Path(self.env.srcdir), self.arguments[0])
         known = [status for status in statuses if status.state != "missing"] or statuses
-        words = [(status.state, state_words(status)) for status in known]
-        return [status_fold("", status_list(statuses), line=words)]
+        opening = f'<details class="status-line"><summary>{status_line(known)}</summary>'
+        return [between("", status_list(statuses), opening=opening, closing="</details>")]
+
+
+def status_line(statuses: Iterable[Status]) -> str:
+    """Return the states of runs as a line of HTML."""
+    return " · ".join(
+        f'<span class="status-word state-{status.state}">{escape(state_words(status))}</span>'
+        for status in statuses
+    )
 
 
 def status_list(statuses: Sequence[Status]) -> nodes.bullet_list:
     """Return the states of runs as a list: the badge and a sentence on each."""
-    lines = nodes.bullet_list(classes=["lesson-status"])
-    for status in statuses:
-        line = nodes.paragraph("", "", badge_node(status), nodes.Text(f" {status.sentence}"))
-        lines += nodes.list_item("", line)
-    return lines
+    lines = ((badge_node(status), f" {status.sentence}") for status in statuses)
+    return bullets(*lines, classes=["lesson-status"])
 
 
-class EngineSource(SphinxRole):
-    """Link to a file of the pinned engine; a path that does not exist is an error."""
+class EngineSource(PageRole):
+    """Link to a file of the pinned engine."""
 
-    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+    def shown(self) -> list[nodes.Node]:
         """Return the link, its text the path."""
         installed = importlib.metadata.distribution("genesis-world")
         if not Path(str(installed.locate_file(f"genesis/{self.text}"))).is_file():
-            message = f"engine-source: Genesis {installed.version} has no file genesis/{self.text}"
-            return [], [self.inliner.reporter.error(message, line=self.lineno)]
+            raise LookupError(f"Genesis {installed.version} has no file genesis/{self.text}")
         target = f"{REPOSITORY}/blob/v{project.engine_pin()}/genesis/{self.text}"
         literal = nodes.literal(self.text, self.text)
-        return [nodes.reference(self.rawtext, "", literal, refuri=target)], []
+        return [nodes.reference(self.rawtext, "", literal, refuri=target)]
 
 
-class EngineRelease(SphinxRole):
-    """Link to a page about the pinned release of the engine.
+class EngineRelease(PageRole):
+    """Link to the pinned release of the engine."""
 
-    Args:
-        address: of the page, with `{}` for the version.
-    """
+    address = f"{REPOSITORY}/releases/tag/v{{}}"
 
-    def __init__(self, address: str) -> None:
-        super().__init__()
-        self.address = address
-
-    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+    def shown(self) -> list[nodes.Node]:
         """Return the link, its text as given."""
         target = self.address.format(project.engine_pin())
-        return [nodes.reference(self.rawtext, self.text, refuri=target)], []
+        return [nodes.reference(self.rawtext, self.text, refuri=target)]
+
+
+class EnginePackage(EngineRelease):
+    """Link to the page of the pinned release on PyPI."""
+
+    address = f"{PACKAGES}/{{}}/"
 
 
 def visit_measured(self: Any, node: measured_value) -> None:
@@ -269,21 +266,12 @@ def visit_measured(self: Any, node: measured_value) -> None:
     self.body.append(self.starttag(node, "span", "", tabindex="0", role="note", **provenance))
 
 
-def visit_status(self: Any, node: status_fold) -> None:
-    """Open the fold behind its line."""
-    words = " · ".join(
-        f'<span class="status-word state-{state}">{escape(text)}</span>'
-        for state, text in node["line"]
-    )
-    self.body.append(f'<details class="status-line"><summary>{words}</summary>')
-
-
 def setup(app: Sphinx) -> None:
     """Register roles, directive and writer."""
     app.add_role("measured", Measured())
     app.add_role("engine-source", EngineSource())
-    app.add_role("engine-release", EngineRelease(f"{REPOSITORY}/releases/tag/v{{}}"))
-    app.add_role("engine-package", EngineRelease(f"{PACKAGES}/{{}}/"))
+    app.add_role("engine-release", EngineRelease())
+    app.add_role("engine-package", EnginePackage())
     app.add_directive("lesson-status", LessonStatus)
-    app.add_node(status_fold, html=(visit_status, lambda self, _: self.body.append("</details>")))
+    app.add_node(between, html=WRITERS)
     app.add_node(measured_value, html=(visit_measured, lambda self, _: self.body.append("</span>")))

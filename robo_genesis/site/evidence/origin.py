@@ -17,8 +17,8 @@ MADE_BY_CELL = {"cell_code", "mime_bundle", "glued"}
 """What MyST-NB and `Glued` call the parts of a page that are the output of a cell."""
 
 
-def above(node: nodes.Node, kind: type = nodes.Element) -> Iterator[Any]:
-    """Yield the ancestors of a node that have one type, the nearest first."""
+def above(node: nodes.Node, kind: type | tuple[type, ...] = nodes.Element) -> Iterator[Any]:
+    """Yield the ancestors of a node that have some type, the nearest first."""
     while node.parent is not None:
         node = node.parent
         if isinstance(node, kind):
@@ -39,24 +39,30 @@ def origin(node: nodes.Node, page: str | None) -> tuple[str, ...] | None:
         () where a cell shows chosen values, None where neither a cell nor a bundle made the node,
         ("",) where a cell made it and the page declares no bundle.
     """
-    parents = list(above(node))
-    for element in parents:
+    for element in above(node):
         if "evidence_runs" in element:
             return tuple(element["evidence_runs"])
-    made = {element.get("nb_element"): element for element in parents}
-    if "cell_code" in made and INPUTS in made["cell_code"]["cell_metadata"].get("tags", []):
+    cell = cell_of(node)
+    if cell is None:
+        return None
+    if INPUTS in cell.get("cell_metadata", {}).get("tags", []):
         return ()
-    if made.keys() & MADE_BY_CELL:
-        return (f"{page}/{BACKEND}" if page else "",)
-    return None
+    return (f"{page}/{BACKEND}" if page else "",)
 
 
-def came_from_a_cell(node: nodes.Node) -> bool:
-    """Return whether a node is the output of a cell, there or glued, and not read from a bundle."""
-    parents = list(above(node))
-    if any("evidence_runs" in element for element in parents):
-        return False
-    return any(element.get("nb_element") in MADE_BY_CELL for element in parents)
+def cell_of(node: nodes.Node) -> nodes.Element | None:
+    """Return the cell, or the glued part of one, whose output a node is.
+
+    Returns:
+        None for a node that no cell made, or that was read from a bundle.
+    """
+    found = None
+    for element in above(node):
+        if "evidence_runs" in element:
+            return None
+        if element.get("nb_element") in MADE_BY_CELL:
+            found = element
+    return found
 
 
 class Glued:

@@ -7,7 +7,6 @@ gives the state, the reason and the command that records a new one.
 
 import io
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING
 from docutils import nodes
 from docutils.parsers.rst.directives import flag
 from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
@@ -28,22 +28,11 @@ from robo_genesis.lessons import compared_cases, course_marks, filmed
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import BACKEND, READABLE
-from robo_genesis.site.evidence.plain_nodes import image, marked, text_table
+from robo_genesis.site.evidence.plain_nodes import bullets, image, marked, paragraph, text_table
 from robo_genesis.site.replay.directive import replay_block
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """A picture of a bundle, with its alternative text and caption."""
-
-    name: str
-    suffix: str
-    content: bytes
-    alt: str
-    caption: str
 
 
 VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
@@ -77,10 +66,10 @@ class Evidence(SphinxDirective):
             panel += introduction(status.sentence)
         else:
             panel += [introduction(status.sentence), backend_facts(run.predicate)]
-            compared = compared_cases(lesson)
-            drawn = [response(folder, compared, status.backend)] if compared else []
-            for picture in (*drawn, *frames(folder, filmed(lesson), status.backend)):
-                panel += figure(self, f"{lesson}-{status.backend}-{picture.name}", picture)
+            compared, prefix = compared_cases(lesson), f"{lesson}-{status.backend}"
+            if compared:
+                panel += response(self.env, prefix, folder, compared, status.backend)
+            panel += frames(self.env, prefix, folder, filmed(lesson), status.backend)
             if compared:
                 panel += replay_block(self, run.key, folder)
         here = measured.page_run(Path(self.env.srcdir), lesson)
@@ -90,11 +79,12 @@ class Evidence(SphinxDirective):
         return panel
 
 
-def figure(directive: SphinxDirective, anchor: str, picture: Picture) -> nodes.Node:
-    """Return a figure."""
-    name = f"{anchor}{picture.suffix}"
-    shown = image(directive.env, name, picture.content, picture.alt)
-    return nodes.figure("", shown, nodes.caption("", picture.caption), ids=[anchor])
+def figure(
+    env: BuildEnvironment, anchor: str, suffix: str, content: bytes, alt: str, caption: str
+) -> nodes.figure:
+    """Return a figure; its picture is in a file that is named after its anchor."""
+    shown = image(env, f"{anchor}{suffix}", content, alt)
+    return nodes.figure("", shown, nodes.caption("", caption), ids=[anchor])
 
 
 def not_recorded(run: PageRun) -> nodes.Node:
@@ -102,8 +92,7 @@ def not_recorded(run: PageRun) -> nodes.Node:
     backend = READABLE.get(run.status.backend, run.status.backend)
     what = f"No run on {backend} is recorded for Genesis {project.engine_pin()} yet; this command "
     command = nodes.literal("", run.command.removeprefix("$ "))
-    where = nodes.Text("records one on such a machine: ")
-    return nodes.paragraph("", "", nodes.Text(what), where, command, nodes.Text("."))
+    return paragraph(what, "records one on such a machine: ", command, ".")
 
 
 def withheld(run: PageRun) -> list[nodes.Node]:
@@ -112,15 +101,14 @@ def withheld(run: PageRun) -> list[nodes.Node]:
     what = f"No figures from {status.backend} for Genesis {project.engine_pin()} ({status.badge})."
     why = f" {status.summary or status.reason} On a machine with this backend, this records a run:"
     return [
-        nodes.paragraph("", "", nodes.strong("", what), nodes.Text(why)),
+        paragraph(nodes.strong("", what), why),
         nodes.literal_block(run.command, run.command, language="console"),
     ]
 
 
 def introduction(sentence: str) -> nodes.Node:
     """Return the sentence on a run's state as a paragraph."""
-    title = nodes.strong("", "Reference run.")
-    return nodes.paragraph("", "", title, nodes.Text(f" {sentence}"))
+    return paragraph(nodes.strong("", "Reference run."), f" {sentence}")
 
 
 def backend_facts(predicate: Predicate) -> nodes.Node:
@@ -142,8 +130,12 @@ def backend_facts(predicate: Predicate) -> nodes.Node:
     return text_table([{"what": name, "value": value} for name, value in facts.items()])
 
 
-def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture:
+def response(
+    env: BuildEnvironment, prefix: str, folder: Path, compared: Compared | Moving, backend: str
+) -> nodes.figure:
     """Return every channel of the compared cases, drawn from the bundle's arrays."""
+    from robo_genesis.core import plotting  # it loads slowly
+
     runs = read_runs(folder, compared)
 
     def draw(drawing: "Figure") -> None:
@@ -153,20 +145,19 @@ def response(folder: Path, compared: Compared | Moving, backend: str) -> Picture
             plotting.channel(ax, runs.t, drawn, runs.subject, course_marks(), levels)
             ax.label_outer()
 
-    from robo_genesis.core import plotting  # it loads slowly
-
     names = listed([channel.name for channel in runs.channels])
     what = f"{names.capitalize()} of {runs.subject}"
     several = f", with the cases {compared.names} drawn over each other"
     alt = f"{what} over time on {backend}{several if len(runs.traces) > 1 else ''}."
     caption = f"{what} on {backend}, drawn from the arrays of the recorded run."
-    return drawn_picture(0.5 + 3 * len(runs.channels), draw, alt, caption)
+    return drawn_figure(env, prefix, 0.5 + 3 * len(runs.channels), draw, alt, caption)
 
 
-def drawn_picture(
-    height: float, draw: Callable[["Figure"], None], alt: str, caption: str
-) -> Picture:
-    """Return a figure of a height [in] in the course's style as a picture."""
+def drawn_figure(
+    env: BuildEnvironment, prefix: str, height: float, draw: Callable[["Figure"], None],
+    alt: str, caption: str,
+) -> nodes.figure:  # fmt: skip
+    """Return a drawing of a height [in] in the course's style as a figure."""
     from robo_genesis.core import plotting  # it loads slowly
 
     stream = io.BytesIO()
@@ -174,18 +165,21 @@ def drawn_picture(
         drawing = plotting.figure(height)
         draw(drawing)
         drawing.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
-    return Picture("response", ".svg", stream.getvalue(), alt, caption)
+    return figure(env, f"{prefix}-response", ".svg", stream.getvalue(), alt, caption)
 
 
-def frames(folder: Path, shown: Filmed, backend: str) -> Iterator[Picture]:
-    """Yield the unchanged camera frames, nothing where rendering was off."""
-    for name in ("initial", "final"):
+def frames(
+    env: BuildEnvironment, prefix: str, folder: Path, shown: Filmed, backend: str,
+    names: Sequence[str] = ("initial", "final"),
+) -> Iterator[nodes.figure]:  # fmt: skip
+    """Yield the unchanged camera frames as figures, nothing where rendering was off."""
+    for name in names:
         path = folder / "frames" / f"{name}.png"
         if path.is_file():
-            what, state = f"Camera frame of {shown.thing}", f"{name} state of {shown.case}"
-            alt = f"{what}, {state} on {backend}."
+            state = f"{name} state of {shown.case}"
+            alt = f"Camera frame of {shown.thing}, {state} on {backend}."
             caption = f"Camera frame on {backend}, {state}."
-            yield Picture(name, ".png", path.read_bytes(), alt, caption)
+            yield figure(env, f"{prefix}-{name}", ".png", path.read_bytes(), alt, caption)
 
 
 def comparison(here: Path, folder: Path) -> list[nodes.Node]:
@@ -198,9 +192,7 @@ def comparison(here: Path, folder: Path) -> list[nodes.Node]:
     found = compare(here, folder)
     if found.obstacles:
         title = nodes.strong("", f"Not comparable with this build's run on {BACKEND}.")
-        reasons = (nodes.paragraph("", reason) for reason in found.obstacles)
-        items = (nodes.list_item("", reason) for reason in reasons)
-        return [nodes.paragraph("", "", title), nodes.bullet_list("", *items)]
+        return [paragraph(title), bullets(*([reason] for reason in found.obstacles))]
     both = f"{BACKEND}, this build", f"{found.new.backend.actual}, recorded"
     elsewhere = [
         section.title.lower()
@@ -215,7 +207,7 @@ def comparison(here: Path, folder: Path) -> list[nodes.Node]:
     claimed = "The orderings that the lesson claims, in both runs:"
     orderings = compared_table(found, (RELATIONS,), "claim", both)
     return [
-        nodes.paragraph("", "", *marked(intro)),
+        paragraph(*marked(intro)),
         *compared_table(found, VALUES, "metric", both),
         nodes.paragraph("", claimed if orderings else "The lesson claims no ordering."),
         *orderings,

@@ -1,4 +1,4 @@
-"""Nodes from text of a bundle, which no parser of markup may see: it could contain a script."""
+"""Nodes that no parser of markup makes; text of a bundle could contain a script."""
 
 import os
 import re
@@ -6,12 +6,26 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from itertools import cycle
 from pathlib import Path
+from typing import Any, TypeAlias
 
 from docutils import nodes
 from sphinx.environment import BuildEnvironment
 
 MARKED = re.compile(r"\*\*([^*]+)\*\*|`([^`]+)`")
+Cell: TypeAlias = str | nodes.Node | Sequence[str | nodes.Node]
 KINDS = (nodes.Text, partial(nodes.strong, ""), partial(nodes.literal, ""))
+
+
+class between(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes in lower case
+    """Nodes between two pieces of the site's own HTML, `opening` and `closing`."""
+
+
+def _write(part: str, self: Any, node: between) -> None:
+    self.body.append(node[part])
+
+
+WRITERS = (partial(_write, "opening"), partial(_write, "closing"))
+"""What Sphinx calls before and after such nodes."""
 
 
 def marked(text: str) -> list[nodes.Node]:
@@ -35,39 +49,43 @@ def image(env: BuildEnvironment, name: str, content: bytes, alt: str) -> nodes.i
     return nodes.image(uri=f"/{os.path.relpath(file, env.srcdir)}", alt=alt)
 
 
+def paragraph(*parts: str | nodes.Node, **attributes: Any) -> nodes.paragraph:
+    """Return a paragraph of nodes and texts, each text as it is."""
+    texts = (nodes.Text(part) if isinstance(part, str) else part for part in parts)
+    return nodes.paragraph("", "", *texts, **attributes)
+
+
+def bullets(*items: Iterable[str | nodes.Node], **attributes: Any) -> nodes.bullet_list:
+    """Return a list; an item consists of nodes and texts."""
+    lines = (nodes.list_item("", paragraph(*item)) for item in items)
+    return nodes.bullet_list("", *lines, **attributes)
+
+
 def table(
-    head: Sequence[str],
-    rows: Sequence[Sequence[nodes.Node | Sequence[nodes.Node]]],
-    anchors: Sequence[str] = (),
+    head: Sequence[str], rows: Sequence[Sequence[Cell]], anchors: Sequence[str] = ()
 ) -> nodes.table:
     """Return a table; `head` may be empty, `anchors` names the rows.
 
-    A cell is one node, or several that become paragraphs.
+    A cell is one node or text, or several that become paragraphs.
     """
     width = len(rows[0])
     group = nodes.tgroup("", *(nodes.colspec(colwidth=1) for _ in range(width)), cols=width)
     if head:
-        group += nodes.thead("", _row(map(nodes.Text, head)))
-    body = nodes.tbody("", *(_row(line) for line in rows))
+        group += nodes.thead("", _row(head))
+    body = nodes.tbody("", *map(_row, rows))
     for row, anchor in zip(body, anchors, strict=False):
         row["ids"].append(anchor)
     group += body
     return nodes.table("", group)
 
 
-def text_table(rows: Sequence[Mapping[str, str | Sequence[nodes.Node]]]) -> nodes.table:
-    """Return rows of equal keys as a table, each text as it is; columns are as wide as needed."""
-    cells = [
-        [nodes.Text(cell) if isinstance(cell, str) else cell for cell in row.values()]
-        for row in rows
-    ]
-    found = table(list(rows[0]), cells)
+def text_table(rows: Sequence[Mapping[str, Cell]]) -> nodes.table:
+    """Return rows of equal keys as a table whose columns are as wide as needed."""
+    found = table(list(rows[0]), [list(row.values()) for row in rows])
     found["classes"].append("colwidths-auto")
     return found
 
 
-def _row(cells: Iterable[nodes.Node | Sequence[nodes.Node]]) -> nodes.row:
-    parts = ([cell] if isinstance(cell, nodes.Node) else cell for cell in cells)
-    return nodes.row(
-        "", *(nodes.entry("", *(nodes.paragraph("", "", n) for n in cell)) for cell in parts)
-    )
+def _row(cells: Iterable[Cell]) -> nodes.row:
+    parts = ([cell] if isinstance(cell, str | nodes.Node) else cell for cell in cells)
+    return nodes.row("", *(nodes.entry("", *map(paragraph, cell)) for cell in parts))

@@ -16,7 +16,6 @@ from pathlib import Path
 
 from docutils import nodes
 from sphinx.application import Sphinx
-from sphinx.environment import BuildEnvironment
 from sphinx.util import logging
 
 from robo_genesis.pipeline.pages.book import find_pages
@@ -25,10 +24,12 @@ from robo_genesis.pipeline.pages.built import executed_notebook
 from robo_genesis.site.evidence import ledger_data, measured, refusals
 from robo_genesis.site.evidence import origin as sphinx_origin
 from robo_genesis.site.evidence.ledger_data import MEASURED, Item, PageRun
-from robo_genesis.site.evidence.origin import INPUTS, above, came_from_a_cell, origin
+from robo_genesis.site.evidence.origin import INPUTS, above, cell_of, origin
 
 TITLE = 80
 """Longest title in the ledger, in characters."""
+ITEMS = "robo_genesis_items"
+"""The name of a page's items in its metadata."""
 
 logger = logging.getLogger(__name__)
 
@@ -62,12 +63,14 @@ def read_page(app: Sphinx, doctree: nodes.document) -> None:
             continue
         holder = node if is_table else next(above(node, nodes.figure), node)
         item = describe(holder, node, env.docname, keys, book)
-        if compared is not None and came_from_a_cell(node) and cell_index(node) not in compared:
-            item = item if item.kind == "settings" else replace(item, kind="printed", runs=())
+        cell = cell_of(node)
+        not_compared = cell is not None and cell.get("cell_index") not in (compared or ())
+        if compared is not None and not_compared and item.kind != "settings":
+            item = replace(item, kind="printed", runs=())
         items.append(item)
         runs = [known[key] for key in item.runs]
         add_line(holder, ledger_data.provenance(item.kind, runs), item.row)
-    all_items(env)[env.docname] = items
+    env.metadata[env.docname][ITEMS] = items
 
 
 def compared_cells(book: Path, docname: str) -> set[int] | None:
@@ -86,11 +89,6 @@ def compared_cells(book: Path, docname: str) -> set[int] | None:
         shown = [output for output in cell.outputs if "data" in output]
         found[place] = (len(shown), len(marked(cell)))
     return {place for place, (shown, count) in found.items() if shown == count}
-
-
-def cell_index(node: nodes.Node) -> int | None:
-    """Return the place of the cell that a node is an output of, None elsewhere."""
-    return next((e["cell_index"] for e in above(node) if e.get("nb_element") == "cell_code"), None)
 
 
 def _problem(
@@ -174,20 +172,8 @@ def add_line(holder: nodes.Element, text: str, row: str) -> None:
         block.parent.insert(block.parent.index(block) + 1, line)
 
 
-def all_items(env: BuildEnvironment) -> dict[str, list[Item]]:
-    """Return the items of all pages read so far, by page."""
-    items: dict[str, list[Item]] = vars(env).setdefault("robo_genesis_items", {})
-    return items
-
-
-def forget_page(app: Sphinx, env: BuildEnvironment, docname: str) -> None:
-    """Forget the items of a page that is read again."""
-    all_items(env).pop(docname, None)
-
-
 def setup(app: Sphinx) -> None:
     """Register the passes over each page that was read."""
     sphinx_origin.register(app)
     app.connect("doctree-read", refusals.refuse, priority=890)  # before the lines are added
-    app.connect("env-purge-doc", forget_page)
     app.connect("doctree-read", read_page, priority=900)  # pictures are collected before

@@ -23,7 +23,7 @@ may have a `tag` and a `state`, and one cell `opens`.
 
 import base64
 import pickle
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from html import escape
 from io import BytesIO
@@ -41,7 +41,7 @@ from robo_genesis.core.declaration import Compared
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
 from robo_genesis.core.scene import FloatArray
-from robo_genesis.core.shown import ShownError, find
+from robo_genesis.core.shown import find
 from robo_genesis.evidence import bundle
 from robo_genesis.lessons import drawn_cases
 from robo_genesis.pipeline.pages.bound import accepted_experiment
@@ -49,6 +49,7 @@ from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
 from robo_genesis.site.evidence.plain_nodes import image
 from robo_genesis.site.figures.posture_model import glb, with_target
+from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls
 from robo_genesis.site.replay.directive import (
     bundle_inputs,
@@ -62,24 +63,17 @@ from robo_genesis.site.replay.directive import (
 )
 
 
-class ExplorerDirective(SphinxDirective):
+class ExplorerDirective(PageDirective):
     """Show what a page's bundle of this build recorded, one result at a time."""
 
     required_arguments = 1
     optional_arguments = 1
 
-    def run(self) -> list[nodes.Node]:
-        """Return the explorer, or SKIP for a picture of a run without a camera.
-
-        Errors: the page has no bundle, or its lesson has no such explorer or wrote no shape.
-        """
+    def shown(self) -> list[nodes.Node]:
+        """Return the explorer, or SKIP for a picture of a run without a camera."""
         lesson_page, *name = self.arguments
         recorded = Recorded(lesson_page.split("/")[0], bundle_of(self, lesson_page))
-        try:
-            block = explorer_block(self, f"{lesson_page}/{BACKEND}", recorded, *name)
-        except (ShownError, LookupError, ValueError) as error:
-            raise self.error(f"explorer: {' '.join(self.arguments)}: {error}") from error
-        return [block]
+        return [explorer_block(self, f"{lesson_page}/{BACKEND}", recorded, *name)]
 
 
 class Recorded:
@@ -128,11 +122,9 @@ def explorer_block(
         hint = "<p>Point at the picture, or use the arrow keys at a slider.</p>"
         block += [opening("with-picture", data), figure, panel(data, hint)]
     elif parts["postures"] is not None:
-        postures = Postures(directive, key, recorded, *name)
         block["classes"].append("replay-block")
-        block += postures.block(data, parts["postures"])
-        block += fold(directive, parts["tables"])
-        block += postures.origin()
+        files = "-".join(("postures", *key.split("/"), *name))
+        block += postures(directive, files, recorded, data, parts["postures"], parts["tables"])
     else:
         block += [opening("", data), panel(data)]
     return block
@@ -197,7 +189,7 @@ def fold(directive: SphinxDirective, found: Mapping[str, Sequence[Mapping[str, A
     shown: list[nodes.Node] = [html("<details><summary>All answers as tables</summary>")]
     for caption, rows in found.items():
         table = directive.parse_text_to_nodes(tables.markdown(rows))
-        shown += [nodes.paragraph("", caption), scroll_box("", *table, label=caption)]
+        shown += [nodes.paragraph("", caption), scroll_box(caption, *table)]
     return [*shown, html("</details>")]
 
 
@@ -221,58 +213,54 @@ def picture(
     return stage(shown, '<span class="cross" hidden></span>', caption, file)
 
 
-class Postures:
-    """The answers of a page in 3D: one model with an animation for each map."""
+def postures(
+    directive: SphinxDirective,
+    name: str,
+    recorded: Recorded,
+    data: Mapping[str, Any],
+    targets: Mapping[str, FloatArray],
+    found: Mapping[str, Sequence[Mapping[str, Any]]],
+) -> Iterator[nodes.Node]:
+    """Yield the answers of a page in 3D, and leave one model with an animation for each map.
 
-    def __init__(
-        self, directive: SphinxDirective, key: str, recorded: Recorded, which: str
-    ) -> None:
-        compared = drawn_cases(recorded.lesson)
-        if not isinstance(compared, Compared):
-            raise LookupError(
-                f"{recorded.lesson} compares free bodies. Only postures of a robot can be shown."
-            )
-        self.env, self.recorded, self.view = directive.env, recorded, compared.view
-        self.name = "-".join(("postures", *key.split("/"), which))
-        self.shape = shape_file(recorded.lesson, self.view.thing)
+    Args:
+        directive: the directive that shows them.
+        name: of the model's files.
+        recorded: the bundle of the page.
+        data: see the module's table.
+        targets: as the key `postures` there.
+        found: as the key `tables` there.
 
-    def block(self, data: Mapping[str, Any], targets: Mapping[str, FloatArray]) -> list[nodes.Node]:
-        """Return the still picture with the controls, and leave the model for the page."""
-        from robo_genesis.site.replay.poster import picture as drawn  # these load slowly
-        from robo_genesis.site.replay.scenery import fitted
+    Raises:
+        LookupError: the lesson compares free bodies.
+    """
+    from robo_genesis.site.replay.poster import picture as drawn  # these load slowly
+    from robo_genesis.site.replay.scenery import fitted
 
-        traces = {
-            run: with_target(self.recorded.experiment.traces[run], of)
-            for run, of in targets.items()
-        }
-        camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
-        inputs = [self.name.encode(), self.shape.read_bytes(), *bundle_inputs(self.recorded.folder)]
-        links = self.recorded.experiment.links
-        model = derived(
-            "replay", inputs, lambda: glb(self.shape, links, traces, camera, self.view.credit)
+    compared, env = drawn_cases(recorded.lesson), directive.env
+    if not isinstance(compared, Compared):
+        raise LookupError(
+            f"{recorded.lesson} compares free bodies. Only postures of a robot can be shown."
         )
-        still = derived("poster", inputs, lambda: drawn(model, camera))
-        files, weight = leave_model(self.env, self.name, model)
-        thing = self.view.thing
-        alt = f"The {thing} at the start, drawn from the recorded poses."
-        words = files | {"orbit": camera.orbit, "target": camera.target}
-        words["alt"] = f"The {thing} in 3D, in the chosen posture."
-        loads = f'<p role="status">Show in 3D loads the {escape(thing)}: {weight} kB.</p>'
-        return [
-            opening("with-model", data, **words),
-            stage(
-                still_picture(self.env, self.name, still, alt),
-                controls.over_the_picture("Show in 3D"),
-                f"Recorded postures of the {thing}. Yellow cross: the target.",
-                f"{self.name}-model",
-            ),
-            panel(data, loads),
-        ]
-
-    def origin(self) -> nodes.Node:
-        """Return the line that names the run and the origin of the shape."""
-        up = replay_folder(self.env)
-        return html(origin_html(self.name, self.recorded.folder, up, self.view.credit))
+    view, run = compared.view, recorded.experiment
+    shape = shape_file(recorded.lesson, view.thing)
+    traces = {case: with_target(run.traces[case], of) for case, of in targets.items()}
+    camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
+    inputs = [name.encode(), shape.read_bytes(), *bundle_inputs(recorded.folder)]
+    model = derived("replay", inputs, lambda: glb(shape, run.links, traces, camera, view.credit))
+    still = derived("poster", inputs, lambda: drawn(model, camera))
+    files, weight = leave_model(env, name, model)
+    words = files | {"orbit": camera.orbit, "target": camera.target}
+    words["alt"] = f"The {view.thing} in 3D, in the chosen posture."
+    yield opening("with-model", data, **words)
+    alt = f"The {view.thing} at the start, drawn from the recorded poses."
+    over = controls.over_the_picture("Show in 3D")
+    caption = f"Recorded postures of the {view.thing}. Yellow cross: the target."
+    yield stage(still_picture(env, name, still, alt), over, caption, f"{name}-model")
+    loads = f'<p role="status">Show in 3D loads the {escape(view.thing)}: {weight} kB.</p>'
+    yield panel(data, loads)
+    yield from fold(directive, found)
+    yield html(origin_html(name, recorded.folder, replay_folder(env), view.credit))
 
 
 def setup(app: Sphinx) -> None:

@@ -15,6 +15,7 @@ from sphinx.transforms.post_transforms import SphinxPostTransform
 
 from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, Mark, css_name
 from robo_genesis.lessons import course_marks
+from robo_genesis.site.evidence.origin import above
 from robo_genesis.site.figures import case_labels
 
 THEMES = {"light": ":root", "dark": 'html[data-theme="dark"]'}
@@ -97,25 +98,21 @@ class MarkCases(SphinxPostTransform):
 
 def _is_running(text: nodes.Text) -> bool:
     """Whether a text is in a paragraph or a caption, and is neither code, link nor marked."""
-    parent = text.parent
-    while not isinstance(parent, nodes.paragraph | nodes.caption):
-        if parent is None or isinstance(parent, OTHER_TEXT):
-            return False
-        parent = parent.parent
-    return "case-mark" not in parent["classes"]
+    inside = next(above(text, (nodes.paragraph, nodes.caption)), None)
+    other = any(above(text, OTHER_TEXT))
+    return inside is not None and "case-mark" not in inside["classes"] and not other
 
 
 def _named(text: nodes.Text) -> list[nodes.Node]:
     """Return a text with each case's name in an element of its own."""
-    parts: list[nodes.Node] = []
-    for number, part in enumerate(NAME.split(text)):
-        if number % 2:
-            parts.append(
-                nodes.inline(part, part, classes=["case-name", css_name(course_marks()[part])])
-            )
-        elif part:
-            parts.append(nodes.Text(part))
-    return parts
+    marks = course_marks()
+    return [
+        nodes.inline(part, part, classes=["case-name", css_name(marks[part])])
+        if number % 2
+        else nodes.Text(part)
+        for number, part in enumerate(NAME.split(text))
+        if part
+    ]
 
 
 def write_css(app: Sphinx) -> None:

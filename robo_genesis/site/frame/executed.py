@@ -34,7 +34,8 @@ class ExecutedPage(NotebookClientBase):
             ExtensionError: the execution stage has no outputs for the page's code cells.
         """
         try:
-            executed = executed_notebook(self.docname(), self.notebook)
+            page = Path(self.path).relative_to(self.sources).with_suffix("")
+            executed = executed_notebook(page.as_posix(), self.notebook)
         except KeyError:
             executed = None
         if executed is None or code_and_kernel(executed) != code_and_kernel(self.notebook):
@@ -51,11 +52,6 @@ class ExecutedPage(NotebookClientBase):
                     shorten_tracebacks(cell)
         if "language_info" in executed.metadata:
             self.notebook.metadata["language_info"] = executed.metadata["language_info"]
-
-    def docname(self) -> str:
-        """Return the name of the page."""
-        page = Path(str(self.path)).with_suffix("")
-        return page.relative_to(self.sources).as_posix() if self.path else ""
 
 
 def shorten_tracebacks(cell: NotebookNode) -> None:

@@ -42,12 +42,15 @@ REPLAYS, TAKEAWAYS = "replay", "takeaways"
 HEADS = (nodes.caption, nodes.title, nodes.literal_block)
 """What a numbered figure, table or code block has for children."""
 
-OWN = {"og:description", "source_map", "wordcount"}
+OUTLINE, FILES = "robo_genesis_outline", "robo_genesis_files"
+"""Metadata of a page: see `outline` and `note_files`."""
+
+OWN = {"og:description", "source_map", "wordcount", OUTLINE, FILES}
 """Metadata of a page that no other page shows."""
 
 SHOWN = (
     "titles", "longtitles", "tocs", "toc_secnumbers", "toc_fignumbers", "toctree_includes",
-    "domaindata", "robo_genesis_items",
+    "domaindata",
 )  # fmt: skip
 """Attributes of the environment that pages show of one another, beside metadata and terms."""
 
@@ -77,18 +80,13 @@ def outline(env: BuildEnvironment, node: nodes.Element) -> list[nodes.Element]:
 
 def keep_outline(app: Sphinx, doctree: nodes.document) -> None:
     """Keep the outline of a page that was read."""
-    outlines(app.env)[app.env.docname] = nodes.container("", *outline(app.env, doctree))
-
-
-def outlines(env: BuildEnvironment) -> dict[str, nodes.Element]:
-    """Return the outlines of the pages by name."""
-    found: dict[str, nodes.Element] = vars(env).setdefault("robo_genesis_outlines", {})
-    return found
+    kept = nodes.container("", *outline(app.env, doctree))
+    app.env.metadata[app.env.docname][OUTLINE] = kept
 
 
 def number_by_outlines(app: Sphinx, env: BuildEnvironment) -> list[str]:
     """Give Sphinx outlines in place of doctrees until `outdated_pages` is called."""
-    vars(env)["get_doctree"] = outlines(env).__getitem__
+    vars(env)["get_doctree"] = lambda name: env.metadata[name][OUTLINE]
     return []
 
 
@@ -161,9 +159,9 @@ def plain(value: Any) -> Any:
 def keep_templates(app: Sphinx) -> None:
     """Keep the compiled templates of the theme beside the doctrees, for the next render there."""
     folder = Path(app.doctreedir).with_name("templates")
-    if templates := getattr(app.builder, "templates", None):  # builders without pages have none
-        folder.mkdir(exist_ok=True)
-        templates.environment.bytecode_cache = FileSystemBytecodeCache(str(folder))
+    folder.mkdir(exist_ok=True)
+    templates: Any = app.builder.templates
+    templates.environment.bytecode_cache = FileSystemBytecodeCache(str(folder))
 
 
 def drop_static_files(app: Sphinx) -> None:
@@ -203,9 +201,9 @@ def finish(app: Sphinx, error: Exception | None) -> None:
     The names of pictures with equal file names depend on the order in which they were read.
     """
     env = app.env
-    if env is not None and (parents := vars(app.builder).pop("robo_genesis_parents", None)):
+    if parents := vars(app.builder).pop("robo_genesis_parents", None):
         env.files_to_rebuild = parents
-    if error is not None or env is None:
+    if error is not None:
         return
     named = {name: file for file, (_, name) in env.images.items()}
     for path in (Path(app.outdir) / "_images").glob("*"):
@@ -215,27 +213,15 @@ def finish(app: Sphinx, error: Exception | None) -> None:
         (Path(app.outdir).parents[1] / UNFIT).touch()
 
 
-def folders(app: Sphinx) -> tuple[Path, Path]:
-    """Return where the files of replays and takeaways are."""
-    html = Path(app.outdir)
-    return html / REPLAYS, html / TAKEAWAYS
-
-
 def note_files(env: BuildEnvironment, *files: Path) -> None:
     """Note that the page that is read writes some files."""
-    noted: dict[str, set[str]] = vars(env).setdefault("robo_genesis_files", {})
-    noted.setdefault(env.docname, set()).update(map(str, files))
-
-
-def forget_files(app: Sphinx, env: BuildEnvironment, page: str) -> None:
-    """Forget the files of a page that is read again."""
-    vars(env).setdefault("robo_genesis_files", {}).pop(page, None)
+    env.metadata[env.docname].setdefault(FILES, set()).update(map(str, files))
 
 
 def remove_others(app: Sphinx, env: BuildEnvironment) -> list[str]:
     """Remove the files that no page writes any more, and folders that become empty."""
-    noted = set().union(*vars(env).get("robo_genesis_files", {}).values())
-    for folder in folders(app):
+    noted = set().union(*(page.get(FILES, ()) for page in env.metadata.values()))
+    for folder in (Path(app.outdir) / REPLAYS, Path(app.outdir) / TAKEAWAYS):
         for path in sorted(folder.rglob("*"), reverse=True):
             if path.is_file() and str(path) not in noted:
                 path.unlink()
@@ -247,7 +233,6 @@ def remove_others(app: Sphinx, env: BuildEnvironment) -> list[str]:
 
 def setup(app: Sphinx) -> None:
     """Register the steps."""
-    app.connect("env-purge-doc", forget_files)
     app.connect("env-updated", remove_others)
     app.connect("builder-inited", drop_static_files, priority=0)
     app.connect("builder-inited", keep_templates)

@@ -78,7 +78,7 @@ def written(app: Sphinx) -> set[str]:
 
 def finish_site(app: Sphinx, error: Exception | None) -> None:
     """Finish the pages that Sphinx has written."""
-    if error is None and app.builder.name == "html":
+    if error is None:
         drop_unused_files(Path(app.outdir))
         for page in sorted(written(app)):
             path = Path(app.builder.get_outfilename(page))  # type: ignore[attr-defined]
@@ -100,7 +100,11 @@ def finish_page(html: str, folder: Path) -> str:
         accessibility.make_accessible(page)
         accessibility.stack_tables(page)
         drawings.inline_drawings(page, folder)
-        reduce_weight(page, folder)
+        drop_idle_scripts(page)
+        defer_scripts(page)
+        choose_theme(page)
+        wait_for_the_title(page)
+        place_images(page, folder)
         style_sheets.link_joined(page)
         return str(page).encode()
 
@@ -110,20 +114,6 @@ def finish_page(html: str, folder: Path) -> str:
     return derived(
         "finished", [html.encode(), *(path.read_bytes() for path in files)], make
     ).decode()
-
-
-def reduce_weight(page: BeautifulSoup, folder: Path) -> None:
-    """Reduce the weight of one page, in place.
-
-    Args:
-        page: the complete page as the theme wrote it.
-        folder: the folder that the page's addresses are relative to.
-    """
-    drop_idle_scripts(page)
-    defer_scripts(page)
-    choose_theme(page)
-    wait_for_the_title(page)
-    place_images(page, folder)
 
 
 def drop_idle_scripts(page: BeautifulSoup) -> None:

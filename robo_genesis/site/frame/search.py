@@ -35,9 +35,7 @@ def complete_index(app: Sphinx) -> list[Any]:
     Sphinx then keeps words that no page has any more, and loses the entries of the general index
     that are on the other pages.
     """
-    indexer = getattr(app.builder, "indexer", None)
-    if indexer is None:
-        return []
+    indexer: Any = vars(app.builder)["indexer"]
     for words in (indexer._mapping, indexer._title_mapping):
         for word in [word for word, pages in words.items() if not pages]:
             del words[word]

@@ -5,7 +5,6 @@ A phone that fetches one sheet instead of sixteen shows a page earlier.
 
 import json
 import re
-import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping
 from fnmatch import fnmatch
@@ -15,9 +14,9 @@ from urllib.parse import urlsplit
 from bs4 import BeautifulSoup
 
 from robo_genesis.core.files import derived
-from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline import npm
-from robo_genesis.pipeline.command import end_with_parent
+from robo_genesis.pipeline.command import output_of
 
 PARTS = ("print", "calm", "course", "explorer", "replay", "look", "plot")
 SHEETS = (
@@ -97,10 +96,7 @@ def join_sheets(html: Path) -> None:
     )
     joined = html / JOINED
     joined.parent.mkdir(parents=True, exist_ok=True)
-    texts = (
-        (path, found[path.name] if path.name in found else path.read_text("utf8"))
-        for path in sheets
-    )
+    texts = ((path, found.get(path.name, path.read_text("utf8"))) for path in sheets)
     joined.write_text(
         "\n".join(
             text if path.parent == joined.parent else ADDRESS.sub(r"url(\1../", text)
@@ -132,15 +128,6 @@ def _purged(content: Mapping[str, bytes], names: bytes) -> dict[str, str]:
             (folder / sheet).write_bytes(text)
         (folder / "out").mkdir()
         command = [str(npm.node()), str(npm.packages() / PURGE), "--keyframes"]
-        done = subprocess.run(
-            [*command, "--content", "names.txt", "--output", "out", "--css", *content],
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            check=False,
-            preexec_fn=end_with_parent(),
-        )
-        made = {sheet: folder / "out" / sheet for sheet in content}
-        if done.returncode or not all(path.is_file() for path in made.values()):
-            raise ProjectError(f"PurgeCSS failed:\n{done.stdout}{done.stderr}")
-        return {sheet: path.read_text("utf8") for sheet, path in made.items()}
+        command += ["--content", "names.txt", "--output", "out", "--css", *content]
+        output_of(command, "PurgeCSS failed", cwd=folder)
+        return {sheet: (folder / "out" / sheet).read_text("utf8") for sheet in content}

@@ -120,7 +120,7 @@ def replay_block(
     if shown.moves:
         lines = (nodes.paragraph("", "", *marked(text)) for text in shown.moves.values())
         block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
-    block += scroll_box("", *directive.parse_text_to_nodes(controls.samples(shown)), label=summary)
+    block += scroll_box(summary, *directive.parse_text_to_nodes(controls.samples(shown)))
     origin = origin_html(name, folder, replay_folder(env), runs.view.credit)
     block += nodes.raw("", f"</details>{origin}", format="html")
     return block

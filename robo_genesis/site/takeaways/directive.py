@@ -13,44 +13,37 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.config import Config
 from sphinx.errors import ConfigError
-from sphinx.util.docutils import SphinxDirective
 from sphinx.util.osutil import relative_uri
 
 from robo_genesis.core.project import solutions_shown
-from robo_genesis.evidence import bundle
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import executed_notebook, page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, measured
+from robo_genesis.site.evidence.plain_nodes import bullets
 from robo_genesis.site.frame.incremental import TAKEAWAYS, note_files
+from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.takeaways.files import Takeaways, run_commands, system, write_takeaways
-from robo_genesis.site.takeaways.notebooks import Course
-from robo_genesis.site.takeaways.plain_markdown import ProseError
 
 ADDRESS = re.compile(r"https://(?P<host>[\w.-]+)/(?P<name>[\w.-]+/[\w.-]+)")
-GITHUB = "github.com"
 
 Link = Callable[..., list[nodes.Node]]
 """Returns the link to a file with an optional text, and its size."""
 
 
-class TakeawaysBox(SphinxDirective):
+class TakeawaysBox(PageDirective):
     """Show how to run a lab at home, and list its measured files for download."""
 
     required_arguments = 1
 
-    def run(self) -> list[nodes.Node]:
-        """Return the box and the list; a page without a run of its own is an error."""
+    def shown(self) -> list[nodes.Node]:
+        """Return the box and the list."""
         name, files = self.arguments[0], Path(self.env.app.outdir) / TAKEAWAYS
         page, run = self.page(name), page_outputs(name) / BACKEND
         self.env.note_dependency(self.env.doc2path(page.docname, base=False))
-        try:
-            found = write_takeaways(
-                page, executed_notebook(page.docname, page.notebook), run, files,
-                lambda value: measured(*value.split(" ", 1))[0],
-                course(self.config),
-            )  # fmt: skip
-        except (LookupError, ProseError, bundle.BundleRefused) as error:
-            raise self.error(f"takeaways: {error}") from error
+        found = write_takeaways(
+            page, executed_notebook(page.docname, page.notebook), run, files,
+            lambda value: measured(*value.split(" ", 1))[0], self.config,
+        )  # fmt: skip
         note_files(self.env, found.wheel, found.constraints, *found.student.parent.iterdir())
         links = partial(link, relative_uri(f"{self.env.docname}.html", TAKEAWAYS), files)
         return [self.box(found, links), *self.downloads(found, links)]
@@ -60,70 +53,60 @@ class TakeawaysBox(SphinxDirective):
         pages = {f"{p.lesson}/{p.page}": p for p in find_pages(Path(self.env.srcdir))}
         if name not in pages:
             known = ", ".join(sorted(pages.keys() - {"None/None"}))
-            raise self.error(f"takeaways: there is no page {name!r}. Choices: {known}.")
+            raise LookupError(f"there is no page {name!r}. Choices: {known}.")
         return pages[name]
 
     def box(self, found: Takeaways, links: Link) -> nodes.Node:
         """Return what to download and the commands that run the lab."""
         commands = "\n".join(found.commands)
         box = nodes.admonition("", nodes.title("", "Run it yourself"), classes=["run-it-yourself"])
-        box += self.prose(f"On {system()}: save these three files in one folder.")
+        box += self.parse_text_to_nodes(f"On {system()}: save these three files in one folder.")
         box += bullets(
-            (links(found.student), ", the lab without outputs or solutions"),
-            (links(found.wheel), ", the course's package, which brings the pinned engine"),
-            (links(found.constraints), ", the versions with which the course was built"),
+            (*links(found.student), ", the lab without outputs or solutions"),
+            (*links(found.wheel), ", the course's package, which brings the pinned engine"),
+            (*links(found.constraints), ", the versions with which the course was built"),
         )
-        box += self.prose("In that folder:")
+        box += self.parse_text_to_nodes("In that folder:")
         box += nodes.literal_block(commands, commands, language="bash")
-        box += self.prose(
+        box += self.parse_text_to_nodes(
             "The second command downloads the engine and Torch, which takes minutes. The first "
             "cell checks the engine's version and says what to do if yours differs. In its first "
             "run the engine compiles its kernels, which takes minutes too."
         )
         if offer := codespace(self.config.course_repository):
-            box += self.prose(offer)
+            box += self.parse_text_to_nodes(offer)
         return box
 
     def downloads(self, found: Takeaways, links: Link) -> Iterable[nodes.Node]:
         """Return the list of the files of this run."""
-        yield from self.prose("Results of the run on this page, for your own tools:")
-        tables: list[str | list[nodes.Node]] = []
+        yield from self.parse_text_to_nodes("Results of the run on this page, for your own tools:")
+        tables: list[str | nodes.Node] = []
         for case, table, archive in found.arrays:
-            tables += [f"{case} ", links(table, "CSV"), " and ", links(archive, "npz"), "; "]
-        figures = [part for path in found.figures for part in (links(path), ", ")]
+            tables += [f"{case} ", *links(table, "CSV"), " and ", *links(archive, "npz"), "; "]
+        figures = [part for path in found.figures for part in (*links(path), ", ")]
         left_out = "" if solutions_shown() else ", without the solutions"
         yield bullets(
-            (links(found.executed), ", the notebook as it ran" + left_out),
+            (*links(found.executed), ", the notebook as it ran" + left_out),
             ("arrays of each case: ", *tables, "their units are in the CSV's head and in ",
-             links(found.units)),
+             *links(found.units)),
             ("figures: ", *figures[:-1]),
         )  # fmt: skip
 
-    def prose(self, text: str) -> list[nodes.Node]:
-        """Return Markdown as nodes."""
-        return list(self.parse_text_to_nodes(text))
 
-
-class RunCommands(SphinxDirective):
+class RunCommands(PageDirective):
     """Show the commands that run a lab, for a page that belongs to no lab."""
 
     optional_arguments = 1
 
-    def run(self) -> list[nodes.Node]:
+    def shown(self) -> list[nodes.Node]:
         """Return the block of code."""
         lines = run_commands("robo_genesis-*.whl", self.config.torch_index)
-        match self.arguments:
-            case ["install"]:
-                lines = lines[:-1]
-            case [other]:
-                raise self.error(f"run-commands: {other!r} is not valid. Write nothing or install.")
+        if self.arguments not in ([], ["install"]):
+            raise ValueError("write nothing or install.")
+        if self.arguments:
+            lines = lines[:-1]
         text = "\n".join(lines)
         return [nodes.literal_block(text, text, language="bash")]
-
-
-def course(config: Config) -> Course:
-    """Return what the book's configuration states about the course."""
-    return Course(config.html_title, config.author, config.torch_index, config.course_repository)
 
 
 def link(base: str, files: Path, file: Path, text: str = "") -> list[nodes.Node]:
@@ -140,17 +123,6 @@ def link(base: str, files: Path, file: Path, text: str = "") -> list[nodes.Node]
         "", text or file.name, internal=True, refuri=address, classes=["takeaway"]
     )
     return [reference, nodes.Text(f" ({max(1, round(file.stat().st_size / 1000))} kB)")]
-
-
-def bullets(*items: Iterable[str | list[nodes.Node]]) -> nodes.Node:
-    """Return a list; an item consists of words and links."""
-    found = nodes.bullet_list()
-    for item in items:
-        line = nodes.paragraph()
-        for part in item:
-            line += nodes.Text(part) if isinstance(part, str) else part
-        found += nodes.list_item("", line)
-    return found
 
 
 def require_address(app: Sphinx, config: Config) -> None:
@@ -174,7 +146,7 @@ def codespace(repository: str) -> str:
         repository: its address, empty if none is configured.
     """
     found = ADDRESS.fullmatch(repository)
-    if found is None or found["host"] != GITHUB:
+    if found is None or found["host"] != "github.com":
         return ""
     return (
         f"Without Linux: [open the course in a codespace](https://codespaces.new/{found['name']}), "

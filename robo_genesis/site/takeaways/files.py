@@ -1,31 +1,31 @@
 """Files that a reader takes from a lab: notebooks, arrays with units, figures, the package."""
 
-import csv
-import io
 import re
 import shutil
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import nbformat
 import numpy as np
 from nbformat import NotebookNode
+from sphinx.config import Config
 
 from robo_genesis.core import project
 from robo_genesis.core.files import derived
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.bundle import Arrays, Variable
+from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
 from robo_genesis.evidence.trace_files import fields_of, read_any_trace
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import import_closure
+from robo_genesis.site.evidence.ledger_data import csv_bytes
 from robo_genesis.site.takeaways.notebooks import (
-    Course,
-    Origin,
     executed_notebook,
     student_notebook,
+    version_check,
 )
 from robo_genesis.site.takeaways.plain_markdown import Writer
 from robo_genesis.site.takeaways.wheel import build_wheel
@@ -67,7 +67,7 @@ def write_takeaways(
     run: Path,
     folder: Path,
     measured: Callable[[str], str],
-    course: Course,
+    config: Config,
 ) -> Takeaways:
     """Write everything that a reader takes from a lab.
 
@@ -77,20 +77,24 @@ def write_takeaways(
         run: the accepted bundle of that run.
         folder: gets the wheel, the constraints, and a folder for the lab.
         measured: returns a measured value as the site writes it.
-        course: named in the notebooks; its repository is named in the wheel.
+        config: of the book.
     """
     name = f"{page.lesson}-{page.page}"
     own = folder / name
     shutil.rmtree(own, ignore_errors=True)
     own.mkdir(parents=True)
-    wheel = build_wheel(folder, repository=course.repository)
+    wheel = build_wheel(folder, repository=config.course_repository)
     constraints = Path(shutil.copy(project.ROOT / "requirements.lock", folder / CONSTRAINTS))
     student, ran = own / f"{name}.ipynb", own / f"{name}-executed.ipynb"
-    commands = run_commands(wheel.name, course.torch_index, student.name)
-    origin = _origin(page, run, wheel.name, commands, course)
-    _write(student, student_notebook(page, origin, Writer(page.path.parent, lambda _: NOT_SHOWN)))
+    commands = run_commands(wheel.name, config.torch_index, student.name)
+    predicate = bundle.read_manifest(run).predicate
+    origin = partial(origin_of, page, predicate, wheel.name, commands, config)
+    needed = {project.ENGINE: project.engine_pin(), project.COURSE: package_facts()["version"]}
+    check = version_check(needed, wheel.name, commands)
+    writer = Writer(page.path.parent, lambda _: NOT_SHOWN)
+    _write(student, student_notebook(page, origin("student notebook"), check, writer))
     writer = Writer(page.path.parent, measured)
-    _write(ran, executed_notebook(page, executed, origin, writer))
+    _write(ran, executed_notebook(page, executed, origin("executed notebook"), writer))
     units = Path(shutil.copy(run / "arrays.json", own))
     arrays, figures = tuple(_arrays(run, own)), tuple(_figures(page, executed, own))
     return Takeaways(student, ran, wheel, constraints, units, arrays, figures, commands)
@@ -126,20 +130,19 @@ def package_facts() -> dict[str, str]:
     return tomllib.loads((project.ROOT / "pyproject.toml").read_text("utf8"))["project"]
 
 
-def _origin(page: Page, run: Path, wheel: str, commands: tuple[str, ...], course: Course) -> Origin:
-    predicate = bundle.read_manifest(run).predicate
+def origin_of(
+    page: Page, ran: Predicate, wheel: str, commands: Iterable[str], config: Config, kind: str
+) -> str:
+    """Return Markdown on the origin of a notebook of a lab, and how to run it."""
     lines = (line for cell in page.notebook.cells for line in cell.source.splitlines())
-    title = next((line[2:] for line in lines if line.startswith("# ")), page.docname)
-    return Origin(
-        course=course,
-        title=title,
-        system=system(),
-        engine=project.engine_pin(),
-        package=package_facts()["version"],
-        wheel=wheel,
-        commands=commands,
-        run=predicate.run_id[:8],
-        measured=predicate.started[:10],
+    title = next(line[2:] for line in lines if line.startswith("# "))
+    console = "\n".join(commands)
+    return (
+        f"> {config.html_title}, *{title}*: {kind}. Written for Genesis "
+        f"{project.engine_pin()}; the site shows run {ran.run_id[:8]} of {ran.started[:10]}.\n"
+        f"> © {config.author}. Code: MIT licence. Text and figures: CC BY 4.0.\n\n"
+        f"To run it on {system()}, put `{wheel}` and `{CONSTRAINTS}` from the lab's page beside "
+        f"it, and in that folder:\n\n```console\n{console}\n```"
     )
 
 
@@ -182,11 +185,7 @@ def csv_text(trace: TimeSeries, described: Arrays, case: str) -> str:
             labels = _labels(field, described.cases[case].variables[name], described)
             for label, column in zip(labels, _by_state(trace, field, dims), strict=True):
                 columns[label] = ["" if value is None else str(value) for value in column]
-    stream = io.StringIO()
-    writer = csv.writer(stream)
-    writer.writerow(columns)
-    writer.writerows(zip(*columns.values(), strict=True))
-    return stream.getvalue()
+    return csv_bytes([list(columns), *zip(*columns.values(), strict=True)]).decode()
 
 
 def _by_state(trace: TimeSeries, field: str, dims: list[str]) -> list[tuple[np.generic, ...]]:

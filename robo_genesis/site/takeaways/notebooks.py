@@ -1,8 +1,7 @@
 """A lab as two notebooks: one to work in, without outputs or solutions, and one executed."""
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 import nbformat
@@ -10,7 +9,7 @@ from markdown_it import MarkdownIt
 from nbformat import NotebookNode
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
-from robo_genesis.core.project import COURSE, ENGINE, solutions_shown
+from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.site.course.facts import WORK_SHEET
@@ -54,49 +53,30 @@ for package, needed in NEEDED.items():
 print(*(f"{{package}} {{number}}" for package, number in NEEDED.items()), sep="\\n")"""
 
 
-@dataclass(frozen=True, slots=True)
-class Course:
-    """What `_config.yml` states about the course: its name, its authors, and two addresses.
+def version_check(needed: Mapping[str, str], wheel: str, commands: Sequence[str]) -> str:
+    """Return code that requires versions of packages, and otherwise names the command to install.
 
-    `torch_index` is the address of an index with builds of Torch for the CPU alone, and
-    `repository` that of the course's repository, empty if none is configured.
+    Args:
+        needed: version by package.
+        wheel: file name of the course's package.
+        commands: see `files.run_commands`.
     """
-
-    name: str
-    authors: str
-    torch_index: str
-    repository: str
+    install = next(line for line in commands if " install " in line).replace("\\\n  ", "")
+    return CHECK.format(needed=needed, wheel=wheel, install=install)
 
 
-@dataclass(frozen=True, slots=True)
-class Origin:
-    """The origin of a notebook: its lab, the versions that it needs, and the run on the site."""
-
-    course: Course
-    title: str
-    system: str
-    engine: str
-    package: str
-    wheel: str
-    commands: Sequence[str]
-    run: str
-    measured: str
-
-
-def student_notebook(page: Page, origin: Origin, writer: Writer) -> NotebookNode:
+def student_notebook(page: Page, origin: str, check: str, writer: Writer) -> NotebookNode:
     """Return the lab to work in: no outputs, no solutions, and a first check of the versions.
 
     The parts of a work sheet in the page's folder become cells to fill in; see `_with_work_sheet`.
 
     Args:
         page: the lab.
-        origin: shown in the first lines.
+        origin: Markdown of the first cell.
+        check: code of the second; see `version_check`.
         writer: of its prose; it must not return measured values.
     """
-    needed = {ENGINE: origin.engine, COURSE: origin.package}
-    install = next(line for line in origin.commands if " install " in line).replace("\\\n  ", "")
-    check = CHECK.format(needed=needed, wheel=origin.wheel, install=install)
-    cells = [_header(origin, "student notebook"), new_code_cell(check)]
+    cells = [new_markdown_cell(origin), new_code_cell(check)]
     for cell in page.notebook.cells:
         if not {SOLUTION, SITE_ONLY} & set(cell.metadata.get("tags", [])):
             is_prose = cell.cell_type == "markdown"
@@ -105,18 +85,18 @@ def student_notebook(page: Page, origin: Origin, writer: Writer) -> NotebookNode
 
 
 def executed_notebook(
-    page: Page, executed: NotebookNode, origin: Origin, writer: Writer
+    page: Page, executed: NotebookNode, origin: str, writer: Writer
 ) -> NotebookNode:
     """Return the lab as it ran for the site, with its outputs; without solutions if the site is.
 
     Args:
         page: the lab.
         executed: the same code cells with outputs.
-        origin: shown in the first lines.
+        origin: Markdown of the first cell.
         writer: of its prose; measured values are those of this run.
     """
     ran = (cell for cell in executed.cells if cell.cell_type == "code")
-    cells = [_header(origin, "executed notebook")]
+    cells = [new_markdown_cell(origin)]
     left_out = set() if solutions_shown() else {SOLUTION}
     for cell in page.notebook.cells:
         tags, is_code = set(cell.metadata.get("tags", [])), cell.cell_type == "code"
@@ -126,18 +106,6 @@ def executed_notebook(
         elif not is_code and SITE_ONLY not in tags:
             cells += _sections(plain(cell.source, writer))
     return _notebook(cells)
-
-
-def _header(origin: Origin, kind: str) -> NotebookNode:
-    commands = "\n".join(origin.commands)
-    return new_markdown_cell(
-        f"> {origin.course.name}, *{origin.title}*: {kind}. Written for Genesis "
-        f"{origin.engine}; the site shows run {origin.run} of {origin.measured}.\n"
-        f"> © {origin.course.authors}. Code: MIT licence. Text and figures: CC BY 4.0.\n\n"
-        f"To run it on {origin.system}, put `{origin.wheel}` and `constraints.txt` from the lab's "
-        "page beside it, and in that folder:\n\n"
-        f"```console\n{commands}\n```"
-    )
 
 
 def _sections(text: str) -> list[NotebookNode]:

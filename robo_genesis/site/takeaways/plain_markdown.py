@@ -86,8 +86,7 @@ def _block(token: Token, source: str, writer: Writer) -> str:
 
 def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
     """Return a directive as plain Markdown; a solution or an unlisted directive is dropped."""
-    kind = LiteralInclude if name == "literalinclude" else TestDirective  # takes any option
-    found = parse_directive_text(kind, first_line, content)
+    found = parse_directive_text(TestDirective, first_line, content)  # takes any option
     argument, body, options = " ".join(found.arguments), "\n".join(found.body), found.options
     classes = f"{name} {options.get('class')} {options.get('class-container')}".split()
     if SOLUTION in classes or (name == "dropdown" and ANSWER.match(argument)):
@@ -99,9 +98,7 @@ def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
         return textwrap.indent(quoted, "> ", lambda _: True)
     match name:
         case "literalinclude":
-            path = (writer.folder / argument).resolve()
-            excerpt, _ = LiteralIncludeReader(str(path), options, Config()).read()
-            return f"```python\n{excerpt.rstrip()}\n```"
+            return f"```python\n{excerpt(writer.folder, first_line, content).rstrip()}\n```"
         case "code" | "code-block":
             return f"```{argument}\n{body}\n```"
         case "math":
@@ -112,6 +109,14 @@ def _directive(name: str, first_line: str, content: str, writer: Writer) -> str:
         case "figure":
             return f"*On the site, a figure: {plain(body, writer)}*"
     return ""
+
+
+def excerpt(folder: Path, first_line: str, content: str) -> str:
+    """Return the part of a file that a `literalinclude` on a page in a folder shows."""
+    found = parse_directive_text(LiteralInclude, first_line, content)
+    path = (folder / found.arguments[0]).resolve()
+    text: str = LiteralIncludeReader(str(path), found.options, Config()).read()[0]
+    return text
 
 
 def _inline(lines: list[str], writer: Writer) -> str:

@@ -3,15 +3,14 @@
 import json
 import os
 import shutil
-import subprocess
 import sys
 import tempfile
 from functools import cache
 from pathlib import Path
 
 from robo_genesis.core.files import derived
-from robo_genesis.core.project import ROOT, ProjectError
-from robo_genesis.pipeline.command import end_with_parent
+from robo_genesis.core.project import ROOT
+from robo_genesis.pipeline.command import output_of
 
 SOURCES = ("pyproject.toml", "README.md", "LICENSE")
 PACKAGE = "robo_genesis"
@@ -58,16 +57,7 @@ def built_wheel(root: Path, repository: str = "") -> bytes:
         shutil.copytree(root / PACKAGE, copy / PACKAGE, ignore=shutil.ignore_patterns(CACHED))
         for path in copy.rglob("*"):
             path.chmod(0o755 if path.is_dir() else 0o644)  # whatever the user's umask
-        done = subprocess.run(
-            [sys.executable, "-c", BUILD, "."],
-            cwd=copy,
-            env=os.environ | {"SOURCE_DATE_EPOCH": EPOCH},
-            capture_output=True,
-            text=True,
-            check=False,
-            preexec_fn=end_with_parent(),
-        )
-        if done.returncode != 0:
-            raise ProjectError(f"The package's wheel cannot be built:\n{done.stdout}{done.stderr}")
-        name = done.stdout.splitlines()[-1]
+        settings = os.environ | {"SOURCE_DATE_EPOCH": EPOCH}
+        command, refusal = [sys.executable, "-c", BUILD, "."], "The package's wheel cannot be built"
+        name = output_of(command, refusal, cwd=copy, env=settings).splitlines()[-1]
         return f"{name}\n".encode() + (copy / name).read_bytes()

@@ -85,7 +85,7 @@ def to_mathml(latex: str, display: str) -> str:
     unknown = re.search(r"\\[A-Za-z]*", markup)
     if unknown:
         raise ValueError(f"{latex!r} uses {unknown[0]}, which latex2mathml does not know.")
-    if lacking := missing("".join(tree.itertext())):
+    if lacking := "".join(sorted({*"".join(tree.itertext())} - SHOWN - ITALIC - {"\n"})):
         raise ValueError(
             f"{latex!r} shows {lacking}, which the site's font for formulas does not have. Use "
             "another symbol, or add it to SHOWN in robo_genesis/site/text/formulas.py."
@@ -121,11 +121,6 @@ def visit_block(self: Any, node: nodes.Element) -> None:
         self.body.append("</span>")
     self.body.append(checked(node, "block") + "</div>\n")
     raise nodes.SkipNode
-
-
-def missing(text: str) -> str:
-    """Return the characters of a formula that the font does not have, sorted."""
-    return "".join(sorted(set(text) - SHOWN - ITALIC - set("\n")))
 
 
 def font() -> bytes:
@@ -173,8 +168,6 @@ def css() -> str:
 
 def write_css(app: Sphinx) -> None:
     """Write style sheet and licence where Sphinx collects the site's own."""
-    if app.builder.format != "html":
-        return
     folder = Path(app.outdir) / "_static"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / STYLE).write_text(css(), "utf8")
@@ -183,13 +176,10 @@ def write_css(app: Sphinx) -> None:
 
 def add_css(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
     """Load the style sheet and its font on a page with a formula."""
-    if doctree is not None and next(doctree.findall(_is_math), None) is not None:
+    formulas = (*doctree.findall(nodes.math), *doctree.findall(nodes.math_block)) if doctree else ()
+    if formulas:
         app.add_css_file(STYLE)
         app.add_js_file(None, body=LOAD)
-
-
-def _is_math(node: nodes.Node) -> bool:
-    return isinstance(node, nodes.math | nodes.math_block)
 
 
 def setup(app: Sphinx) -> None:

@@ -1,61 +1,72 @@
-"""Questions in a doctree, and as HTML that `_static/choice.js` makes lively."""
+"""Questions as HTML that `_static/choice.js` makes lively."""
 
+from collections.abc import Sequence
 from html import escape
-from typing import Any
 
-from docutils import nodes
-
-
-class choice(nodes.General, nodes.Element):  # noqa: N801 - docutils names nodes in lower case
-    """A question; `options` are (text, right, cause), `answer` and `origin` what was measured."""
+from robo_genesis.site.evidence.plain_nodes import between
 
 
-class number(choice):  # noqa: N801
-    """A question for a number: `value`, `tolerance` and `unit`, with (key, text) as `feedback`."""
+class question(between):  # noqa: N801 - docutils names nodes in lower case
+    """A question; its text is between the parts that the build writes."""
 
 
-def visit_question(self: Any, node: choice) -> None:
-    """Open the question; its text follows."""
-    attributes = ""
-    if isinstance(node, number):
-        attributes = f' data-value="{node["value"]!r}" data-tolerance="{node["tolerance"]!r}"'
-    self.body.append(f'<fieldset class="choice"{attributes}><legend>')
+def choice(
+    name: str, answer: str, origin: str, options: Sequence[tuple[str, bool, str]]
+) -> question:
+    """Return a multiple choice, in which each option has its feedback, which choice.js announces.
 
-
-def depart_choice(self: Any, node: choice) -> None:
-    """Write the options, each with its feedback, which choice.js also announces."""
-    name, answer = f"choice-{node['number']}", escape(node["answer"])
+    Args:
+        name: of its fields, unique on the page.
+        answer: what was measured.
+        origin: of the measurement.
+        options: (text, right, cause) of each option.
+    """
+    answer = escape(answer)
     rows = [
         f'<div><input type="radio" name="{name}" id="{name}-{k}"/>'
         f'<label for="{name}-{k}">{escape(text)}</label>'
         f'<p class="feedback {"right" if right else "wrong"}">{"Yes" if right else "No"}. '
         f"{f'{escape(cause)} ' if cause else ''}{answer}</p></div>"
-        for k, (text, right, cause) in enumerate(node["options"])
+        for k, (text, right, cause) in enumerate(options)
     ]
-    right = next(text for text, is_right, _ in node["options"] if is_right)
-    close(self, node, "".join(rows), f"<strong>{escape(right)}</strong>. {answer}")
+    right = next(text for text, is_right, _ in options if is_right)
+    return _question("", "".join(rows), f"<strong>{escape(right)}</strong>. {answer}", origin)
 
 
-def depart_number(self: Any, node: number) -> None:
-    """Write the field; choice.js shows the feedback that fits the number."""
-    name = f"choice-{node['number']}"
+def number(
+    name: str, answer: str, origin: str, value: float, tolerance: float, unit: str,
+    feedback: Sequence[tuple[str, str]],
+) -> question:  # fmt: skip
+    """Return a question for a number; choice.js shows the feedback that fits what is typed.
+
+    Args:
+        name: of its field, unique on the page.
+        answer: what was measured.
+        origin: of the measurement.
+        value: the right number.
+        tolerance: how far from it a number counts as right.
+        unit: of the number, empty for none.
+        feedback: (key, text) by the keys of the directive.
+    """
     texts = "".join(
         f'<p class="feedback {"right" if key == "right" else "wrong"}" data-key="{key}">'
         f"{escape(text)}</p>"
-        for key, text in node["feedback"]
+        for key, text in feedback
     )
-    unit = f" in {escape(node['unit'])}" if node["unit"] else ""
+    in_unit = f" in {escape(unit)}" if unit else ""
     field = (
-        f'<div class="number"><label for="{name}">Your number{unit}</label>'
+        f'<div class="number"><label for="{name}">Your number{in_unit}</label>'
         f'<input type="number" step="any" inputmode="decimal" id="{name}"/>{texts}</div>'
     )
-    close(self, node, field, escape(node["answer"]))
+    attributes = f' data-value="{value!r}" data-tolerance="{tolerance!r}"'
+    return _question(attributes, field, escape(answer), origin)
 
 
-def close(self: Any, node: choice, inside: str, answer: str) -> None:
-    """End a question: what is inside, a place for announcements, and the answer in a fold."""
-    self.body.append(
+def _question(attributes: str, inside: str, answer: str, origin: str) -> question:
+    """Return a question with a place for announcements and the answer in a fold."""
+    closing = (
         f'</legend>{inside}<output class="visually-hidden" aria-live="polite"></output>'
         f"<details><summary>Answer</summary><p>{answer}</p>"
-        f'<p class="origin">{escape(node["origin"])}.</p></details></fieldset>'
+        f'<p class="origin">{escape(origin)}.</p></details></fieldset>'
     )
+    return question(opening=f'<fieldset class="choice"{attributes}><legend>', closing=closing)

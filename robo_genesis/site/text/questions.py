@@ -34,7 +34,6 @@ from typing import Any
 from docutils import nodes
 from docutils.parsers.rst.directives import unchanged
 from sphinx.application import Sphinx
-from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core.comparison import Comparison, compare_values
 from robo_genesis.core.tables import comparison_sentence
@@ -43,14 +42,10 @@ from robo_genesis.evidence import bundle
 from robo_genesis.lessons import find_lesson
 from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.site.evidence.measured import BACKEND, measured
+from robo_genesis.site.evidence.plain_nodes import WRITERS
 from robo_genesis.site.figures.case_labels import label
-from robo_genesis.site.text.question_nodes import (
-    choice,
-    depart_choice,
-    depart_number,
-    number,
-    visit_question,
-)
+from robo_genesis.site.pages import PageDirective
+from robo_genesis.site.text.question_nodes import choice, number, question
 
 EARLIER = {"lower": "earlier", "equal": "at the same time", "higher": "later"}
 LOWER = {"lower": "less", "equal": "the same (to {})", "higher": "more"}
@@ -90,23 +85,19 @@ def split_causes(content: Sequence[str], keys: Sequence[str]) -> tuple[str, dict
     return " ".join(question.split()), causes
 
 
-class Question(SphinxDirective):
+class Question(PageDirective):
     """Ask for something that was measured."""
 
     has_content = True
 
-    def run(self) -> list[nodes.Node]:
-        """Return the question; an unknown page, case, metric or key is an error."""
-        try:
-            text, node = self.ask()
-        except (LookupError, bundle.BundleRefused) as error:
-            raise self.error(f"{self.name}: {error}") from error
-        question, messages = self.parse_inline(text, lineno=self.lineno)
-        node += question
-        node["number"] = self.env.new_serialno("choice")
+    def shown(self) -> list[nodes.Node]:
+        """Return the question with a number that no other has."""
+        text, node = self.ask(f"choice-{self.env.new_serialno('choice')}")
+        words, messages = self.parse_inline(text, lineno=self.lineno)
+        node += words
         return [node, *messages]
 
-    def ask(self) -> tuple[str, choice]:
+    def ask(self, name: str) -> tuple[str, question]:
         """Return the question's text, and its node with everything that was measured."""
         raise NotImplementedError
 
@@ -116,14 +107,14 @@ class Choice(Question):
 
     required_arguments = 4
 
-    def ask(self) -> tuple[str, choice]:
+    def ask(self, name: str) -> tuple[str, question]:
         """See `Question.ask`."""
         lesson_page, metric, *cases = self.arguments
         text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
         order, unit, answer, origin = measured_order(lesson_page, metric, cases)
         margin = declared_margin(lesson_page.split("/")[0], metric)
         shown = options(unit, order, smallest_difference(lesson_page, unit), causes, margin)
-        return text, choice(options=shown, answer=answer, origin=origin)
+        return text, choice(name, answer, origin, shown)
 
 
 def percents(text: str) -> float:
@@ -144,14 +135,14 @@ class Number(Question):
     required_arguments = 2
     option_spec = {"tolerance": percents, "unit": unchanged}  # noqa: RUF012 - as docutils does
 
-    def ask(self) -> tuple[str, choice]:
+    def ask(self, name: str) -> tuple[str, question]:
         """See `Question.ask`."""
-        page, name = self.arguments
+        page, metric = self.arguments
         text, causes = split_causes(self.content, [*JUDGED, WRONG])
         if "tolerance" not in self.options:
             raise LookupError("the option tolerance is missing. Give percents: `:tolerance: 20`.")
         percent, unit = self.options["tolerance"], self.options.get("unit", "")
-        return text, number(**asked_number(page, name, percent, causes, unit))
+        return text, number(name, **asked_number(page, metric, percent, causes, unit))
 
 
 def asked_number(
@@ -270,5 +261,4 @@ def setup(app: Sphinx) -> None:
     """Register the directives."""
     app.add_directive("choice", Choice)
     app.add_directive("number", Number)
-    app.add_node(choice, html=(visit_question, depart_choice))
-    app.add_node(number, html=(visit_question, depart_number))
+    app.add_node(question, html=WRITERS)

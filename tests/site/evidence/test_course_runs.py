@@ -29,28 +29,17 @@ def accepted(outputs):
     return run
 
 
-def test_the_line_names_version_and_date_of_the_accepted_runs(accepted):
-    line = "Measured on CPU with Genesis 1.4.5 on 2026-11-22."
-    assert measured_line([accepted(), accepted(started="2026-11-22T23:59:59")]) == line
+def test_the_line_names_versions_and_dates_of_the_accepted_runs_of_this_build(accepted):
+    one, later = accepted(), accepted("1.3.3", "2026-11-24T10:00:00")
     elsewhere = accepted("1.3.3", "2020-01-01T00:00:00", "amdgpu", recorded=True)
-    assert measured_line([accepted(), elsewhere]) == line
-
-
-def test_several_dates_and_versions_are_all_in_the_line(accepted):
-    runs = [
-        accepted(started="2026-11-24T10:00:00"),
-        accepted("1.3.3"),
-        accepted(started="2026-11-23T10:00:00"),
-    ]
-    assert measured_line(runs) == (
+    missing = replace(one, status=Status("missing", "cpu", "", None))
+    line = "Measured on CPU with Genesis 1.4.5 on 2026-11-22."
+    assert measured_line([one, one, elsewhere]) == line
+    assert measured_line([one, missing]) == f"{line} 1 of 2 runs were not accepted."
+    assert measured_line([missing]) == "No run of this build was accepted."
+    assert measured_line([later, one]) == (
         "Measured on CPU with Genesis 1.3.3 and 1.4.5 from 2026-11-22 to 2026-11-24."
     )
-
-
-def test_runs_that_were_not_accepted_are_counted_and_never_measured(accepted):
-    missing = replace(accepted(), status=Status("missing", "cpu", "", None))
-    assert measured_line([accepted(), missing]).endswith(" 1 of 2 runs were not accepted.")
-    assert measured_line([missing]) == "No run of this build was accepted."
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from docutils import nodes
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger import run_block
-from robo_genesis.site.evidence.ledger_data import Item, PageRun
+from robo_genesis.site.evidence.ledger_data import PageRun
 
 
 @pytest.fixture
@@ -28,12 +28,6 @@ def test_the_same_bundle_gives_the_same_bytes_whenever_it_was_written(bundle):
     assert ledger_data.archive(bundle) != before
 
 
-def test_a_table_becomes_csv_with_what_needs_quoting_quoted():
-    assert ledger_data.csv_bytes([["a", "b"], ["1, 2", 'say "no"']]) == (
-        b'a,b\r\n"1, 2","say ""no"""\r\n'
-    )
-
-
 @pytest.mark.parametrize(
     ("name", "content", "kind"),
     [
@@ -45,14 +39,6 @@ def test_a_table_becomes_csv_with_what_needs_quoting_quoted():
 def test_a_picture_of_pixels_is_a_camera_frame(tmp_path, name, content, kind):
     (tmp_path / name).write_bytes(content)
     assert ledger_data.picture_kind(tmp_path / name) == kind
-
-
-def test_without_an_accepted_bundle_nothing_is_called_measured(tmp_path):
-    run = PageRun("l04/lab", tmp_path, Status("refused", "cpu", "files: gone", None, "files"))
-    assert ledger_data.provenance("table", [run]) == "No accepted evidence: cpu-refused."
-    assert ledger_data.provenance("figure", [run, run]).endswith(": cpu-refused, cpu-refused.")
-    assert ledger_data.provenance("illustration", []) == "Illustration, not measured."
-    assert ledger_data.provenance("settings", []) == "Chosen, not measured."
 
 
 @pytest.mark.parametrize(
@@ -67,8 +53,3 @@ def test_a_recorded_run_has_its_own_key_and_command(tmp_path, recorded, key, com
     assert run.key == key
     block = run_block("", run)
     assert [code.astext() for code in block.findall(nodes.literal_block)] == [command]
-
-
-def test_a_row_s_anchor_is_made_of_page_and_item():
-    item = Item("table", "T", "lessons/L04/lab", "table-1-x", (), "0", "x.csv", b"")
-    assert item.row == "row-lessons-l04-lab-table-1-x"

@@ -6,46 +6,44 @@ from types import SimpleNamespace
 import pytest
 
 from robo_genesis.core import project
-from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.pipeline.bundles.status import Status
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.site.evidence import guard, measured
-from robo_genesis.site.evidence.guard import problem_of
+from robo_genesis.site.evidence.guard import require_passed
 from robo_genesis.site.evidence.measured import measured as insert
-from robo_genesis.site.evidence.measured import state_words, status_fold, visit_status
+from robo_genesis.site.evidence.measured import status_line
 
-
-def test_a_metric_comes_with_unit_and_origin(outputs, experiment):
-    text, origin = insert("l04/lab", "G2.overshoot")
-    assert text == f"{experiment.metrics['G2'].overshoot:.4f} rad"
-    assert origin.startswith(f"Measured by l04/lab on cpu, Genesis {project.engine_pin()}, run ")
-    assert origin.endswith("from q_rad_or_m, target_rad_or_m")
+ORIGIN = f"Measured by l04/lab on cpu, Genesis {project.engine_pin()}, run "
 
 
 @pytest.mark.parametrize(
-    ("name", "text"), [("model.links", "11"), ("engine", project.engine_pin())]
+    ("name", "text", "source"),
+    [
+        ("G2.overshoot", "{:.4f} rad", "from q_rad_or_m, target_rad_or_m"),
+        ("model.links", "11", "from "),
+        ("engine", project.engine_pin(), ""),
+        ("control_law:G1.distance_to_control_law N·m", r"\S+ N·m",
+         "found by the check control_law"),
+    ],
+)  # fmt: skip
+def test_a_value_comes_with_unit_and_origin(outputs, experiment, name, text, source):
+    found, origin = insert("l04/lab", name)
+    assert re.fullmatch(text.format(experiment.metrics["G2"].overshoot), found)
+    assert origin.startswith(ORIGIN)
+    assert source in origin
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("G2.overshot", r"no metric 'G2.overshot'. Known: .*G2\.overshoot"),
+        ("overshoot", "no metric 'overshoot'. Known: "),
+        ("control_law:x", "no finding 'control_law:x'. Known: .*control_law:G1"),
+    ],
 )
-def test_counts_and_the_engine_version_are_plain(outputs, name, text):
-    assert insert("l04/lab", name)[0] == text
-
-
-def test_a_value_that_a_check_found_is_inserted_in_a_unit(outputs):
-    text, origin = insert("l04/lab", "control_law:G1.distance_to_control_law N·m")
-    assert re.fullmatch(r"\S+ N·m", text)
-    assert origin.endswith("found by the check control_law")
-    with pytest.raises(LookupError, match=r"no finding 'control_law:x'. Known: .*control_law:G1"):
-        insert("l04/lab", "control_law:x")
-
-
-@pytest.mark.parametrize("name", ["G2.overshot", "G9.overshoot", "overshoot"])
-def test_an_unknown_metric_names_those_there_are(outputs, name):
-    with pytest.raises(LookupError, match=rf"no metric '{name}'. Known: .*G2\.overshoot"):
+def test_an_unknown_value_names_those_there_are(outputs, name, said):
+    with pytest.raises(LookupError, match=said):
         insert("l04/lab", name)
-
-
-def test_a_page_without_bundle_is_refused(outputs):
-    with pytest.raises(BundleRefused, match=r"manifest\.json is not in"):
-        insert("l04/lecture", "G2.overshoot")
 
 
 @pytest.mark.parametrize("spoiled", [None, b"", b"no pickle"])
@@ -61,34 +59,28 @@ def test_a_state_is_computed_once_for_a_kept_folder(tmp_path, monkeypatch, spoil
     assert calls == ([1] if spoiled is None else [1, 2])
 
 
-def test_the_line_of_an_accepted_run_has_its_engine():
+@pytest.mark.parametrize(
+    ("state", "backend", "words"),
+    [
+        ("verified", "amdgpu", "Measured on AMD GPU with Genesis 9.8.7"),
+        ("inconclusive", "amdgpu", "AMD GPU run: inconclusive"),
+        ("stale", "x<y", "x&lt;y run: stale"),
+    ],
+)
+def test_the_line_of_an_accepted_run_alone_has_its_engine_and_no_markup(state, backend, words):
     predicate = SimpleNamespace(engine=SimpleNamespace(version="9.8.7"))
-    manifest = SimpleNamespace(predicate=predicate)
-    accepted = Status("verified", "amdgpu", "", manifest)
-    assert state_words(accepted) == "Measured on AMD GPU with Genesis 9.8.7"
-    unclear = Status("inconclusive", "amdgpu", "", manifest)
-    assert state_words(unclear) == "AMD GPU run: inconclusive"
-    assert state_words(Status("stale", "x<y", "why", None)) == "x<y run: stale"
+    status = Status(state, backend, "", SimpleNamespace(predicate=predicate))
+    assert status_line([status]) == f'<span class="status-word state-{state}">{words}</span>'
 
 
-def test_the_words_of_the_line_are_text_and_not_markup():
-    page = SimpleNamespace(body=[])
-    visit_status(page, status_fold("", line=[("stale", "x<y run: stale")]))
-    assert page.body == [
-        '<details class="status-line"><summary>'
-        '<span class="status-word state-stale">x&lt;y run: stale</span></summary>'
-    ]
-
-
-def test_a_guard_names_what_is_wrong_with_its_check(outputs):
-    assert problem_of("l04/lab", "control_law") is None
-    assert "no check 'control_lav'. Choices: " in str(problem_of("l04/lab", "control_lav"))
-    with pytest.raises(BundleRefused, match=r"manifest\.json is not in"):
-        problem_of("l04/elsewhere", "control_law")
-
-
-def test_a_check_that_failed_guards_nothing(outputs, monkeypatch):
+def test_only_a_check_that_passed_guards_a_sentence(outputs, monkeypatch):
+    require_passed("l04/lab", "control_law")
+    with pytest.raises(LookupError, match=r"no check 'control_lav'\. Choices: .*control_law"):
+        require_passed("l04/lab", "control_lav")
+    with pytest.raises(ValueError, match=r"manifest\.json is not in"):
+        require_passed("l04/elsewhere", "control_law")
     failed = SimpleNamespace(name="sag", passed=False, found={"sag_m": 0.1})
     manifest = SimpleNamespace(predicate=SimpleNamespace(checks=[failed]))
     monkeypatch.setattr(guard.bundle, "read_manifest", lambda folder: manifest)
-    assert problem_of("l04/lab", "sag") == "the check sag of l04/lab found {'sag_m': 0.1}."
+    with pytest.raises(ValueError, match=r"the check sag of l04/lab found .*0\.1"):
+        require_passed("l04/lab", "sag")

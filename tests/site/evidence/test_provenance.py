@@ -5,15 +5,11 @@ from built_site import parsed
 from docutils import nodes
 from docutils.core import publish_doctree
 from myst_parser.parsers.docutils_ import Parser
+from small_book import draft_of, executed
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
 from robo_genesis.pipeline.bundles.status import Status
-from robo_genesis.pipeline.html.render import render
-from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.pipeline.pages.execute import execute_pages
-from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site.evidence.measured import badge_node
 from robo_genesis.site.evidence.refusals import problems
 
@@ -96,11 +92,7 @@ def html(tmp_path_factory):
         for name, title, cells in (("lab", "A", AS_MEASURED), ("lecture", "B", AS_PRINTED))
     }  # fmt: skip
     book = make_book(folder, **pages, **{"evidence/ledger": "# Ledger\n\n```{ledger} items\n```\n"})
-    pages = find_pages(book)
-    results = execute_pages(pages, places(pages, folder / "store"))
-    assert [result.status for result in results] == ["executed"] * 2
-    sphinx = SphinxProcess(book, folder / "render.log")
-    return render(sphinx, folder / "staging", BuiltPages.of(results)).html
+    return draft_of(book, folder, executed(find_pages(book), folder)).html
 
 
 def lines_and_rows(html, name):
@@ -126,7 +118,7 @@ def test_what_a_cell_puts_out_has_its_line_wherever_it_is_shown(html):
     assert lines == [CHOSEN] + [PRINTED] * 7
     assert "Its caption." in page.select_one("figcaption:has(.provenance)").get_text()
     assert kinds(rows) == ["settings", *["printed"] * 7]
-    assert [row.select("td")[3].get_text() for row in rows] == ["no run"] * 8
+    assert {row.select("td")[3].get_text() for row in rows} == {"no run"}
     anchors = [row.a["href"].split("#")[1] for row in rows]
     assert [page.find(id=anchor).name for anchor in anchors] == [
         "table", "table", "svg", "figure", "svg", "svg", "table", "table",
@@ -143,33 +135,21 @@ def found(document, book):
 
 
 @pytest.mark.parametrize(
-    ("text", "name"),
+    ("text", "said"),
     [
-        ('A <span class="evidence-badge state-verified">amdgpu-verified</span>.', "evidence-badge"),
-        ("<div\n  class='x evidence&#45;badge'>cpu-verified</div>", "evidence-badge"),
-        ("[amdgpu-verified]{.evidence-badge}", "evidence-badge"),
-        ("{.evidence-badge}\namdgpu-verified", "evidence-badge"),
-        ("```{container} evidence-badge\namdgpu-verified\n```", "evidence-badge"),
-        ("```{raw} html\n<b class='evidence-badge'>x</b>\n```", "evidence-badge"),
-        ("[7 rad]{.measured}", "measured"),
-        ("[7 rad]{.provenance}", "provenance"),
-    ],
-)
-def test_an_imitated_class_is_recognized_however_it_is_written(text, name, tmp_path):
-    (problem,) = found(read(text), tmp_path)
-    assert problem.startswith(f"a page may not set the class {name}: only the build sets it.")
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
+        ("<div\n  class='x evidence&#45;badge'>cpu-verified</div>", "the class evidence-badge"),
+        ("[amdgpu-verified]{.evidence-badge}", "the class evidence-badge"),
+        ("```{container} evidence-badge\namdgpu-verified\n```", "the class evidence-badge"),
+        ("```{raw} html\n<b class='evidence-badge'>x</b>\n```", "the class evidence-badge"),
+        ("[7 rad]{.measured}", "the class measured"),
+        ("[7 rad]{.provenance}", "the class provenance"),
         ('<img src="a.svg">', "the page has <img> as raw HTML"),
         ("![x](lessons/../evidence/l04/cpu/a.png) ![y](b.svg)", "Use the {evidence} directive"),
     ],
 )
-def test_a_picture_that_avoids_the_directives_is_refused(text, message, tmp_path):
+def test_an_imitated_result_is_refused_however_it_is_written(text, said, tmp_path):
     (problem,) = found(read(text), tmp_path)
-    assert message in problem
+    assert said in problem
 
 
 def test_the_site_s_own_badges_and_harmless_html_pass(tmp_path):

@@ -28,12 +28,6 @@ def runs() -> Runs:
     )
 
 
-def test_a_run_without_words_keeps_its_name():
-    assert label("l03", "dt10_sub1") == WORDS[0]
-    assert label("l03", "h_5000us_10000") == "h_5000us_10000"
-    assert label("l04", "G1") == "G1"
-
-
 def test_runs_are_shown_by_their_words_everywhere():
     shown = labelled(runs(), "l03")
     (channel,), (level,) = shown.channels, shown.levels
@@ -42,6 +36,6 @@ def test_runs_are_shown_by_their_words_everywhere():
     assert shown.moves[WORDS[0]] == "**one step in 10 ms**: the cube falls."
 
 
-def test_a_run_keeps_its_mark_with_its_words():
+def test_a_run_keeps_its_mark_with_its_words_and_without_words_its_name():
+    assert label("l03", "h_5000us_10000") == "h_5000us_10000"
     assert palette.marks_of(WORDS, MARKS) == {WORDS[0]: "first", WORDS[1]: "baseline"}
-    assert MARKS["G1"] == palette.marks_of(["G1"], MARKS)["G1"]

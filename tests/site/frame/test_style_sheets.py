@@ -51,11 +51,3 @@ def test_a_page_has_one_link_and_keeps_the_sheets_that_are_not_joined():
     assert [address.partition("?")[0] for address in found] == [
         f"../{style_sheets.JOINED}", "../_static/math.css",
     ]  # fmt: skip
-
-
-def test_a_failing_tool_is_named_with_its_output(tmp_path, monkeypatch):
-    (tmp_path / "_static").mkdir()
-    (tmp_path / "_static/sphinx-design.min.css").write_text(".a { color: red }")
-    monkeypatch.setattr(style_sheets, "PURGE", "purgecss/bin/missing.js")
-    with pytest.raises(style_sheets.ProjectError, match=r"PurgeCSS failed:[\s\S]*missing\.js"):
-        style_sheets.join_sheets(tmp_path)

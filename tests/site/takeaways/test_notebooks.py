@@ -9,10 +9,9 @@ from tiny_book import LAB_FRONT, cell, make_book, notebook
 
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.takeaways.notebooks import (
-    Course,
-    Origin,
     executed_notebook,
     student_notebook,
+    version_check,
 )
 from robo_genesis.site.takeaways.plain_markdown import ProseError, Writer
 
@@ -26,17 +25,13 @@ CELLS = (
     '\n+++ {"tags": ["site-only"]}\n\nOnly on the site.\n',
 )
 COMMANDS = ("python3 -m venv course", "course/bin/pip install ./robo.whl jupyterlab")
-ORIGIN = Origin(
-    Course("Course", "Its authors", "https://example.org/cpu", ""),
-    "A lab",
-    "Linux with Python 3",
-    "1.2.3",
-    "0.1.0",
-    "robo.whl",
-    COMMANDS,
-    "12345678",
-    "2026-01-02",
-)
+CHECK = version_check({"genesis-world": "1.2.3", "robo-genesis": "0.1.0"}, "robo.whl", COMMANDS)
+
+
+def student_of(page):
+    return student_notebook(
+        page, "The origin.", CHECK, Writer(page.path.parent, lambda _: "(yours)")
+    )
 
 
 @pytest.fixture
@@ -45,32 +40,17 @@ def page(tmp_path):
     return found
 
 
-@pytest.fixture
-def student(page, tmp_path):
-    return student_notebook(page, ORIGIN, Writer(tmp_path, lambda _: "(yours)"))
-
-
-def test_the_student_s_notebook_is_clean_and_valid(student):
-    nbformat.validate(student)
+def test_the_student_s_notebook_is_clean(page):
+    student = student_of(page)
     text = nbformat.writes(student)
     assert not [words for words in ("SECRET", "Only on the site", "{measured}") if words in text]
     assert "It was (yours)." in text
-    code = [c for c in student.cells if c.cell_type == "code"]
-    assert [c.source for c in code[1:]] == ["x = 1", "plot()"]
-    assert all(c.outputs == [] and c.execution_count is None for c in code)
     assert student.metadata.kernelspec.name == "python3"
-    assert "*Drawn by plot.*" in [c.source for c in student.cells]
-    first = student.cells[0].source
-    facts = (
-        ORIGIN.course.name,
-        ORIGIN.course.authors,
-        ORIGIN.title,
-        ORIGIN.system,
-        ORIGIN.engine,
-        ORIGIN.run,
-        ORIGIN.measured,
-    )
-    assert [words for words in (*facts, *COMMANDS, "CC BY 4.0") if words not in first] == []
+    sources = [cell.source for cell in student.cells]
+    assert (sources[0], sources[-1]) == ("The origin.", "*Drawn by plot.*")
+    code = [c for c in student.cells if c.cell_type == "code"]
+    assert [c.source for c in code] == [CHECK, "x = 1", "plot()"]
+    assert all(c.outputs == [] and c.execution_count is None for c in code)
 
 
 SHEET = """\
@@ -104,8 +84,7 @@ def sheet_of(folder, sheet, *cells):
     """The cells of a student's notebook of a lab with a work sheet."""
     (found,) = find_pages(make_book(folder, lab=notebook(*cells, front=LAB_FRONT)))
     found.path.with_name("worksheet.md").write_text(sheet)
-    made = student_notebook(found, ORIGIN, Writer(folder, lambda _: "(yours)"))
-    return [cell.source for cell in made.cells]
+    return [cell.source for cell in student_of(found).cells]
 
 
 def test_each_part_of_a_work_sheet_follows_what_it_belongs_to(tmp_path):
@@ -117,7 +96,6 @@ def test_each_part_of_a_work_sheet_follows_what_it_belongs_to(tmp_path):
         "## 2. The scene", "y = 2", "## Work sheet, part 2: The scene",
         "## 3. Run", "## Work sheet, part 3: Results", "z = 3", "## Work sheet, part 4: Measured",
     ]  # fmt: skip
-    assert len(heads) == len(set(heads))
     assert sources[first + 1].endswith("\n\nEarlier or later?")
     assert sources[-1].endswith("```python\n## no heading\n```")
 
@@ -134,30 +112,27 @@ def test_a_work_sheet_without_predictions_or_numbers_is_refused(tmp_path, sheet,
         sheet_of(tmp_path, sheet, cell("x = 1"))
 
 
-def run_check(student, monkeypatch, **installed: str) -> None:
-    """Run the first cell where only these versions are installed."""
-
+@pytest.mark.parametrize(
+    ("installed", "said"),
+    [
+        ({"genesis-world": "1.2.3", "robo-genesis": "0.1.0"}, None),
+        ({"genesis-world": "1.0.0", "robo-genesis": "0.1.0"}, "genesis-world 1.2.3; it is 1.0.0"),
+        ({"genesis-world": "1.2.3"}, "robo-genesis 0.1.0; it is not installed here"),
+    ],
+)
+def test_its_check_accepts_the_pinned_engine_alone(monkeypatch, capsys, installed, said):
     def look_up(name: str) -> str:
-        if name.replace("-", "_") not in installed:
+        if name not in installed:
             raise PackageNotFoundError(name)
-        return installed[name.replace("-", "_")]
+        return installed[name]
 
     monkeypatch.setattr("importlib.metadata.version", look_up)
-    code = next(c.source for c in student.cells if c.cell_type == "code")
-    exec(compile(code, "check", "exec"), {})
-
-
-def test_its_first_cell_accepts_the_pinned_engine_alone(student, monkeypatch, capsys):
-    run_check(student, monkeypatch, genesis_world="1.2.3", robo_genesis="0.1.0")
-    assert capsys.readouterr().out == "genesis-world 1.2.3\nrobo-genesis 0.1.0\n"
-    for installed, message in (
-        ({"genesis_world": "1.0.0", "robo_genesis": "0.1.0"}, "genesis-world 1.2.3; it is 1.0.0"),
-        ({"robo_genesis": "0.1.0"}, "genesis-world 1.2.3; it is not installed here"),
-        ({"genesis_world": "1.2.3"}, "robo-genesis 0.1.0; it is not installed here"),
-    ):
-        with pytest.raises(RuntimeError, match=message) as error:
-            run_check(student, monkeypatch, **installed)
-        assert COMMANDS[1] in str(error.value)
+    if said is None:
+        exec(CHECK, {})
+        assert capsys.readouterr().out == "genesis-world 1.2.3\nrobo-genesis 0.1.0\n"
+    else:
+        with pytest.raises(RuntimeError, match=rf"{said}[\s\S]*{COMMANDS[1]}"):
+            exec(CHECK, {})
 
 
 def executed(page, folder, *outputs):
@@ -168,33 +143,25 @@ def executed(page, folder, *outputs):
         for k, (source, output) in enumerate(zip(codes, outputs, strict=True), 1)
     ]
     writer = Writer(folder, lambda _: "0.12 s")
-    found = executed_notebook(page, new_notebook(cells=ran), ORIGIN, writer)
-    nbformat.validate(found)
+    found = executed_notebook(page, new_notebook(cells=ran), "The origin.", writer)
     return [c for c in found.cells if c.cell_type == "code"], nbformat.writes(found)
 
 
-def test_the_executed_notebook_has_outputs_and_measured_values(page, tmp_path):
+@pytest.mark.parametrize(("shown", "counts"), [("1", [1, 2, 3]), ("0", [1, 3])])
+def test_the_executed_notebook_has_outputs_and_the_solutions_only_if_the_site_has(
+    page, tmp_path, monkeypatch, shown, counts
+):
+    monkeypatch.setenv("SOLUTIONS", shown)
     stack = ["File /home/me/secret.py", "\x1b[31mValueError\x1b[0m: no"]
     error = new_output("error", ename="ValueError", evalue="no", traceback=stack)
     hello = new_output("stream", text="hello")
-    cells, text = executed(page, tmp_path, hello, error, hello)
+    cells, text = executed(page, tmp_path, hello, hello, error)
+    assert [c.execution_count for c in cells] == counts
     assert cells[0].outputs[0].text == "hello"
-    assert cells[1].outputs[0].traceback == ["ValueError: no"]
-    assert [c.execution_count for c in cells] == [1, 2, 3]
+    assert cells[-1].outputs[0].traceback == ["ValueError: no"]
+    assert ("SECRET code" in text) == (shown == "1")
     assert "It was 0.12 s." in text
     assert "Only on the site" not in text
-
-
-@pytest.mark.parametrize(("shown", "sources"), [("1", 3), ("0", 2)])
-def test_the_executed_notebook_has_the_solutions_only_if_the_site_has(
-    page, tmp_path, monkeypatch, shown, sources
-):
-    monkeypatch.setenv("SOLUTIONS", shown)
-    outputs = [new_output("stream", text=f"output {k}") for k in range(3)]
-    cells, text = executed(page, tmp_path, *outputs)
-    assert len(cells) == sources
-    assert ("SECRET code" in text) == (shown == "1")
-    assert cells[-1].outputs[0].text == "output 2"
 
 
 def test_notes_of_the_compiler_are_dropped_and_warnings_stay(page, tmp_path):

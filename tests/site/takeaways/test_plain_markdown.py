@@ -22,7 +22,6 @@ def writer(tmp_path):
         ("{term}`DOF`, {ref}`this part <there>`, {numref}`fig-a`", "DOF, this part, the figure"),
         ("{engine-source}`engine/scene.py`", "`genesis/engine/scene.py`"),
         ("```{lesson-status} l04\n```\n\nText.", "Text."),
-        ("```{unheard-of}\nSome words.\n```\n\nText.", "Text."),
         ("| a | b |\n| - | - |\n| {term}`x` | 1 |", "| a | b |\n| - | - |\n| x | 1 |"),
         ("```python\n{measured}`kept`\n```", "```python\n{measured}`kept`\n```"),
         ("```{code-block} python\nx = 1\n```", "```python\nx = 1\n```"),
@@ -35,6 +34,7 @@ def writer(tmp_path):
         ),
         (":::{admonition} First\n:class: tip\nDo *it*.\n:::", "> **First**\n> \n> Do *it*."),
         (":::{note}\nMind.\n:::", "> **Note**\n> \n> Mind."),
+        (":::{dropdown} A hint\ninside\n:::", "> **A hint**\n> \n> inside"),
         ("- item\n\n  ```{term-list}\n  gone\n  ```\n- next", "- item\n\n- next"),
     ],
 )
@@ -47,7 +47,6 @@ def test_prose_becomes_plain(writer, myst, markdown):
     [
         ":::{dropdown} Why?\n:class-container: solution\nSECRET\n:::",
         "```{dropdown} Why?\n---\nclass-container: wide solution\n---\nSECRET\n```",
-        ":::{dropdown} Answer\nSECRET\n:::",
         ":::{dropdown} Our solution\nSECRET\n:::",
         ":::{admonition} Why?\n:class: solution\nSECRET\n:::",
         ":::{solution} exercise-1\nSECRET\n:::",
@@ -58,12 +57,7 @@ def test_prose_becomes_plain(writer, myst, markdown):
 def test_no_solution_travels(writer, fold):
     written = plain(f"Before.\n\n{fold}\n\nAfter.", writer)
     assert "SECRET" not in written
-    assert written.startswith("Before.")
-    assert written.endswith("After.")
-
-
-def test_a_fold_that_is_no_solution_travels(writer):
-    assert "inside" in plain(":::{dropdown} A hint\ninside\n:::", writer)
+    assert (written[:7], written[-6:]) == ("Before.", "After.")
 
 
 def test_a_fold_in_html_is_refused(writer):

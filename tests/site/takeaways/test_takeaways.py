@@ -12,6 +12,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from nbformat.v4 import new_markdown_cell, new_notebook
 from sphinx.errors import ConfigError
 
 from robo_genesis.core import project, text, trace
@@ -61,8 +62,7 @@ def test_each_number_of_a_run_is_in_its_table_with_its_unit(table, traces):
     assert {row["effort_limit joint4 [N·m]"] for row in table} == {str(run.effort_limit[3])}
 
 
-def test_every_column_names_a_unit_and_nothing_is_made_up_before_the_first_step(table):
-    assert [name for name in table[0] if not name.endswith("]")] == []
+def test_nothing_is_made_up_before_the_first_step(table):
     empty = {name.split()[0] for name, value in table[0].items() if value == ""}
     assert empty == {"target", "internal_force"}
     assert [name for name, value in table[1].items() if value == ""] == []
@@ -83,23 +83,27 @@ def test_a_kept_table_is_of_one_state_of_all_code_that_shapes_it(
         assert Path(module.__file__).read_bytes() in keys[0], module.__name__
 
 
-def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path):
-    first, second = (build_wheel(tmp_path / name) for name in "ab")
-    assert built_wheel(project.ROOT).endswith(first.read_bytes())
+@pytest.mark.parametrize(
+    ("repository", "urls"),
+    [("", None), ("https://github.com/a/b", ["Repository, https://github.com/a/b"])],
+)
+def test_the_wheel_pins_the_engine_and_is_the_same_each_time(tmp_path, repository, urls):
+    first = build_wheel(tmp_path, repository=repository)
+    assert built_wheel(project.ROOT, repository).endswith(first.read_bytes())
     assert first.name == f"robo_genesis-{package_facts()['version']}-py3-none-any.whl"
-    assert first.read_bytes() == second.read_bytes()
     with zipfile.ZipFile(first) as wheel:
         names = wheel.namelist()
         (found,) = (name for name in names if name.endswith("/METADATA"))
-        needed = message_from_bytes(wheel.read(found)).get_all("Requires-Dist")
-    assert f"genesis-world=={project.engine_pin()}" in needed
+        metadata = message_from_bytes(wheel.read(found))
+    assert f"genesis-world=={project.engine_pin()}" in metadata.get_all("Requires-Dist")
+    assert metadata.get_all("Project-URL") == urls
     sources = (project.ROOT / "robo_genesis").rglob("*")
-    files = {
+    there = {
         path.relative_to(project.ROOT).as_posix()
         for path in sources
         if path.is_file() and path.suffix not in (".pyc", ".tmpl")
     }
-    assert {name for name in names if not name.startswith("robo_genesis-")} == files
+    assert {name for name in names if not name.startswith("robo_genesis-")} == there
 
 
 def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path):
@@ -117,20 +121,6 @@ def test_the_doctor_and_the_pin_work_from_the_wheel_without_a_checkout(tmp_path)
     assert "the engine would start now" in backend["found"]
 
 
-def test_the_wheel_names_the_repository_that_is_configured(tmp_path):
-    wheels = {
-        "": build_wheel(tmp_path / "without"),
-        "https://github.com/a/b": build_wheel(
-            tmp_path / "with", repository="https://github.com/a/b"
-        ),
-    }
-    for address, path in wheels.items():
-        with zipfile.ZipFile(path) as wheel:
-            (found,) = (name for name in wheel.namelist() if name.endswith("/METADATA"))
-            urls = message_from_bytes(wheel.read(found)).get_all("Project-URL")
-        assert urls == ([f"Repository, {address}"] if address else None)
-
-
 @pytest.mark.parametrize(
     ("given", "valid", "offered"),
     [
@@ -145,27 +135,26 @@ def test_the_wheel_names_the_repository_that_is_configured(tmp_path):
 def test_a_valid_repository_on_github_alone_offers_a_codespace(given, valid, offered):
     with nullcontext() if valid else pytest.raises(ConfigError, match="OWNER/NAME, without a sl"):
         require_address(None, SimpleNamespace(course_repository=given))
-    text = codespace(given)
-    assert offered in text
-    assert bool(text) == bool(offered)
+    assert offered in codespace(given)
+    assert bool(codespace(given)) == bool(offered)
 
 
-def test_a_package_that_cannot_be_built_says_why(tmp_path):
-    for name in ("README.md", "LICENSE"):
-        (tmp_path / name).write_text("")
-    (tmp_path / "robo_genesis").mkdir()
-    (tmp_path / "pyproject.toml").write_text("[project]\nname = 3\n")
-    with pytest.raises(project.ProjectError, match="must contain"):
-        build_wheel(tmp_path, tmp_path)
-
-
-def test_the_commands_install_the_wheel_and_open_the_notebook():
-    assert run_commands("robo.whl", "https://example.org/cpu", "lab.ipynb") == (
-        "python3 -m venv course",
-        "course/bin/pip install -c constraints.txt \\\n"
-        "  --extra-index-url https://example.org/cpu \\\n"
-        "  ./robo.whl jupyterlab",
-        "course/bin/jupyter lab lab.ipynb",
+def test_a_notebook_begins_with_its_origin_and_the_commands_that_run_it():
+    commands = run_commands("robo.whl", "https://example.org/cpu", "lab.ipynb")
+    page = SimpleNamespace(notebook=new_notebook(cells=[new_markdown_cell("# A lab\n\nText.")]))
+    ran = SimpleNamespace(run_id="0" * 32, started="2026-01-02T10:00:00Z")
+    config = SimpleNamespace(html_title="Course", author="Its authors")
+    text = files.origin_of(page, ran, "robo.whl", commands, config, "student notebook")
+    first, second, *_ = text.splitlines()
+    pin = project.engine_pin()
+    assert first.startswith(f"> Course, *A lab*: student notebook. Written for Genesis {pin};")
+    assert first.endswith("the site shows run 00000000 of 2026-01-02.")
+    assert second.startswith("> © Its authors. Code: MIT licence. Text and figures: CC BY 4.0.")
+    assert text.endswith(
+        f"To run it on {files.system()}, put `robo.whl` and `constraints.txt` from the lab's page "
+        "beside it, and in that folder:\n\n```console\npython3 -m venv course\n"
+        "course/bin/pip install -c constraints.txt \\\n  --extra-index-url https://example.org/cpu "
+        "\\\n  ./robo.whl jupyterlab\ncourse/bin/jupyter lab lab.ipynb\n```"
     )
 
 

@@ -1,0 +1,43 @@
+"""Directives and roles of pages, whose refusals are errors of the build with page and line."""
+
+from docutils import nodes
+from sphinx.util.docutils import SphinxDirective, SphinxRole
+
+
+class PageDirective(SphinxDirective):
+    """A directive; what it cannot show is an error of the build."""
+
+    def run(self) -> list[nodes.Node]:
+        """Return the directive's nodes."""
+        try:
+            return self.shown()
+        except (LookupError, ValueError) as error:
+            raise self.error(f"{' '.join([self.name, *self.arguments])}: {error}") from error
+
+    def shown(self) -> list[nodes.Node]:
+        """Return the directive's nodes.
+
+        Raises:
+            LookupError, ValueError: it cannot show what the page asks for.
+        """
+        raise NotImplementedError
+
+
+class PageRole(SphinxRole):
+    """A role; what it cannot show is an error of the build."""
+
+    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+        """Return the role's nodes."""
+        try:
+            return self.shown(), []
+        except (LookupError, ValueError) as error:
+            message = f"{self.name}: {error}"
+            return [], [self.inliner.reporter.error(message, line=self.lineno)]
+
+    def shown(self) -> list[nodes.Node]:
+        """Return the role's nodes.
+
+        Raises:
+            LookupError, ValueError: it cannot show what the page asks for.
+        """
+        raise NotImplementedError
