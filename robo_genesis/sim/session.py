@@ -25,6 +25,9 @@ from robo_genesis.sim.engine_log import EngineLog, remove_private_paths
 CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
 """Valid values of the variables of the contract; the first is the default."""
 
+LIBRARIES = ("libEGL.so.1", "libGL.so.1")
+"""What the engine needs even without a camera."""
+
 PRECISION = "32"
 INSTALL = "Install it again: pip install --force-reinstall -r requirements.lock."
 
@@ -200,7 +203,7 @@ def import_engine() -> Any:
     """
     spare_searches()
     if sys.platform == "linux":
-        require_libraries("libEGL.so.1", "libGL.so.1")
+        require_libraries()
     try:
         return importlib.import_module("genesis")
     except ImportError as error:
@@ -242,9 +245,9 @@ def require_built(scene: Any, case: Any, error: type[Exception]) -> None:
         )
 
 
-def require_libraries(*names: str) -> None:
-    """Raise EngineError for a shared library that cannot be loaded."""
-    for name in names:
+def require_libraries() -> None:
+    """Raise EngineError for one of `LIBRARIES` that cannot be loaded."""
+    for name in LIBRARIES:
         try:
             ctypes.CDLL(name)
         except OSError as error:

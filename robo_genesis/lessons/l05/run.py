@@ -1,6 +1,6 @@
 """Reaches of L05: ask for joint positions, accept or refuse them, command them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,6 @@ from robo_genesis.sim.arm.joint_control import (
     ControlCase,
     Controlled,
     assign_postures,
-    course_case,
     run_case,
 )
 from robo_genesis.sim.arm.joints import JointMap
@@ -63,7 +62,7 @@ class SolveCase:
     @property
     def start(self) -> ControlCase:
         """The settings from which the answers are assigned: those of the course, at its start."""
-        return replace(course_case(franka.Q_START, self.steps), dt=self.dt)
+        return ControlCase(q_target=franka.Q_START, steps=self.steps, dt=self.dt)
 
 
 def ask(robot: Any, joints: JointMap, case: ReachCase) -> IkAnswer:

@@ -11,6 +11,7 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import ContactTrace
+from robo_genesis.sim.arm.kinematics import rotate
 from robo_genesis.sim.bodies.contacts import ContactCase
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
@@ -82,7 +83,7 @@ def by_mujoco(begin: Mapping[str, FloatArray], case: ContactCase) -> dict[str, F
     from mujoco import rollout
 
     model, quat = mujoco_contacts.load(case), begin["link_quat"]
-    spin = rotated(quat * [1, -1, -1, -1], begin["link_ang"])  # in the body's axes
+    spin = rotate(quat * [1, -1, -1, -1], begin["link_ang"])  # in the body's axes
     at_zero = np.zeros((len(quat), 1))
     parts = (at_zero, begin["link_pos"], quat, begin["link_vel"], spin)
     data = mujoco.MjData(model)
@@ -90,18 +91,5 @@ def by_mujoco(begin: Mapping[str, FloatArray], case: ContactCase) -> dict[str, F
     last: Any = states[:, -1]
     _, position, orientation, velocity, spin = np.split(last, (1, 4, 8, 11), axis=1)
     return dict(
-        zip(NEXT, (position, orientation, velocity, rotated(orientation, spin)), strict=True)
+        zip(NEXT, (position, orientation, velocity, rotate(orientation, spin)), strict=True)
     )
-
-
-def rotated(quat: FloatArray, vectors: FloatArray) -> FloatArray:
-    """Return vectors (…, 3) rotated by unit quaternions (…, 4), (w, x, y, z)."""
-    axis = quat[..., 1:]
-    twice = 2 * cross(axis, vectors)
-    return np.asarray(vectors + quat[..., :1] * twice + cross(axis, twice))
-
-
-def cross(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the cross products of vectors (…, 3), as `np.cross` does for any axes."""
-    (x, y, z), (u, v, w) = ([of[..., k] for k in range(3)] for of in (a, b))
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=-1)

@@ -32,8 +32,9 @@ import numpy as np
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace
+from robo_genesis.sim.arm.kinematics import quat_multiply
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase
-from robo_genesis.sim.bodies.continuation import NEXT, continued, cross
+from robo_genesis.sim.bodies.continuation import NEXT, continued
 from robo_genesis.sim.laws import UNTURNED, ZERO, apart, broken, times, unit_quaternions
 
 MEASURES = False
@@ -270,7 +271,5 @@ def before_last_step(trace: BodyTrace, h: float) -> tuple[FloatArray, FloatArray
     position, velocity = (a[:, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel))
     quat, turn = trace.link_quat[:, 0].astype(np.float64), -h * trace.link_ang[:, 0]
     half = np.linalg.norm(turn, axis=1, keepdims=True) / 2
-    w, v = np.cos(half), turn / 2 * np.sinc(half / np.pi)
-    scalar = w * quat[:, :1] - (v * quat[:, 1:]).sum(axis=1, keepdims=True)
-    vector = w * quat[:, 1:] + quat[:, :1] * v + cross(v, quat[:, 1:])
-    return position - h * velocity, np.hstack([scalar, vector])
+    back = np.hstack([np.cos(half), turn / 2 * np.sinc(half / np.pi)])
+    return position - h * velocity, quat_multiply(back, quat)

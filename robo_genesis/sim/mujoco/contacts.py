@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.trace import ContactTrace
+from robo_genesis.sim.arm.kinematics import rotate
 from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
 from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
-from robo_genesis.sim.visual_shape import rotate
 
 VERSION = version("mujoco")
 

@@ -22,12 +22,23 @@ def bare_robot() -> tuple[Any, Any, list[int], list[int]]:
     The data are made once, because that takes as long as a hundred states. Every use sets all of
     `qpos` and `qvel` that it reads.
     """
+    return with_data(bare_spec().compile())
+
+
+def bare_spec() -> Any:
+    """Return the specification of the model without shapes and actuators."""
     import mujoco
 
     spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
     for part in (*spec.actuators, *spec.keys, *spec.geoms, *spec.meshes):
         spec.delete(part)
-    model = spec.compile()
+    return spec
+
+
+def with_data(model: Any) -> tuple[Any, Any, list[int], list[int]]:
+    """Return a model of the robot, its data, and the joints' indices in qpos and qvel."""
+    import mujoco
+
     joints = [model.joint(name) for name in JOINT_NAMES]
     q_at, dof_at = [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
     return model, mujoco.MjData(model), q_at, dof_at

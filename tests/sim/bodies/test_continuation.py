@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.sim.bodies.contacts import ContactCase
-from robo_genesis.sim.bodies.continuation import NEXT, by_mujoco, cross, level, up_and_down
+from robo_genesis.sim.bodies.continuation import NEXT, by_mujoco, level, up_and_down
 from robo_genesis.sim.bodies.laws import (
     depths_before_last_step,
     never_still,
@@ -64,12 +64,6 @@ def test_a_cube_in_contact_has_an_angular_velocity_of_rounding(shape, turning, c
     trace = replace(AT_REST, link_ang=np.full_like(AT_REST.link_ang, turning))
     found = never_still(trace, replace(CASE, shape=shape))
     assert [breach.code for breach in found] == codes
-
-
-def test_cross_products_are_those_of_numpy():
-    a, b = np.random.default_rng(0).normal(size=(2, 7, 3))
-    assert np.allclose(cross(a, b), np.cross(a, b), rtol=0, atol=1e-15)
-    assert np.allclose(cross(a[:, None], b), np.cross(a[:, None], b), rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize(
