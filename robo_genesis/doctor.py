@@ -130,7 +130,7 @@ def read_report(file: str) -> dict[str, Any]:
     Raises:
         ValueError: the file is not a report of this format.
     """
-    from pydantic import BaseModel, Field
+    from pydantic import BaseModel, Field, ValidationError
 
     class Report(BaseModel):
         format: Literal[3]
@@ -139,11 +139,15 @@ def read_report(file: str) -> dict[str, Any]:
 
     try:
         return Report.model_validate_json(Path(file).read_bytes()).model_dump()
-    except (OSError, ValueError) as error:
-        raise ValueError(
-            f"{file!r} cannot be read as a report: {error}; a report is a file that --json wrote; "
-            f"make a new one with {MAKE_REPORT}"
-        ) from error
+    except OSError as error:
+        problem = str(error)
+    except ValidationError as error:
+        first = error.errors()[0]
+        problem = f"{'.'.join(map(str, ('report', *first['loc'])))}: {first['msg']}"
+    raise ValueError(
+        f"{file!r} cannot be read as a report: {problem}; a report is a file that --json wrote; "
+        f"make a new one with {MAKE_REPORT}"
+    )
 
 
 def differences(
