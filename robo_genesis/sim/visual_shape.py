@@ -41,6 +41,8 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
     Raises:
         ValueError: the number of names is not that of the links.
     """
+    import trimesh  # loads slowly
+
     names = [link.name for link in entity.links] if names is None else names
     if len(names) != len(entity.links):
         raise ValueError(
@@ -55,7 +57,9 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
             red, green, blue = (int(value) for value in mesh.visual.main_color[:3])
             placed = rotate(geom.init_quat, mesh.vertices) + geom.init_pos
             by_colour.setdefault((red, green, blue), []).append((placed, np.array(mesh.faces)))
-        parts += [Part(name, rgb, *joined(meshes)) for rgb, meshes in by_colour.items()]
+        for rgb, meshes in by_colour.items():
+            vertices, faces = trimesh.util.append_faces(*zip(*meshes, strict=True))
+            parts.append(Part(name, rgb, vertices.astype(np.float32), faces.astype(np.int32)))
     return parts
 
 
@@ -122,14 +126,6 @@ def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
             f"The shape has parts of {', '.join(unknown)}; the record knows {', '.join(links)}. "
             "Both must come from one model: run the lecture and the recorded lab at one pin."
         )
-
-
-def joined(meshes: Sequence[tuple[FloatArray, np.ndarray]]) -> tuple[FloatArray, np.ndarray]:
-    """Return (vertices, faces) of several meshes as one."""
-    first = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
-    faces = [faces + begin for (_, faces), begin in zip(meshes, first[:-1], strict=True)]
-    vertices = np.concatenate([vertices for vertices, _ in meshes])
-    return vertices.astype(np.float32), np.concatenate(faces).astype(np.int32)
 
 
 def write_shape(folder: Path, parts: Sequence[Part]) -> Path:

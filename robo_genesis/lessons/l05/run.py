@@ -9,8 +9,6 @@ from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.engine_kinematics import (
-    END_EFFECTOR,
-    MOVED,
     IkAnswer,
     IkSettings,
     accepted_command,
@@ -68,7 +66,7 @@ class SolveCase:
 def ask(robot: Any, joints: JointMap, case: ReachCase) -> IkAnswer:
     """Return the engine's answer for the target of a case; the fingers stay at its start."""
     pose = case.position, case.quat
-    return solve_ik(robot, joints, END_EFFECTOR, *pose, case.q_start, MOVED, case.settings)
+    return solve_ik(robot, joints, *pose, case.q_start, case.settings)
 
 
 def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:
@@ -106,7 +104,7 @@ def solve_all(
     """
     questions = zip(case.positions, case.starts, strict=True)
     answers = [
-        solve_ik(robot, joints, END_EFFECTOR, position, case.quat, start, MOVED, case.settings)
+        solve_ik(robot, joints, position, case.quat, start, case.settings)
         for position, start in questions
     ]
     postures = np.stack([answer.q for answer in answers]).astype(np.float64)

@@ -14,8 +14,7 @@ from robo_genesis.sim.mujoco.kinematics import bare_robot, bare_spec, with_data
 
 VERSION = version("mujoco")
 
-INTEGRATORS = {"implicitfast": "mjINT_IMPLICITFAST", "Euler": "mjINT_EULER"}
-"""Names of integrators, and what MuJoCo calls them."""
+INTEGRATORS = ("implicitfast", "Euler")
 
 
 def load(case: ControlCase, timestep: float, integrator: str) -> Any:
@@ -56,7 +55,7 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
             forcerange=[-case.effort_limit[k], case.effort_limit[k]],
         )
     spec.option.timestep = timestep
-    spec.option.integrator = getattr(mujoco.mjtIntegrator, INTEGRATORS[integrator])
+    spec.option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
     return spec.compile()
 
 

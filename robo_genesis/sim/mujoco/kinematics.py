@@ -67,8 +67,8 @@ def link_poses(q: FloatArray, links: Sequence[str]) -> Pose:
     return Pose(position[:, bodies], orientation[:, bodies])
 
 
-def jacobian(q: FloatArray, link: str) -> FloatArray:
-    """Return the Jacobian (6, d) of a link's origin at `q` (d,), as `kinematics.jacobian`."""
+def jacobian(q: FloatArray) -> FloatArray:
+    """Return the Jacobian (6, d) of the hand's origin at `q` (d,), as `kinematics.jacobian`."""
     import mujoco
 
     model, data, q_at, dof_at = bare_robot()
@@ -76,7 +76,7 @@ def jacobian(q: FloatArray, link: str) -> FloatArray:
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     rows = np.zeros((6, model.nv))
-    mujoco.mj_jacBody(model, data, rows[:3], rows[3:], model.body(link).id)
+    mujoco.mj_jacBody(model, data, rows[:3], rows[3:], model.body("hand").id)
     return np.asarray(rows[:, dof_at])
 
 

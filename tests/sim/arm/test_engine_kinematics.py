@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from robo_genesis.sim.arm import engine_kinematics as of
-from robo_genesis.sim.arm.franka import JOINT_NAMES, Q_START
+from robo_genesis.sim.arm.franka import Q_START
 
 POSE = {"position": np.array([0.45, 0.0, 0.35]), "quat": np.array([0.0, 1.0, 0.0, 0.0])}
 
@@ -32,8 +32,7 @@ def ask(joints, environments=0, rows=None, envs=None, **given):
     if rows is not None:
         arrays = {name: np.tile(values, (rows, 1)) for name, values in arrays.items()}
     settings = of.IkSettings(samples=1, iterations=7)
-    arguments = {"moved": JOINT_NAMES[:7], "settings": settings, "envs": envs}
-    return of.solve_ik(robot, joints, "hand", **arrays, **arguments), robot.question
+    return of.solve_ik(robot, joints, **arrays, settings=settings, envs=envs), robot.question
 
 
 def test_every_setting_is_given_to_the_engine_and_its_order_is_that_of_the_map(joints):

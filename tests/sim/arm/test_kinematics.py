@@ -44,7 +44,7 @@ def test_poses_and_jacobian_of_many_postures_agree_with_mujoco_and_with_differen
     assert np.abs(of.pose_error(poses, of.link_poses(POSTURES))).max() < 1e-7
     many, h = of.jacobian(POSTURES), 1e-6
     for rows, q in zip(many, POSTURES, strict=True):
-        assert rows == pytest.approx(mujoco_kinematics.jacobian(q, "hand")[:, :7], abs=1e-7)
+        assert rows == pytest.approx(mujoco_kinematics.jacobian(q)[:, :7], abs=1e-7)
         ends = (of.hand_pose(q + sign * h * np.eye(9)[:7]) for sign in (1, -1))
         assert of.pose_error(*ends) / (2 * h) == pytest.approx(rows.T, abs=1e-7)
 
