@@ -107,7 +107,7 @@ class Engine:
     switches: Mapping[str, str] = field(default_factory=dict)
 
 
-def start(contract: Contract, seed: int = SEED) -> Engine:
+def start(contract: Contract) -> Engine:
     """Initialise Genesis, once per process, and probe where it runs.
 
     Raises:
@@ -117,12 +117,12 @@ def start(contract: Contract, seed: int = SEED) -> Engine:
     backend = requested_backend(contract)
     import_engine().init(
         backend=backend,
-        seed=seed,
+        seed=SEED,
         precision=PRECISION,
         use_deterministic_algorithms=True,
         **plain_log(),
     )
-    return started(contract, seed)
+    return started(contract)
 
 
 def requested_backend(contract: Contract) -> Any:
@@ -150,7 +150,7 @@ def plain_log() -> dict[str, str]:
     return {"theme": plain_theme(), "logging_level": "info"}
 
 
-def started(contract: Contract, seed: int = SEED) -> Engine:
+def started(contract: Contract) -> Engine:
     """Return the engine that `gs.init` started, after checking how it was started.
 
     Raises:
@@ -171,7 +171,7 @@ def started(contract: Contract, seed: int = SEED) -> Engine:
         "precision": str(8 * np.dtype(gs.np_float).itemsize),
         "use_deterministic_algorithms": getattr(gs, "use_deterministic_algorithms", True),
     }
-    valid = {"seed": seed, "precision": PRECISION, "use_deterministic_algorithms": True}
+    valid = {"seed": SEED, "precision": PRECISION, "use_deterministic_algorithms": True}
     if found != valid:
         raise EngineError(
             f"gs.init was called with {found}, valid is {valid}. Restart the kernel and write "
@@ -181,7 +181,7 @@ def started(contract: Contract, seed: int = SEED) -> Engine:
     compiler = ".".join(map(str, importlib.import_module("quadrants").__version__))
     switches = project.engine_switches(os.environ)
     backend = probe(contract.backend)
-    return Engine(gs.__version__, compiler, PRECISION, seed, backend, logs[-1], switches)
+    return Engine(gs.__version__, compiler, PRECISION, SEED, backend, logs[-1], switches)
 
 
 def _kept_logs() -> list[EngineLog]:

@@ -21,17 +21,6 @@ def trace(request):
     return mujoco_joints.run_case(SHORT, LINKS, 0.0005, request.param)
 
 
-def test_actuators_are_the_lessons_and_no_others():
-    model = mujoco_joints.load(l04.G3, 0.005, "Euler")
-    names = [model.actuator(k).name for k in range(model.nu)]
-    assert names == list(JOINT_NAMES)
-    assert model.actuator_gainprm[:, 0] == pytest.approx(l04.G3.kp)
-    assert model.actuator_biasprm[:, 1] == pytest.approx(-l04.G3.kp)
-    assert model.actuator_biasprm[:, 2] == pytest.approx(-l04.G3.kv)
-    assert model.actuator_forcerange[:, 1] == pytest.approx(l04.G3.effort_limit)
-    assert (model.opt.timestep, model.opt.integrator) == (0.005, 0)
-
-
 def test_forces_have_the_times_of_the_states_and_are_bounded_law_and_net_force(trace):
     demand = SHORT.kp * (SHORT.q_target - trace.q[1:]) - SHORT.kv * trace.qd
     law = np.clip(demand, -SHORT.effort_limit, SHORT.effort_limit)
