@@ -100,6 +100,13 @@ def test_the_caller_of_a_declaration_is_found_without_a_search_of_all_modules(
     assert (found.filename, Searched.times) == ("<frozen importlib._bootstrap>", 0)
 
 
+def test_a_started_engine_is_not_started_again(tmp_path, monkeypatch):
+    started = SimpleNamespace(_initialized=True, backend=SimpleNamespace(name="cuda"))
+    monkeypatch.setattr(session, "import_engine", lambda: started)
+    with pytest.raises(EngineError, match=r"backend cuda.*restart the kernel"):
+        start(Contract("cpu", True, tmp_path))
+
+
 class FakeEngine(SimpleNamespace):
     """An engine that starts as the real one and logs a line."""
 
