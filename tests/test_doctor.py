@@ -138,7 +138,7 @@ NOT_FINITE = (np.full(9, np.nan),) * 6
          ("q_target[joint4] is 1 rad", "none is clipped")),
         ("reset", diagnosis, "BASELINE", replace(BASELINE, dt=0.02), ("dt=0.02", "Restart")),
         ("stamps", joint_control, "read", lambda robot, dofs: NOT_FINITE,
-         ("qd is not finite", "reset")),
+         ("q is not finite", "reset")),
         ("saturation", diagnosis, "BASELINE", replace(BASELINE, effort_limit=np.full(9, 0.5)),
          ("120 of 120 samples", "Check limit")),
     ],
