@@ -24,14 +24,13 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from robo_genesis.core import project
 from robo_genesis.core.project import OUTPUTS_DIR
 from robo_genesis.core.refusals import BundleRefused, printable
-from robo_genesis.core.text import quoted
 from robo_genesis.sim import diagnosis
-from robo_genesis.sim.diagnosis import STATES, Bench, StepResult, shareable
+from robo_genesis.sim.diagnosis import Bench, StepResult, shareable
 
 WIDTH = 72  # fits a terminal of 80 columns and the text column of a page
 REPORT_FORMAT = 3
@@ -49,14 +48,6 @@ def table(results: Sequence[StepResult]) -> str:
         lines.append(found or head.rstrip())
     text = "\n".join([*lines, "", verdict(results)])
     return "\n".join(map(printable, text.split("\n")))
-
-
-def steps_of(report: Mapping[str, Any]) -> list[StepResult]:
-    """Return the results in a report that was read from JSON."""
-    return [
-        StepResult(str(step["step"]), str(step["state"]), str(step["found"]))
-        for step in report["steps"]
-    ]
 
 
 def verdict(results: Sequence[StepResult]) -> str:
@@ -139,27 +130,24 @@ def read_report(file: str) -> dict[str, Any]:
     Raises:
         ValueError: the file is not a report of this format.
     """
+    from pydantic import BaseModel, Field, ValidationError
+
+    class Report(BaseModel):
+        format: Literal[3]
+        steps: list[StepResult] = Field(min_length=1)
+        machine: dict[str, str]
+
     try:
-        report = json.loads(Path(file).read_text("utf8"))
-        if report["format"] != REPORT_FORMAT:
-            problem = (
-                f"has the format {quoted(report['format'])}; this version reads format "
-                f"{REPORT_FORMAT}"
-            )
-        elif not (states := {f.state for f in steps_of(report)}):
-            problem = "has no steps; a report has at least one"
-        elif not states <= {*STATES}:
-            problem = f"has the states {quoted(sorted(states))}; valid are {', '.join(STATES)}"
-        elif "engine" not in (facts := report["machine"]) or {*map(type, facts.values())} != {str}:
-            problem = f"has the machine {quoted(facts)}; a report has texts with at least an engine"
-        else:
-            return report
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError) as error:
-        problem = (
-            f"cannot be read as a report: {type(error).__name__}: {error}; a report is a file that "
-            "--json wrote"
-        )
-    raise ValueError(f"{file!r} {problem}; make a new one with {MAKE_REPORT}")
+        return Report.model_validate_json(Path(file).read_bytes()).model_dump()
+    except OSError as error:
+        problem = str(error)
+    except ValidationError as error:
+        first = error.errors()[0]
+        problem = f"{'.'.join(map(str, ('report', *first['loc'])))}: {first['msg']}"
+    raise ValueError(
+        f"{file!r} cannot be read as a report: {problem}; a report is a file that --json wrote; "
+        f"make a new one with {MAKE_REPORT}"
+    )
 
 
 def differences(
@@ -215,7 +203,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         count = len(diagnosis.STEPS)
         print(f"{count} steps; the first start of the engine takes minutes", file=sys.stderr)
         report = examine()
-    results = steps_of(report)
+    results = [StepResult(**step) for step in report["steps"]]
     text = json.dumps(report, indent=2, ensure_ascii=False) if options.json else table(results)
     print(text)
     if recorded is not None:

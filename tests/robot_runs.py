@@ -38,7 +38,9 @@ def driven(
     data, h, dofs = mujoco.MjData(of), case.dt / case.substeps, len(JOINT_NAMES)
     damping, mass = of.dof_damping, np.zeros((dofs, dofs))
     q, qd, force = np.array(case.q_start), np.zeros(dofs), np.zeros(dofs)
-    at, steps = [q.astype(np.float32)], []
+    at = [q]
+    first = replace(case, q_target=commands[0])
+    efforts = [(qd, control_law(first, q, qd), force)]
     for command in commands:
         now = replace(case, q_target=command)
         for _ in range(case.substeps):
@@ -49,20 +51,21 @@ def driven(
             force = control_law(now, q, qd) - data.qfrc_bias - damping * qd - extra(q)
             qd = qd + h * np.linalg.solve(mass + h * np.diag(damping + case.kv), force)
             q = q + h * qd
-        at.append(q.astype(np.float32))
-        steps.append(tuple(np.float32(v) for v in (qd, control_law(now, q, qd), force)))
-    states = zip(at, *(np.float32(pose) for pose in link_poses(np.stack(at), links)), strict=True)
-    first = replace(case, q_target=commands[0])
-    start_force = np.float32(control_law(first, case.q_start, np.zeros(dofs)))
-    limit, zero = np.float32(case.effort_limit), np.zeros(dofs, np.float32)
-    return assemble(case, list(states), steps, list(commands), zero, start_force, limit)
+        at.append(q)
+        efforts.append((qd, control_law(now, q, qd), force))
+    return assembled(case, links, at, efforts, commands)
 
 
-def assigned(case: ControlCase, links: Sequence[str]) -> Trace:
-    """Return the states of a straight line, as `joint_control.assign_path` does."""
+def assembled(case: ControlCase, links: Sequence[str], at, efforts, targets) -> Trace:
+    """Return a trace in float32 of positions (n+1, d), with velocity and forces of each."""
+    q = np.float32(at)
+    readings = zip(q, *link_poses(q, links), *zip(*efforts, strict=True), strict=True)
+    kept = [tuple(map(np.float32, reading)) for reading in readings]
+    return assemble(case, kept, targets, np.float32(case.effort_limit))
+
+
+def assigned(case: ControlCase, links: Sequence[str], postures: np.ndarray | None = None) -> Trace:
+    """Return the states of a straight line, as `assign_path` does, or those of postures (n, d)."""
     path = np.linspace(case.q_start, case.q_target, case.steps + 1)
-    at, zero = path.astype(np.float32), np.zeros(len(JOINT_NAMES), np.float32)
-    states = zip(at, *(np.float32(pose) for pose in link_poses(at, links)), strict=True)
-    steps = [(zero, zero, zero)] * case.steps
-    limit = np.float32(case.effort_limit)
-    return assemble(case, list(states), steps, list(path[1:]), zero, zero, limit)
+    path = path if postures is None else np.vstack([case.q_start, postures])
+    return assembled(case, links, path, np.zeros((len(path), 3, len(JOINT_NAMES))), path[1:])

@@ -49,45 +49,26 @@ def test_a_path_and_a_setting_may_contain_spaces_and_what_runs_in_a_container_ne
 
 
 @pytest.mark.parametrize(
-    ("target", "packages"),
-    [("serve", "genesis, jupyter_book, pytest"), ("evidence", "genesis, jupyter_book. Install")],
-)
-def test_a_python_without_the_packages_is_refused_with_their_names_and_the_fix(
-    checkout, target, packages
-):
-    """Recording needs no package of the tests and linters."""
-    without = python(checkout, "-S")
-    done = make(checkout, target, f"PYTHON={without}")
-    assert done.returncode != 0
-    assert f"PYTHON={without} lacks {packages}" in done.stderr
-    assert "pip install -r requirements.lock" in done.stderr
-    assert "Traceback" not in done.stderr
-    assert str(checkout) not in done.stdout.splitlines()
-
-
-@pytest.mark.parametrize("given", ["nowhere/python", "bad", "/tmp", "ls"])
-def test_a_python_that_is_none_is_refused_with_the_fix(checkout, given):
-    done = make(checkout, "serve", f"PYTHON={given}")
-    assert done.returncode != 0
-    assert f"PYTHON={given} is not a Python command" in done.stderr
-    assert "cannot access" not in done.stderr
-    assert "leave PYTHON out" in done.stderr
-    assert "not found" not in done.stderr
-
-
-@pytest.mark.parametrize(
-    ("given", "said"),
+    ("target", "words", "said"),
     [
-        (["jobs=2"], "jobs would be ignored: variables are in capitals. Write JOBS"),
-        (["site_url=https://example.org/a=b"], "site_url would be ignored"),
-        (["Page=l04/lab", "to=folder"], "Write "),
+        # Recording needs no package of the tests and linters.
+        ("serve", ["PYTHON={bare}"], "PYTHON={bare} lacks genesis, jupyter_book, pytest, "),
+        ("evidence", ["PYTHON={bare}"], "PYTHON={bare} lacks genesis, jupyter_book. Install"),
+        ("serve", ["PYTHON=nowhere/python"], "PYTHON=nowhere/python is not a Python command"),
+        ("serve", ["PYTHON=/tmp"], "PYTHON=/tmp is not a Python command"),
+        ("serve", ["PYTHON=ls"], "PYTHON=ls is not a Python command"),
+        ("serve", ["jobs=2"], "jobs would be ignored: variables are in capitals. Write JOBS"),
+        ("serve", ["site_url=https://example.org/a=b"], "site_url would be ignored"),
+        ("serve", ["Page=l04/lab", "to=folder"], "Write "),
     ],
 )
-def test_a_variable_in_small_letters_is_refused_by_name(checkout, given, said):
-    done = make(checkout, "serve", f"PYTHON={python(checkout)}", *given)
+def test_a_wrong_environment_is_refused_with_the_fix(checkout, target, words, said):
+    bare = python(checkout, "-S")
+    done = make(checkout, target, *(word.format(bare=bare) for word in words))
     assert done.returncode != 0
-    assert said in done.stderr
-    assert str(checkout) not in done.stdout.splitlines()
+    assert said.format(bare=bare) in done.stderr
+    assert "Traceback" not in done.stderr
+    assert str(checkout) not in done.stdout.splitlines()  # what the stub of the command prints
 
 
 def test_clean_keeps_what_the_engine_compiled_and_distclean_does_not(checkout):

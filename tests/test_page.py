@@ -1,7 +1,6 @@
 """A page while it runs, with an engine that is not real."""
 
 import json
-import logging
 import subprocess
 import sys
 from types import SimpleNamespace
@@ -45,11 +44,11 @@ def page(quiet, tmp_path, monkeypatch, engine, displayed):
     return rg.open_page("l02", "lab")
 
 
-def measure(page, mass=spec.BASELINE.mass):
+def measure(page):
     """Fill a page with a synthetic drop that passes every check."""
     frames = iter((FRAME, FRAME[::-1]))
     camera = SimpleNamespace(render=lambda: [next(frames)])
-    page.readings |= {"model": spec.EXPECTED_MODEL, "body": {"mass": mass}}
+    page.readings |= {"model": spec.EXPECTED_MODEL, "body": {"mass": spec.BASELINE.mass}}
     page.capture(camera, "initial")
     page.traces["baseline"] = make_drop(spec.BASELINE)
     page.capture(camera, "final")
@@ -86,17 +85,6 @@ def test_a_page_without_an_engine_is_refused(monkeypatch, tmp_path):
     assert pages._opened == []
 
 
-def test_the_backend_follows_the_environment(monkeypatch, tmp_path):
-    monkeypatch.setenv("ROBO_GENESIS_OUTPUTS_DIR", str(tmp_path))
-    engine = SimpleNamespace(cpu="the CPU", gpu="any accelerator")
-    monkeypatch.setattr(session, "import_engine", lambda: engine)
-    for kept in ("handlers", "filters"):
-        monkeypatch.setattr(logging.getLogger("genesis"), kept, [])
-    for asked, given in (("cpu", "the CPU"), ("auto", "any accelerator")):
-        monkeypatch.setenv("ROBO_GENESIS_BACKEND", asked)
-        assert rg.backend() == given
-
-
 def test_a_function_of_the_experiment_is_shown_with_its_name(page, displayed):
     measure(page)
     page.show(l02.text.metric_table)
@@ -127,20 +115,22 @@ def test_anything_else_is_refused(page, displayed, function, arguments, message)
 
 
 @pytest.mark.parametrize(
-    "name",
-    ["os.system", "robo_genesis.pipeline.pages.bound.marked",
-     "robo_genesis.lessons.l02.text.tables", "robo_genesis.lessons.l02..text",
-     "robo_genesis.core.nothing.here"],
-)  # fmt: skip
-def test_only_functions_of_lessons_and_core_are_found(name):
-    with pytest.raises(shown.ShownError, match="cannot be shown"):
-        shown.find(name)
-
-
-def test_a_function_that_returns_something_else_is_refused(page):
+    ("name", "message"),
+    [
+        ("os.system", "cannot be shown"),
+        ("robo_genesis.pipeline.pages.bound.marked", "cannot be shown"),
+        ("robo_genesis.lessons.l02.text.tables", "cannot be shown"),
+        ("robo_genesis.lessons.l02..text", "cannot be shown"),
+        ("robo_genesis.core.nothing.here", "cannot be shown"),
+        ("robo_genesis.core.checks.sample_times", "returned generator"),
+    ],
+)
+def test_only_functions_of_lessons_and_core_that_return_a_table_or_figure_are_shown(
+    page, name, message
+):
     measure(page)
-    with pytest.raises(shown.ShownError, match="returned generator"):
-        shown.mime_data("robo_genesis.core.checks.sample_times", page.experiment, [{}])
+    with pytest.raises(shown.ShownError, match=message):
+        shown.mime_data(name, page.experiment, [{}])
 
 
 def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(page, displayed, capsys):
@@ -153,26 +143,20 @@ def test_finish_shows_the_checks_writes_the_bundle_and_prints_the_verdict(page, 
     assert lines[-2].endswith("files in l02/lab/cpu")
     manifest = json.loads((page.folder / "cpu" / "manifest.json").read_text())
     assert manifest["predicate"]["run_id"] == RUN_ID
-
-
-def test_finish_names_the_check_that_failed(page, displayed, capsys):
-    measure(page, mass=2 * spec.BASELINE.mass)
+    page.readings["body"] = {"mass": 2 * spec.BASELINE.mass}
     with pytest.raises(CheckFailed, match=r"L02 CHECK: FAILED \[mass\]"):
         page.finish(None)
     assert "**FAILED**" in displayed[-1][0]["text/markdown"]
     assert "PASSED" not in capsys.readouterr().out
 
 
-def test_a_page_that_declares_no_camera_renders_none(page, monkeypatch):
-    monkeypatch.setattr(pages, "_opened", [])
-    assert not rg.open_page("l04", "formula").render
-
-
-def test_without_a_camera_no_frame_is_taken(page):
+def test_without_a_camera_no_frame_is_taken(page, monkeypatch):
     page.render = False
     page.capture(None, "initial")
     assert page.frames == {}
     assert not page.experiment.rendered
+    monkeypatch.setattr(pages, "_opened", [])
+    assert not rg.open_page("l04", "formula").render  # the page declares none
 
 
 def test_the_facts_name_the_backend(page, engine, capsys):

@@ -24,15 +24,14 @@ from robo_genesis.sim.diagnosis import DoubtError, StepError, StepResult, run_st
 PROBE_SECONDS = 180
 """Until Torch must have answered."""
 
-
 VISIBILITY = ("ROCR_VISIBLE_DEVICES", "HIP_VISIBLE_DEVICES", "CUDA_VISIBLE_DEVICES")
-ROCM_FOLDERS = ("/opt/rocm", "/opt/rocm-7.0.0", "/opt/rocm-6.0.0")
+ROCM_FOLDERS = ("opt/rocm", "opt/rocm-7.0.0", "opt/rocm-6.0.0")
 """Where the engine's compiler looks for `llvm/bin/ld.lld` after ROCM_PATH and before PATH."""
 
 
 @dataclass(slots=True)
 class ProbedMachine:
-    """Where the steps look: in these variables, below `root`, and with this right of access.
+    """Where the steps look: in these variables, and below `root`.
 
     `probe` adds the backend to record and the facts from Torch, whose process `ended` so; empty
     means without an error.
@@ -40,14 +39,9 @@ class ProbedMachine:
 
     environ: Mapping[str, str]
     root: Path = Path("/")
-    access: Callable[[Path, int], bool] = os.access
     backend: str = ""
     torch: Mapping[str, Any] = field(default_factory=dict)
     ended: str = ""
-
-    def at(self, path: str) -> Path:
-        """Return an absolute path below the root."""
-        return self.root / path.lstrip("/")
 
     def said(self, fact: str) -> Any:
         """Return a fact from Torch; raise StepError if its process ended before."""
@@ -61,14 +55,14 @@ class ProbedMachine:
 
 def devices(machine: ProbedMachine) -> str:
     """The device files of the driver exist, and this user may open them."""
-    kfd, drawing = machine.at("/dev/kfd"), sorted(machine.at("/dev/dri").glob("renderD*"))
+    kfd, drawing = machine.root / "dev/kfd", sorted((machine.root / "dev/dri").glob("renderD*"))
     absent = ["/dev/kfd"] * (not kfd.exists()) + ["/dev/dri/renderD*"] * (not drawing)
     if absent:
         raise StepError(
             f"{' and '.join(absent)} missing, expected both. Load the driver: modprobe amdgpu. "
             "Start a container with --device=/dev/kfd --device=/dev/dri."
         )
-    open_ = [node for node in (kfd, *drawing) if machine.access(node, os.R_OK | os.W_OK)]
+    open_ = [node for node in (kfd, *drawing) if os.access(node, os.R_OK | os.W_OK)]
     names = " ".join(node.name for node in open_)
     if kfd in open_ and len(open_) > 1:
         return f"may open {names}"
@@ -91,7 +85,7 @@ def _group(number: int) -> str:
 def driver(machine: ProbedMachine) -> str:
     """The kernel has loaded the driver."""
     name = DRIVERS[machine.backend]
-    if not machine.at(f"/sys/module/{name}").is_dir():
+    if not (machine.root / "sys/module" / name).is_dir():
         raise DoubtError(f"/sys/module has no {name}, expected the driver loaded: modprobe {name}.")
     version = driver_version(machine.backend, machine.root)
     return f"{name} {version or f'of the kernel {platform.release()}, without a version'}"
@@ -99,7 +93,7 @@ def driver(machine: ProbedMachine) -> str:
 
 def card(machine: ProbedMachine) -> str:
     """The driver lists a card."""
-    nodes = machine.at("/sys/class/kfd/kfd/topology/nodes")
+    nodes = machine.root / "sys/class/kfd/kfd/topology/nodes"
     found = []
     for path in sorted(nodes.glob("*/properties")):
         lines = (line.partition(" ") for line in path.read_text("utf8").splitlines())
@@ -117,7 +111,7 @@ def card(machine: ProbedMachine) -> str:
 def linker(machine: ProbedMachine) -> str:
     """`ld.lld`, with which the engine's compiler links each kernel, is where it looks."""
     given = machine.environ.get("ROCM_PATH")
-    folders = ([Path(given)] if given else []) + [machine.at(path) for path in ROCM_FOLDERS]
+    folders = ([Path(given)] if given else []) + [machine.root / path for path in ROCM_FOLDERS]
     for file in (folder / "llvm/bin/ld.lld" for folder in folders):
         if file.is_file():
             return str(file)
@@ -235,7 +229,7 @@ def probe(machine: ProbedMachine, expected: str | None) -> tuple[str, list[StepR
 
 def torch_facts(machine: ProbedMachine) -> tuple[dict[str, Any], str]:
     """Return the facts from Torch, and how its process ended."""
-    maps = machine.at("/proc/self/maps")
+    maps = machine.root / "proc/self/maps"
     command = [sys.executable, "-P", torch_probe.__file__, str(maps), str(PROBE_SECONDS)]
     done = subprocess.run(command, env={**machine.environ}, capture_output=True, check=False)
     facts: dict[str, Any] = {}

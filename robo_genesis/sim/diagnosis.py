@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -24,12 +24,7 @@ STEPPED_JOINT, ANGLE = "joint4", 0.25
 """The joint that the run commands, and by how much [rad]."""
 
 BASELINE = joint_control.ControlCase(
-    q_start=franka.Q_START,
-    q_target=franka.Q_START + ANGLE * np.equal(franka.JOINT_NAMES, STEPPED_JOINT),
-    kp=franka.KP_BASELINE,
-    kv=franka.KV_BASELINE,
-    effort_limit=franka.EFFORT_LIMIT,
-    steps=120,
+    q_target=franka.Q_START + ANGLE * np.equal(franka.JOINT_NAMES, STEPPED_JOINT), steps=120
 )
 
 AT_LIMIT = 0.99
@@ -58,15 +53,15 @@ class Bench:
     trace: Any = None
 
 
-STATES = ("ok", "warning", "broken", "not run")
+State = Literal["ok", "warning", "broken", "not run"]
 
 
 @dataclass(frozen=True, slots=True)
 class StepResult:
-    """What one step found; `state` is one of `STATES`."""
+    """What one step found."""
 
     step: str
-    state: str
+    state: State
     found: str
 
 
@@ -80,9 +75,8 @@ def libraries(bench: Bench) -> str:
     """EGL and OpenGL can be loaded, which the engine needs even without a camera."""
     if sys.platform != "linux":
         return f"not checked on {sys.platform}"
-    names = ("libEGL.so.1", "libGL.so.1")
-    session.require_libraries(*names)
-    return f"{' and '.join(names)} can be loaded"
+    session.require_libraries()
+    return f"{' and '.join(session.LIBRARIES)} can be loaded"
 
 
 def backend(bench: Bench) -> str:
@@ -112,8 +106,6 @@ def build(bench: Bench) -> str:
     bench.robot = bench.scene.add_entity(gs.morphs.MJCF(file=franka.FRANKA_MJCF))
     bench.camera = bench.scene.add_camera(**scene.CAMERA) if bench.contract.render else None
     bench.scene.build()
-    if not bench.scene.is_built:
-        raise StepError("scene.build() returned, but the scene is not built. Restart Python.")
     count, substeps = len(bench.scene.entities), scene.SUBSTEPS
     return f"scene of {count} entities built, dt {scene.DT:g} s, {substeps} substeps"
 
@@ -202,16 +194,20 @@ def run_steps(steps: Sequence[Callable[[Subject], str]], subject: Subject) -> li
     """
     results: list[StepResult] = []
     for step in steps:
-        state, found = "not run", ""
-        if not any(result.state == "broken" for result in results):
-            try:
-                state, found = "ok", step(subject)
-            except DoubtError as doubt:
-                state, found = "warning", str(doubt)
-            except Exception as error:  # any error is reported
-                state, found = "broken", advice(error)
-        results.append(StepResult(step.__name__, state, found))
+        ended = any(result.state == "broken" for result in results)
+        found: tuple[State, str] = ("not run", "") if ended else outcome(step, subject)
+        results.append(StepResult(step.__name__, *found))
     return results
+
+
+def outcome(step: Callable[[Subject], str], subject: Subject) -> tuple[State, str]:
+    """Run a step; return its state and what it found."""
+    try:
+        return "ok", step(subject)
+    except DoubtError as doubt:
+        return "warning", str(doubt)
+    except Exception as error:  # any error is reported
+        return "broken", advice(error)
 
 
 def advice(error: Exception) -> str:

@@ -25,6 +25,9 @@ from robo_genesis.sim.engine_log import EngineLog, remove_private_paths
 CHOICES = {BACKEND: ("cpu", "auto"), RENDER: ("1", "0")}
 """Valid values of the variables of the contract; the first is the default."""
 
+LIBRARIES = ("libEGL.so.1", "libGL.so.1")
+"""What the engine needs even without a camera."""
+
 PRECISION = "32"
 INSTALL = "Install it again: pip install --force-reinstall -r requirements.lock."
 
@@ -104,7 +107,7 @@ class Engine:
     switches: Mapping[str, str] = field(default_factory=dict)
 
 
-def start(contract: Contract, seed: int = SEED) -> Engine:
+def start(contract: Contract) -> Engine:
     """Initialise Genesis, once per process, and probe where it runs.
 
     Raises:
@@ -114,12 +117,12 @@ def start(contract: Contract, seed: int = SEED) -> Engine:
     backend = requested_backend(contract)
     import_engine().init(
         backend=backend,
-        seed=seed,
+        seed=SEED,
         precision=PRECISION,
         use_deterministic_algorithms=True,
         **plain_log(),
     )
-    return started(contract, seed)
+    return started(contract)
 
 
 def requested_backend(contract: Contract) -> Any:
@@ -147,7 +150,7 @@ def plain_log() -> dict[str, str]:
     return {"theme": plain_theme(), "logging_level": "info"}
 
 
-def started(contract: Contract, seed: int = SEED) -> Engine:
+def started(contract: Contract) -> Engine:
     """Return the engine that `gs.init` started, after checking how it was started.
 
     Raises:
@@ -168,7 +171,7 @@ def started(contract: Contract, seed: int = SEED) -> Engine:
         "precision": str(8 * np.dtype(gs.np_float).itemsize),
         "use_deterministic_algorithms": getattr(gs, "use_deterministic_algorithms", True),
     }
-    valid = {"seed": seed, "precision": PRECISION, "use_deterministic_algorithms": True}
+    valid = {"seed": SEED, "precision": PRECISION, "use_deterministic_algorithms": True}
     if found != valid:
         raise EngineError(
             f"gs.init was called with {found}, valid is {valid}. Restart the kernel and write "
@@ -178,7 +181,7 @@ def started(contract: Contract, seed: int = SEED) -> Engine:
     compiler = ".".join(map(str, importlib.import_module("quadrants").__version__))
     switches = project.engine_switches(os.environ)
     backend = probe(contract.backend)
-    return Engine(gs.__version__, compiler, PRECISION, seed, backend, logs[-1], switches)
+    return Engine(gs.__version__, compiler, PRECISION, SEED, backend, logs[-1], switches)
 
 
 def _kept_logs() -> list[EngineLog]:
@@ -200,7 +203,7 @@ def import_engine() -> Any:
     """
     spare_searches()
     if sys.platform == "linux":
-        require_libraries("libEGL.so.1", "libGL.so.1")
+        require_libraries()
     try:
         return importlib.import_module("genesis")
     except ImportError as error:
@@ -242,9 +245,9 @@ def require_built(scene: Any, case: Any, error: type[Exception]) -> None:
         )
 
 
-def require_libraries(*names: str) -> None:
-    """Raise EngineError for a shared library that cannot be loaded."""
-    for name in names:
+def require_libraries() -> None:
+    """Raise EngineError for one of `LIBRARIES` that cannot be loaded."""
+    for name in LIBRARIES:
         try:
             ctypes.CDLL(name)
         except OSError as error:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.arm.kinematics import rotate
 
 FILE = "shape.npz"
 
@@ -40,6 +41,8 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
     Raises:
         ValueError: the number of names is not that of the links.
     """
+    import trimesh  # loads slowly
+
     names = [link.name for link in entity.links] if names is None else names
     if len(names) != len(entity.links):
         raise ValueError(
@@ -54,7 +57,9 @@ def read_shape(entity: Any, names: Sequence[str] | None = None) -> list[Part]:
             red, green, blue = (int(value) for value in mesh.visual.main_color[:3])
             placed = rotate(geom.init_quat, mesh.vertices) + geom.init_pos
             by_colour.setdefault((red, green, blue), []).append((placed, np.array(mesh.faces)))
-        parts += [Part(name, rgb, *joined(meshes)) for rgb, meshes in by_colour.items()]
+        for rgb, meshes in by_colour.items():
+            vertices, faces = trimesh.util.append_faces(*zip(*meshes, strict=True))
+            parts.append(Part(name, rgb, vertices.astype(np.float32), faces.astype(np.int32)))
     return parts
 
 
@@ -79,16 +84,12 @@ def slab(size: Sequence[float], top: float) -> Part:
         size: length, width and thickness [m].
         top: height of the upper face [m].
     """
-    x, y = size[0] / 2, size[1] / 2
-    corners = [
-        (a, b, z) for z in (top - size[2], top) for a, b in ((-x, -y), (x, -y), (x, y), (-x, y))
-    ]
-    sides = [(k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k) for k in range(4)]
-    faces = [(0, 3, 2, 1), (4, 5, 6, 7), *sides]
-    triangles = [half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))]
-    apart = [corners[k] for half in triangles for k in half]  # flat faces do not share corners
+    import trimesh  # loads slowly
+
+    mesh = trimesh.creation.box(size).apply_translation((0, 0, top - size[2] / 2))
+    apart = mesh.triangles.reshape(-1, 3)  # faces share no corners
     indices = np.arange(len(apart), dtype=np.int32).reshape(-1, 3)
-    return Part(WORLD, FLOOR_RGB, np.array(apart, np.float32), indices)
+    return Part(WORLD, FLOOR_RGB, apart.astype(np.float32), indices)
 
 
 def ball(centre: Sequence[float], radius: float, rgb: tuple[int, int, int]) -> Part:
@@ -125,21 +126,6 @@ def check_links(shape: Sequence[Part], links: Sequence[str]) -> None:
             f"The shape has parts of {', '.join(unknown)}; the record knows {', '.join(links)}. "
             "Both must come from one model: run the lecture and the recorded lab at one pin."
         )
-
-
-def rotate(quat: FloatArray, points: FloatArray) -> FloatArray:
-    """Return points (n, 3) rotated by a unit quaternion (w, x, y, z)."""
-    w, axis = quat[0], np.asarray(quat[1:])
-    crossed = 2 * np.cross(axis, points)
-    return points + w * crossed + np.cross(axis, crossed)
-
-
-def joined(meshes: Sequence[tuple[FloatArray, np.ndarray]]) -> tuple[FloatArray, np.ndarray]:
-    """Return (vertices, faces) of several meshes as one."""
-    first = np.cumsum([0, *(len(vertices) for vertices, _ in meshes)])
-    faces = [faces + begin for (_, faces), begin in zip(meshes, first[:-1], strict=True)]
-    vertices = np.concatenate([vertices for vertices, _ in meshes])
-    return vertices.astype(np.float32), np.concatenate(faces).astype(np.int32)
 
 
 def write_shape(folder: Path, parts: Sequence[Part]) -> Path:

@@ -4,6 +4,7 @@ import ctypes.util
 import json
 import sys
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
@@ -44,6 +45,7 @@ TOLD = {
 }  # fmt: skip
 CUDA = {"version": "2.13.0+cu130", "hip": None, "cuda": "13.0"}
 CPU = {"version": "2.13.0+cpu", "hip": None, "count": 0}
+LLD = "opt/rocm/llvm/bin/ld.lld"
 OWN, OTHER = "/env/torch/lib/libamdhip64.so", "/opt/rocm/lib/libamdhip64.so.7.2"
 
 
@@ -51,15 +53,13 @@ class Synthetic:
     """A machine with one MI300X, on which all is well until a test changes it."""
 
     def __init__(self, root: Path):
-        self.root = root
+        self.root, self.closed = root, ()
         self.environ = {"PATH": "", "PYTHONPATH": str(root), "LD_LIBRARY_PATH": str(root / "lib")}
-        self.closed: tuple[str, ...] = ()
-        for path in ("dev/kfd", "dev/dri/renderD128", "opt/rocm/llvm/bin/ld.lld"):
+        for path in ("dev/kfd", "dev/dri/renderD128", LLD):
             self.write(path, "")
         self.write("sys/module/amdgpu/version", "6.16\n")
-        for node, version in (("0", 0), ("1", 90402)):
-            text = f"simd_count 304\ngfx_target_version {version}\n"
-            self.write(f"sys/class/kfd/kfd/topology/nodes/{node}/properties", text)
+        self.card(0, node=0)
+        self.card(90402)
         self.loaded(OWN)
         self.write("torch.py", TORCH)
         self.told()
@@ -76,16 +76,28 @@ class Synthetic:
     def told(self, **values) -> None:
         self.write("torch.json", json.dumps(TOLD | values))
 
+    def card(self, version: int, node: int = 1) -> None:
+        text = f"simd_count 304\ngfx_target_version {version}\n"
+        self.write(f"sys/class/kfd/kfd/topology/nodes/{node}/properties", text)
+
     def loaded(self, *files: str) -> None:
         lines = [f"7f00-7f01 r-xp 00000000 08:01 {n} {file}\n" for n, file in enumerate(files)]
         self.write("proc/self/maps", "".join(["7f00-7f01 rw-p 00000000 00:00 0 \n", *lines * 2]))
 
+    def removed(self, *paths: str) -> None:
+        for path in paths:
+            (self.root / path).unlink()
+
+    def variables(self, value: str, *names: str) -> None:
+        self.environ |= {f"{name}_VISIBLE_DEVICES": value for name in names}
+
+    def close(self, *names: str) -> None:
+        self.closed = names
+
     def probe(self, expected: str | None = "amdgpu") -> tuple[str, dict[str, str], dict[str, str]]:
         """Return the backend that is found, and state and words by step."""
-        machine = ProbedMachine(
-            self.environ, self.root, lambda path, mode: path.name not in self.closed
-        )
-        backend, steps = probe(machine, expected)
+        with patch("os.access", lambda path, mode: Path(path).name not in self.closed):
+            backend, steps = probe(ProbedMachine(self.environ, self.root), expected)
         return backend, {s.step: s.state for s in steps}, {s.step: s.found for s in steps}
 
 
@@ -105,8 +117,7 @@ def machine(tmp_path):
 @pytest.mark.parametrize("expected", ["amdgpu", None])
 def test_an_amd_machine_is_fine(machine, expected):
     backend, states, found = machine.probe(expected)
-    assert backend == "amdgpu"
-    assert {*states.values()} == {"ok"}
+    assert (backend, {*states.values()}) == ("amdgpu", {"ok"})
     assert found == {
         "devices": "may open kfd renderD128",
         "driver": "amdgpu 6.16",
@@ -121,98 +132,64 @@ def test_an_amd_machine_is_fine(machine, expected):
     }
 
 
-def removed(*paths):
-    return lambda machine: [(machine.root / path).unlink() for path in paths]
-
-
-def told(**values):
-    return lambda machine: machine.told(**values)
-
-
-def variables(**values):
-    return lambda machine: machine.environ.update(values)
-
-
-def closed(*names):
-    return lambda machine: setattr(machine, "closed", names)
-
-
-def as_index(value):
-    names = ("ROCR_VISIBLE_DEVICES", "HIP_VISIBLE_DEVICES", "CUDA_VISIBLE_DEVICES")
-    return variables(**dict.fromkeys(names, value))
-
-
-def topology(version):
-    return lambda machine: machine.write(
-        "sys/class/kfd/kfd/topology/nodes/1/properties", f"gfx_target_version {version}\n"
-    )
-
-
-LLD = "opt/rocm/llvm/bin/ld.lld"
+M, EVERY = Synthetic, ("ROCR", "HIP", "CUDA")
+RAISES = "raise RuntimeError('HIP error: out of memory\\nmore')"
 
 
 @pytest.mark.parametrize(
-    ("change", "step", "state", "words"),
+    ("change", "given", "step", "state", "words"),
     [
-        (removed("dev/kfd", "dev/dri/renderD128"), "devices", "broken",
+        (M.removed, ["dev/kfd", "dev/dri/renderD128"], "devices", "broken",
          "/dev/kfd and /dev/dri/renderD* missing, expected both. Load the driver"),
-        (closed("kfd"), "devices", "broken", "You may open renderD128, expected kfd and a renderD"),
-        (closed("renderD128"), "devices", "broken", "usermod -aG render,video"),
-        (removed("sys/module/amdgpu/version"), "driver", "ok", "amdgpu of the kernel "),
-        (topology(0), "card", "broken", "names no card"),
-        (topology(90010), "card", "ok", "gfx90a"),
-        (topology(120001), "card", "ok", "gfx1201"),
-        (removed(LLD), "linker", "broken", "in llvm/bin of ROCM_PATH (unset) or /opt/rocm"),
-        (variables(ROCR_VISIBLE_DEVICES="1"), "visibility", "ok", "ROCR_VISIBLE_DEVICES=1"),
-        (variables(HIP_VISIBLE_DEVICES="1"), "visibility", "warning", "set it alone"),
-        (as_index("0"), "visibility", "warning", "set it alone"),
-        (variables(HIP_VISIBLE_DEVICES=""), "visibility", "broken", "is set and empty"),
-        (as_index("1"), "visibility", "broken", "in all three hides the card"),
-        (told(**CUDA), "torch", "broken",
-         "built for CUDA 13.0, expected a build for amdgpu"),
-        (told(count=0), "device", "broken", "Torch finds no device, expected one."),
-        (told(codes=["gfx1100"]), "device_code", "warning",
+        (M.close, ["kfd"], "devices", "broken", "open renderD128, expected kfd and a renderD"),
+        (M.close, ["renderD128"], "devices", "broken", "usermod -aG render,video"),
+        (M.removed, ["sys/module/amdgpu/version"], "driver", "ok", "amdgpu of the kernel "),
+        (M.card, [0], "card", "broken", "names no card"),
+        (M.card, [90010], "card", "ok", "gfx90a"),
+        (M.card, [120001], "card", "ok", "gfx1201"),
+        (M.removed, [LLD], "linker", "broken", "in llvm/bin of ROCM_PATH (unset) or /opt/rocm"),
+        (M.variables, ["1", "ROCR"], "visibility", "ok", "ROCR_VISIBLE_DEVICES=1"),
+        (M.variables, ["1", "HIP"], "visibility", "warning", "set it alone"),
+        (M.variables, ["0", *EVERY], "visibility", "warning", "set it alone"),
+        (M.variables, ["", "HIP"], "visibility", "broken", "is set and empty"),
+        (M.variables, ["1", *EVERY], "visibility", "broken", "in all three hides the card"),
+        (M.told, CUDA, "torch", "broken", "built for CUDA 13.0, expected a build for amdgpu"),
+        (M.told, {"count": 0}, "device", "broken", "Torch finds no device, expected one."),
+        (M.told, {"codes": ["gfx1100"]}, "device_code", "warning",
          "for gfx1100, expected gfx942. Install Torch with it: torch[device-gfx942]"),
-        (told(codes=[], kernel="raise RuntimeError('invalid device function\\nmore')"),
-         "device_code", "broken", "code for no card, expected gfx942"),
-        (lambda m: m.loaded(OWN, OTHER), "hip_runtime", "warning",
+        (M.told, {"codes": [], "kernel": RAISES}, "device_code", "broken", "no card, expected"),
+        (M.loaded, [OWN, OTHER], "hip_runtime", "warning",
          f"2 are loaded: {OWN}, {OTHER}; expected Torch's. Link {RUNTIME} in a folder to {OWN}"),
-        (removed(f"lib/{RUNTIME}"), "hip_runtime", "broken", "the engine opens, cannot be loaded"),
-        (told(kernel="raise RuntimeError('HIP error: out of memory\\nmore')"), "kernel", "broken",
+        (M.removed, [f"lib/{RUNTIME}"], "hip_runtime", "broken", "opens, cannot be loaded"),
+        (M.told, {"kernel": RAISES}, "kernel", "broken",
          "an answer: RuntimeError: HIP error: out of memory. Repair that environment"),
-        (told(kernel="os.kill(os.getpid(), 11)"), "kernel", "broken", "killed by SIGSEGV"),
-        (told(numbers=[1, 2, 3]), "kernel", "broken", "is 14, expected 140"),
+        (M.told, {"kernel": "os.kill(os.getpid(), 11)"}, "kernel", "broken", "killed by SIGSEGV"),
+        (M.told, {"numbers": [1, 2, 3]}, "kernel", "broken", "is 14, expected 140"),
     ],
 )  # fmt: skip
-def test_one_thing_that_is_wrong_is_named_with_the_fix(machine, change, step, state, words):
-    change(machine)
-    backend, states, found = machine.probe()
-    assert states[step] == state
+def test_one_thing_that_is_wrong_is_named_with_the_fix(machine, change, given, step, state, words):
+    change(machine, **given) if isinstance(given, dict) else change(machine, *given)
+    _, states, found = machine.probe()
     assert words in found[step]
     steps = [*states]
-    torch = ["torch", "device", "device_code", "hip_runtime", "kernel"]
-    later = torch[torch.index(step) + 1 :] if state == "broken" and step in torch else []
-    others = {name: "not run" if name in later else "ok" for name in steps if name != step}
-    assert states == {step: state} | others
-    assert backend == ("cpu" if "Torch finds no" in words else "cuda" if "for amd" in words else
-                       "amdgpu")  # fmt: skip
+    own = steps[steps.index("torch") :]
+    later = own[own.index(step) + 1 :] if state == "broken" and step in own else []
+    others = {name: "not run" if name in later else "ok" for name in steps}
+    assert states == others | {step: state}  # a step of Torch ends those after it
 
 
 def test_ld_lld_is_looked_for_where_the_compiler_looks(machine):
     places = [machine.write(f"{folder}/{LLD[9:]}", "") for folder in ("mine", "opt/rocm-6.0.0")]
     on_path = machine.write("bin/ld.lld", "")
-    on_path.chmod(0o755)
     machine.environ |= {"ROCM_PATH": str(machine.root / "mine"), "PATH": str(on_path.parent)}
     for place in (places[0], machine.root / LLD, places[1], on_path):
         assert machine.probe()[2]["linker"] == str(place)
         place.unlink()
-    assert machine.probe()[1]["linker"] == "broken"
 
 
 @pytest.mark.parametrize(
     ("expected", "loaded", "state", "driver"),
     [
-        ("cuda", True, "ok", "nvidia 580.1"),
         (None, True, "ok", "nvidia 580.1"),
         ("cuda", False, "warning", "expected the driver loaded: modprobe nvidia."),
     ],
@@ -226,22 +203,19 @@ def test_a_cuda_machine_is_fine_and_a_driver_that_sys_does_not_name_is_a_warning
     backend, states, found = machine.probe(expected)
     assert backend == "cuda"
     assert states == {"driver": state, "torch": "ok", "device": "ok", "kernel": "ok"}
-    assert found.pop("driver").endswith(driver)
-    assert found == {
-        "torch": "2.13.0+cu130, built for CUDA 13.0",
-        "device": "a card, device 0 of 1",
-        "kernel": "a sum on the card is 140, as expected",
-    }
+    assert found["driver"].endswith(driver)
+    assert (found["torch"], found["device"]) == (
+        "2.13.0+cu130, built for CUDA 13.0", "a card, device 0 of 1",
+    )  # fmt: skip
 
 
-@pytest.mark.parametrize("expected", ["amdgpu", "cuda", None])
+@pytest.mark.parametrize("expected", ["cuda", None])
 def test_a_torch_for_the_cpu_alone_is_named(machine, expected):
     machine.told(**CPU)
     backend, states, found = machine.probe(expected)
     assert (backend, states["torch"]) == ("cpu", "broken")
     wanted = f"built for the CPU alone, expected a build for {expected or 'amdgpu or cuda'}. Name"
     assert wanted in found["torch"]
-    assert "BACKEND=cpu" in found["torch"]
 
 
 @pytest.mark.parametrize(
@@ -256,16 +230,14 @@ def test_a_torch_for_the_cpu_alone_is_named(machine, expected):
 def test_a_torch_that_does_not_answer_is_named_with_the_fix(machine, monkeypatch, torch, said):
     monkeypatch.setattr(accelerator, "PROBE_SECONDS", 1)
     machine.write("torch.py", torch)
-    backend, states, found = machine.probe("amdgpu")
+    backend, states, found = machine.probe()
     assert backend == "cpu"
     assert [*states.values()] == ["ok"] * 5 + ["broken"] + ["not run"] * 4
     assert f"Torch of {sys.executable} ended without an answer: " in found["torch"]
     assert said in found["torch"]
-    assert "PYTHON=path" in found["torch"]
 
 
 def test_the_probe_loads_neither_engine_nor_course(machine):
     modules = ["genesis", "quadrants", "robo_genesis", "numpy"]
-    kernel = f"import sys; assert not {{*sys.modules}} & set({modules}), 'loaded'"
-    machine.told(kernel=kernel)
+    machine.told(kernel=f"import sys; assert not {{*sys.modules}} & set({modules}), 'loaded'")
     assert machine.probe()[1]["kernel"] == "ok"

@@ -15,7 +15,7 @@ from robo_genesis.core.scene import DT, FloatArray, read_only
 from robo_genesis.lessons.l04.metrics import RISE_FRACTION, SATURATION_THRESHOLD, SETTLING_BAND
 from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
-from robo_genesis.sim.arm.joint_control import course_case
+from robo_genesis.sim.arm.joint_control import ControlCase
 
 MEASURES = False
 
@@ -48,7 +48,7 @@ def with_entry(values: FloatArray, value: float) -> FloatArray:
 
 START_OF_STEP = float(franka.Q_START[ENTRY])
 
-BASELINE = course_case(with_entry(franka.Q_START, START_OF_STEP + STEP), STEPS)
+BASELINE = ControlCase(q_target=with_entry(franka.Q_START, START_OF_STEP + STEP), steps=STEPS)
 G1 = replace(BASELINE, kp=with_entry(BASELINE.kp, 3500.0), kv=with_entry(BASELINE.kv, 100.0))
 G2 = replace(G1, kp=with_entry(G1.kp, 7000.0))
 G3 = replace(G2, kv=with_entry(G2.kv, 300.0))

@@ -80,7 +80,7 @@ def read_gravity(
 
 def read_second_engine() -> dict[str, float]:
     """Read inertia and gravity effort at the start in MuJoCo."""
-    at_rest = mujoco_joints.at_rest(spec.BASELINE, spec.BASELINE.q_start)
+    at_rest = mujoco_joints.at_rest(spec.BASELINE.q_start)
     return {name: float(of[spec.ENTRY]) for name, of in zip(IN_MUJOCO, at_rest, strict=True)}
 
 
@@ -97,8 +97,8 @@ def without_term(run: Experiment, kv: float) -> float:
 def damping_ratio(case: str) -> FloatArray:
     """Return h (KV + d) / I of each joint (d,) at the start, by the model in MuJoCo."""
     settings = study_spec.COMPARED[case]
-    inertia, _ = mujoco_joints.at_rest(settings, settings.q_start)
-    damping = mujoco_joints.passive_damping(settings)
+    inertia, _ = mujoco_joints.at_rest(settings.q_start)
+    damping = mujoco_joints.passive_damping()
     return np.asarray(settings.dt / settings.substeps * (settings.kv + damping) / inertia)
 
 

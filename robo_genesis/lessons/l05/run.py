@@ -1,6 +1,6 @@
 """Reaches of L05: ask for joint positions, accept or refuse them, command them."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -9,8 +9,6 @@ from robo_genesis.core.scene import DT, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.engine_kinematics import (
-    END_EFFECTOR,
-    MOVED,
     IkAnswer,
     IkSettings,
     accepted_command,
@@ -20,7 +18,6 @@ from robo_genesis.sim.arm.joint_control import (
     ControlCase,
     Controlled,
     assign_postures,
-    course_case,
     run_case,
 )
 from robo_genesis.sim.arm.joints import JointMap
@@ -63,13 +60,13 @@ class SolveCase:
     @property
     def start(self) -> ControlCase:
         """The settings from which the answers are assigned: those of the course, at its start."""
-        return replace(course_case(franka.Q_START, self.steps), dt=self.dt)
+        return ControlCase(q_target=franka.Q_START, steps=self.steps, dt=self.dt)
 
 
 def ask(robot: Any, joints: JointMap, case: ReachCase) -> IkAnswer:
     """Return the engine's answer for the target of a case; the fingers stay at its start."""
     pose = case.position, case.quat
-    return solve_ik(robot, joints, END_EFFECTOR, *pose, case.q_start, MOVED, case.settings)
+    return solve_ik(robot, joints, *pose, case.q_start, case.settings)
 
 
 def control_case(case: ReachCase, answer: IkAnswer) -> ControlCase:
@@ -107,7 +104,7 @@ def solve_all(
     """
     questions = zip(case.positions, case.starts, strict=True)
     answers = [
-        solve_ik(robot, joints, END_EFFECTOR, position, case.quat, start, MOVED, case.settings)
+        solve_ik(robot, joints, position, case.quat, start, case.settings)
         for position, start in questions
     ]
     postures = np.stack([answer.q for answer in answers]).astype(np.float64)

@@ -10,8 +10,6 @@ from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.batch import Batch
 from robo_genesis.sim.arm.engine_kinematics import (
-    END_EFFECTOR,
-    MOVED,
     IkAnswer,
     IkSettings,
     accepted_command,
@@ -53,9 +51,7 @@ def ask(
     position, quat, q_start = (np.stack(values) for values in zip(*rows, strict=True))
     if robot.scene.n_envs == 0:
         position, quat, q_start = position[0], quat[0], q_start[0]
-    found = solve_ik(
-        robot, joints, END_EFFECTOR, position, quat, q_start, MOVED, worlds[0].settings, envs
-    )
+    found = solve_ik(robot, joints, position, quat, q_start, worlds[0].settings, envs)
     return IkAnswer(found.q.reshape(len(worlds), -1), found.error.reshape(len(worlds), -1))
 
 

@@ -29,10 +29,9 @@ class Batch:
         batch = reset_batch(scene, robot, joints, self.cases)
         self.q_start = np.reshape(batch.q_start, (len(self.cases), -1))
         self.target = self.q_start.astype(np.float64)
-        self.states, self.readings = [self._rows(joint_control.read_state)], list[Any]()
+        self.readings = [self._rows()]
         self.sent: list[FloatArray] = []
         self.begin = np.zeros(len(self.cases), int)
-        self.start_qd, self.start_force = np.zeros((2, *self.q_start.shape), np.float32)
         self.effort_limit = to_numpy(robot.get_dofs_force_range(self.dofs)[1]).reshape(
             self.q_start.shape
         )
@@ -60,16 +59,13 @@ class Batch:
         else:
             self.robot.control_dofs_position(values[0], self.dofs)
         self.target[chosen] = values
-        fresh = [k for k in chosen if self.begin[k] == len(self.sent)]
-        qd, force, _ = self._rows(joint_control.read_step)
-        self.start_qd[fresh], self.start_force[fresh] = qd[fresh], force[fresh]
+        self._read_again([k for k in chosen if self.begin[k] == len(self.sent)])
 
     def step(self, steps: int) -> None:
         """Step all environments, and record each state and the command that led to it."""
         for _ in range(steps):
             self.scene.step()
-            self.states.append(self._rows(joint_control.read_state))
-            self.readings.append(self._rows(joint_control.read_step))
+            self.readings.append(self._rows())
             self.sent.append(self.target.copy())
 
     def reset_rows(self, envs: Sequence[int]) -> None:
@@ -87,24 +83,26 @@ class Batch:
             self.q_start[chosen], self.dofs, envs_idx=chosen, zero_velocity=True
         )
         self.begin[chosen] = len(self.sent)
-        self.states[-1] = self._rows(joint_control.read_state)
+        self._read_again(chosen)
 
     def trace(self, row: int) -> Trace:
         """Return the run of one environment since its last reset."""
         first, case = int(self.begin[row]), self.cases[row]
         return joint_control.assemble(
             replace(case, steps=len(self.sent) - first),
-            [tuple(values[row] for values in state) for state in self.states[first:]],
             [tuple(values[row] for values in reading) for reading in self.readings[first:]],
             [target[row] for target in self.sent[first:]],
-            self.start_qd[row],
-            self.start_force[row],
             self.effort_limit[row],
         )
 
-    def _rows(self, read: Any) -> tuple[FloatArray, ...]:
-        """Return what a function of `joint_control` reads, each array with an axis of rows."""
-        found = read(self.robot, self.dofs)
+    def _read_again(self, rows: list[int]) -> None:
+        """Replace the latest readings of rows whose trace begins here."""
+        for latest, now in zip(self.readings[-1], self._rows(), strict=True):
+            latest[rows] = now[rows]
+
+    def _rows(self) -> tuple[FloatArray, ...]:
+        """Return what the engine has now, each array with an axis of rows."""
+        found = joint_control.read(self.robot, self.dofs)
         return tuple(values if self.scene.n_envs else values[None] for values in found)
 
     def _chosen(self, envs: Sequence[int] | None) -> list[int]:
@@ -167,17 +165,13 @@ def reset_batch(
         )
     dofs = joints.dofs_idx_local.tolist()
     arrays: dict[str, Any] = {
-        name: np.array(np.stack(each) if rows else each[0])
+        name: np.stack(each) if rows else each[0]
         for name in ("q_start", "q_target", "kp", "kv", "effort_limit")
         for each in [[getattr(case, name) for case in cases]]
     }
     batch = replace(cases[0], **arrays)
     scene.reset()
-    robot.set_dofs_kp(batch.kp, dofs)
-    robot.set_dofs_kv(batch.kv, dofs)
-    robot.set_dofs_force_range(-batch.effort_limit, batch.effort_limit, dofs)
-    robot.set_dofs_position(batch.q_start, dofs, zero_velocity=True)
-    joint_control.require_read_back(robot, dofs, batch)
+    joint_control.set_up(robot, dofs, batch)
     return batch
 
 

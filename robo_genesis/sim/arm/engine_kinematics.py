@@ -60,11 +60,10 @@ class IkAnswer:
 
 
 def solve_ik(
-    robot: Any, joints: JointMap, link: str, position: FloatArray, quat: FloatArray,
-    q_start: FloatArray, moved: Sequence[str], settings: IkSettings,
-    envs: Sequence[int] | None = None,
+    robot: Any, joints: JointMap, position: FloatArray, quat: FloatArray, q_start: FloatArray,
+    settings: IkSettings, envs: Sequence[int] | None = None,
 ) -> IkAnswer:  # fmt: skip
-    """Ask the engine for joint positions that bring a link to a pose. Nothing is commanded.
+    """Ask the engine for joint positions that bring the hand to a pose. Nothing is commanded.
 
     In a scene with environments all arrays have one row for each asked environment, and so has the
     answer. The engine would broadcast some other shapes; here they are errors.
@@ -72,11 +71,9 @@ def solve_ik(
     Args:
         robot: rigid entity of a built scene.
         joints: all its joints.
-        link: name of the link whose origin has the target.
-        position: (…, 3) target in the world [m].
+        position: (…, 3) target of the hand's origin in the world [m].
         quat: (…, 4) target orientation, (w, x, y, z).
         q_start: (…, d) first start [rad or m].
-        moved: names of the joints that the solver may move.
         settings: of the solver.
         envs: numbers of the environments that are asked, all by default.
 
@@ -89,9 +86,9 @@ def solve_ik(
     require_finite("quat", quat, (*rows, 4))
     require_finite("q_start", q_start, (*rows, d))
     chosen = {} if envs is None else {"envs_idx": list(envs)}
-    dofs = [int(joints.dofs_idx_local[joints.entry(name)]) for name in moved]
+    dofs = [int(joints.dofs_idx_local[joints.entry(name)]) for name in MOVED]
     q, error = robot.inverse_kinematics(
-        link=robot.get_link(link),
+        link=robot.get_link(END_EFFECTOR),
         pos=np.array(position, dtype=np.float32),
         quat=np.array(quat, dtype=np.float32),
         init_qpos=in_model_order(joints, q_start),
@@ -166,12 +163,12 @@ def link_poses_at(
     return poses
 
 
-def jacobian(robot: Any, joints: JointMap, link: str) -> FloatArray:
-    """Return the Jacobian (6, d) of a link's origin in the state now.
+def jacobian(robot: Any, joints: JointMap) -> FloatArray:
+    """Return the Jacobian (6, d) of the hand's origin in the state now.
 
     The first three rows are its velocity, the others its angular velocity, in the world's axes.
     """
-    found = to_numpy(robot.get_jacobian(link=robot.get_link(link)))
+    found = to_numpy(robot.get_jacobian(link=robot.get_link(END_EFFECTOR)))
     return np.asarray(found[:, joints.dofs_idx_local])
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE
 from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
@@ -18,23 +19,35 @@ class CaseError(ValueError):
     """A control case is not valid; the message names the entry and the valid values."""
 
 
-@dataclass(frozen=True, slots=True)
-class ControlCase:
-    """All settings of one run. Arrays have one entry for each joint, in the order of the map.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Controlled:
+    """A robot under position control. A lesson's case adds what it commands.
 
-    `q_start`, `q_target` [rad or m]; `kp` [N·m/rad or N/m]; `kv` [N·m·s/rad or N·s/m];
-    `effort_limit` [N·m or N], symmetric; `dt` [s]; `steps` counts outer steps.
+    Arrays have one entry for each joint, in the order of the map, and are by default those of the
+    course's robot: `q_start` [rad or m]; `kp` [N·m/rad or N/m]; `kv` [N·m·s/rad or N·s/m];
+    `effort_limit` [N·m or N], symmetric. `dt` [s]; `steps` counts outer steps.
     """
 
-    q_start: FloatArray
-    q_target: FloatArray
-    kp: FloatArray
-    kv: FloatArray
-    effort_limit: FloatArray
+    q_start: FloatArray = field(default_factory=lambda: franka.Q_START)
+    kp: FloatArray = field(default_factory=lambda: franka.KP_BASELINE)
+    kv: FloatArray = field(default_factory=lambda: franka.KV_BASELINE)
+    effort_limit: FloatArray = field(default_factory=lambda: franka.EFFORT_LIMIT)
     steps: int
     dt: float = DT
     substeps: int = SUBSTEPS
     seed: int = SEED
+
+    def commanding(self, q_target: FloatArray) -> "ControlCase":
+        """Return the control case that commands joint positions (d,) or (n, d) [rad or m]."""
+        settings = {of.name: getattr(self, of.name) for of in fields(Controlled)}
+        return ControlCase(q_target=q_target, **settings)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlCase(Controlled):
+    """All settings of one run: those of the robot, and the `q_target` (d,) [rad or m]."""
+
+    q_target: FloatArray
 
 
 def describe(page: Any, robot: Any) -> JointMap:
@@ -44,37 +57,6 @@ def describe(page: Any, robot: Any) -> JointMap:
     page.links = [link.name for link in robot.links]
     page.joints = resolve_joints(robot, franka.JOINT_NAMES)
     return page.joints
-
-
-def course_case(q_target: FloatArray, steps: int) -> ControlCase:
-    """Return the case of the course's robot with its gains, from its start to `q_target` (9,)."""
-    gains = franka.KP_BASELINE, franka.KV_BASELINE, franka.EFFORT_LIMIT
-    return ControlCase(franka.Q_START, q_target, *gains, steps)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Controlled:
-    """A robot under position control. A lesson's case adds what it commands.
-
-    The arrays have one entry for each joint, by default the course's: `q_start` [rad or m], `kp`
-    [N·m/rad or N/m], `kv` [N·m·s/rad or N·s/m], `effort_limit` [N·m or N].
-    """
-
-    steps: int
-    q_start: FloatArray = field(default_factory=lambda: franka.Q_START)
-    kp: FloatArray = field(default_factory=lambda: franka.KP_BASELINE)
-    kv: FloatArray = field(default_factory=lambda: franka.KV_BASELINE)
-    effort_limit: FloatArray = field(default_factory=lambda: franka.EFFORT_LIMIT)
-    dt: float = DT
-    substeps: int = SUBSTEPS
-    seed: int = SEED
-
-    def commanding(self, q_target: FloatArray) -> ControlCase:
-        """Return the control case that commands joint positions (d,) or (n, d) [rad or m]."""
-        return ControlCase(
-            self.q_start, q_target, self.kp, self.kv, self.effort_limit,
-            self.steps, self.dt, self.substeps, self.seed,
-        )  # fmt: skip
 
 
 def differences(one: ControlCase, other: ControlCase, joints: JointMap) -> list[str]:
@@ -138,18 +120,21 @@ def reset(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> None:
     validate(case, joints)
     dofs = joints.dofs_idx_local.tolist()
     scene.reset()
+    set_up(robot, dofs, case)
+
+
+def set_up(robot: Any, dofs: list[int], case: ControlCase) -> None:
+    """Set gains, effort range and start of a case, at rest, and read them back.
+
+    The case's arrays are (d,), or (environments, d) in a batch.
+
+    Raises:
+        CaseError: a value reads back differently from what was asked for.
+    """
     robot.set_dofs_kp(case.kp.copy(), dofs)  # copies: Torch takes no read-only array
     robot.set_dofs_kv(case.kv.copy(), dofs)
     robot.set_dofs_force_range(-case.effort_limit, case.effort_limit.copy(), dofs)
     robot.set_dofs_position(case.q_start.copy(), dofs, zero_velocity=True)
-    require_read_back(robot, dofs, case)
-
-
-def require_read_back(robot: Any, dofs: list[int], case: ControlCase) -> None:
-    """Raise CaseError unless the engine has gains, effort range and start of a case, at rest.
-
-    The case's arrays are (d,), or (environments, d) in a batch.
-    """
     lower, upper = robot.get_dofs_force_range(dofs)
     read_back = {
         "kp": (robot.get_dofs_kp(dofs), case.kp),
@@ -176,26 +161,22 @@ def run_case(scene: Any, robot: Any, joints: JointMap, case: ControlCase) -> Tra
     """
     reset(scene, robot, joints, case)
     dofs = joints.dofs_idx_local.tolist()
-    states, steps, targets = [read_state(robot, dofs)], [], []
-    start_qd = to_numpy(robot.get_dofs_velocity(dofs))
     q_target = case.q_target.copy()
     robot.control_dofs_position(q_target, dofs)
-    start_control_force = to_numpy(robot.get_dofs_control_force(dofs))
+    readings = [read(robot, dofs)]
     effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
     begin = engine_time(scene)
     for _ in range(case.steps):
         robot.control_dofs_position(q_target, dofs)  # at t[k]: repeat the target
         scene.step()  # bounded effort drives the dynamics for dt
-        states.append(read_state(robot, dofs))  # at t[k+1]: the new state
-        steps.append(read_step(robot, dofs))
-        targets.append(q_target)
+        readings.append(read(robot, dofs))  # at t[k+1]: the new state
     passed = engine_time(scene) - begin
     if not np.isclose(passed, case.steps * case.dt, rtol=1e-5, atol=0):
         raise CaseError(
             f"The engine's clock advanced {passed:g} s in {case.steps} steps of {case.dt:g} s: the "
             "times k · dt would be wrong. Build the scene with the dt of the case."
         )
-    return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)
+    return assemble(case, readings, [q_target] * case.steps, effort_limit)
 
 
 def engine_time(scene: Any) -> float:
@@ -222,55 +203,56 @@ def assign_postures(
     """
     reset(scene, robot, joints, case)
     dofs = joints.dofs_idx_local.tolist()
-    start_qd, start_force, _ = read_step(robot, dofs)
     effort_limit = to_numpy(robot.get_dofs_force_range(dofs)[1])
-    states, steps = [read_state(robot, dofs)], []
+    readings = [read(robot, dofs)]
     for q in postures:
         robot.set_dofs_position(q, dofs, zero_velocity=True)
-        states.append(read_state(robot, dofs))
-        steps.append(read_step(robot, dofs))
-    return assemble(case, states, steps, list(postures), start_qd, start_force, effort_limit)
+        readings.append(read(robot, dofs))
+    return assemble(case, readings, postures, effort_limit)
 
 
 def assemble(
     case: ControlCase,
-    states: Sequence[tuple[FloatArray, ...]],
-    steps: Sequence[tuple[FloatArray, ...]],
-    targets: Sequence[FloatArray],
-    start_qd: FloatArray,
-    start_control_force: FloatArray,
+    readings: Sequence[tuple[FloatArray, ...]],
+    targets: ArrayLike,
     effort_limit: FloatArray,
 ) -> Trace:
-    """Stack the n+1 states, n step readings and n targets of a run of `case` into a trace."""
-    q, link_pos, link_quat = (np.stack(column) for column in zip(*states, strict=True))
-    qd, control_force, internal_force = (np.stack(column) for column in zip(*steps, strict=True))
+    """Return the run of a case as a trace.
+
+    Args:
+        case: its settings.
+        readings: of the n+1 states, as of `read`; the first after the first command.
+        targets: (n, d) commands [rad or m].
+        effort_limit: (d,) as read back [N·m or N].
+    """
+    q, link_pos, link_quat, qd, control_force, internal_force = map(
+        np.stack, zip(*readings, strict=True)
+    )
     return Trace(
         t=np.arange(case.steps + 1) * case.dt,
         q=q,
-        qd=qd,
-        target=np.stack(targets),
-        control_force=control_force,
-        internal_force=internal_force,
-        start_control_force=start_control_force,
-        start_qd=start_qd,
+        qd=qd[1:],
+        target=np.asarray(targets),
+        control_force=control_force[1:],
+        internal_force=internal_force[1:],
+        start_control_force=control_force[0],
+        start_qd=qd[0],
         effort_limit=effort_limit,
         link_pos=link_pos,
         link_quat=link_quat,
     )
 
 
-def read_state(robot: Any, dofs: list[int]) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return position (d,), link positions (l, 3) [m] and orientations (l, 4), now."""
+def read(robot: Any, dofs: list[int]) -> tuple[FloatArray, ...]:
+    """Return what the engine has now.
+
+    Position (d,), link positions (l, 3) [m] and orientations (l, 4); velocity, control force and
+    internal force, each (d,).
+    """
     return (
         to_numpy(robot.get_dofs_position(dofs)),
         to_numpy(robot.get_links_pos()),
         to_numpy(robot.get_links_quat()),
-    )
-
-
-def read_step(robot: Any, dofs: list[int]) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return velocity, control force and internal force, each (d,), of the state now."""
-    return (
         to_numpy(robot.get_dofs_velocity(dofs)),
         to_numpy(robot.get_dofs_control_force(dofs)),
         to_numpy(robot.get_dofs_force(dofs)),

@@ -120,12 +120,6 @@ def one_dof_joint(robot: Any, name: str) -> Any:
     return joint
 
 
-def link_parents(robot: Any) -> list[int]:
-    """Return for each link the position of its parent among `robot.links`, -1 for the base."""
-    first = robot.links[0].idx
-    return [link.parent_idx - first if link.parent_idx >= first else -1 for link in robot.links]
-
-
 def to_numpy(values: Any) -> FloatArray:
     """Return a copy of an engine tensor as a NumPy array of the same shape."""
     if hasattr(values, "detach"):

@@ -1,4 +1,4 @@
-"""Free fall from rest: continuous, stepped as a solver does, and the sum of the steps.
+"""Free fall from rest: continuous, and stepped as a solver does.
 
 The module does not use an engine. Results are distances fallen [m], so down is positive.
 """
@@ -17,29 +17,11 @@ def continuous_drop(t: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
     return 0.5 * gravity * np.asarray(t, dtype=np.float64) ** 2
 
 
-def stepped_drop(h: float, steps: int, gravity: float = GRAVITY) -> FloatArray:
-    """Step free fall from rest by semi-implicit Euler: first the velocity, then the position.
-
-    Args:
-        h: length of one solver step [s].
-        steps: number of steps n.
-        gravity: acceleration of gravity [m/s²].
-
-    Returns:
-        The distance fallen before the first step and after each, (n+1,) [m].
-    """
-    v, z, fallen = 0.0, 0.0, [0.0]
-    for _ in range(steps):
-        v = v + gravity * h
-        z = z + v * h  # the new velocity moves the body
-        fallen.append(z)
-    return np.array(fallen)
-
-
 def summed_drop(h: float, steps: ArrayLike, gravity: float = GRAVITY) -> FloatArray:
-    """Return g h² n (n + 1) / 2, the result of `stepped_drop` after n = `steps` steps [m].
+    """Return g h² n (n + 1) / 2, the distance fallen after n = `steps` steps [m].
 
-    The velocity after step k is k g h, so step k moves by k g h²; 1 + 2 + … + n is n (n + 1) / 2.
+    Semi-implicit Euler changes the velocity first, then the position. The velocity after step k is
+    k g h, so step k moves by k g h²; 1 + 2 + … + n is n (n + 1) / 2.
     """
     n = np.asarray(steps, dtype=np.float64)
     return gravity * h**2 * n * (n + 1) / 2

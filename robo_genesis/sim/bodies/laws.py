@@ -1,9 +1,8 @@
 """What the arrays of a free body must have in common, by geometry and by the laws of motion.
 
 Contacts are a function of the state before the last solver step, which follows from the state
-after it. Each state follows from the state before it: the contact model of both engines gives it
-anew from every sample, so that no difference can grow. Where a body only moves up and down, the
-model is one formula; everywhere else MuJoCo computes the state.
+after it. Each state follows from the state before it: MuJoCo, which has the same contact model,
+computes it anew from every sample, so that no difference can grow.
 
 | tolerance | residual of the CPU runs | value |
 |---|---|---|
@@ -32,9 +31,10 @@ import numpy as np
 from robo_genesis.core.checks import Finding
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import BodyTrace, ContactTrace
+from robo_genesis.sim.arm.kinematics import quat_multiply
 from robo_genesis.sim.bodies.contacts import TOP, ContactCase
-from robo_genesis.sim.bodies.continuation import NEXT, continued, cross
 from robo_genesis.sim.laws import UNTURNED, ZERO, apart, broken, times, unit_quaternions
+from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 
 MEASURES = False
 
@@ -79,6 +79,9 @@ SLIDING, PATH = 1.2e-2, 2e-3
 
 UPRIGHT = 3e-3
 """Tolerance of the orientation of such a cube; the runs have 3e-4."""
+
+NEXT = {"link_pos": 5e-6, "link_quat": 2e-4, "link_vel": 3e-4, "link_ang": 2e-2}
+"""Tolerances of the state after one outer step, in `UNITS`."""
 
 UNITS = {"link_pos": "m", "link_quat": "1", "link_vel": "m/s", "link_ang": "rad/s"}
 
@@ -220,7 +223,7 @@ def turned(trace: BodyTrace, case: ContactCase) -> Iterator[Finding]:
 
 def next_states(trace: ContactTrace, case: ContactCase) -> Iterator[Finding]:
     """Yield a state that does not follow from the state before it."""
-    expected = continued(trace, case)
+    expected = mujoco_contacts.each_step(trace, case)
     errors = {name: np.abs(getattr(trace, name)[1:, 0] - of) for name, of in expected.items()}
     beyond = {name: (of > NEXT[name]).any(axis=1) for name, of in errors.items()}
     wrong = np.any(list(beyond.values()), axis=0)
@@ -270,7 +273,5 @@ def before_last_step(trace: BodyTrace, h: float) -> tuple[FloatArray, FloatArray
     position, velocity = (a[:, 0].astype(np.float64) for a in (trace.link_pos, trace.link_vel))
     quat, turn = trace.link_quat[:, 0].astype(np.float64), -h * trace.link_ang[:, 0]
     half = np.linalg.norm(turn, axis=1, keepdims=True) / 2
-    w, v = np.cos(half), turn / 2 * np.sinc(half / np.pi)
-    scalar = w * quat[:, :1] - (v * quat[:, 1:]).sum(axis=1, keepdims=True)
-    vector = w * quat[:, 1:] + quat[:, :1] * v + cross(v, quat[:, 1:])
-    return position - h * velocity, np.hstack([scalar, vector])
+    back = np.hstack([np.cos(half), turn / 2 * np.sinc(half / np.pi)])
+    return position - h * velocity, quat_multiply(back, quat)

@@ -11,10 +11,10 @@ import numpy as np
 
 from robo_genesis.core.checks import Finding, above, at_most, equal, noted
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.sim.arm.kinematics import rotate
 from robo_genesis.sim.camera import geometry as cameras
 from robo_genesis.sim.camera.geometry import Residuals
 from robo_genesis.sim.camera.views import View
-from robo_genesis.sim.visual_shape import rotate
 
 SKIP = "SKIP"
 

@@ -5,10 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.trace import ContactTrace
+from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.trace import BodyTrace, ContactTrace
+from robo_genesis.sim.arm.kinematics import rotate
 from robo_genesis.sim.bodies.contacts import SURFACE_SIZE, TOP, ContactCase
 from robo_genesis.sim.bodies.rigid_bodies import record_states, stacked, times
-from robo_genesis.sim.visual_shape import rotate
 
 VERSION = version("mujoco")
 
@@ -17,6 +18,9 @@ DEFAULT_TIME_CONSTANT = 0.01
 
 OWN_TIME_CONSTANT = 0.02
 """MuJoCo's default [s]."""
+
+MOTION = ("link_pos", "link_quat", "link_vel", "link_ang")
+"""The arrays of a state, in MuJoCo's order."""
 
 IMPEDANCE = (0.9, 0.95, 0.001, 0.5, 2.0)
 """Impedance of a contact as a function of depth, the default of both engines."""
@@ -44,11 +48,7 @@ def load(case: ContactCase, own_defaults: bool = False) -> Any:
     spec = mujoco.MjSpec()
     spec.option.timestep = case.h
     spec.option.gravity = (0, 0, -case.gravity)
-    cones = {
-        "pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL,
-        "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC,
-    }
-    spec.option.cone = cones[case.cone]
+    spec.option.cone = getattr(mujoco.mjtCone, f"mjCONE_{case.cone.upper()}")
     spec.option.impratio = case.impratio or 1.0
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     seconds = OWN_TIME_CONSTANT if own_defaults else time_constant(case.h, case.time_constant)
@@ -94,6 +94,21 @@ def run_case(case: ContactCase, own_defaults: bool = False) -> ContactTrace:
         lambda: mujoco.mj_step(model, data, nstep=case.substeps), case.steps, lambda: _state(data)
     )
     return ContactTrace(times(case), *stacked(states))
+
+
+def each_step(trace: BodyTrace, case: ContactCase) -> dict[str, FloatArray]:
+    """Return what follows from each state of a run but the last in one outer step, by array."""
+    import mujoco
+    from mujoco import rollout
+
+    states = {name: getattr(trace, name)[:-1, 0].astype(np.float64) for name in MOTION}
+    position, quat, velocity, spin = states.values()
+    spin = rotate(quat * [1, -1, -1, -1], spin)  # MuJoCo has it in the body's axes
+    begin = np.hstack([np.zeros((len(quat), 1)), position, quat, velocity, spin])
+    model = load(case)
+    ends, _ = rollout.rollout(model, [mujoco.MjData(model)], begin, nstep=case.substeps)
+    _, position, quat, velocity, spin = np.split(np.asarray(ends)[:, -1], (1, 4, 8, 11), axis=1)
+    return dict(zip(MOTION, (position, quat, velocity, rotate(quat, spin)), strict=True))
 
 
 def _state(data: Any) -> tuple[np.ndarray, ...]:

@@ -8,14 +8,13 @@ import numpy as np
 
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.trace import Trace
-from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
+from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import CaseError, ControlCase, assemble
-from robo_genesis.sim.session import asset
+from robo_genesis.sim.mujoco.kinematics import bare_robot, bare_spec, with_data
 
 VERSION = version("mujoco")
 
-INTEGRATORS = {"implicitfast": "mjINT_IMPLICITFAST", "Euler": "mjINT_EULER"}
-"""Names of integrators, and what MuJoCo calls them."""
+INTEGRATORS = ("implicitfast", "Euler")
 
 
 def load(case: ControlCase, timestep: float, integrator: str) -> Any:
@@ -42,9 +41,7 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
     def padded(*values: float) -> FloatArray:  # MuJoCo has ten parameters
         return np.pad(np.array(values, dtype=np.float64), (0, mujoco.mjNGAIN - len(values)))
 
-    spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
-    for part in (*spec.actuators, *spec.keys, *spec.geoms, *spec.meshes):
-        spec.delete(part)
+    spec = bare_spec()
     for k, name in enumerate(JOINT_NAMES):
         spec.add_actuator(
             name=name,
@@ -58,7 +55,7 @@ def load(case: ControlCase, timestep: float, integrator: str) -> Any:
             forcerange=[-case.effort_limit[k], case.effort_limit[k]],
         )
     spec.option.timestep = timestep
-    spec.option.integrator = getattr(mujoco.mjtIntegrator, INTEGRATORS[integrator])
+    spec.option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
     return spec.compile()
 
 
@@ -79,9 +76,7 @@ def run_case(
     """
     import mujoco
 
-    model = load(case, timestep, integrator)
-    data = mujoco.MjData(model)
-    q_at, dof_at = _addresses(model)
+    model, data, q_at, dof_at = with_data(load(case, timestep, integrator))
     bodies = [model.body(name).id for name in links]
     data.qpos[q_at], data.ctrl[:] = case.q_start, case.q_target
 
@@ -95,11 +90,8 @@ def run_case(
     for _ in range(case.steps):
         mujoco.mj_step(model, data, nstep=round(case.dt / timestep))
         readings.append(read())
-    states, steps = [r[:3] for r in readings], [r[3:] for r in readings[1:]]
-    start_qd, start_control_force = readings[0][3:5]
-    targets = [case.q_target] * case.steps
     effort_limit = _kept(model.actuator_forcerange[:, 1])
-    return assemble(case, states, steps, targets, start_qd, start_control_force, effort_limit)
+    return assemble(case, readings, [case.q_target] * case.steps, effort_limit)
 
 
 def each_step(
@@ -113,9 +105,7 @@ def each_step(
     """
     import mujoco
 
-    model = load(case, timestep, integrator)
-    data = mujoco.MjData(model)
-    q_at, dof_at = _addresses(model)
+    model, data, q_at, dof_at = with_data(load(case, timestep, integrator))
     data.ctrl[:] = case.q_target
     q, qd, force = np.empty((3, *trace.qd.shape))
     speeds = np.vstack([trace.start_qd, trace.qd])
@@ -135,17 +125,15 @@ def _kept(values: FloatArray) -> FloatArray:
     return np.array(values, dtype=np.float32)
 
 
-def at_rest(case: ControlCase, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+def at_rest(q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the mass matrix's diagonal (d,) and the effort (d,) that holds posture `q` (d,).
 
     Diagonal: [kg·m² or kg]; effort: [N·m or N]. Neither contains a term of the integrator.
     """
     import mujoco
 
-    model = load(case, case.dt, "implicitfast")
-    data = mujoco.MjData(model)
-    q_at, dof_at = _addresses(model)
-    data.qpos[q_at] = q
+    model, data, q_at, dof_at = bare_robot()
+    data.qpos[q_at], data.qvel[:] = q, 0.0
     mujoco.mj_forward(model, data)
     columns = np.zeros((model.nv, model.nv))
     for k, unit in enumerate(np.eye(model.nv)):
@@ -153,13 +141,7 @@ def at_rest(case: ControlCase, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     return columns.diagonal()[dof_at].copy(), data.qfrc_bias[dof_at].copy()
 
 
-def passive_damping(case: ControlCase) -> FloatArray:
+def passive_damping() -> FloatArray:
     """Return the joint damping (d,) of the model [N·m·s/rad or N·s/m], without gains."""
-    model = load(case, case.dt, "implicitfast")
-    return np.array(model.dof_damping[_addresses(model)[1]])
-
-
-def _addresses(model: Any) -> tuple[list[int], list[int]]:
-    """Return the indices of the course's joints in qpos and among the DOFs."""
-    joints = [model.joint(name) for name in JOINT_NAMES]
-    return [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
+    model, _, _, dof_at = bare_robot()
+    return np.array(model.dof_damping[dof_at])

@@ -22,12 +22,23 @@ def bare_robot() -> tuple[Any, Any, list[int], list[int]]:
     The data are made once, because that takes as long as a hundred states. Every use sets all of
     `qpos` and `qvel` that it reads.
     """
+    return with_data(bare_spec().compile())
+
+
+def bare_spec() -> Any:
+    """Return the specification of the model without shapes and actuators."""
     import mujoco
 
     spec = mujoco.MjSpec.from_file(str(asset(FRANKA_MJCF)))
     for part in (*spec.actuators, *spec.keys, *spec.geoms, *spec.meshes):
         spec.delete(part)
-    model = spec.compile()
+    return spec
+
+
+def with_data(model: Any) -> tuple[Any, Any, list[int], list[int]]:
+    """Return a model of the robot, its data, and the joints' indices in qpos and qvel."""
+    import mujoco
+
     joints = [model.joint(name) for name in JOINT_NAMES]
     q_at, dof_at = [int(j.qposadr[0]) for j in joints], [int(j.dofadr[0]) for j in joints]
     return model, mujoco.MjData(model), q_at, dof_at
@@ -56,8 +67,8 @@ def link_poses(q: FloatArray, links: Sequence[str]) -> Pose:
     return Pose(position[:, bodies], orientation[:, bodies])
 
 
-def jacobian(q: FloatArray, link: str) -> FloatArray:
-    """Return the Jacobian (6, d) of a link's origin at `q` (d,), as `kinematics.jacobian`."""
+def jacobian(q: FloatArray) -> FloatArray:
+    """Return the Jacobian (6, d) of the hand's origin at `q` (d,), as `kinematics.jacobian`."""
     import mujoco
 
     model, data, q_at, dof_at = bare_robot()
@@ -65,7 +76,7 @@ def jacobian(q: FloatArray, link: str) -> FloatArray:
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     rows = np.zeros((6, model.nv))
-    mujoco.mj_jacBody(model, data, rows[:3], rows[3:], model.body(link).id)
+    mujoco.mj_jacBody(model, data, rows[:3], rows[3:], model.body("hand").id)
     return np.asarray(rows[:, dof_at])
 
 

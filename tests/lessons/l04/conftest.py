@@ -50,14 +50,14 @@ def study_runs(joints, frames) -> Experiment:
         case = l04.CASES[run.case]
         traces[name] = mujoco_joints.run_case(case, LINKS, run.timestep, run.integrator)
     traces[study_spec.ASSIGNED] = assigned(l04.BASELINE, LINKS)
-    inertia, gravity = (float(v[l04.ENTRY]) for v in mujoco_joints.at_rest(l04.G1, Q_START))
+    inertia, gravity = (float(v[l04.ENTRY]) for v in mujoco_joints.at_rest(Q_START))
     of_joint = {"passive_damping": 1.0}
     h = l04.G1.dt / l04.G1.substeps
     of_joint |= {f"mass_KV_{kv:g}": inertia + h * (1.0 + kv) for kv in studies.COMPARED_KV}
     of_joint |= {f"inertia_{name}": inertia for name in ("Genesis", "MuJoCo")}
     of_joint |= {f"gravity_at_start_{name}": gravity for name in ("Genesis", "MuJoCo")}
-    for name, case in l04.CASES.items():
-        _, effort = mujoco_joints.at_rest(case, traces[name].q[-1])
+    for name in l04.CASES:
+        _, effort = mujoco_joints.at_rest(traces[name].q[-1])
         of_joint[f"gravity_{name}"] = float(effort[l04.ENTRY])
     return Experiment(
         page=page,

@@ -144,7 +144,7 @@ def test_a_spoiled_run_fails_by_the_name_of_its_check(study_runs, monkeypatch, n
 def test_a_study_case_with_a_second_factor_fails(study_runs, monkeypatch):
     second = replace(study_spec.STEP_CASES["G1_small"], seed=1)
     monkeypatch.setitem(study_spec.STEP_CASES, "G1_small", second)
-    assert "is q_target[joint4], seed, expected" in of_check(study_runs, "study_factors").detail
+    assert "is seed, q_target[joint4], expected" in of_check(study_runs, "study_factors").detail
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from robot_runs import driven
+from robot_runs import assigned, driven
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05 import SOLUTIONS, restarts, spec
@@ -12,8 +12,6 @@ from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.engine_kinematics import IkAnswer
 from robo_genesis.sim.arm.franka import Q_START
-from robo_genesis.sim.arm.joint_control import assemble
-from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
 LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
 DOWN = kinematics.Pose(spec.TARGET, spec.DOWN)
@@ -27,16 +25,6 @@ def answer(position, iterations=100) -> IkAnswer:
     return IkAnswer(np.float32([*q, *Q_START[7:]]), np.float32(error))
 
 
-def assigned(case, postures):
-    """Return the record of assigned postures (m, 9)."""
-    q = np.float32(np.vstack([Q_START, postures]))
-    poses = (np.float32(part) for part in mujoco_kinematics.link_poses(q, LINKS))
-    zero = np.zeros(9, np.float32)
-    steps = [(zero, zero, zero)] * case.steps
-    states = list(zip(q, *poses, strict=True))
-    return assemble(case.start, states, steps, list(postures), zero, zero, case.start.effort_limit)
-
-
 @pytest.fixture(scope="session")
 def reaches(joints) -> Experiment:
     """A run of the page about many solutions that passes its checks."""
@@ -45,8 +33,9 @@ def reaches(joints) -> Experiment:
     refused = answer(spec.BEYOND_REACH, 20).q.astype(float)[None]
     apart, angle = kinematics.distances(found.error)
     solver = {"residual_m": float(apart), "residual_rad": float(angle), "jacobian_difference": 0.0}
-    runs["unreachable"] = assigned(spec.UNREACHABLE, refused)
-    runs["many_starts"] = assigned(spec.MANY_STARTS, np.repeat(refused, spec.RESTARTS, axis=0))
+    runs["unreachable"] = assigned(spec.UNREACHABLE.start, LINKS, refused)
+    many = np.repeat(refused, spec.RESTARTS, axis=0)
+    runs["many_starts"] = assigned(spec.MANY_STARTS.start, LINKS, many)
     return Experiment(
         page=replace(SOLUTIONS, runs={name: SOLUTIONS.runs[name] for name in runs}),
         traces=runs,
@@ -71,5 +60,5 @@ def solved(reaches):
         q = kinematics.solve(
             target, case.starts[:, :7], *spec.ARM_LIMITS, iterations=100, damping=0.01
         )
-        traces[name] = assigned(case, np.hstack([q, case.starts[:, 7:]]))
+        traces[name] = assigned(case.start, LINKS, np.hstack([q, case.starts[:, 7:]]))
     return replace(reaches, traces=traces)

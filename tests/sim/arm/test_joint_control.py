@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robo_genesis.lessons.l04.spec import BASELINE, CASES, G1, G2
+from robo_genesis.lessons.l04.spec import BASELINE, G1, G2
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import (
     CaseError,
@@ -17,7 +17,6 @@ from robo_genesis.sim.arm.joint_control import (
 )
 
 ARRAYS = ("q_start", "q_target", "kp", "kv", "effort_limit")
-GAINS = ("kp", "kv", "effort_limit")
 N = len(JOINT_NAMES)
 
 
@@ -35,6 +34,10 @@ def setter(name):
         robot.kept[name] = kept[0] if len(kept) == 1 else tuple(kept)
 
     return keep
+
+
+def kept(name):
+    return lambda robot, dofs: robot.kept[name]
 
 
 def counter(factor, shape=N):
@@ -60,15 +63,7 @@ class FakeRobot:
     set_dofs_kp, set_dofs_kv = setter("kp"), setter("kv")
     set_dofs_force_range, set_dofs_position = setter("range"), setter("position")
     control_dofs_position = setter("target")
-
-    def get_dofs_kp(self, dofs):
-        return self.kept["kp"]
-
-    def get_dofs_kv(self, dofs):
-        return self.kept["kv"]
-
-    def get_dofs_force_range(self, dofs):
-        return self.kept["range"]
+    get_dofs_kp, get_dofs_kv, get_dofs_force_range = map(kept, ("kp", "kv", "range"))
 
     def get_dofs_position(self, dofs):
         return self.kept["position"] + self.t
@@ -82,102 +77,66 @@ def robot():
     return FakeRobot()
 
 
+def test_a_limit_of_float32_and_gains_of_zero_are_valid(joints):
+    validate(replace(BASELINE, **value("q_start", 0, 2.8973 + 5e-7)), joints)
+    validate(replace(BASELINE, kp=np.zeros(N), kv=np.zeros(N), effort_limit=np.zeros(N)), joints)
+
+
 @pytest.mark.parametrize(
-    "case",
+    ("change", "message"),
     [
-        *CASES.values(),
-        *(replace(BASELINE, **value(name, 0, 0.0)) for name in GAINS),
-        replace(BASELINE, **value("q_start", 0, 2.8973 + 5e-7)),  # within float32
+        *(({name: np.ones(7)}, f"{name} has shape (7,), expected (9,)") for name in ARRAYS),
+        ({"kp": 1.0}, "kp has shape (), expected (9,)"),
+        *((value(name, 2, np.nan), f"{name}[joint3] is nan, expected a fin") for name in ARRAYS),
+        *((value(name, 0, -1.0), f"{name}[joint1] is -1.0, expected zero") for name in ARRAYS[2:]),
+        (value("q_start", 3, -3.1), "joint4] is -3.1 rad, outside its range [-3.0718, -0.0698]"),
+        (value("q_target", 8, 0.05), "finger_joint2] is 0.05 m, outside its range [0, 0.04]"),
+        (value("q_target", 0, 2.8973 + 5e-6), "none is clipped"),
+        *(
+            (change, "must be positive")
+            for change in ({"steps": 0}, {"dt": 0.0}, {"dt": np.nan}, {"substeps": 0})
+        ),
     ],
 )
-def test_a_valid_case_passes(joints, case):
-    validate(case, joints)
-
-
-REFUSED = [
-    *(
-        ({name: values}, f"{name} has shape {np.shape(values)}, expected (9,)")
-        for name in ARRAYS
-        for values in (np.ones(7), np.ones(10), np.ones((1, 9)), 1.0)
-    ),
-    *(
-        (value(name, 2, number), f"{name}[joint3] is {number}, expected a finite number")
-        for name in ARRAYS
-        for number in (np.nan, np.inf, -np.inf)
-    ),
-    *(
-        (value(name, k, number), f"{name}[{JOINT_NAMES[k]}] is {number:g} {ends}")
-        for name in ("q_start", "q_target")
-        for k, number, ends in (
-            (3, 0.0, "rad, outside its range [-3.0718, -0.0698]"),
-            (3, -3.1, "rad, outside its range [-3.0718, -0.0698]"),
-            (8, 0.05, "m, outside its range [0, 0.04]"),
-            (0, 2.8973 + 5e-6, "rad, outside its range"),
-        )
-    ),
-    *(
-        (value(name, 0, -1.0), f"{name}[joint1] is -1.0, expected zero or more")
-        for name in GAINS
-    ),
-    *(
-        (change, "must be positive")
-        for change in ({"steps": 0}, {"steps": -1}, {"dt": 0.0}, {"dt": np.nan}, {"substeps": 0})
-    ),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("change", "message"), REFUSED, ids=[message for _, message in REFUSED])
 def test_an_invalid_case_is_refused_with_entry_and_range(joints, change, message):
     with pytest.raises(CaseError) as caught:
         validate(replace(BASELINE, **change), joints)
     assert message in str(caught.value)
 
 
-def test_a_position_outside_its_limits_is_not_clipped(robot, joints):
-    case = replace(BASELINE, **value("q_target", 3, 0.0))
-    with pytest.raises(CaseError, match="none is clipped"):
-        run_case(robot, robot, joints, case)
-    assert case.q_target[3] == 0.0
-    assert robot.calls == []
-
-
-@pytest.mark.parametrize("name", ARRAYS)
-def test_differences_name_field_and_joint(joints, name):
-    other = replace(BASELINE, **{name: getattr(BASELINE, name) + np.isin(np.arange(N), (0, 7))})
-    assert differences(BASELINE, other, joints) == [f"{name}[joint1]", f"{name}[finger_joint1]"]
-
-
-def test_differences_name_several_fields_at_once_and_no_equal_ones(joints):
-    other = replace(G2, kv=G2.kv + np.eye(N)[3], steps=3)
-    assert differences(G1, other, joints) == ["kp[joint4]", "kv[joint4]", "steps"]
+def test_differences_name_every_field_and_joint_that_differs_and_no_other(joints):
     assert differences(G1, replace(G1, kp=G1.kp.copy()), joints) == []
-
-
-def test_every_field_of_a_case_is_compared(joints):
-    other = ControlCase(*(np.full(N, -1.0) for _ in ARRAYS), steps=1, dt=1.0, substeps=1, seed=1)
+    other = replace(G2, kv=G2.kv + np.isin(np.arange(N), (3, 7)), steps=3)
+    named = ["kp[joint4]", "kv[joint4]", "kv[finger_joint1]", "steps"]
+    assert differences(G1, other, joints) == named
+    other = ControlCase(
+        **dict.fromkeys(ARRAYS, np.full(N, -1.0)), steps=1, dt=1, substeps=1, seed=1
+    )
     named = {entry.split("[")[0] for entry in differences(BASELINE, other, joints)}
     assert named == set(ControlCase.__dataclass_fields__)
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "message"),
+    ("scene", "case", "message"),
     [
-        ("is_built", False, r"not built: call scene.build\(\)"),
-        ("dt", 0.02, "Restart and build"),
-        ("substeps", 20, "Restart and build"),
+        ({"is_built": False}, {}, r"not built: call scene.build\(\)"),
+        ({"dt": 0.02}, {}, "Restart and build"),
+        ({"substeps": 20}, {}, "Restart and build"),
+        ({}, value("q_target", 3, 0.0), "none is clipped"),
     ],
 )
-def test_a_scene_that_is_not_built_for_the_case_is_refused(robot, joints, name, value, message):
-    setattr(robot, name, value)
+def test_what_does_not_fit_is_refused_before_the_engine_is_touched(
+    robot, joints, scene, case, message
+):
+    vars(robot).update(scene)
     with pytest.raises(CaseError, match=message):
-        run_case(robot, robot, joints, BASELINE)
+        run_case(robot, robot, joints, replace(BASELINE, **case))
     assert robot.calls == []
 
 
 def test_reset_clears_first_assigns_the_start_last_and_leaves_the_case_alone(robot, joints):
     reset(robot, robot, joints, BASELINE)
     assert robot.calls == ["reset", "kp", "kv", "range", "position"]
-    assert robot.kept["range"][0].tolist() == (-BASELINE.effort_limit).tolist()
     given = (robot.kept["position"], *robot.kept["range"], robot.kept["kp"], robot.kept["kv"])
     own = [getattr(BASELINE, name) for name in ARRAYS]
     assert not any(np.shares_memory(a, b) for a in given for b in own)
@@ -200,13 +159,9 @@ def test_what_reads_back_differently_is_named(robot, joints, getter, found, name
         reset(robot, robot, joints, BASELINE)
 
 
-def test_the_target_is_commanded_before_every_step(robot, joints):
-    run_case(robot, robot, joints, replace(BASELINE, steps=3))
-    assert robot.calls[5:] == ["target", *["target", "step"] * 3]
-
-
-def test_a_run_records_each_state_and_each_step_at_its_time(robot, joints):
+def test_a_run_commands_before_every_step_and_records_each_state_at_its_time(robot, joints):
     trace = run_case(robot, robot, joints, replace(BASELINE, steps=3))
+    assert robot.calls[5:] == ["target", *["target", "step"] * 3]
     assert trace.t.tolist() == [0, 0.01, 0.02, 0.03]
     positions = trace.q[:, 0] - trace.q[0, 0]
     for states in (positions, trace.link_pos[:, 0, 0], trace.link_quat[:, 0, 0]):

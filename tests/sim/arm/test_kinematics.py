@@ -8,15 +8,13 @@ from robo_genesis.sim.arm import kinematics as of
 from robo_genesis.sim.arm.franka import Q_START
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
-POSTURES = np.vstack([Q_START, spec.RANDOM_STARTS[:20]])
-LINKS = [name for name, *_ in of.CHAIN]
+POSTURES = np.vstack([Q_START, spec.RANDOM_STARTS[:5]])
 DOWN = of.Pose(spec.TARGET, spec.DOWN)
 
 
 @pytest.mark.parametrize(
     ("quat", "vector", "turned"),
     [
-        ((1, 0, 0, 0), (1, 2, 3), (1, 2, 3)),
         ((0, 1, 0, 0), (1, 2, 3), (1, -2, -3)),
         ((of.HALF, 0, 0, of.HALF), (1, 0, 0), (0, 1, 0)),
         ((-of.HALF, 0, 0, -of.HALF), (1, 0, 0), (0, 1, 0)),
@@ -33,34 +31,22 @@ def test_a_product_turns_by_the_second_factor_first():
     assert of.rotate(product, up) == pytest.approx([1, 0, 0])  # about_x takes z to -y
 
 
-@pytest.mark.parametrize("angle", [0.0, 1e-9, 0.5, 3.0, np.pi, 3.3])
+@pytest.mark.parametrize("angle", [0.0, 1e-9, 0.5, np.pi, 3.3])
 def test_a_rotation_vector_has_the_shorter_angle(angle):
     found = of.rotation_vector(of.about_z(np.array(angle)))
     expected = angle if angle <= np.pi else angle - 2 * np.pi
     assert found == pytest.approx([0, 0, expected], abs=1e-12)
 
 
-def test_forward_kinematics_agrees_with_mujoco_for_every_link():
-    position, quat = mujoco_kinematics.link_poses(POSTURES, LINKS)
-    error = of.pose_error(of.Pose(position, quat), of.link_poses(POSTURES))
+def test_poses_and_jacobian_of_many_postures_agree_with_mujoco_and_with_differences():
+    poses = of.Pose(*mujoco_kinematics.link_poses(POSTURES, [name for name, *_ in of.CHAIN]))
     # The model file gives the hand's orientation with seven digits.
-    assert np.abs(error).max() < 1e-7
-
-
-def test_one_posture_and_many_give_the_same():
-    many = of.hand_pose(POSTURES)
-    one = of.hand_pose(POSTURES[3])
-    assert (many.position[3] == one.position).all()
-    assert of.jacobian(POSTURES)[3] == pytest.approx(of.jacobian(POSTURES[3]))
-
-
-@pytest.mark.parametrize("q", POSTURES[:5])
-def test_the_jacobian_agrees_with_mujoco_and_with_differences(q):
-    rows, h = of.jacobian(q), 1e-6
-    assert rows == pytest.approx(mujoco_kinematics.jacobian(q, "hand")[:, :7], abs=1e-7)
-    for k in range(7):
-        ends = [of.hand_pose(q + sign * h * np.eye(9)[k]) for sign in (1, -1)]
-        assert of.pose_error(*ends) / (2 * h) == pytest.approx(rows[:, k], abs=1e-7)
+    assert np.abs(of.pose_error(poses, of.link_poses(POSTURES))).max() < 1e-7
+    many, h = of.jacobian(POSTURES), 1e-6
+    for rows, q in zip(many, POSTURES, strict=True):
+        assert rows == pytest.approx(mujoco_kinematics.jacobian(q)[:, :7], abs=1e-7)
+        ends = (of.hand_pose(q + sign * h * np.eye(9)[:7]) for sign in (1, -1))
+        assert of.pose_error(*ends) / (2 * h) == pytest.approx(rows.T, abs=1e-7)
 
 
 def test_manipulability_is_the_root_of_the_determinant_and_vanishes_at_a_singularity():
@@ -70,9 +56,8 @@ def test_manipulability_is_the_root_of_the_determinant_and_vanishes_at_a_singula
     assert of.manipulability(rows) == pytest.approx(0, abs=1e-12)
 
 
-@pytest.mark.parametrize("q", POSTURES[:3])
-def test_a_pose_error_leads_to_the_target(q):
-    pose = of.hand_pose(q)
+def test_a_pose_error_leads_to_the_target():
+    pose = of.hand_pose(Q_START)
     error = of.pose_error(DOWN, pose)
     angle = np.linalg.norm(error[3:])
     turn = np.append(np.cos(angle / 2), np.sin(angle / 2) * error[3:] / angle)
@@ -84,19 +69,17 @@ def test_a_damped_step_minimises_error_and_step_together():
     rows, error, damping = of.jacobian(Q_START), np.arange(1.0, 7.0) / 100, 0.1
     step = of.damped_step(rows, error, damping)
     assert rows.T @ (rows @ step - error) + damping**2 * step == pytest.approx(np.zeros(7))
-    assert np.linalg.norm(of.damped_step(rows, error, 10.0)) < np.linalg.norm(step)
 
 
-def test_the_solver_reaches_the_target_within_the_limits_and_stops_short_of_one_beyond_reach():
-    q = of.solve(DOWN, Q_START[:7], *spec.ARM_LIMITS, iterations=100, damping=0.01)
-    error = of.pose_error(DOWN, of.hand_pose(q))
-    assert of.accepted(q, error, 5e-4, 5e-3)
-    assert of.limit_margin(q, *spec.ARM_LIMITS) > 0
-    far = of.Pose(spec.BEYOND_REACH, spec.DOWN)
-    q = of.solve(far, Q_START[:7], *spec.ARM_LIMITS, iterations=100, damping=0.1)
-    error = of.pose_error(far, of.hand_pose(q))
+@pytest.mark.parametrize(
+    ("position", "damping", "reached"), [(spec.TARGET, 0.01, True), (spec.BEYOND_REACH, 0.1, False)]
+)
+def test_the_solver_reaches_a_target_within_the_limits_if_there_is_one(position, damping, reached):
+    target, start = of.Pose(position, spec.DOWN), Q_START[:7]
+    q = of.solve(target, start, *spec.ARM_LIMITS, iterations=100, damping=damping)
+    error = of.pose_error(target, of.hand_pose(q))
     assert np.isfinite(q).all()
-    assert not of.accepted(q, error, 5e-4, 5e-3)
+    assert of.accepted(q, error, 5e-4, 5e-3) == reached
     assert of.limit_margin(q, *spec.ARM_LIMITS) >= 0
 
 
