@@ -17,6 +17,7 @@ from pathlib import Path
 from robo_genesis.core.files import json_digest
 from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import (
+    PUBLISHED,
     ProjectError,
     environment_contract,
     installed,
@@ -37,7 +38,7 @@ VARIABLES = ("SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "LANG", "LC_ALL", "LC
 """What a build reads of the environment apart from what decides the pages' measurements."""
 
 LEFT_OUT = ("__pycache__", ".ipynb_checkpoints")
-PUBLISHED = ("html", "evidence", "pages")
+SITE = ("html", "evidence", "pages")
 
 
 class UnseenError(Exception):
@@ -76,7 +77,7 @@ def other_inputs(
         UnseenError: a link hides some of it.
     """
     given = os.environ if environment is None else environment
-    kept = (path for path in _inside(book, skip="_build") if path not in pages)
+    kept = (path for path in _inside(book, (PUBLISHED, f".{PUBLISHED}")) if path not in pages)
     return {
         "book": [str(book), files_digest(book, kept)],
         "code": files_digest(root, (p for name in FOLDERS for p in _inside(root / name))),
@@ -102,8 +103,8 @@ def files_digest(base: Path, files: Iterable[Path]) -> str:
     return found.hexdigest()
 
 
-def _inside(folder: Path, skip: str = "\0") -> Iterator[Path]:
-    """Yield all files below a folder, except Python's caches and top-level names with a prefix.
+def _inside(folder: Path, skip: tuple[str, ...] = ()) -> Iterator[Path]:
+    """Yield all files below a folder, except Python's caches and top-level names with prefixes.
 
     Raises:
         UnseenError: a link leads to a folder, or to nothing.
@@ -130,7 +131,7 @@ def history(book: Path) -> list[str | None]:
 
 def site_digest(published: Path) -> str:
     """Return the digest of a published folder: the site and its bundles."""
-    return files_digest(published, (p for name in PUBLISHED for p in _inside(published / name)))
+    return files_digest(published, (p for name in SITE for p in _inside(published / name)))
 
 
 def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:

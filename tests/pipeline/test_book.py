@@ -211,11 +211,14 @@ def test_a_build_repairs_what_a_kill_left_before_it_reads_a_page(tmp_path):
     stale.touch()
     book = make_book(tmp_path)
     published_marker(book)
-    (book / "_build").rename(book / "_build.old")
+    (book / "_build").rename(book / "._build.old")
+    stored = tmp_path / "cache/pages/page/fingerprint"
+    (stored.parent / ".fingerprint.old").mkdir(parents=True)
     (book / "_toc.yml").unlink()
     with pytest.raises(PageError):
         build(tmp_path)
     assert not stale.exists()
+    assert stored.is_dir()
     assert (book / "_build/html/index.html").read_text() == "the old site"
 
 

@@ -52,7 +52,7 @@ def test_the_same_inputs_have_the_same_digest_whatever_their_times(root):
         os.utime(path, (1, 1))
     (root / "book" / "_build").mkdir()
     (root / "book" / "_build" / "page.html").write_text("a site is no input")
-    (root / "book" / "_build.old").mkdir()
+    (root / "book" / "._build.old").mkdir()
     (root / "robo_genesis" / "__pycache__").mkdir()
     (root / "robo_genesis" / "__pycache__" / "l04.pyc").write_text("no more is this")
     assert digest(root) == before

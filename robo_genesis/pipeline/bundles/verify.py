@@ -82,9 +82,9 @@ def _recompute(folder: Path, manifest: Manifest) -> bytes:
 
 @lru_cache(maxsize=1)
 def _code() -> bytes:
-    """Return the whole code of the course."""
-    files = sorted((project.ROOT / "robo_genesis").rglob("*.py"))
-    return b"\0".join(path.read_bytes() for path in files)
+    """Return the whole code of the course and its data files."""
+    files = sorted(path for path in (project.ROOT / "robo_genesis").rglob("*") if path.is_file())
+    return b"\0".join(path.read_bytes() for path in files if "__pycache__" not in path.parts)
 
 
 def check_laws(outcomes: Sequence[Check]) -> None:

@@ -3,29 +3,22 @@
 import platform
 from collections.abc import Mapping
 from functools import lru_cache
-from pathlib import Path
 
 from robo_genesis.core.files import derived_value, json_digest
 from robo_genesis.core.project import (
-    ROOT,
     environment_contract,
     installed_packages,
     lock_digest,
 )
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.sources import Tree, import_closure, lesson_modules
+from robo_genesis.pipeline.pages.sources import Tree, lesson_modules
 from robo_genesis.pipeline.pages.syntax import (
     claims_in,
     syntax_digest,
 )
 
 
-def page_fingerprint(
-    page: Page,
-    root: Path = ROOT,
-    environment: Mapping[str, str] | None = None,
-    tree: Tree | None = None,
-) -> str:
+def page_fingerprint(page: Page, tree: Tree, environment: Mapping[str, str] | None = None) -> str:
     """Return a digest of everything that decides the outputs of a page.
 
     It covers the lock, all installed versions, the version of Python, the environment contract,
@@ -35,18 +28,16 @@ def page_fingerprint(
 
     Args:
         page: an executed page.
-        root: the checkout.
+        tree: the files of the checkout.
         environment: variables, by default those of this process.
-        tree: the files below `root`, if they were read before.
 
     Returns:
         20 hex digits.
     """
-    tree = tree or Tree(root)
-    own = lesson_modules(page.lesson, root) if page.lesson else []
-    modules = import_closure([*page.code.imports, *own], root, tree=tree)
+    own = lesson_modules(page.lesson, tree.root) if page.lesson else []
+    modules = tree.closure([*page.code.imports, *own])
     parts = {
-        "lock": lock_digest(root),
+        "lock": lock_digest(tree.root),
         "installed": _installed(),
         "python": platform.python_version(),
         "environment": environment_contract(environment),

@@ -7,7 +7,7 @@ from robo_genesis.pipeline.pages.book import (
     code_digest,
     find_pages,
 )
-from robo_genesis.pipeline.pages.sources import import_closure
+from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.pipeline.pages.syntax import read_code
 
 
@@ -74,7 +74,7 @@ def test_the_code_digest_ignores_prose_and_comments(tmp_path):
 
 def test_no_page_computes_with_modules_of_the_site():
     sources = [source for page in find_pages(ROOT / "book") for source in page.code.sources]
-    reached = import_closure(read_code(sources).imports)
+    reached = Tree().closure(read_code(sources).imports)
     packages = {".".join(name.split(".")[:2]) for name in reached}
     assert "robo_genesis.evidence" in packages
     assert not packages & {f"robo_genesis.{name}" for name in ("site", "maintain")}

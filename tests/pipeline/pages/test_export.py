@@ -49,10 +49,11 @@ def test_another_page_is_refused_and_the_valid_ones_are_listed(folder, name):
 
 
 def test_a_place_that_cannot_be_used_is_refused_before_the_run(folder, no_file):
+    (folder / "mine" / "broken").mkdir(parents=True)
     for to, said in (
         (no_file, "is not a folder that you may write"),
         (None, "TO is not set"),
-        (folder / "book", r"TO=.*/book holds .*, which is not an executed page"),
+        (folder / "mine", r"mine/broken is not replaced: it has no page\.json"),
     ):
         with pytest.raises(ProjectError, match=said):
             export(folder, "broken", to)
