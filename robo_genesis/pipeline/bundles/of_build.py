@@ -64,7 +64,7 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> str:
         notebook = stored_notebook(result)
         return str(shown.require_shown(result.page, notebook, bundle, manifest)).encode()
 
-    return derived("shown", [record, *code], compare, folder.parents[2]).decode()
+    return derived("shown", [record, *code], compare).decode()
 
 
 def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:

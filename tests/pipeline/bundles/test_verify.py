@@ -49,13 +49,13 @@ def test_a_sound_bundle_is_accepted_also_when_sealed_again(folder):
 
 
 def test_an_accepted_bundle_is_recomputed_only_when_something_changed(folder, monkeypatch):
-    recomputed, recompute = [], verify._recompute
+    recomputed, recompute = [], verify.recompute
 
     def counted(*given):
         recomputed.append(given)
         return recompute(*given)
 
-    monkeypatch.setattr(verify, "_recompute", counted)
+    monkeypatch.setattr(verify, "recompute", counted)
     accepted = verify_bundle(folder, once=True)
     assert accepted == verify_bundle(folder) == bundle.read_manifest(folder)
     recomputed.clear()  # another test may have had the same bundle accepted
