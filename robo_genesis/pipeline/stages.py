@@ -99,11 +99,8 @@ def run_build(build: Build) -> list[str]:
         from_nothing = build.release or build.executed or site_address()
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
         if build.executed:
-            results = import_pages(build.executed, pages, into, verify)
-            for result in results:
-                progress("import", result.page.docname, f"run {result.run_id[:8]}")
-        else:
-            results = _execute(build, pages, into, progress)
+            import_pages(build.executed, pages, into, verify)
+        results = _execute(build, pages, into, progress)
         manifests: dict[str, Any] = {}
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
@@ -198,14 +195,14 @@ def _execute(
 ) -> list[PageResult]:
     """Run the execution stage; every page is tried before the report.
 
-    A release is executed at its commit, so it reuses nothing.
+    A release is executed at its commit, so it reuses only what was imported for it.
     """
     progress("execute", f"{len(pages)} pages")
     with reporting(progress) as report:
         results = execute_pages(
             pages,
             into,
-            reuse=not build.release,
+            reuse=bool(build.executed) or not build.release,
             jobs=build.jobs,
             timeout=build.timeout,
             environment=kernel_environment(build.root, build.cache, build.command),

@@ -140,8 +140,8 @@ def exported(page: Page, to: Path) -> Path:
 
 def import_pages(
     source: Path, pages: Sequence[Page], into: Mapping[str, Path], verify: Verify
-) -> list[PageResult]:
-    """Put executed pages into the store, and return them as results of a build.
+) -> None:
+    """Put executed pages into the store, so that none has to run.
 
     All of them are compared with this checkout first. The names and paths that they state are
     compared, never followed, and their bundles are verified as any other.
@@ -188,7 +188,6 @@ def import_pages(
         raise StoreError("\n".join([first, *problems, AGAIN]))
     for name, place in found.items():
         put(place, into[name])
-    return [result_of(page, into[name], into[name].name) for name, page in known.items()]
 
 
 def exported_folders(source: Path) -> list[Path]:
