@@ -137,7 +137,7 @@ def test_pages_from_elsewhere_are_built_without_a_run(built, tmp_path):
     ("page", "settings", "error", "said"),
     [
         (LAB, {"verify": refuse}, BuildError, "lab: the bundle .* is refused: metrics: metrics.js"),
-        (FORGED_LAB, {}, BuildError, "shown: lab, code cell 2: its code shows 0 measured outputs"),
+        (FORGED_LAB, {}, BuildError, "shown: lab, code cell 2: number of measured outputs is 1"),
         ("# A\n\n<script src='https://example.org/a.js'></script>\n", {}, BuildError, "third p"),
         (LAB, {"executed": Path()}, StoreError, r"lab is not among them\.\nExecute these pages"),
         (LAB, {"release": True}, BuildError, r"RELEASE=1 cannot be met\.\n.* 1 changed file"),

@@ -47,7 +47,7 @@ class Record(Strict):
     """`page.json`: what was executed, with what, and the files that the run left.
 
     `fingerprint` names everything that decides outputs, `code` is the digest of the page's own
-    code. `command` and `engine` are None if they are unknown. `seconds` is the duration of the
+    code. `engine` is its version, None if it is unknown. `seconds` is the duration of the
     execution, `cell_seconds` that of each cell with code; `files` maps names to digests.
     """
 
@@ -57,7 +57,6 @@ class Record(Strict):
     fingerprint: str
     code: Sha256
     run_id: RunId
-    command: str | None
     engine: str | None
     seconds: float
     cell_seconds: list[float]
@@ -71,7 +70,6 @@ def write_page(
     left: Path,
     *,
     run_id: str,
-    command: str | None,
     seconds: float,
     cell_seconds: Sequence[float],
 ) -> None:
@@ -83,7 +81,6 @@ def write_page(
         notebook: its cells with their outputs.
         left: the folder with the files that the run left; used if the page declares a bundle.
         run_id: of the run.
-        command: what the run was part of.
         seconds: how long the execution took.
         cell_seconds: how long each cell with code took.
 
@@ -105,7 +102,6 @@ def write_page(
             fingerprint=place.name,
             code=code_digest(page),
             run_id=run_id,
-            command=command,
             engine=installed_version(ENGINE),
             seconds=round(seconds, 3),
             cell_seconds=list(cell_seconds),

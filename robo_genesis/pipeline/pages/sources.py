@@ -5,15 +5,28 @@ Two keys use them. The *evidence key* of a bundle covers the modules that measur
 """
 
 import os
+import platform
 import re
-from collections.abc import Callable, Iterable
+import sys
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache, cached_property, partial
 from itertools import accumulate
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from robo_genesis.core.project import PAGE_IMPORTS, ROOT
+from robo_genesis.core.files import json_digest
+from robo_genesis.core.project import (
+    PAGE_IMPORTS,
+    ROOT,
+    environment_contract,
+    installed,
+    lock_digest,
+)
 from robo_genesis.evidence.bundle import sha256
-from robo_genesis.pipeline.pages.syntax import PACKAGE, imported_names, syntax_digest
+from robo_genesis.pipeline.pages.syntax import PACKAGE, claims_in, imported_names, syntax_digest
+
+if TYPE_CHECKING:  # a verification loads no Jupyter
+    from robo_genesis.pipeline.pages.book import Page
 
 DATA_SUFFIXES = (".json", ".toml", ".yaml", ".yml", ".csv")
 
@@ -129,3 +142,35 @@ def running_modules(lesson: str) -> dict[str, str]:
     The build names the imports of the page in the environment.
     """
     return measuring_modules(lesson, os.environ.get(PAGE_IMPORTS, "").split())
+
+
+def page_fingerprint(page: "Page", tree: Tree, environment: Mapping[str, str] | None = None) -> str:
+    """Return a digest of everything that decides the outputs of a page.
+
+    It covers the lock, all installed versions, the version of Python, the environment contract,
+    whether the page is executed alone, the syntax of the page's cells, of the modules that they
+    import and of the modules of its lesson, the claims of checks in them, and the data files of the
+    package, except those of other lessons.
+
+    Args:
+        page: an executed page.
+        tree: the files of the checkout.
+        environment: variables, by default those of this process.
+
+    Returns:
+        20 hex digits.
+    """
+    own = lesson_modules(page.lesson, tree.root) if page.lesson else []
+    modules = tree.closure([*page.code.imports, *own])
+    parts = {
+        "lock": lock_digest(tree.root),
+        "installed": sorted({name for _, name, _ in installed(sys.path)}),
+        "python": platform.python_version(),
+        "environment": environment_contract(environment),
+        "cells": page.code.digests,
+        "modules": {name: syntax_digest(tree.text(path)) for name, path in modules.items()},
+        "claims": {name: claims_in(tree.text(path)) for name, path in modules.items()},
+        "data": tree.data_for(page.lesson),
+        "alone": page.alone,
+    }
+    return json_digest(parts)[:20]

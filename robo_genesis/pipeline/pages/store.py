@@ -13,7 +13,6 @@ from robo_genesis.core.files import put, require_replaceable, require_writable
 from robo_genesis.core.project import ROOT
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.fingerprint import page_fingerprint
 from robo_genesis.pipeline.pages.folder import (
     OUTPUTS,
     RECORD,
@@ -30,7 +29,7 @@ from robo_genesis.pipeline.pages.results import (
     find_bundle,
     unexpected_outcome,
 )
-from robo_genesis.pipeline.pages.sources import Tree
+from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint
 
 Verify = Callable[[Path, str], Any]
 """Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused."""

@@ -8,10 +8,9 @@ from tiny_book import LAB_FRONT, cell, make_book, notebook
 
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons import LESSONS
-from robo_genesis.pipeline.pages import fingerprint
+from robo_genesis.pipeline.pages import sources
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.fingerprint import page_fingerprint
-from robo_genesis.pipeline.pages.sources import Tree, measuring_modules
+from robo_genesis.pipeline.pages.sources import Tree, measuring_modules, page_fingerprint
 from robo_genesis.pipeline.pages.syntax import read_code, syntax_digest
 
 PACKAGE = ROOT / "robo_genesis"
@@ -100,10 +99,10 @@ def test_whatever_else_decides_a_measurement_counts(root, page, monkeypatch):
     found = [key(page, root), key(replace(page, alone=True), root)]
     found += [key(page, root, **{name: "0"}) for name in names]
     for module, name, value in (
-        (fingerprint, "_installed", ["mujoco==0.1"]),
-        (fingerprint.platform, "python_version", "3.99.0"),
+        (sources, "installed", [("", "mujoco-0.1.dist-info", 0)]),
+        (sources.platform, "python_version", "3.99.0"),
     ):
-        monkeypatch.setattr(module, name, lambda value=value: value)
+        monkeypatch.setattr(module, name, lambda *given, value=value: value)
         found.append(key(page, root))
     assert len({*found}) == len(found)
     for name in ("HOME", "QD_OFFLINE_CACHE_FILE_PATH"):
