@@ -138,7 +138,7 @@ live: $(ENVIRONMENT) ## show the book on localhost while it is written (PORT=800
 
 .PHONY: clean
 clean: ## remove the built site and the executed pages, keep the compiled kernels
-	@rm -rf book/_build book/_build.* .cache/pages .cache/render .cache/live .cache/derived .cache/release .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf book/_build book/._build.* .cache/pages .cache/render .cache/live .cache/derived .cache/release .pytest_cache .mypy_cache .ruff_cache .hypothesis
 
 .PHONY: distclean
 distclean: clean ## remove the environment and every cache too

@@ -21,7 +21,7 @@ from robo_genesis.sim import session
 from robo_genesis.sim.camera import frames as camera
 from robo_genesis.sim.engine_log import EngineLog
 
-QUADRANTS = evidence_key.locked_version("quadrants", project.ROOT)
+QUADRANTS = project.locked_versions((project.ROOT / "requirements.lock").read_text())["quadrants"]
 RUN_ID = "0123456789abcdef" * 2
 RENDERER = camera.Renderer("Mesa", "llvmpipe")
 LOG = (

@@ -57,7 +57,7 @@ def write_whole(path: Path, content: bytes) -> None:
         partial.unlink(missing_ok=True)
 
 
-def settle(folder: Path, prefix: str = "") -> None:
+def settle(folder: Path) -> None:
     """Repair a folder after a process was killed while it replaced the folder; see `replaced`.
 
     If the old folder was already moved aside and there is no new one, it is restored. Otherwise
@@ -65,41 +65,76 @@ def settle(folder: Path, prefix: str = "") -> None:
 
     Args:
         folder: it need not exist.
-        prefix: see `beside`.
     """
-    aside = beside(folder, OLD, prefix)
+    aside = beside(folder, OLD)
     if aside.exists() and not folder.exists():
         aside.rename(folder)
-    for other in (aside, beside(folder, NEXT, prefix)):
+    for other in (aside, beside(folder, NEXT)):
         if other.exists():
             shutil.rmtree(other)
 
 
+def settle_below(folder: Path) -> None:
+    """Repair all folders at the second level below a folder; see `settle`."""
+    for suffix in (OLD, NEXT):
+        for left in folder.glob(f"*/.*{suffix}"):
+            settle(left.with_name(left.stem.removeprefix(".")))
+
+
 @contextmanager
-def replaced(folder: Path, prefix: str = "") -> Iterator[Path]:
+def replaced(folder: Path) -> Iterator[Path]:
     """Replace a folder in one move with one that the caller creates; a failure changes nothing.
 
     Args:
         folder: moved aside, then removed. `settle` repairs a replacement that was killed.
-        prefix: see `beside`.
 
     Yields:
         The path of the new folder, which the caller makes.
     """
-    settle(folder, prefix)
-    following = beside(folder, NEXT, prefix)
+    settle(folder)
+    following = beside(folder, NEXT)
     try:
         yield following
         if folder.exists():
-            os.rename(folder, beside(folder, OLD, prefix))
+            os.rename(folder, beside(folder, OLD))
         os.rename(following, folder)
     finally:
-        settle(folder, prefix)
+        settle(folder)
 
 
-def beside(folder: Path, suffix: str, prefix: str = "") -> Path:
-    """Return the path of the next or the old state of a folder; a prefix `.` hides it."""
-    return folder.with_name(f"{prefix}{folder.name}{suffix}")
+def beside(folder: Path, suffix: str) -> Path:
+    """Return the path of the next or the old state of a folder, which is hidden."""
+    return folder.with_name(f".{folder.name}{suffix}")
+
+
+def require_writable(folder: Path) -> None:
+    """Raise ProjectError, before a long run, if nothing could be written into a folder."""
+    parent = next(path for path in (folder, *folder.parents) if path.exists())
+    if not parent.is_dir() or not os.access(parent, os.W_OK):
+        raise ProjectError(
+            f"{folder} cannot be used: {parent} is not a folder that you may write. "
+            "Name another with TO=folder, or give write access."
+        )
+
+
+def require_replaceable(folder: Path, mark: str) -> None:
+    """Raise ProjectError if a place is taken by a link, or by something without the file `mark`."""
+    if folder.is_symlink() or (folder.exists() and not (folder / mark).is_file()):
+        raise ProjectError(
+            f"{folder} is not replaced: it has no {mark}, or is a link. Move it away, or name "
+            "another folder with TO=folder."
+        )
+
+
+def put(source: Path, folder: Path) -> None:
+    """Copy a folder to a place, whole or not at all; an older one there is replaced.
+
+    Raises:
+        OSError: the copy failed; nothing has changed.
+    """
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with replaced(folder) as following:
+        shutil.copytree(source, following)
 
 
 def json_digest(value: Any) -> str:

@@ -2,7 +2,6 @@
 
 import os
 import subprocess
-from collections.abc import Mapping
 from pathlib import Path
 
 from robo_genesis.core.project import ProjectError
@@ -11,19 +10,20 @@ SHOWN = 5
 """Number of changed files that a message names."""
 
 
-def git(root: Path, *arguments: str) -> str:
+def git(root: Path, *arguments: str, **variables: str) -> str:
     """Return the output of git in a folder; a query does not rewrite the user's index.
 
-    Variables such as GIT_DIR, which would let git read another repository, are left out.
+    Of the variables that only git reads, such as GIT_DIR, it gets the given ones alone.
 
     Raises:
         ProjectError: git is not installed, or it failed; the message contains its output.
     """
+    others = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     command = ["git", "--no-optional-locks", "-C", str(root), *arguments]
     try:
         done = subprocess.run(
             command,
-            env=without_git(os.environ),
+            env=others | variables,
             capture_output=True,
             encoding="utf8",
             errors="replace",
@@ -35,11 +35,6 @@ def git(root: Path, *arguments: str) -> str:
         output = done.stderr.strip() or f"exit status {done.returncode}"
         raise ProjectError(f"git {arguments[0]} failed in {root}: {output}")
     return done.stdout
-
-
-def without_git(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return an environment without the variables that only git reads."""
-    return {name: value for name, value in environment.items() if not name.startswith("GIT_")}
 
 
 def git_or_none(root: Path, *arguments: str) -> str | None:

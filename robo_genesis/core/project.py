@@ -6,7 +6,7 @@ import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from importlib.metadata import PackageNotFoundError, distributions, requires, version
+from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
 from packaging.requirements import Requirement
@@ -135,16 +135,6 @@ def installed_version(package: str) -> str | None:
         return None
 
 
-def installed_packages() -> list[str]:
-    """Return `name==version` of each package that is installed for this interpreter, sorted.
-
-    The course itself is excluded: pip leaves its metadata in a checkout, and the build reads the
-    sources of the checkout.
-    """
-    found = {f"{package.name}=={package.version}" for package in distributions()}
-    return sorted(name for name in found if not name.startswith(f"{COURSE}=="))
-
-
 def installed(places: Sequence[str]) -> list[tuple[str, str, int]]:
     """Return each installed package by folder, name with version, and time of installation.
 
@@ -194,6 +184,11 @@ def lock_digest(root: Path = ROOT) -> str:
     if not lock.is_file():
         raise ProjectError(f"No {lock}. `make lock` writes it.")
     return hashlib.sha256(lock.read_bytes()).hexdigest()
+
+
+def locked_versions(lock: str) -> dict[str, str]:
+    """Return package to version of a lock's text."""
+    return dict(line.split("==") for line in lock.splitlines() if "==" in line and line[0] != "#")
 
 
 def engine_cache_folder(root: Path = ROOT, cache: Path | None = None) -> Path:

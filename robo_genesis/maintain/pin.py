@@ -7,7 +7,7 @@ from pathlib import Path
 from packaging.utils import canonicalize_name
 from packaging.version import InvalidVersion, Version
 
-from robo_genesis.core.project import ENGINE, ProjectError
+from robo_genesis.core.project import ENGINE, ProjectError, locked_versions
 
 FILES = ("pyproject.toml", "requirements.lock")
 """What a change of the pin changes: measured results are never kept in the tree."""
@@ -54,11 +54,6 @@ def require_locked_packages(root: Path) -> None:
             f"{', …' if unlike[5:] else ''}. Install the lock (pip install -r requirements.lock), "
             "or omit PYTHON=…, so that .venv is used."
         )
-
-
-def locked_versions(lock: str) -> dict[str, str]:
-    """Return package to version of a lock's text."""
-    return dict(line.split("==") for line in lock.splitlines() if "==" in line and line[0] != "#")
 
 
 def set_pin(root: Path, old: str, new: str) -> None:

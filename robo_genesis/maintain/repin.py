@@ -14,12 +14,11 @@ from pathlib import Path
 from robo_genesis.core import project
 from robo_genesis.core.files import locked
 from robo_genesis.core.git import git, unclean
-from robo_genesis.core.project import ENGINE, PUBLISHED
+from robo_genesis.core.project import ENGINE, PUBLISHED, locked_versions
 from robo_genesis.maintain import report as refresh
 from robo_genesis.maintain.pin import (
     FILES,
     RepinError,
-    locked_versions,
     require_locked_packages,
     set_pin,
     wanted_version,

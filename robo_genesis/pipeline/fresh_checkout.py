@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from robo_genesis.core.files import locked
-from robo_genesis.core.git import git, unclean, without_git
+from robo_genesis.core.git import git, unclean
 from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.pipeline.command import end_with_parent
 from robo_genesis.pipeline.pages.kernels import (
@@ -88,20 +88,10 @@ def check_out(root: Path, folder: Path) -> Path:
     config = folder / "gitconfig"
     config.write_text(GIT_CONFIG)
     own = {"GIT_CONFIG_GLOBAL": str(config), "GIT_CONFIG_NOSYSTEM": "1", "GIT_ATTR_NOSYSTEM": "1"}
-    for command in (
-        ["init", "--quiet", "--template="],
-        ["fetch", "--quiet", "--no-tags", "--update-shallow", root.resolve().as_uri(), "HEAD"],
-        ["checkout", "--quiet", "--detach", commit],
-    ):
-        done = subprocess.run(
-            ["git", "-C", str(work), *command],
-            env=without_git(os.environ) | own,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        if done.returncode:
-            raise ProjectError(f"git {command[0]} failed for {root}: {done.stderr.strip()}")
+    git(work, "init", "--quiet", "--template=", **own)
+    source = root.resolve().as_uri()
+    git(work, "fetch", "--quiet", "--no-tags", "--update-shallow", source, "HEAD", **own)
+    git(work, "checkout", "--quiet", "--detach", commit, **own)
     return work
 
 

@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
-from robo_genesis.core.files import locked, settle
+from robo_genesis.core.files import locked, put, settle, settle_below
 from robo_genesis.core.git import unclean
-from robo_genesis.evidence import bundle_store
 from robo_genesis.pipeline import npm, up_to_date
 from robo_genesis.pipeline.bundles.of_build import verify_results
 from robo_genesis.pipeline.bundles.status import refused_records
@@ -37,11 +36,10 @@ from robo_genesis.pipeline.pages.progress import reporting
 from robo_genesis.pipeline.pages.results import PageResult, failure_report
 from robo_genesis.pipeline.pages.store import (
     Verify,
-    export_page,
+    exported,
     forget,
     import_pages,
     places,
-    require_export_folder,
 )
 from robo_genesis.pipeline.release import missing_for_release
 
@@ -101,11 +99,8 @@ def run_build(build: Build) -> list[str]:
         from_nothing = build.release or build.executed or site_address()
         verify = build.verify or partial(verify_bundle, book=build.book, once=not from_nothing)
         if build.executed:
-            results = import_pages(build.executed, pages, into, verify)
-            for result in results:
-                progress("import", result.page.docname, f"run {result.run_id[:8]}")
-        else:
-            results = _execute(build, pages, into, progress)
+            import_pages(build.executed, pages, into, verify)
+        results = _execute(build, pages, into, progress)
         manifests: dict[str, Any] = {}
 
         def accept(draft: Draft) -> None:  # beside Sphinx, whose pages are published only after it
@@ -165,11 +160,10 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
             raise BuildError(f"PAGE={name!r} is not valid. Executed pages of this book: {valid}.")
         if to is None:
             raise BuildError("TO is not set. Name the folder that gets the page: TO=folder.")
-        bundle_store.require_folder(to)
-        require_export_folder(to)
+        place = exported(names[name], to)
         progress = Progress(build.say)
         [result] = _execute(build, [names[name]], into, progress)
-        place = export_page(result, to)
+        put(result.folder, place)
         progress("export", result.page.docname, result.status)
     return [f"Executed page: {place}", f"Engine: {project.ENGINE} {engine}, run {result.run_id}"]
 
@@ -179,7 +173,8 @@ def _prepare(build: Build) -> tuple[str, list[Page], dict[str, Path]]:
 
     What a killed build left is repaired first.
     """
-    bundle_store.recover(build.book / "evidence")
+    settle_below(build.book / "evidence")
+    settle_below(build.cache / project.STORE)
     settle((build.to or build.book) / project.PUBLISHED)
     project.remove_stale_kernel_lock(build.cache)
     engine = project.require_pinned_engine(build.root)
@@ -200,14 +195,14 @@ def _execute(
 ) -> list[PageResult]:
     """Run the execution stage; every page is tried before the report.
 
-    A release is executed at its commit, so it reuses nothing.
+    A release is executed at its commit, so it reuses only what was imported for it.
     """
     progress("execute", f"{len(pages)} pages")
     with reporting(progress) as report:
         results = execute_pages(
             pages,
             into,
-            reuse=not build.release,
+            reuse=bool(build.executed) or not build.release,
             jobs=build.jobs,
             timeout=build.timeout,
             environment=kernel_environment(build.root, build.cache, build.command),

@@ -1,8 +1,7 @@
 """Whether the published site is up to date with all of its inputs: then a build has nothing to do.
 
-Inputs and site are read whole, which takes a tenth of a second. A link in the book that leads to a
-folder counts as changed. Packages count by name, version and time of installation: an edited file
-inside one is not noticed.
+Inputs and site are read whole, which takes a tenth of a second. Packages count by name, version and
+time of installation: an edited file inside one is not noticed.
 """
 
 import hashlib
@@ -11,12 +10,12 @@ import os
 import platform
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 
 from robo_genesis.core.files import json_digest
 from robo_genesis.core.git import git_or_none
 from robo_genesis.core.project import (
+    PUBLISHED,
     ProjectError,
     environment_contract,
     installed,
@@ -37,28 +36,19 @@ VARIABLES = ("SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "LANG", "LC_ALL", "LC
 """What a build reads of the environment apart from what decides the pages' measurements."""
 
 LEFT_OUT = ("__pycache__", ".ipynb_checkpoints")
-PUBLISHED = ("html", "evidence", "pages")
+SITE = ("html", "evidence", "pages")
 
 
-class UnseenError(Exception):
-    """A link among the inputs leads to a place that no digest covers."""
-
-
-def inputs_digest(
-    root: Path, book: Path, environment: Mapping[str, str] | None = None
-) -> str | None:
-    """Return the digest of everything that decides a build's site, None if a link hides some of it.
+def inputs_digest(root: Path, book: Path, environment: Mapping[str, str] | None = None) -> str:
+    """Return the digest of everything that decides a build's site.
 
     Args:
         root: the checkout.
         book: the folder of the pages.
         environment: variables, by default those of this process.
     """
-    try:
-        parts = other_inputs(root, book, (), environment) | {"history": history(book)}
-    except UnseenError:
-        return None
-    return json_digest(parts)
+    parts = other_inputs(root, book, (), environment)
+    return json_digest(parts | {"history": history(book)})
 
 
 def other_inputs(
@@ -71,12 +61,9 @@ def other_inputs(
         book: the folder of the pages.
         pages: files of the book that are left out.
         environment: variables, by default those of this process.
-
-    Raises:
-        UnseenError: a link hides some of it.
     """
     given = os.environ if environment is None else environment
-    kept = (path for path in _inside(book, skip="_build") if path not in pages)
+    kept = (path for path in _inside(book, (PUBLISHED, f".{PUBLISHED}")) if path not in pages)
     return {
         "book": [str(book), files_digest(book, kept)],
         "code": files_digest(root, (p for name in FOLDERS for p in _inside(root / name))),
@@ -102,21 +89,14 @@ def files_digest(base: Path, files: Iterable[Path]) -> str:
     return found.hexdigest()
 
 
-def _inside(folder: Path, skip: str = "\0") -> Iterator[Path]:
-    """Yield all files below a folder, except Python's caches and top-level names with a prefix.
+def _inside(folder: Path, skip: tuple[str, ...] = ()) -> Iterator[Path]:
+    """Yield all files below a folder and its links, as Sphinx finds them.
 
-    Raises:
-        UnseenError: a link leads to a folder, or to nothing.
+    Python's caches and top-level names with the prefixes `skip` are left out.
     """
-    for here, folders, files in os.walk(folder):
-        folders[:] = [
-            name
-            for name in folders
-            if name not in LEFT_OUT and not (Path(here) == folder and name.startswith(skip))
-        ]
-        for path in (Path(here, name) for name in [*folders, *files]):
-            if path.is_symlink() and not path.is_file():
-                raise UnseenError(str(path))
+    for here, folders, files in os.walk(folder, followlinks=True):
+        top = skip if Path(here) == folder else ()
+        folders[:] = [n for n in folders if n not in LEFT_OUT and not n.startswith(top)]
         yield from (Path(here, name) for name in files)
 
 
@@ -130,7 +110,7 @@ def history(book: Path) -> list[str | None]:
 
 def site_digest(published: Path) -> str:
     """Return the digest of a published folder: the site and its bundles."""
-    return files_digest(published, (p for name in PUBLISHED for p in _inside(published / name)))
+    return files_digest(published, (p for name in SITE for p in _inside(published / name)))
 
 
 def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
@@ -150,25 +130,23 @@ def nothing_changed(root: Path, book: Path, published: Path) -> list[str]:
     return lines and [*site, *lines]
 
 
-def record(published: Path, inputs: str | None, now: str | None, lines: Sequence[str]) -> None:
+def record(published: Path, inputs: str, now: str, lines: Sequence[str]) -> None:
     """Write beside a site from which inputs it was made, and the last lines of its build.
 
-    Nothing is written, and so the next build has work, if the inputs are unknown or have changed
-    during the build.
+    Nothing is written, and so the next build has work, if the inputs changed during the build.
 
     Args:
         published: the folder of the complete site.
-        inputs: the digest of the inputs when the build began, None if it is unknown.
+        inputs: the digest of the inputs when the build began.
         now: the same at its end.
         lines: the last lines of a build without work.
     """
-    with suppress(UnseenError):
-        if inputs is not None and inputs == now:
-            record = {"inputs": inputs, "site": site_digest(published), "lines": list(lines)}
-            (published / RECORD).write_text(json.dumps(record, indent=1) + "\n", "utf8")
+    if inputs == now:
+        record = {"inputs": inputs, "site": site_digest(published), "lines": list(lines)}
+        (published / RECORD).write_text(json.dumps(record, indent=1) + "\n", "utf8")
 
 
-def recorded_lines(published: Path, inputs: str | None) -> list[str]:
+def recorded_lines(published: Path, inputs: str) -> list[str]:
     """Return the last lines of the build that made the site, none if there is work to do.
 
     Args:
@@ -179,5 +157,5 @@ def recorded_lines(published: Path, inputs: str | None) -> list[str]:
         record = json.loads((published / RECORD).read_text("utf8"))
         current = record["inputs"] == inputs and record["site"] == site_digest(published)
         return list(record["lines"]) if current else []
-    except (OSError, ValueError, KeyError, TypeError, UnseenError):
+    except (OSError, ValueError, KeyError, TypeError):
         return []

@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
@@ -15,9 +14,8 @@ from robo_genesis.lessons import LESSONS
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import kernel_environment
 from robo_genesis.pipeline.pages.sources import (
-    import_closure,
+    Tree,
     lesson_modules,
-    measures,
     measuring_modules,
 )
 from robo_genesis.pipeline.pages.syntax import PACKAGE
@@ -88,7 +86,7 @@ def loaded_modules(lab, tmp_path):
 def test_a_run_loads_only_modules_that_the_keys_know(lab, tmp_path):
     loaded = set(loaded_modules(lab, tmp_path))
     imports = lab.code.imports
-    reached = import_closure([*lesson_modules(lab.lesson, ROOT), *imports])
+    reached = Tree().closure([*lesson_modules(lab.lesson, ROOT), *imports])
     assert loaded <= reached.keys()
     computing = computing_modules(lab.lesson, {name: reached[name] for name in loaded})
     assert {f"lessons.{lab.lesson}.metrics", "sim.session"} <= computing
@@ -101,7 +99,7 @@ def computing_modules(lesson, modules):
     return {
         name.removeprefix(f"{PACKAGE}.")
         for name, path in modules.items()
-        if name.startswith(own) and measures(name, path, Path.read_text)
+        if name.startswith(own) and Tree().measures(name, path)
     }
 
 
@@ -109,7 +107,7 @@ def computing_modules(lesson, modules):
 def test_whatever_a_page_may_import_is_known_to_its_key(page):
     """Except what only judges a finished run: its functions import what some lessons need."""
     imports = page.code.imports
-    reached = import_closure(
+    reached = Tree().closure(
         [f"{PACKAGE}.lessons.{page.lesson}", *imports],
         enter=lambda name, path: not name.endswith("laws"),
     )

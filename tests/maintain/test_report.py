@@ -71,7 +71,7 @@ def test_a_build_that_was_refused_has_the_bundles_of_its_executed_pages(
     run_id = json.loads((left / "cpu" / "manifest.json").read_text())["predicate"]["run_id"]
     [page] = [page for page in find_pages(book) if page.docname == "lab"]
     place = root / ".cache" / "pages" / "lab" / "0123"
-    how = {"run_id": run_id, "command": None, "seconds": 1.0, "cell_seconds": [1.0]}
+    how = {"run_id": run_id, "seconds": 1.0, "cell_seconds": [1.0]}
     write_page(place, page, page.notebook, left, **how)
     pin = project.engine_pin()
     found = read_build(root, pin, tmp_path / "no site")

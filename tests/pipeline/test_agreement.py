@@ -28,7 +28,6 @@ def executed(folder: Path, docname: str, files: dict[str, bytes]) -> Path:
         fingerprint="f",
         code="0" * 64,
         run_id="1" * 32,
-        command=None,
         engine=None,
         seconds=1.0,
         cell_seconds=[],

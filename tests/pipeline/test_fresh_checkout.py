@@ -50,23 +50,14 @@ def built(root: Path, status: int = 0) -> dict:
     return json.loads((root.parent / "found.json").read_text())
 
 
-def hide(kind):
-    def spoil(root, monkeypatch):
-        git(root, "update-index", f"--{kind}", "page.md", "course.py")
-        (root / "page.md").write_text("changed\n")
-        (root / "course.py").write_text("VALUE = 2\n")
-
-    return spoil
+def hidden_change(root, monkeypatch):
+    git(root, "update-index", "--skip-worktree", "page.md", "course.py")
+    (root / "page.md").write_text("changed\n")
+    (root / "course.py").write_text("VALUE = 2\n")
 
 
 def ignored_elsewhere(root, monkeypatch):
     (root / ".git" / "info" / "exclude").write_text("new.md\n")
-    (root / "new.md").write_text("new\n")
-
-
-def ignored_by_the_user(root, monkeypatch):
-    (root.parent / "ignore").write_text("new.md\n")
-    git(root, "config", "core.excludesFile", str(root.parent / "ignore"))
     (root / "new.md").write_text("new\n")
 
 
@@ -134,10 +125,8 @@ def other_python_path(root, monkeypatch):
     "spoil",
     [
         lambda root, monkeypatch: None,
-        hide("assume-unchanged"),
-        hide("skip-worktree"),
+        hidden_change,
         ignored_elsewhere,
-        ignored_by_the_user,
         stale_bytecode,
         other_repository,
         replaced_object,

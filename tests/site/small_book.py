@@ -103,7 +103,7 @@ def as_executed(page: Page, folder: Path, seconds: list[float]) -> PageResult:
     """Return the result of a page whose cells took these times and left no outputs."""
     ran, place = deepcopy(page.notebook), folder / "store" / page.docname
     ran.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
-    run = {"run_id": "0" * 32, "command": None, "seconds": 1.0}
+    run = {"run_id": "0" * 32, "seconds": 1.0}
     write_page(place, page, ran, folder, cell_seconds=seconds, **run)
     return PageResult(page, "reused", 0.0, "0" * 32, folder=place)
 

@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 from functools import partial
 from glob import glob
 from pathlib import Path
@@ -38,13 +37,14 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
     except LookupError as error:
         raise BundleRefused("lesson", f"manifest.json: {error}") from error
     digest, imports = page_code(lesson, page, book)
+    lock = (root / "requirements.lock").read_text("utf8")
     return {
         "schema_version": bundle.SCHEMA_VERSION,
         "lesson": lesson,
         "page": page,
         "engine": {
             "version": project.engine_pin(root),
-            "quadrants_version": locked_version("quadrants", root),
+            "quadrants_version": project.locked_versions(lock)["quadrants"],
             "precision": session.PRECISION,
         },
         "seed": SEED,
@@ -54,22 +54,6 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
             "modules": sources.measuring_modules(lesson, imports, root),
         },
     }
-
-
-def locked_version(package: str, root: Path) -> str:
-    """Return the version of a package in requirements.lock.
-
-    Raises:
-        ProjectError: the lock does not pin it exactly once.
-    """
-    lock = root / "requirements.lock"
-    found = re.findall(rf"^{re.escape(package)}==(\S+)", lock.read_text("utf8"), re.MULTILINE)
-    if len(found) != 1:
-        raise project.ProjectError(
-            f"{lock} pins {package} to {found or 'nothing'}, expected one version. "
-            "`make lock` writes it again."
-        )
-    return str(found[0])
 
 
 def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:

@@ -12,7 +12,7 @@ from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import bound as shown
 from robo_genesis.pipeline.pages.folder import RECORD, stored_notebook
 from robo_genesis.pipeline.pages.results import PageResult
-from robo_genesis.pipeline.pages.sources import import_closure
+from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.pipeline.pages.store import Verify
 
 
@@ -58,13 +58,13 @@ def outputs_compared(result: PageResult, manifest: Manifest) -> str:
     folder, bundle = result.folder, result.bundle
     assert bundle is not None
     record = (folder / RECORD).read_bytes()
-    code = [path.read_bytes() for path in import_closure([shown.__name__]).values()]
+    code = [path.read_bytes() for path in Tree().closure([shown.__name__]).values()]
 
     def compare() -> bytes:
         notebook = stored_notebook(result)
         return str(shown.require_shown(result.page, notebook, bundle, manifest)).encode()
 
-    return derived("shown", [record, *code], compare, folder.parents[2]).decode()
+    return derived("shown", [record, *code], compare).decode()
 
 
 def require_contract(predicate: Any, contract: Mapping[str, str]) -> None:

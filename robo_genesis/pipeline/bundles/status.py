@@ -144,14 +144,15 @@ def bundle_status(
         manifest = verify_bundle(folder, lesson=lesson, page=page, root=root, book=book, once=once)
         copies.require_own_run(folder, cpu_runs)
     except BundleRefused as refusal:
-        code = refusal.code
+        code, reason = refusal.code, str(refusal)
         summary = SUMMARIES.get(code, UNREADABLE)
-        if code == "stale":
-            summary = why_stale(bundle.read_manifest(folder), book, root)
-        reason = str(refusal)
-        if code == FAILED:
-            about = bundle.read_manifest(folder).predicate
-            reason += contradicted(book, f"{about.lesson}/{about.page}", reason)
+        if code in ("stale", FAILED):  # both are sound
+            refused = bundle.read_manifest(folder)
+            about = f"{refused.predicate.lesson}/{refused.predicate.page}"
+            if code == "stale":
+                summary = why_stale(refused, book, root)
+            else:
+                reason += contradicted(book, about, reason)
         state = STATE_OF_CODE.get(code, "refused")
         return Status(state, backend, reason, None, code, summary)
     claims = specification(manifest.predicate.lesson, manifest.predicate.page).relations

@@ -1,19 +1,14 @@
 """Accept or refuse a bundle: whatever can be recomputed from its arrays is recomputed."""
 
 import json
-from collections.abc import Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.core.checks import FAILED, Check
-from robo_genesis.core.comparison import agree, differences
-from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, unexpected
 from robo_genesis.evidence import bundle, bundle_files, manifest_rules
-from robo_genesis.evidence.bundle import Manifest, Metric
-from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.evidence.recompute import as_judged_today, recompute
 from robo_genesis.pipeline.bundles import keys as evidence_key
 
 
@@ -59,91 +54,14 @@ def verify_bundle(
     if once:
         contents = [(folder / name).read_bytes() for name in sorted(present)]
         inputs = [json.dumps(sorted(present)).encode(), *contents, _code()]
-        derived("accepted", inputs, partial(_recompute, folder, manifest))
+        derived("accepted", inputs, partial(recompute, folder, manifest))
     else:
-        _recompute(folder, manifest)
+        recompute(folder, manifest)
     return as_judged_today(manifest)
-
-
-def _recompute(folder: Path, manifest: Manifest) -> bytes:
-    """Compute metrics and checks again from the arrays of a bundle.
-
-    Raises:
-        BundleRefused: see `verify_bundle`.
-    """
-    metrics = bundle.read_metrics(folder)
-    experiment = from_bundle(folder, manifest, metrics)
-    outcomes = experiment.outcomes()
-    check_laws(outcomes)
-    check_metrics(metrics, experiment)
-    check_outcomes(manifest, outcomes)
-    return b"accepted"
 
 
 @lru_cache(maxsize=1)
 def _code() -> bytes:
-    """Return the whole code of the course."""
-    files = sorted((project.ROOT / "robo_genesis").rglob("*.py"))
-    return b"\0".join(path.read_bytes() for path in files)
-
-
-def check_laws(outcomes: Sequence[Check]) -> None:
-    """Require arrays that a run can have; then their metrics are worth a comparison.
-
-    Raises:
-        BundleRefused: with the code of the law that is broken.
-    """
-    for check in outcomes:
-        if check.code != FAILED:
-            raise BundleRefused(check.code, f"arrays: [{check.name}] {check.detail}. {AGAIN}")
-
-
-def check_metrics(recorded: Mapping[str, Mapping[str, Metric]], experiment: Experiment) -> None:
-    """Require that metrics.json has the values, units, classes and sources of the runs.
-
-    Raises:
-        BundleRefused: `bad-trace` if the arrays of a run give no metrics; `metrics`.
-    """
-    found = {
-        group: {name: metric.model_dump(by_alias=True) for name, metric in metrics.items()}
-        for group, metrics in recorded.items()
-    }
-    try:
-        expected = experiment.records()
-    except (LookupError, ValueError, ArithmeticError) as error:
-        raise BundleRefused("bad-trace", f"arrays: {error} {AGAIN}") from error
-    for name, here, there in differences(found, expected):
-        expect("metrics", "metrics.json", name, here, there)
-
-
-def check_outcomes(manifest: Manifest, outcomes: Sequence[Check]) -> None:
-    """Require that the checks found what is recorded, and that all pass by today's judgement.
-
-    The recorded verdicts are not used, so a changed tolerance leaves a bundle current.
-
-    Raises:
-        BundleRefused: `checks` if names or found values differ; `failed` if a check fails.
-    """
-    recorded, file = manifest.predicate.checks, "manifest.json"
-    names = [check.name for check in outcomes]
-    expect("checks", file, "list of checks", [check.name for check in recorded], names)
-    for check, computed in zip(recorded, outcomes, strict=True):
-        for label, here, there in differences(dict(check.found), dict(computed.found), agree):
-            what = f"{label}, found by check {check.name},"
-            raise unexpected("checks", file, what, here, there)
-    failed = [f"[{check.name}] {check.detail}" for check in outcomes if not check.passed]
-    if failed:
-        raise BundleRefused(
-            FAILED,
-            f"{file}: failed checks {' '.join(failed)}, expected none. Correct the lesson or "
-            "report the cause to the engine's developers, then record the bundle again.",
-        )
-
-
-def as_judged_today(manifest: Manifest) -> Manifest:
-    """Return an accepted manifest with the verdicts of `check_outcomes`: every check passed."""
-    predicate = manifest.predicate
-    passed = [check.model_copy(update={"passed": True}) for check in predicate.checks]
-    return manifest.model_copy(
-        update={"predicate": predicate.model_copy(update={"checks": passed})}
-    )
+    """Return the whole code of the course and its data files."""
+    files = sorted(path for path in (project.ROOT / "robo_genesis").rglob("*") if path.is_file())
+    return b"\0".join(path.read_bytes() for path in files if "__pycache__" not in path.parts)

@@ -7,7 +7,6 @@ next build empties: a warning is given only when a page is read.
 
 import json
 import shutil
-from contextlib import suppress
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -27,12 +26,9 @@ UNFIT = "unfit"
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What a render reads: the digest of each page's source by name, and that of all else.
+    """What a render reads: the digest of each page's source by name, and that of all else."""
 
-    `others` is None if some of it cannot be seen: then nothing is kept.
-    """
-
-    others: str | None
+    others: str
     pages: dict[str, str]
 
 
@@ -55,10 +51,8 @@ def read_state(book: Path, built: BuiltPages, root: Path = ROOT) -> State:
     # A page's record has digests of all files that its run left.
     records = [(folder / RECORD).read_bytes() for folder in built.folders.values()]
     runs = [built.model_dump(mode="json"), [sha256(record).hexdigest() for record in records]]
-    with suppress(up_to_date.UnseenError):
-        others = up_to_date.other_inputs(root, book, set(sources.values()))
-        return State(json_digest(others | {"runs": runs}), pages)
-    return State(None, pages)
+    others = up_to_date.other_inputs(root, book, set(sources.values()))
+    return State(json_digest(others | {"runs": runs}), pages)
 
 
 def prepare(folder: Path, state: State) -> bool:
@@ -73,8 +67,8 @@ def prepare(folder: Path, state: State) -> bool:
         last = State(**json.loads((folder / STATE).read_text("utf8")))
         (folder / STATE).unlink()
     except (OSError, ValueError, TypeError):
-        last = State(None, {})
-    usable = last.others is not None and last.others == state.others
+        last = State("", {})
+    usable = last.others == state.others
     if not usable and folder.exists():
         shutil.rmtree(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -95,7 +89,7 @@ def keep(folder: Path, before: State, after: State) -> None:
         before: the state from which the render began.
         after: the state now.
     """
-    if before == after and before.others is not None and fit(folder):
+    if before == after and fit(folder):
         state = {"others": after.others, "pages": after.pages}
         (folder / STATE).write_text(json.dumps(state, indent=1) + "\n", "utf8")
 

@@ -16,7 +16,7 @@ from nbformat import NotebookNode
 
 from robo_genesis.core import shown
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Manifest
@@ -27,6 +27,7 @@ PAGE = "page"
 """The name that pages give to the result of `rg.open_page`."""
 
 AGAIN = "Do not edit executed pages: execute the page again."
+ONCE = "Call page.show once for each output, outside of loops and conditions."
 BOUNDARY = 60
 """Characters that a message shows on both sides of a difference."""
 
@@ -69,11 +70,8 @@ def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Ma
     experiment, compared = None, 0
     for number, (named, found) in enumerate(zip(calls, outputs, strict=True), start=1):
         place = f"{page.docname}, code cell {number}"
-        if len(named) != len(found):
-            raise _refused(
-                f"{place}: its code shows {len(named)} measured outputs, found are {len(found)}. "
-                "Call page.show once for each output, outside of loops and conditions."
-            )
+        what = "number of measured outputs"
+        expect("shown", place, what, len(found), len(named), f"{ONCE} {AGAIN}")
         for call, output in zip(named, found, strict=True):
             experiment = experiment or accepted_experiment(folder, manifest)
             _compare(f"{place}, {call.function}", call, output, experiment)
@@ -167,16 +165,14 @@ def _compare(place: str, call: Shown, output: NotebookNode, experiment: Experime
     """Raise BundleRefused unless an output is that of its call."""
     says = output.metadata[shown.METADATA]
     expected = {"function": call.function, "arguments": call.arguments}
-    if says != expected:
-        raise _refused(f"{place}: the output is of {quoted(says)}, the cell names {expected}.")
+    expect("shown", place, "function of the output", says, expected, AGAIN)
     try:
         valid = shown.mime_data(call.function, experiment, call.arguments)
     except (shown.ShownError, LookupError, ValueError, ArithmeticError, TypeError) as error:
         raise _refused(f"{place}: it cannot be called on the bundle: {error!r}") from error
     data: Mapping[str, Any] = output.get("data", {})
-    if output.output_type != "display_data" or data.keys() != valid.keys():
-        kinds = quoted(sorted(data))
-        raise _refused(f"{place}: the output has {kinds}, the bundle gives {sorted(valid)}.")
+    expect("shown", place, "type of the output", output.output_type, "display_data", AGAIN)
+    expect("shown", place, "list of kinds of the output", sorted(data), sorted(valid), AGAIN)
     for kind, text in valid.items():
         if difference := difference_of(str(data[kind]), text, kind == shown.DRAWING):
             raise _refused(f"{place}: the page shows another {kind} than the bundle: {difference}.")

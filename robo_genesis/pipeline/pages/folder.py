@@ -29,8 +29,6 @@ RECORD, NOTEBOOK, OUTPUTS = "page.json", "executed.ipynb", "outputs"
 SIZE_LIMIT = 64 * 2**20
 """Bytes of one file; those of a lesson have under 2 MiB."""
 FILES_LIMIT = 500
-HIDDEN = "."
-"""Begins the names of the folders that replace others, and of those that are replaced."""
 
 
 class StoreError(ProjectError):
@@ -49,7 +47,7 @@ class Record(Strict):
     """`page.json`: what was executed, with what, and the files that the run left.
 
     `fingerprint` names everything that decides outputs, `code` is the digest of the page's own
-    code. `command` and `engine` are None if they are unknown. `seconds` is the duration of the
+    code. `engine` is its version, None if it is unknown. `seconds` is the duration of the
     execution, `cell_seconds` that of each cell with code; `files` maps names to digests.
     """
 
@@ -59,7 +57,6 @@ class Record(Strict):
     fingerprint: str
     code: Sha256
     run_id: RunId
-    command: str | None
     engine: str | None
     seconds: float
     cell_seconds: list[float]
@@ -73,7 +70,6 @@ def write_page(
     left: Path,
     *,
     run_id: str,
-    command: str | None,
     seconds: float,
     cell_seconds: Sequence[float],
 ) -> None:
@@ -85,7 +81,6 @@ def write_page(
         notebook: its cells with their outputs.
         left: the folder with the files that the run left; used if the page declares a bundle.
         run_id: of the run.
-        command: what the run was part of.
         seconds: how long the execution took.
         cell_seconds: how long each cell with code took.
 
@@ -94,7 +89,7 @@ def write_page(
         OSError: the folder cannot be written.
     """
     place.parent.mkdir(parents=True, exist_ok=True)
-    with replaced(place, HIDDEN) as fresh:
+    with replaced(place) as fresh:
         fresh.mkdir()
         code = [cell for cell in notebook.cells if cell.cell_type == "code"]
         nbformat.write(NotebookNode(notebook | {"cells": code}), fresh / NOTEBOOK)
@@ -107,7 +102,6 @@ def write_page(
             fingerprint=place.name,
             code=code_digest(page),
             run_id=run_id,
-            command=command,
             engine=installed_version(ENGINE),
             seconds=round(seconds, 3),
             cell_seconds=list(cell_seconds),
@@ -171,15 +165,6 @@ def require_this_page(place: Path, record: Record, page: Page, fingerprint: str)
             f"it is of {record.docname} ({record.lesson}/{record.page}), expected was "
             f"{page.docname} ({page.lesson}/{page.page}).",
         )
-    code = f"its code cells are not those of {page.path}."
-    if record.code != code_digest(page):
-        raise PageRefused("code", code)
-    if record.fingerprint != fingerprint:
-        raise PageRefused(
-            "fingerprint",
-            f"its fingerprint is {record.fingerprint}, here it is {fingerprint}: lock, installed "
-            "packages, Python, RENDER, the engine's switches or the package differ.",
-        )
     absent = sorted({NOTEBOOK, *record.files} - present)
     own = f"{OUTPUTS}/" if page.declares_bundle else NOTEBOOK
     others = {name for name in present if not (name == NOTEBOOK or name.startswith(own))}
@@ -195,7 +180,13 @@ def require_this_page(place: Path, record: Record, page: Page, fingerprint: str)
     except Exception as error:  # nbformat passes on a dozen kinds of exceptions
         raise PageRefused("notebook", f"{NOTEBOOK} is not a notebook: {error}") from error
     if code_and_kernel(notebook) != code_and_kernel(page.notebook):
-        raise PageRefused("code", code)
+        raise PageRefused("code", f"its code cells are not those of {page.path}.")
+    if record.fingerprint != fingerprint:
+        raise PageRefused(
+            "fingerprint",
+            f"its fingerprint is {record.fingerprint}, here it is {fingerprint}: lock, installed "
+            "packages, Python, RENDER, the engine's switches or the package differ.",
+        )
     metadata = notebook.metadata.get("robo_genesis")
     run_id = metadata.get("run_id") if isinstance(metadata, dict) else None
     if run_id != record.run_id:

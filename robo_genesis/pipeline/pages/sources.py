@@ -4,16 +4,29 @@ Two keys use them. The *evidence key* of a bundle covers the modules that measur
 *fingerprint* of a page decides whether the page has to run again, and covers whatever it imports.
 """
 
-import hashlib
 import os
+import platform
 import re
-from collections.abc import Callable, Iterable
+import sys
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache, cached_property, partial
 from itertools import accumulate
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from robo_genesis.core.project import PAGE_IMPORTS, ROOT
-from robo_genesis.pipeline.pages.syntax import PACKAGE, imported_names, syntax_digest
+from robo_genesis.core.files import json_digest
+from robo_genesis.core.project import (
+    PAGE_IMPORTS,
+    ROOT,
+    environment_contract,
+    installed,
+    lock_digest,
+)
+from robo_genesis.evidence.bundle import sha256
+from robo_genesis.pipeline.pages.syntax import PACKAGE, claims_in, imported_names, syntax_digest
+
+if TYPE_CHECKING:  # a verification loads no Jupyter
+    from robo_genesis.pipeline.pages.book import Page
 
 DATA_SUFFIXES = (".json", ".toml", ".yaml", ".yml", ".csv")
 
@@ -29,18 +42,57 @@ class Tree:
 
     def __init__(self, root: Path = ROOT) -> None:
         self.root = root
-        self.module: Callable[[str], Path | None] = cache(partial(_module_file, root))
+        self.module: Callable[[str], Path | None] = cache(self._module)
         self.text: Callable[[Path], str] = cache(partial(Path.read_text, encoding="utf8"))
+
+    def _module(self, name: str) -> Path | None:
+        """Return the file of a module, None if the name is not a module."""
+        base = os.path.join(self.root, *name.split("."))  # called for thousands of names
+        candidates = (f"{base}.py", os.path.join(base, "__init__.py"))
+        return next((Path(path) for path in candidates if os.path.isfile(path)), None)
+
+    def closure(
+        self, names: Iterable[str], enter: Callable[[str, Path], bool] = lambda name, path: True
+    ) -> dict[str, Path]:
+        """Return the package's modules behind some dotted names, directly or through others.
+
+        Args:
+            names: of modules or of something in them; others are ignored.
+            enter: whether a module belongs to the result; what only others import does not.
+
+        Returns:
+            Module name to file, packages by their `__init__.py`.
+        """
+        found: dict[str, Path] = {}
+        waiting = list(names)
+        seen: set[str] = set()
+        while waiting:
+            for name in accumulate(waiting.pop().split("."), "{}.{}".format):
+                path = None if name in seen else self.module(name)
+                seen.add(name)
+                if path is None or not enter(name, path):
+                    continue
+                found[name] = path
+                package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+                waiting += imported_names(self.text(path), package)
+        return found
+
+    def measures(self, name: str, path: Path) -> bool:
+        """Whether a module belongs to evidence keys, if a measuring page uses it.
+
+        It is in `core`, `sim` or `lessons`, it is not the `__init__.py` of a package, and it does
+        not say `MEASURES = False`: such a module draws or words results, judges them, or holds data
+        that `parameters()` covers.
+        """
+        inside = name.removeprefix(f"{PACKAGE}.").split(".")[0] in COMPUTING
+        silent = path.name == "__init__.py" or MEASURES_NOTHING.search(self.text(path))
+        return inside and not silent
 
     @cached_property
     def data(self) -> dict[Path, str]:
         """The digest of each data file."""
         files = (self.root / PACKAGE).rglob("*")
-        return {
-            path: hashlib.sha256(path.read_bytes()).hexdigest()
-            for path in files
-            if path.suffix in DATA_SUFFIXES
-        }
+        return {path: sha256(path) for path in files if path.suffix in DATA_SUFFIXES}
 
     def data_for(self, lesson: str | None) -> dict[str, str]:
         """Return the digests of the data files by name, except those of other lessons."""
@@ -53,68 +105,17 @@ class Tree:
         }
 
 
-def import_closure(
-    names: Iterable[str],
-    root: Path = ROOT,
-    enter: Callable[[str, Path], bool] = lambda name, path: True,
-    tree: Tree | None = None,
-) -> dict[str, Path]:
-    """Return the package's modules behind some dotted names, directly or through others.
-
-    Args:
-        names: of modules or of something in them; others are ignored.
-        root: the folder that holds the package.
-        enter: whether a module belongs to the result; what only others import does not.
-        tree: the files below `root`, if they were read before.
-
-    Returns:
-        Module name to file, packages by their `__init__.py`.
-    """
-    tree = tree or Tree(root)
-    found: dict[str, Path] = {}
-    waiting = list(names)
-    seen: set[str] = set()
-    while waiting:
-        for name in accumulate(waiting.pop().split("."), "{}.{}".format):
-            path = None if name in seen else tree.module(name)
-            seen.add(name)
-            if path is None or not enter(name, path):
-                continue
-            found[name] = path
-            package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-            waiting += imported_names(tree.text(path), package)
-    return found
-
-
-def _module_file(root: Path, name: str) -> Path | None:
-    """Return the file of a module, None if the name is not a module."""
-    base = os.path.join(root, *name.split("."))  # called for thousands of names
-    candidates = (f"{base}.py", os.path.join(base, "__init__.py"))
-    return next((Path(path) for path in candidates if os.path.isfile(path)), None)
-
-
 def lesson_modules(lesson: str, root: Path) -> list[str]:
     """Return the modules in the folder of a lesson."""
     folder = root / PACKAGE / "lessons" / lesson
     return [f"{PACKAGE}.lessons.{lesson}.{path.stem}" for path in sorted(folder.glob("*.py"))]
 
 
-def measures(name: str, path: Path, text: Callable[[Path], str]) -> bool:
-    """Whether a module belongs to evidence keys, if a measuring page uses it.
-
-    It is in `core`, `sim` or `lessons`, it is not the `__init__.py` of a package, and it does not
-    say `MEASURES = False`: such a module draws or words results, judges them, or holds data that
-    `parameters()` covers.
-    """
-    inside = name.removeprefix(f"{PACKAGE}.").split(".")[0] in COMPUTING
-    return inside and path.name != "__init__.py" and not MEASURES_NOTHING.search(text(path))
-
-
 def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) -> dict[str, str]:
     """Return the modules that decide what a page measures, with the digests of their syntax.
 
     They are all modules of the lesson that measure, what its `__init__.py` imports from `sim`, what
-    the page itself imports, and what these import; see `measures`.
+    the page itself imports, and what these import; see `Tree.measures`.
 
     Args:
         lesson: the name of its folder.
@@ -124,13 +125,11 @@ def measuring_modules(lesson: str, imports: Iterable[str], root: Path = ROOT) ->
     Returns:
         Module without the package's name, such as `core.trace`, to digest.
     """
-    own = f"{PACKAGE}.lessons.{lesson}"
-    init = _module_file(root, own)
-    given = imported_names(init.read_text("utf8"), own) if init else ()
+    own, tree = f"{PACKAGE}.lessons.{lesson}", Tree(root)
+    init = tree.module(own)
+    given = imported_names(tree.text(init), own) if init else ()
     of_sim = [name for name in given if name.startswith(f"{PACKAGE}.sim.")]
-    roots = [*lesson_modules(lesson, root), *of_sim, *imports]
-    tree = Tree(root)
-    modules = import_closure(roots, root, partial(measures, text=tree.text), tree)
+    modules = tree.closure([*lesson_modules(lesson, root), *of_sim, *imports], tree.measures)
     return {
         name.removeprefix(f"{PACKAGE}."): syntax_digest(tree.text(path))
         for name, path in sorted(modules.items())
@@ -143,3 +142,35 @@ def running_modules(lesson: str) -> dict[str, str]:
     The build names the imports of the page in the environment.
     """
     return measuring_modules(lesson, os.environ.get(PAGE_IMPORTS, "").split())
+
+
+def page_fingerprint(page: "Page", tree: Tree, environment: Mapping[str, str] | None = None) -> str:
+    """Return a digest of everything that decides the outputs of a page.
+
+    It covers the lock, all installed versions, the version of Python, the environment contract,
+    whether the page is executed alone, the syntax of the page's cells, of the modules that they
+    import and of the modules of its lesson, the claims of checks in them, and the data files of the
+    package, except those of other lessons.
+
+    Args:
+        page: an executed page.
+        tree: the files of the checkout.
+        environment: variables, by default those of this process.
+
+    Returns:
+        20 hex digits.
+    """
+    own = lesson_modules(page.lesson, tree.root) if page.lesson else []
+    modules = tree.closure([*page.code.imports, *own])
+    parts = {
+        "lock": lock_digest(tree.root),
+        "installed": sorted({name for _, name, _ in installed(sys.path)}),
+        "python": platform.python_version(),
+        "environment": environment_contract(environment),
+        "cells": page.code.digests,
+        "modules": {name: syntax_digest(tree.text(path)) for name, path in modules.items()},
+        "claims": {name: claims_in(tree.text(path)) for name, path in modules.items()},
+        "data": tree.data_for(page.lesson),
+        "alone": page.alone,
+    }
+    return json_digest(parts)[:20]

@@ -9,13 +9,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.files import NEXT, OLD, replaced, settle
+from robo_genesis.core.files import put, require_replaceable, require_writable
 from robo_genesis.core.project import ROOT
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.fingerprint import page_fingerprint
 from robo_genesis.pipeline.pages.folder import (
-    HIDDEN,
     OUTPUTS,
     RECORD,
     PageRefused,
@@ -31,7 +29,7 @@ from robo_genesis.pipeline.pages.results import (
     find_bundle,
     unexpected_outcome,
 )
-from robo_genesis.pipeline.pages.sources import Tree
+from robo_genesis.pipeline.pages.sources import Tree, page_fingerprint
 
 Verify = Callable[[Path, str], Any]
 """Takes a bundle's folder and its run id; returns the manifest or raises BundleRefused."""
@@ -57,7 +55,7 @@ def places(
     """
     store, tree = store.absolute(), Tree(root)
     return {
-        page.docname: store / _folder(page) / page_fingerprint(page, root, environment, tree)
+        page.docname: store / _folder(page) / page_fingerprint(page, tree, environment)
         for page in pages
     }
 
@@ -77,7 +75,6 @@ def stored_result(page: Page, place: Path) -> PageResult | None:
     Raises:
         PageRefused: the folder is there, but has changed since it was written.
     """
-    settle(place, HIDDEN)
     return result_of(page, place, place.name) if place.is_dir() else None
 
 
@@ -100,9 +97,7 @@ def result_of(page: Page, place: Path, fingerprint: str) -> PageResult:
 
 def folders(store: Path, page: Page) -> list[Path]:
     """Return the folders that the store has of a page, the newest first."""
-    found = [
-        path for path in (store / _folder(page)).glob("*/") if not path.name.startswith(HIDDEN)
-    ]
+    found = (store / _folder(page)).glob("[!.]*/")
     return sorted(found, key=lambda path: path.stat().st_mtime, reverse=True)
 
 
@@ -130,52 +125,28 @@ def forget(store: Path, results: Iterable[PageResult]) -> None:
             shutil.rmtree(path)
 
 
-def require_export_folder(to: Path) -> None:
-    """Require a folder that is new, or holds nothing but executed pages.
+def exported(page: Page, to: Path) -> Path:
+    """Return the place of a page in a folder that is filled for another machine.
 
     Raises:
-        StoreError: something else is in it.
+        ProjectError: it cannot be written, or something else is there.
     """
-    held = sorted(to.iterdir()) if to.is_dir() else []
-    others = [path for path in held if not (path / RECORD).is_file()]
-    if others:
-        raise StoreError(
-            f"TO={to} holds {others[0].name}, which is not an executed page. Name a new folder, "
-            "or one that holds only exported pages."
-        )
-
-
-def export_page(result: PageResult, to: Path) -> Path:
-    """Copy one executed page, whole or not at all.
-
-    Args:
-        result: the result of a page that did not fail.
-        to: gets a folder named by the page, which replaces an older one.
-
-    Returns:
-        The page's folder.
-
-    Raises:
-        StoreError: the folder holds something else.
-        OSError: it cannot be written.
-    """
-    require_export_folder(to)
-    to.mkdir(parents=True, exist_ok=True)
-    with replaced(to / _folder(result.page)) as fresh:
-        shutil.copytree(result.folder, fresh)
-    return to / _folder(result.page)
+    place = to / _folder(page)
+    require_writable(to)
+    require_replaceable(place, RECORD)
+    return place
 
 
 def import_pages(
     source: Path, pages: Sequence[Page], into: Mapping[str, Path], verify: Verify
-) -> list[PageResult]:
-    """Put executed pages into the store, and return them as results of a build.
+) -> None:
+    """Put executed pages into the store, so that none has to run.
 
     All of them are compared with this checkout first. The names and paths that they state are
     compared, never followed, and their bundles are verified as any other.
 
     Args:
-        source: holds the folders that `export_page` wrote, at any depth.
+        source: holds the folders of `exported`, at any depth.
         pages: the pages of the book.
         into: where the store will have each page; see `places`.
         verify: verifies the bundles.
@@ -215,22 +186,14 @@ def import_pages(
         first = f"The executed pages in {source} are refused."
         raise StoreError("\n".join([first, *problems, AGAIN]))
     for name, place in found.items():
-        into[name].parent.mkdir(parents=True, exist_ok=True)
-        with replaced(into[name], HIDDEN) as fresh:
-            shutil.copytree(place, fresh)
-    return [result_of(page, into[name], into[name].name) for name, page in known.items()]
+        put(place, into[name])
 
 
 def exported_folders(source: Path) -> list[Path]:
-    """Return the folders that hold a record.
-
-    Left out are folders within another of them, hidden ones, and what a killed `make execute` left
-    beside one (see `core.files.settle`).
-    """
+    """Return the folders that hold a record, except hidden ones and those within another."""
     found: list[Path] = []
     for path in sorted(source.rglob(RECORD), key=lambda path: len(path.parts)):
-        parts = path.relative_to(source).parts
-        left_out = any(part.startswith(".") or part.endswith((NEXT, OLD)) for part in parts)
-        if not left_out and not any(place in path.parents for place in found):
+        hidden = any(part.startswith(".") for part in path.relative_to(source).parts)
+        if not hidden and not any(place in path.parents for place in found):
             found.append(path.parent)
     return sorted(found)

@@ -1,9 +1,7 @@
 """What code does: a digest of its syntax tree, and what it imports. Nothing is imported or run."""
 
 import ast
-import io
-import tokenize
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.util import resolve_name
@@ -12,7 +10,6 @@ from typing import Any
 from robo_genesis.core.files import derived_value, json_digest
 
 PACKAGE = "robo_genesis"
-QUIET = (tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.ENDMARKER)
 
 
 @lru_cache(maxsize=1024)
@@ -86,7 +83,7 @@ def cell_digest(source: str) -> str:
     except (SyntaxError, ValueError):
         return json_digest(source)
     statements = [_canonical(statement) for statement in tree.body]
-    return json_digest([statements, _ends_with_semicolon(source)])
+    return json_digest([statements, _ends_with_semicolon(source, tree.body)])
 
 
 def _canonical(node: Any) -> Any:
@@ -137,10 +134,13 @@ def _joined(parts: Iterable[ast.expr]) -> Iterator[ast.expr]:
         yield ast.Constant(text)
 
 
-def _ends_with_semicolon(source: str) -> bool:
-    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
-    words = [token.string for token in tokens if token.type not in QUIET and token.string]
-    return words[-1:] == [";"]
+def _ends_with_semicolon(source: str, statements: Sequence[ast.stmt]) -> bool:
+    """Whether a semicolon follows the last statement, before any comment."""
+    end = statements[-1] if statements else None
+    if end is None or end.end_lineno is None:
+        return False
+    line = source.encode().splitlines()[end.end_lineno - 1]
+    return line[end.end_col_offset :].lstrip().startswith(b";")
 
 
 @lru_cache(maxsize=1024)

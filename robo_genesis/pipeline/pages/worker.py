@@ -13,7 +13,7 @@ import nbclient
 from nbclient.exceptions import CellExecutionError, CellTimeoutError
 from nbformat import NotebookNode
 
-from robo_genesis.core.project import COMMAND, OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, ROOT, RUN_ID
+from robo_genesis.core.project import OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, ROOT, RUN_ID
 from robo_genesis.pipeline.pages.book import Page, code_digest
 from robo_genesis.pipeline.pages.folder import StoreError, write_page
 from robo_genesis.pipeline.pages.kernels import (
@@ -149,7 +149,6 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
                 notebook,
                 run.left,
                 run_id=run.run_id,
-                command=run.environment.get(COMMAND),
                 seconds=elapsed,
                 cell_seconds=seconds,
             )

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core import project
+from robo_genesis.core.files import put, require_replaceable, require_writable, settle_below
 from robo_genesis.core.project import BACKEND, RENDER
 from robo_genesis.core.refusals import BundleRefused, expect, printable
-from robo_genesis.evidence.bundle_store import put, recover, require_folder
+from robo_genesis.evidence.bundle_files import MANIFEST
 from robo_genesis.evidence.recorder import git_record
 from robo_genesis.pipeline.bundles.of_build import require_contract
 from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, bundle_status, cpu_runs
@@ -97,8 +98,8 @@ def record(recording: Recording) -> int:
             "unset, any accelerator."
         )
     with build_lock(recording.cache):
-        recover(recording.evidence)
-        require_folder(recording.evidence)
+        settle_below(recording.evidence)
+        require_writable(recording.evidence)
         project.require_pinned_engine(recording.root)
         labs, progress, outcomes = _labs(recording), Progress(recording.say), list[Outcome]()
         backend = _found_backend(recording, progress)
@@ -192,7 +193,9 @@ def record_lab(recording: Recording, page: Page, progress: Progress) -> tuple[Pa
         bundle, run_id = _execute(recording, page, folder, progress)
         facts = _accepted(recording, bundle, run_id)
         progress("verify", page.docname, "accepted")
-        place = put(bundle, recording.evidence / str(page.lesson))
+        place = recording.evidence / str(page.lesson) / bundle.name
+        require_replaceable(place, MANIFEST)
+        put(bundle, place)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     progress("record", str(place))

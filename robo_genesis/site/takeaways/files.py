@@ -20,7 +20,7 @@ from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
 from robo_genesis.evidence.trace_files import fields_of, read_any_trace
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.pipeline.pages.sources import import_closure
+from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
 from robo_genesis.site.takeaways.notebooks import (
     executed_notebook,
@@ -159,7 +159,7 @@ def without_places(text: str, root: Path = project.ROOT) -> str:
 def _arrays(run: Path, folder: Path) -> Iterator[tuple[str, Path, Path]]:
     """Copy each case's archive, and write it as a table; yield (case, CSV, npz)."""
     described = bundle.read_arrays(run)
-    code = (path.read_bytes() for path in import_closure([__name__]).values())
+    code = (path.read_bytes() for path in Tree().closure([__name__]).values())
     decide = [(run / "arrays.json").read_bytes(), *code]
     for case, arrays in described.cases.items():
         archive, table = folder / f"{case}.npz", folder / f"{case}.csv"

@@ -1,9 +1,12 @@
-"""The verification stage compares the outputs of each executed page once."""
+"""The verification stage compares each page with the contract and, once, with its bundle."""
+
+import os
+from types import SimpleNamespace
 
 import pytest
 
 from robo_genesis.core.refusals import BundleRefused
-from robo_genesis.pipeline.bundles.of_build import outputs_compared
+from robo_genesis.pipeline.bundles.of_build import outputs_compared, require_contract
 from robo_genesis.pipeline.pages import bound as shown
 from robo_genesis.pipeline.pages.folder import RECORD
 from robo_genesis.pipeline.pages.results import PageResult
@@ -14,7 +17,7 @@ def result(tmp_path, monkeypatch):
     """A page in a store, whose notebook is not read."""
     folder = tmp_path / "cache" / "pages" / "page" / "fingerprint"
     folder.mkdir(parents=True)
-    (folder / RECORD).write_text("its digests")
+    (folder / RECORD).write_bytes(os.urandom(16))
     monkeypatch.setattr(
         "robo_genesis.pipeline.bundles.of_build.stored_notebook", lambda result: None
     )
@@ -26,7 +29,7 @@ def test_a_page_is_compared_again_when_its_record_changed(result, monkeypatch):
     monkeypatch.setattr(shown, "require_shown", lambda *given: calls.append(given) or 7)
     assert [outputs_compared(result, None) for _ in range(2)] == ["7", "7"]
     assert len(calls) == 1
-    (result.folder / RECORD).write_text("the digests of an edited notebook")
+    (result.folder / RECORD).write_bytes(os.urandom(16))
     outputs_compared(result, None)
     assert len(calls) == 2
 
@@ -39,3 +42,20 @@ def test_a_refused_page_is_refused_each_time(result, monkeypatch):
     for _ in range(2):
         with pytest.raises(BundleRefused, match="another table"):
             outputs_compared(result, None)
+
+
+@pytest.mark.parametrize(("page", "mode"), [("lab", "camera"), ("formula", "skip")])
+def test_a_page_must_render_exactly_if_it_declares_a_camera(page, mode):
+    contract = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "1"}
+    facts = SimpleNamespace(
+        lesson="l04",
+        page=page,
+        backend=SimpleNamespace(requested="cpu"),
+        render=SimpleNamespace(mode=mode),
+    )
+    require_contract(facts, contract)
+    with pytest.raises(BundleRefused, match=r"backend\.requested is cpu, expected auto"):
+        require_contract(facts, contract | {"ROBO_GENESIS_BACKEND": "auto"})
+    facts.render.mode = "another"
+    with pytest.raises(BundleRefused, match=rf"frames: .* expected {mode}"):
+        require_contract(facts, contract)

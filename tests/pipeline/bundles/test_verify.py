@@ -42,20 +42,14 @@ def test_every_code_has_a_spoiler():
     assert reached | apart == codes() | {FAILED}
 
 
-def test_a_sound_bundle_is_accepted_also_when_sealed_again(folder):
-    assert verify_bundle(folder) == bundle.read_manifest(folder)
-    seal(folder)
-    verify_bundle(folder)
-
-
 def test_an_accepted_bundle_is_recomputed_only_when_something_changed(folder, monkeypatch):
-    recomputed, recompute = [], verify._recompute
+    recomputed, recompute = [], verify.recompute
 
     def counted(*given):
         recomputed.append(given)
         return recompute(*given)
 
-    monkeypatch.setattr(verify, "_recompute", counted)
+    monkeypatch.setattr(verify, "recompute", counted)
     accepted = verify_bundle(folder, once=True)
     assert accepted == verify_bundle(folder) == bundle.read_manifest(folder)
     recomputed.clear()  # another test may have had the same bundle accepted
@@ -78,13 +72,16 @@ def test_an_accepted_bundle_is_recomputed_only_when_something_changed(folder, mo
 @pytest.mark.parametrize(
     ("change", "actual"),
     [
+        (lambda folder: folder, "cpu"),
         (on("amdgpu"), "amdgpu"),
         (on("cuda"), "cuda"),
         (part("backend", requested="auto", cuda_version="13.0"), "cpu"),  # Torch for another one
     ],
 )
 def test_a_sound_bundle_of_each_backend_is_accepted(folder, change, actual):
-    accepted = verify_bundle(moved(change(folder), folder))
+    there = moved(change(folder), folder)
+    accepted = verify_bundle(there)
+    assert accepted == bundle.read_manifest(there)
     assert accepted.predicate.backend.actual == actual
 
 
@@ -163,10 +160,7 @@ HARMLESS = [
         ([(LAB, "page.facts()", "pass")], STALE.format("source.page")),
         ([(METRICS, "float(qd[-1])", "float(abs(qd[-1]))")],
          STALE.format("source.modules.lessons.l04.metrics")),
-        ([(METRICS, "RISE_FRACTION = 0.9", "RISE_FRACTION = 0.8")], "stale "),
-        ([(METRICS, "SETTLING_BAND = 0.01", "SETTLING_BAND = 0.02")], "stale "),
         ([(SPEC, "7000.0", "7100.0")], STALE.format("parameters.cases.G2.kp")),
-        ([(SPEC, "WINDOW = 1.2", "WINDOW = 1.3")], "stale "),
         ([(SPEC, '("rise_time", "no later")', '("rise_time", "later")')], "inconclusive "),
     ],
 )  # fmt: skip

@@ -218,7 +218,6 @@ def test_equal_names_of_pictures_make_a_folder_unfit(tmp_path):
         (SOME, True, {"one", "two"}),
         (State("a", {"one": "1", "two": "other"}), True, {"one"}),
         (State("b", SOME.pages), False, set()),
-        (State(None, SOME.pages), False, set()),
     ],
 )
 def test_changed_pages_are_read_again_and_other_changes_empty_the_folder(
@@ -259,5 +258,3 @@ def test_the_state_has_sources_runs_and_everything_else(tmp_path, monkeypatch):
     assert changed()
     monkeypatch.setenv("LANG", "an other")
     assert changed()
-    (book / "loop").symlink_to(book)
-    assert kept.read_state(book, built).others is None

@@ -181,7 +181,7 @@ def run_of(folder: Path, place: Path, code: str) -> None:
     """Store a run of the page `page` with other code."""
     [page] = find_pages(make_book(folder, page=notebook(cell(code))))
     page.notebook.metadata["language_info"] = {"name": "python", "pygments_lexer": "ipython3"}
-    run = {"run_id": "0" * 32, "command": None, "seconds": 1.0, "cell_seconds": [1.0]}
+    run = {"run_id": "0" * 32, "seconds": 1.0, "cell_seconds": [1.0]}
     write_page(place, page, page.notebook, folder, **run)
 
 

@@ -1,14 +1,7 @@
 import pytest
 from tiny_book import LAB_FRONT, cell, make_book, notebook
 
-from robo_genesis.core.project import ROOT
-from robo_genesis.pipeline.pages.book import (
-    PageError,
-    code_digest,
-    find_pages,
-)
-from robo_genesis.pipeline.pages.sources import import_closure
-from robo_genesis.pipeline.pages.syntax import read_code
+from robo_genesis.pipeline.pages.book import PageError, find_pages
 
 
 def test_executed_pages_are_the_notebooks_of_the_table_of_contents(tmp_path):
@@ -61,20 +54,3 @@ def test_a_bad_table_of_contents_is_refused(tmp_path, text, reason):
     (book / "_toc.yml").write_text(text)
     with pytest.raises(PageError, match=reason):
         find_pages(book)
-
-
-def test_the_code_digest_ignores_prose_and_comments(tmp_path):
-    texts = [notebook(cell("1")), notebook(cell("1  # one"), title="Other"), notebook(cell("2"))]
-    digests = []
-    for number, text in enumerate(texts):
-        (page,) = find_pages(make_book(tmp_path / str(number), page=text))
-        digests.append(code_digest(page))
-    assert digests[0] == digests[1] != digests[2]
-
-
-def test_no_page_computes_with_modules_of_the_site():
-    sources = [source for page in find_pages(ROOT / "book") for source in page.code.sources]
-    reached = import_closure(read_code(sources).imports)
-    packages = {".".join(name.split(".")[:2]) for name in reached}
-    assert "robo_genesis.evidence" in packages
-    assert not packages & {f"robo_genesis.{name}" for name in ("site", "maintain")}

@@ -101,11 +101,11 @@ def test_the_accepted_metrics_are_shown_and_not_metrics_computed_here(executed, 
     accepted = records.replace("0.201104998588562", "0.25")
     assert accepted != records
     path.write_text(accepted)
-    table = output(executed, 1, 0)
     message = refusal(executed, copy)
     assert f"lessons/lab, code cell 2, {TABLE}: the page shows another text/markdown" in message
     assert all(said in message for said in ("0.2011", "0.2500", "execute the page again"))
-    table["data"]["text/markdown"] = table["data"]["text/markdown"].replace("0.2011", "0.2500")
+    shows = table(executed)["data"]
+    shows["text/markdown"] = shows["text/markdown"].replace("0.2011", "0.2500")
     assert check(executed, copy) == 4
 
 
@@ -147,9 +147,7 @@ def other_picture(svg: str) -> str:
     [
         (1, 1, other_glyph),
         (1, 1, lambda svg: svg.replace("stroke: #", "stroke: #1", 1)),
-        (1, 1, lambda svg: re.sub(r"scale\(0\.1", "scale(0.2", svg, count=1)),
         (1, 1, lambda svg: svg.replace("</svg>", "<script>alert(1)</script></svg>")),
-        (1, 1, lambda svg: svg.replace("<?xml", '<!DOCTYPE x [<!ENTITY a "b">]><?xml', 1)),
         (1, 1, lambda svg: ""),
         (2, 0, other_picture),
     ],
@@ -169,39 +167,29 @@ def test_names_that_follow_from_points_may_differ(sound):
     assert difference_of(svg.replace(f'id="{name}"', 'id="another"'), svg, True)
 
 
-def without_metadata(executed):
-    output(executed, 1, 0).metadata.clear()
+def table(executed):
+    return output(executed, 1, 0)
 
 
-def another_output(executed):
-    executed.cells[3].outputs.append(output(executed, 1, 0))
-
-
-def another_kind(executed):
-    output(executed, 1, 0)["data"]["text/html"] = "<b>0.5</b>"
-
-
-def another_function(executed):
-    output(executed, 1, 0).metadata["robo_genesis"]["function"] = "os.system"
-
-
-def other_arguments(executed):
-    output(executed, 1, 0).metadata["robo_genesis"]["arguments"] = ["G1"]
-
-
-def as_result(executed):
-    output(executed, 1, 0).output_type = "execute_result"
+def function(executed):
+    return table(executed).metadata["robo_genesis"]
 
 
 @pytest.mark.parametrize(
     ("spoil", "message"),
     [
-        (as_result, "the bundle gives ['text"),
-        (without_metadata, "code cell 2: its code shows 2 measured outputs, found are 1"),
-        (another_output, "code cell 4: its code shows 0 measured outputs, found are 1"),
-        (another_kind, "the output has text/html, text/markdown, the bundle gives ['text"),
-        (another_function, "the output is of {'function': 'os.system'"),
-        (other_arguments, "'arguments': ['G1']"),
+        (lambda ran: table(ran).update(output_type="execute_result"), "type of the output is"),
+        (lambda ran: table(ran).metadata.clear(), "measured outputs is 1, expected 2"),
+        (
+            lambda ran: ran.cells[3].outputs.append(table(ran)),
+            "code cell 4: number of measured outputs is 1, expected 0",
+        ),
+        (
+            lambda ran: table(ran)["data"].update({"text/html": "<b>0.5</b>"}),
+            "kinds of the output is text/html, text/markdown, expected text/m",
+        ),
+        (lambda ran: function(ran).update(function="os.system"), "{'function': 'os.system'"),
+        (lambda ran: function(ran).update(arguments=["G1"]), "'arguments': ['G1']"),
     ],
 )
 def test_another_output_is_refused(executed, folder, spoil, message):
@@ -212,7 +200,7 @@ def test_another_output_is_refused(executed, folder, spoil, message):
 @pytest.mark.parametrize(
     ("source", "message"),
     [
-        ("page.show(lesson.text.metric_table)", "its code shows 1 measured outputs, found are 2"),
+        ("page.show(lesson.text.metric_table)", "measured outputs is 2, expected 1"),
         ("for k in (1, 2):\n    page.show(plots.height)", "outside of loops and conditions"),
         ("page.show(lesson.text.absent)\npage.show(plots.height)", "cannot be shown"),
         ("page.show(plots.height, chosen)\npage.show(plots.height)", "that is not written out"),

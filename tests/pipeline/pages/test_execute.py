@@ -1,4 +1,3 @@
-import json
 import signal
 import sys
 import threading
@@ -20,7 +19,7 @@ from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import execute_pages, longest_first
 from robo_genesis.pipeline.pages.progress import Lines
 from robo_genesis.pipeline.pages.results import failure_report
-from robo_genesis.pipeline.pages.store import last_record, places, stored_result
+from robo_genesis.pipeline.pages.store import places, stored_result
 
 CHECK = """\
 import sys
@@ -88,7 +87,7 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
 @pytest.mark.parametrize(
     ("name", "error", "said", "cell"),
     [
-        ("dead", "DeadKernelError", "Kernel died", 1),
+        ("dead", "DeadKernelError", "last words", 1),
         ("slow", "CellTimeoutError", "2 seconds", 1),
         ("bundle", "BundleMissing", "the run left no l04/lab/<backend>/manifest.json", None),
         ("kernel", "NoSuchKernel", "some-users-kernel", None),
@@ -97,13 +96,8 @@ def test_a_failing_check_is_reported_whole_with_cell_and_last_log_lines(broken):
 def test_each_kind_of_failure_is_named(broken, name, error, said, cell):
     result = broken[1][name]
     assert (result.failure.error, result.failure.cell) == (error, cell)
-    assert said in result.failure.message
+    assert said in "\n".join([result.failure.message, *result.failure.log])
     assert result.seconds < 20
-
-
-def test_a_dead_kernel_leaves_its_last_words_and_a_lost_bundle_its_run(broken):
-    assert any("last words" in line for line in broken[1]["dead"].failure.log)
-    assert broken[1]["bundle"].run_id in broken[1]["bundle"].failure.message
 
 
 @pytest.fixture(scope="module")
@@ -115,19 +109,16 @@ def lab(tmp_path_factory):
     return folder
 
 
-def test_a_second_run_executes_nothing_and_finds_the_same_run(lab):
+def test_a_page_is_reused_unless_it_is_to_be_executed_again(lab):
     first, second = execute(lab)["lab"], execute(lab)["lab"]
     assert (first.status, second.status) == ("reused", "reused")
     assert first.run_id == second.run_id
     assert first.bundle == first.folder / "outputs/cpu"
-    assert first.folder.parent == lab / "store/lab"
-
-
-def test_a_page_that_is_not_to_be_reused_is_executed_and_replaces_the_stored_one(lab):
-    before, after = execute(lab)["lab"], execute(lab, reuse=False)["lab"]
-    assert after.status == "executed"
-    assert (after.run_id != before.run_id, after.folder) == (True, before.folder)
-    assert execute(lab)["lab"].run_id == after.run_id
+    said = []
+    again = execute(lab, reuse=False, report=Lines(lambda *words: said.append(words)))["lab"]
+    assert (again.status, again.folder) == ("executed", first.folder)
+    assert said[0][1].startswith("started: 2 cells, about ")
+    assert execute(lab)["lab"].run_id == again.run_id != first.run_id
 
 
 def test_a_run_that_fails_with_the_same_code_keeps_the_page(tmp_path):
@@ -253,18 +244,6 @@ def test_the_longest_page_starts_first_and_before_it_new_ones_with_many_cells_fi
     last = {name: SimpleNamespace(seconds=s) for name, s in (("a", 2.0), ("c", 30.0), ("d", 2.0))}
     found = longest_first(find_pages(tmp_path / "book"), {"b": None, "e": None} | last)
     assert [page.docname for page in found] == ["e", "b", "c", "d", "a"]
-
-
-def test_pages_start_in_the_order_of_their_stored_durations(tmp_path):
-    make_book(tmp_path, **{name: notebook(cell(repr(name))) for name in "abc"})
-    first = execute(tmp_path)
-    for seconds, name in enumerate("abc"):
-        path = first[name].folder / "page.json"
-        path.write_text(json.dumps(json.loads(path.read_text()) | {"seconds": float(seconds)}))
-    pages, said = find_pages(tmp_path / "book"), []
-    assert [last_record(tmp_path / "store", page).seconds for page in pages] == [0, 1, 2]
-    execute(tmp_path, reuse=False, report=Lines(lambda *words: said.append(words)))
-    assert [name for name, event in said if event.startswith("started")] == ["c", "b", "a"]
 
 
 def test_kernels_are_clean(tmp_path, monkeypatch):

@@ -49,10 +49,11 @@ def test_another_page_is_refused_and_the_valid_ones_are_listed(folder, name):
 
 
 def test_a_place_that_cannot_be_used_is_refused_before_the_run(folder, no_file):
+    (folder / "mine" / "broken").mkdir(parents=True)
     for to, said in (
         (no_file, "is not a folder that you may write"),
         (None, "TO is not set"),
-        (folder / "book", r"TO=.*/book holds .*, which is not an executed page"),
+        (folder / "mine", r"mine/broken is not replaced: it has no page\.json"),
     ):
         with pytest.raises(ProjectError, match=said):
             export(folder, "broken", to)
@@ -66,7 +67,12 @@ def test_a_failed_page_is_status_1_its_report_and_no_export(folder, tmp_path):
 
 
 def test_a_page_has_the_contract_of_a_build_and_names_its_own_command(folder, tmp_path):
+    log = folder / "cache/logs/contract.log"
+    log.parent.mkdir(parents=True, exist_ok=True)
+    log.write_text("of an older run")
     process = start("execute.py", folder, PAGE="contract", TO=str(tmp_path), RENDER="0")
-    _, err = process.communicate(timeout=120)
+    said, err = process.communicate(timeout=120)
     assert process.returncode == 0, err
+    assert f"contract  started: 1 cells; its log: {log}" in said
+    assert log.read_text() == "0 cpu make execute\n"
     assert r"0 cpu make execute\n" in (tmp_path / "contract/executed.ipynb").read_text()

@@ -1,20 +1,15 @@
 """What is said of the pages that run: lines, and bars on a terminal."""
 
-import os
-import pty
 import re
-import subprocess
 import sys
 from io import StringIO
 from types import SimpleNamespace
 
 import pytest
 from rich.console import Console
-from tiny_book import cell, make_book, notebook, start
 
-from robo_genesis.core.project import ROOT
-from robo_genesis.pipeline.command import Progress
-from robo_genesis.pipeline.pages.progress import Bars, Lines, Underway
+from robo_genesis.pipeline.command import Progress, say
+from robo_genesis.pipeline.pages.progress import Bars, Lines, Underway, reporting
 
 LAST = SimpleNamespace(seconds=20.0, cell_seconds=[4.0, 6.0, 5.0])
 
@@ -71,57 +66,19 @@ def test_bars_stand_below_whole_lines():
     assert f"{long}" in text
 
 
-SLOW = cell("import time\nprint('the engine speaks', flush=True)\ntime.sleep(2)")
-
-
 @pytest.mark.parametrize(
-    ("terminal", "settings", "drawn"),
+    ("terminal", "settings", "kind"),
     [
-        (True, {"CI": ""}, True),
-        (True, {"CI": "true"}, False),
-        (True, {"CI": "", "TERM": "dumb"}, False),
-        (False, {"CI": ""}, False),
+        (True, {"CI": ""}, Bars),
+        (True, {"CI": "true"}, Lines),
+        (True, {"CI": "", "TERM": "dumb"}, Lines),
+        (False, {"CI": ""}, Lines),
     ],
     ids=["terminal", "CI", "dumb terminal", "redirected"],
 )
-def test_bars_are_drawn_on_a_terminal_only(tmp_path, terminal, settings, drawn):
-    make_book(tmp_path, page=notebook(SLOW, cell("2")))
-    log = tmp_path / "cache/logs/page.log"
-    log.parent.mkdir(parents=True)
-    log.write_text("of an older run")
-    to, settings = str(tmp_path / "to"), {"PAGE": "page", "TERM": "xterm"} | settings
-    if terminal:
-        said = on_terminal("execute.py", tmp_path, TO=to, **settings)
-    else:
-        process = start("execute.py", tmp_path, TO=to, **settings)
-        said, _ = process.communicate(timeout=60)
-    assert f"page  started: 2 cells; its log: {log}" in said.replace("\r\n", "\n")
-    assert "page  executed in " in said
-    assert ("\x1b" in said, "cell 1 of 2" in said) == (drawn, drawn)
-    assert log.read_text() == "the engine speaks\n"
-
-
-def on_terminal(script: str, folder, **settings: str) -> str:
-    """Run a command whose standard output is a terminal; return what it shows."""
-    ours, theirs = pty.openpty()
-    arguments = ["--book", str(folder / "book"), "--cache", str(folder / "cache")]
-    process = subprocess.Popen(
-        [sys.executable, str(ROOT / "build_scripts" / script), *arguments],
-        env=os.environ | {"PYTHONPATH": str(ROOT), "COLUMNS": "200"} | settings,
-        stdout=theirs,
-    )
-    os.close(theirs)
-    shown = b""
-    while part := _read(ours):
-        shown += part
-    os.close(ours)
-    assert process.wait(timeout=60) == 0, shown
-    return shown.decode()
-
-
-def _read(terminal: int) -> bytes:
-    """Return what is written next, nothing after the other end was closed."""
-    try:
-        return os.read(terminal, 4096)
-    except OSError:
-        return b""
+def test_bars_are_drawn_on_a_terminal_only(monkeypatch, terminal, settings, kind):
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: terminal)
+    for name, value in ({"TERM": "xterm"} | settings).items():
+        monkeypatch.setenv(name, value)
+    with reporting(Progress(say)) as report:
+        assert type(report) is kind

@@ -2,17 +2,15 @@
 
 import shutil
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from tiny_book import LAB_FRONT, cell, make_book, notebook
 
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.lessons import LESSONS
-from robo_genesis.pipeline.pages import fingerprint, sources
+from robo_genesis.pipeline.pages import sources
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.fingerprint import page_fingerprint
-from robo_genesis.pipeline.pages.sources import import_closure, measures, measuring_modules
+from robo_genesis.pipeline.pages.sources import Tree, measuring_modules, page_fingerprint
 from robo_genesis.pipeline.pages.syntax import read_code, syntax_digest
 
 PACKAGE = ROOT / "robo_genesis"
@@ -50,8 +48,12 @@ def page(root):
     return found
 
 
+def key(page, root, **variables):
+    return page_fingerprint(page, Tree(root), variables)
+
+
 def test_imports_are_followed_through_functions_and_relative_names(root, page):
-    assert sorted(import_closure(page.code.imports, root)) == [
+    assert sorted(Tree(root).closure(page.code.imports)) == [
         "robo_genesis",
         "robo_genesis.evidence",
         "robo_genesis.evidence.deep",
@@ -85,34 +87,26 @@ def test_a_file_that_the_page_uses_counts(root, page, file, line, counts):
     for lesson in ("l03", "l04"):
         (root / "robo_genesis" / "lessons" / lesson).mkdir(parents=True)
         (root / "robo_genesis" / "lessons" / lesson / "__init__.py").touch()
-    before = page_fingerprint(page, root, {})
+    before = key(page, root)
     assert len(before) == 20
     with (root / file).open("a") as opened:
         opened.write(f"{line}\n")
-    assert (page_fingerprint(page, root, {}) != before) == counts
+    assert (key(page, root) != before) == counts
 
 
-def test_the_environment_counts_if_it_changes_a_measurement(root, page):
-    before = page_fingerprint(page, root, {})
-    for name in ("ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND", "QD_FAST_MATH"):
-        assert page_fingerprint(page, root, {name: "0"}) != before
+def test_whatever_else_decides_a_measurement_counts(root, page, monkeypatch):
+    names = ("ROBO_GENESIS_RENDER", "ROBO_GENESIS_BACKEND", "QD_FAST_MATH")
+    found = [key(page, root), key(replace(page, alone=True), root)]
+    found += [key(page, root, **{name: "0"}) for name in names]
+    for module, name, value in (
+        (sources, "installed", [("", "mujoco-0.1.dist-info", 0)]),
+        (sources.platform, "python_version", "3.99.0"),
+    ):
+        monkeypatch.setattr(module, name, lambda *given, value=value: value)
+        found.append(key(page, root))
+    assert len({*found}) == len(found)
     for name in ("HOME", "QD_OFFLINE_CACHE_FILE_PATH"):
-        assert page_fingerprint(page, root, {name: "/elsewhere"}) == before
-
-
-@pytest.mark.parametrize(
-    ("module", "name", "value"),
-    [
-        (fingerprint, "_installed", ["mujoco==0.1"]),
-        (fingerprint.platform, "python_version", "3.99.0"),
-    ],
-)
-def test_another_version_of_python_or_a_package_counts(
-    root, page, monkeypatch, module, name, value
-):
-    before = page_fingerprint(page, root, {})
-    monkeypatch.setattr(module, name, lambda: value)
-    assert page_fingerprint(page, root, {}) != before
+        assert key(page, root, **{name: "/elsewhere"}) == found[-1]
 
 
 @pytest.mark.parametrize(
@@ -129,11 +123,7 @@ def test_another_version_of_python_or_a_package_counts(
 def test_a_changed_cell_counts_and_a_comment_does_not(root, page, code, counts):
     lab = notebook(cell(code), front=LAB_FRONT, title="Another title")
     (changed,) = find_pages(make_book(root, lab=lab))
-    assert (page_fingerprint(changed, root, {}) != page_fingerprint(page, root, {})) == counts
-
-
-def test_a_page_that_begins_to_run_alone_is_executed_again(root, page):
-    assert page_fingerprint(replace(page, alone=True), root, {}) != page_fingerprint(page, root, {})
+    assert (key(changed, root) != key(page, root)) == counts
 
 
 def test_a_page_that_runs_alone_records_elapsed_times():
@@ -146,7 +136,8 @@ def test_a_page_that_runs_alone_records_elapsed_times():
 
 def keys(root, pages):
     """Return fingerprint and modules of the evidence key of some pages of the course."""
-    fingerprints = {(p.lesson, p.page): page_fingerprint(p, root, {}) for p in pages}
+    tree = Tree(root)
+    fingerprints = {(p.lesson, p.page): page_fingerprint(p, tree, {}) for p in pages}
     modules = {(p.lesson, p.page): measuring_modules(p.lesson, p.code.imports, root) for p in pages}
     return fingerprints, modules
 
@@ -228,34 +219,17 @@ def test_a_further_module_of_a_lesson_needs_no_list(copy):
 
 
 @pytest.mark.parametrize("lesson", LESSONS)
-def test_a_lecture_uses_all_modules_that_its_lab_measures_with(copy, lesson):
-    """So that what a change does to a lesson is seen in its lecture."""
-    _, (_, modules) = copy
-    assert modules[lesson, "lab"].items() <= modules[lesson, "lecture"].items()
-
-
-def test_a_page_measures_with_modules_of_core_sim_and_its_lesson_alone(copy):
-    _, (_, modules) = copy
-    for (lesson, _), of in modules.items():
-        assert {name.partition(".")[0] for name in of} == {"core", "sim", "lessons"}
-        own = f"lessons.{lesson}."
-        assert all(name.startswith(own) for name in of if name.startswith("lessons."))
-        assert {"core.trace", "core.experiment", f"lessons.{lesson}.metrics"} <= of.keys()
-    assert "sim.mujoco.joints" in modules["l04", "lecture"]  # its `study` imports it
-    assert "sim.mujoco.joints" not in modules["l02", "lecture"]
-
-
-@pytest.mark.parametrize("lesson", LESSONS)
 def test_a_module_that_computes_uses_none_that_presents(lesson):
     """Except the specification, whose values are parameters of the bundle or judge it."""
+    tree = Tree()
     for name in measuring_modules(lesson, []):
         file = PACKAGE.joinpath(*name.split(".")).with_suffix(".py")
         names = read_code([file.read_text("utf8")]).imports
-        used = {each: path for each in names if (path := sources._module_file(ROOT, each))}
+        used = {each: path for each in names if (path := tree.module(each))}
         shown = {
             each.rpartition(".")[2].rpartition("_")[2]
             for each, path in used.items()
-            if path.name != "__init__.py" and not measures(each, path, Path.read_text)
+            if path.name != "__init__.py" and not tree.measures(each, path)
         }
         assert shown <= {"spec", "project", "laws", "falling", "text"}, name
 

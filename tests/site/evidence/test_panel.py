@@ -16,8 +16,8 @@ from without_sphinx import Panel, rows_of
 
 from robo_genesis.core import project
 from robo_genesis.core.declaration import Filmed
+from robo_genesis.core.files import put
 from robo_genesis.evidence import bundle, recorder, replay_data, report
-from robo_genesis.evidence.bundle_store import put
 from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_trace
 from robo_genesis.pipeline.bundles.status import Status, recorded_status
@@ -163,7 +163,8 @@ def test_what_the_recorder_writes_on_each_backend_is_accepted_shown_and_compared
     monkeypatch.setattr(recorder, "driver_version", lambda name: f"the driver of {name}")
     there = engine_on(engine, actual)
     left = written(there, tmp_path / "outputs", "l04", "lab", experiment)
-    place = put(left, tmp_path / "book" / "evidence" / "l04")
+    place = tmp_path / "book" / "evidence" / "l04" / left.name
+    put(left, place)
     status = recorded_status(tmp_path / "book", "l04", actual)
     assert (status.badge, place.name) == (f"{actual}-verified", actual)
     panel = Panel(tmp_path / "book").panel(PageRun("l04/lab", place, status, recorded=True))

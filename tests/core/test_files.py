@@ -1,17 +1,18 @@
+"""Folders are replaced whole or not at all, and only where they are of the expected kind."""
+
 import subprocess
 import sys
 
 import pytest
 from tiny_book import old_bundle
 
+from robo_genesis.core.files import require_replaceable, settle_below
 from robo_genesis.core.project import ROOT, ProjectError
-from robo_genesis.evidence import bundle_store
 
 DIES = """
 import os, sys
 from pathlib import Path
 from robo_genesis.core import files
-from robo_genesis.evidence import bundle_store
 rename, done = os.rename, []
 def dying(*paths):
     if len(done) == {renames}:
@@ -20,7 +21,7 @@ def dying(*paths):
 os.rename = dying
 remove = files.shutil.rmtree
 files.shutil.rmtree = lambda path: os._exit(9) if {renames} == 2 else remove(path)
-bundle_store.put(Path(sys.argv[1]), Path(sys.argv[2]))
+files.put(Path(sys.argv[1]), Path(sys.argv[2]))
 """
 
 
@@ -30,10 +31,10 @@ def test_a_kill_at_any_rename_leaves_the_old_or_the_new_bundle(tmp_path, renames
     new.mkdir(parents=True)
     (new / "manifest.json").write_text("{}")
     (new / "log.txt").write_text("new")
-    command = [sys.executable, "-c", DIES.format(renames=renames), str(new), str(old.parents[1])]
+    command = [sys.executable, "-c", DIES.format(renames=renames), str(new), str(old.parent)]
     assert subprocess.run(command, check=False, cwd=ROOT).returncode == 9
     assert len(list(old.parents[1].iterdir())) == 2  # one stands aside, or is not yet whole
-    bundle_store.recover(tmp_path / "kept")
+    settle_below(tmp_path / "kept")
     assert [path.name for path in old.parents[1].iterdir()] == ["cuda"]
     assert old.read_text() == stands
     assert (old.parent / "of the old one.txt").exists() == (stands == "old")
@@ -50,5 +51,4 @@ def test_what_is_no_bundle_is_never_replaced(tmp_path, link):
     else:
         mine.rename(lesson / "cuda")
     with pytest.raises(ProjectError, match=r"has no manifest\.json, or is a link\. .* TO=folder"):
-        bundle_store.put(tmp_path / "run" / "cuda", lesson)
-    assert len(list((lesson / "cuda").iterdir())) == 1
+        require_replaceable(lesson / "cuda", "manifest.json")
