@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from robo_genesis.core.declaration import Filmed, Lesson, Moving
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l01 import checks, machine, spec
@@ -36,6 +37,5 @@ LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, FallMetrics),
     pages={"lab": LAB, "lecture": LECTURE},
-    filmed=Filmed("the sphere"),
-    compared=Moving(tuple(spec.CASES), link=spec.LINK, thing="sphere"),
+    replays={"fall": Replay(tuple(spec.CASES), follows=spec.LINK, thing="sphere")},
 )

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from robo_genesis.core.declaration import Filmed, Lesson, Moving
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import checks, life_cycle, spec, study, trials
@@ -45,6 +46,5 @@ LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, DropMetrics),
     pages={"lab": LAB, "lecture": LECTURE, "mistakes": MISTAKES},
-    filmed=Filmed("the box"),
-    compared=Moving(tuple(spec.CASES), link=spec.LINK, thing="box"),
+    replays={"fall": Replay(tuple(spec.CASES), follows=spec.LINK, thing="box")},
 )

@@ -3,8 +3,9 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
+from robo_genesis.core.channels import Replay
 from robo_genesis.core.checks import Finding
-from robo_genesis.core.declaration import Filmed, Lesson, Moving
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import (
     Experiment,
     MeasuringPage,
@@ -92,9 +93,8 @@ LESSON = Lesson(
         "contact": CONTACT,
         "energy": ENERGY,
     },
-    filmed=Filmed("the cube"),
-    compared=Moving(tuple(study_spec.DROPPED), link=spec.LINK, thing="cube", until=0.5),
-    further={
-        "slides": Moving(tuple(study_spec.HOPPED), link=spec.LINK, thing="cube", axes=("x", "z"))
+    replays={
+        "drops": Replay(tuple(study_spec.DROPPED), spec.LINK, "cube", until=0.5),
+        "slides": Replay(tuple(study_spec.HOPPED), spec.LINK, "cube", axes=("x", "z")),
     },
 )

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from robo_genesis.core.channels import ReplayView
+from robo_genesis.core.channels import Replay
 from robo_genesis.core.checks import Finding
-from robo_genesis.core.declaration import Compared, Filmed, Lesson
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import (
     Experiment,
     MeasuringPage,
@@ -119,24 +119,23 @@ LESSON = Lesson(
         "batch": BATCH,
         "mistakes": MISTAKES,
     },
-    filmed=Filmed("the Franka"),
-    marks=spec.CASE_MARKS,
-    compared=Compared(
-        tuple(study_spec.COMPARED),
-        joint=spec.STEPPED_JOINT,
-        band=SETTLING_BAND,
-        until=0.6,
-        view=ReplayView(
+    replays={
+        "steps": Replay(
+            tuple(study_spec.COMPARED),
+            follows=spec.STEPPED_JOINT,
             thing="robot",
-            alt="The robot in 3D, in the posture of the sample that is shown. "
-            f"{spec.STEPPED_JOINT} moves.",
+            band=SETTLING_BAND,
+            until=0.6,
             credit=CREDIT,
-        ),
-        alt=f"Position of {spec.STEPPED_JOINT} over time with the gains of "
-        f"{listed(tuple(study_spec.COMPARED))}, its target and the settling band around it.",
-        caption=f"Position of {spec.STEPPED_JOINT}, three settings of its controller, from "
-        "get_dofs_position.",
-        quality="Rise time {rise_time}, overshoot {overshoot}, final error {final_error}; at the "
-        "force limit: {saturation_samples}.",
-    ),
+            view="The robot in 3D, in the posture of the sample that is shown. "
+            f"{spec.STEPPED_JOINT} moves.",
+            alt=f"Position of {spec.STEPPED_JOINT} over time with the gains of "
+            f"{listed(tuple(study_spec.COMPARED))}, its target and the settling band around it.",
+            caption=f"Position of {spec.STEPPED_JOINT}, three settings of its controller, from "
+            "get_dofs_position.",
+            quality="Rise time {rise_time}, overshoot {overshoot}, final error {final_error}; at "
+            "the force limit: {saturation_samples}.",
+            filmed="the Franka",
+        )
+    },
 )

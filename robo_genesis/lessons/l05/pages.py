@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.channels import ReplayView
-from robo_genesis.core.declaration import Compared, Filmed, Lesson
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, Run, case_inputs, counts, runs_of
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l05 import (
@@ -82,21 +82,20 @@ LESSON = Lesson(
         "solutions": SOLUTIONS,
         "cameras": CAMERAS,
     },
-    filmed=Filmed("the Franka"),
-    marks=spec.CASE_MARKS,
-    compared=Compared(
-        tuple(spec.CASES),
-        joint="joint4",
-        band=0.01,
-        until=0.6,
-        view=ReplayView(
+    replays={
+        "reach": Replay(
+            tuple(spec.CASES),
+            follows="joint4",
             thing="robot",
-            alt="The robot in the posture of the sample; a sphere marks the target of the hand.",
+            band=0.01,
+            until=0.6,
             credit=CREDIT,
-        ),
-        alt="Position of joint4 over time in three runs, and its command.",
-        caption="Position of joint4 in three runs, from get_dofs_position.",
-        quality="The hand starts {start_distance} from its target and ends {final_distance} and "
-        "{final_angle} from it.",
-    ),
+            view="The robot in the posture of the sample; a sphere marks the target of the hand.",
+            alt="Position of joint4 over time in three runs, and its command.",
+            caption="Position of joint4 in three runs, from get_dofs_position.",
+            quality="The hand starts {start_distance} from its target and ends {final_distance} "
+            "and {final_angle} from it.",
+            filmed="the Franka",
+        )
+    },
 )

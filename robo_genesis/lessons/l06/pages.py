@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from robo_genesis.core.channels import ReplayView
-from robo_genesis.core.declaration import Compared, Filmed, Lesson
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, Run, counts, runs_of
 from robo_genesis.core.palette import MARKS
 from robo_genesis.core.trace import Trace
@@ -76,22 +76,22 @@ LESSON = Lesson(
         "mistakes": MISTAKES,
         "throughput": THROUGHPUT,
     },
-    filmed=Filmed("the robots of all environments", "the batch"),
-    marks=spec.CASE_MARKS,
-    compared=Compared(
-        tuple(spec.WORLDS),
-        joint="joint1",
-        band=0.01,
-        places=spec.PLACES,
-        view=ReplayView(
+    replays={
+        "batch": Replay(
+            tuple(spec.WORLDS),
+            follows="joint1",
             thing="robots",
-            alt="Four robots in 3D, in the postures of the sample that is shown. Spheres in the "
-            "colours of the runs are at the targets of the hands.",
+            band=0.01,
+            places=spec.PLACES,
             credit=CREDIT,
-        ),
-        alt="Position of joint1 over time in four environments.",
-        caption="Position of joint1 in four environments, from get_dofs_position.",
-        quality="The hand ends {final_distance} from its last target; after 1.8 s it moved "
-        "{moved_later}.",
-    ),
+            view="Four robots in 3D, in the postures of the sample that is shown. Spheres in the "
+            "colours of the runs are at the targets of the hands.",
+            alt="Position of joint1 over time in four environments.",
+            caption="Position of joint1 in four environments, from get_dofs_position.",
+            quality="The hand ends {final_distance} from its last target; after 1.8 s it moved "
+            "{moved_later}.",
+            filmed="the robots of all environments",
+            filmed_run="the batch",
+        )
+    },
 )

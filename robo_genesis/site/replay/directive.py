@@ -1,9 +1,10 @@
 """A recorded run that plays in the page, and the files that load only on a reader's request.
 
-A page writes ```` ```{replay} l04/lecture ````, or with the name of further cases that its lesson
-declares, ```` ```{replay} l03/lab slides ````. The option `:brief:` leaves out all channels but the
-first, and the sentences on each case. The panel of a recorded run also has a replay. Poses and
-curves come from the record; the shape comes from the model, which the lecture writes to a file.
+A page writes ```` ```{replay} l04/lecture ```` for the first replay that its lesson declares, for
+another one its name as well: ```` ```{replay} l03/lecture slides ````. The option `:brief:` leaves
+out all channels but the first, and the sentences on each case. The panel of a recorded run also has
+a replay. Poses and curves come from the record; the shape comes from the model, which the lecture
+writes to a file.
 """
 
 import base64
@@ -24,7 +25,7 @@ from robo_genesis.core.channels import Runs
 from robo_genesis.core.files import derived
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
-from robo_genesis.lessons import drawn_cases
+from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.ledger import scroll_box
@@ -48,11 +49,11 @@ class ReplayDirective(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Return the replay.
 
-        Errors: the page has no bundle, or the lesson compares no such cases.
+        Errors: the page has no bundle, or the lesson has no such replay.
         """
-        lesson_page, *further = self.arguments
+        lesson_page, *chosen = self.arguments
         folder, brief = bundle_of(self, lesson_page), "brief" in self.options
-        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *further, brief=brief)]
+        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *chosen, brief=brief)]
 
 
 def bundle_of(directive: SphinxDirective, lesson_page: str) -> Path:
@@ -68,7 +69,7 @@ def bundle_of(directive: SphinxDirective, lesson_page: str) -> Path:
 
 
 def replay_block(
-    directive: SphinxDirective, key: str, folder: Path, further: str = "", *, brief: bool = False
+    directive: SphinxDirective, key: str, folder: Path, chosen: str = "", *, brief: bool = False
 ) -> nodes.Node:
     """Return the replay of an accepted bundle, with all its information as text and as a table.
 
@@ -76,12 +77,12 @@ def replay_block(
         directive: the directive that shows it.
         key: names the run, as in the ledger.
         folder: of the bundle.
-        further: name of further cases, empty for those that the lesson compares.
+        chosen: name of the replay, empty for the first of the lesson.
         brief: whether to show the first channel alone, and no sentences on the cases.
 
     Raises:
-        DirectiveError: the lesson has no such cases, its runs cannot be played together, or no page
-            of this build wrote the shape of these links.
+        DirectiveError: the lesson has no such replay, its runs cannot be played together, or no
+            page of this build wrote the shape of these links.
     """
     from robo_genesis.site.replay import model as replay_model  # these load slowly
     from robo_genesis.site.replay.poster import picture
@@ -89,18 +90,18 @@ def replay_block(
     from robo_genesis.site.replay.side_by_side import side_by_side
 
     env, lesson = directive.env, key.split("/")[0]
-    name = "-".join(("replay", *key.split("/"), *filter(None, [further])))
+    name = "-".join(("replay", *key.split("/"), *filter(None, [chosen])))
     try:
-        drawn = drawn_cases(lesson, further)
-        runs = labelled(read_runs(folder, drawn), lesson)
-        shape = shape_file(lesson, runs.view.thing)
+        replay = find_replay(lesson, chosen)
+        runs = labelled(read_runs(folder, replay), lesson)
+        shape = shape_file(lesson, replay.thing)
         parts = visual_shape.load_shape(shape)
-        if drawn.places:
-            runs, parts = side_by_side(runs, parts, drawn.places)
-        around = scenery(parts, runs, hinged=not drawn.places)
-        drawn_by = repr((list(runs.traces), list(runs.links), runs.view.credit)).encode()
+        if replay.places:
+            runs, parts = side_by_side(runs, parts)
+        around = scenery(parts, runs)
+        drawn_by = repr((list(runs.traces), list(runs.links), replay.credit)).encode()
         inputs = [drawn_by, shape.read_bytes(), *bundle_inputs(folder)]
-        what = around, runs.links, runs.traces, runs.view.credit
+        what = around, runs.links, runs.traces, replay.credit
         model = derived("replay", inputs, lambda: replay_model.glb(*what))
         still = derived("poster", inputs, lambda: picture(model, around.camera))
         files, weight = leave_model(env, name, model)
@@ -121,7 +122,7 @@ def replay_block(
         lines = (nodes.paragraph("", "", *marked(text)) for text in shown.moves.values())
         block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
     block += scroll_box(summary, *directive.parse_text_to_nodes(controls.samples(shown)))
-    origin = origin_html(name, folder, replay_folder(env), runs.view.credit)
+    origin = origin_html(name, folder, replay_folder(env), replay.credit)
     block += nodes.raw("", f"</details>{origin}", format="html")
     return block
 

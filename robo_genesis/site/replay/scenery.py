@@ -95,14 +95,14 @@ class Scenery:
     followed: int | None = None
 
 
-def scenery(shape: Sequence[Part], runs: Runs, hinged: bool = True) -> Scenery:
-    """Return what the replay of some runs shows, with the axis of a joint if it is `hinged`.
+def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
+    """Return what the replay of some runs shows; several robots in one view have no axis.
 
     Raises:
         ValueError: a part belongs to a link that is not in the record, or two links have one name.
     """
     check_links(shape, runs.links)
-    hinge, followed = find_hinge(runs) if hinged else None, find_followed(runs)
+    hinge, followed = None if runs.replay.places else find_hinge(runs), find_followed(runs)
     moved = hinge.moved if hinge else range(len(runs.links))
     camera = fitted(swept(shape, runs, moved, followed))
     parts = [*shape, *floor_of(shape)]

@@ -175,7 +175,7 @@ CHANGES = [
     ("site/text/glossary", CONSTANT, NONE, NONE),
     ("lessons/l04/theory", CONSTANT, ("l04",), ("l04",)),
     ("lessons/l04/spec", ('"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'), ("l04",), NONE),
-    ("lessons/l04/pages", ('Filmed("the Franka")', 'Filmed("the arm")'), ("l04",), NONE),
+    ("lessons/l04/pages", ('filmed="the Franka"', 'filmed="the arm"'), ("l04",), NONE),
     ("lessons/l02/plots", CONSTANT, ("l02",), NONE),
     ("lessons/l04/tables", CONSTANT, ("l04",), NONE),
     ("lessons/l02/mistakes", CONSTANT, ("l02",), NONE),

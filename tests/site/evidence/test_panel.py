@@ -15,7 +15,7 @@ from spoilers import edit, on, part, predicate
 from without_sphinx import Panel, rows_of
 
 from robo_genesis.core import project
-from robo_genesis.core.declaration import Filmed
+from robo_genesis.core.channels import Replay
 from robo_genesis.evidence import bundle, recorder, replay_data, report
 from robo_genesis.evidence.bundle_store import put
 from robo_genesis.evidence.compare import compare
@@ -28,7 +28,7 @@ from robo_genesis.site.evidence import ledger_data, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
 from robo_genesis.site.evidence.ledger_data import PageRun
 
-FILMED = Filmed("the box", "the first run")
+FILMED = Replay(("G1",), "box", "box", filmed_run="the first run")
 SCRIPT = "<script>alert(1)</script>"
 ATTACKS = (
     SCRIPT,

@@ -14,7 +14,7 @@ from bs4 import BeautifulSoup
 
 from robo_genesis.core.channels import Runs
 from robo_genesis.evidence.replay_data import read_runs
-from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.html.checks import SERVICES
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay import directive as sphinx_replay
@@ -23,7 +23,7 @@ from robo_genesis.site.replay.scenery import Camera, Scenery
 
 @pytest.fixture(scope="module")
 def joint(pristine) -> Runs:
-    return read_runs(pristine, LESSONS["l04"].compared)
+    return read_runs(pristine, find_replay("l04"))
 
 
 CAMERA = Camera(np.array([0.2, 0.5, 0.0]), 1.5)

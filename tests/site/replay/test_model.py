@@ -11,7 +11,7 @@ import trimesh
 from gltf import report
 from trimesh.transformations import rotation_matrix, translation_matrix
 
-from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons import find_replay
 from robo_genesis.sim import visual_shape
 from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.replay import model as replay_model
@@ -52,7 +52,7 @@ def drawn(parts, traces, credit=None, **around) -> bytes:
 
 @pytest.fixture(scope="module")
 def glb(shape, turning) -> bytes:
-    return drawn(shape, turning, LESSONS["l04"].compared.view.credit)
+    return drawn(shape, turning, find_replay("l04").credit)
 
 
 @pytest.fixture(scope="module")

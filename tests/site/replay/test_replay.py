@@ -19,9 +19,9 @@ from watching import POSES, choose, errors, show_model, violations
 from without_sphinx import STEPS, Panel, falling, page_of
 
 from robo_genesis import lessons as registry
-from robo_genesis.core.declaration import Filmed, Lesson, Moving
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import read_any_trace, write_traces
 from robo_genesis.sim import visual_shape
@@ -32,7 +32,7 @@ from robo_genesis.site.replay.directive import replay_block
 
 LESSON, KEY = "l99", "l99/lecture/cpu"
 NAME = "replay-l99-lecture-cpu"
-DROPPED = Moving(("high", "low"), link="box", thing="box")
+DROPPED = Replay(("high", "low"), "box", "box")
 G = 10.0
 
 
@@ -58,7 +58,7 @@ def dropped(folder, monkeypatch, tmp_path, built):
     arrays = write_traces(folder, traces, None, ["box"])
     write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
     spec = registry.LESSONS["l04"].spec
-    lesson = Lesson(spec, {}, {}, Filmed("the box"), DROPPED)
+    lesson = Lesson(spec, {}, {}, {"drops": DROPPED})
     monkeypatch.setitem(registry.LESSONS.found, LESSON, lesson)
     built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
     box = trimesh.creation.box((0.2, 0.2, 0.2))
@@ -72,20 +72,13 @@ def block(dropped, tmp_path) -> nodes.Node:
     return replay_block(Panel(tmp_path / "book"), KEY, dropped)
 
 
-def test_runs_of_joints_are_not_read_as_bodies_nor_the_other_way(dropped, pristine):
-    with pytest.raises(bundle.BundleRefused, match="joints of free bodies"):
-        read_runs(pristine, Moving(("G1",), link="hand", thing="hand"))
-    with pytest.raises(bundle.BundleRefused):
-        read_runs(dropped, replace(registry.LESSONS["l04"].compared, cases=("high", "low")))
-
-
 def test_pictures_draw_what_the_bundle_holds(dropped):
     glance, panel = sphinx_glance.response(dropped, DROPPED), response(dropped, DROPPED, "cpu")
     assert glance.alt == "Height of the box over time: high and low."
     assert glance.caption == "Height of the box, from get_links_pos."
     both = "Height and vertical velocity of the box over time on cpu"
     assert panel.alt == f"{both}, with the cases high and low drawn over each other."
-    other = Moving(("low", "high"), link="box", thing="box")
+    other = replace(DROPPED, cases=("low", "high"))
     assert sphinx_glance.response(dropped, other).content != glance.content
 
 
