@@ -12,22 +12,11 @@ from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
 MEASURES = False
 
 
-def readings(rendered: bool) -> dict[str, Readings]:
-    """Return the engine's values of the scene and the box."""
-    return {"model": counts(spec.EXPECTED_MODEL), "body": Readings({"mass": "kg"})}
-
-
-def study_readings(rendered: bool) -> dict[str, Readings]:
-    """Return those of the lecture, which also tries each call on both sides of build."""
-    tried = {life_cycle.GROUP: counts(life_cycle.expected(rendered))}
-    return readings(rendered) | tried | trials.readings()
-
-
 LAB = MeasuringPage(
     runs=runs_of(spec.CASES),
     kind=BodyTrace,
     links=(spec.LINK,),
-    readings=readings,
+    readings={"model": counts(spec.EXPECTED_MODEL), "body": Readings({"mass": "kg"})},
     measure=drop_metrics,
     checks=checks.CHECKS,
     parameters=spec.parameters,
@@ -35,7 +24,12 @@ LAB = MeasuringPage(
 LECTURE = replace(
     LAB,
     runs=runs_of(spec.CASES | spec.SUBSTEP_CASES),
-    readings=study_readings,
+    readings={
+        **LAB.readings,
+        life_cycle.GROUP: counts(life_cycle.expected(rendered=False)),
+        **trials.READINGS,
+    },
+    with_camera={life_cycle.GROUP: counts(life_cycle.expected(rendered=True))},
     checks=(*checks.CHECKS, *study.CHECKS, life_cycle.sides_of_build, *trials.CHECKS),
     parameters=spec.study_parameters,
     frames=(*LAB.frames, spec.TRAYS),

@@ -27,8 +27,8 @@ from robo_genesis.sim.bodies.contacts import SETTINGS, ContactCase
 MEASURES = False
 
 
-def readings(cases: Mapping[str, ContactCase]) -> Callable[[bool], dict[str, Readings]]:
-    """Return a function for the engine's values of a page with these cases.
+def readings(cases: Mapping[str, ContactCase]) -> dict[str, Readings]:
+    """Return the engine's values of a page with these cases.
 
     They are the counts of the cube's scene, the masses, the settings of the cases, and the time
     constants of the scenes side by side.
@@ -40,7 +40,7 @@ def readings(cases: Mapping[str, ContactCase]) -> Callable[[bool], dict[str, Rea
     }
     if scenes := [scene for scene, row in study.ROWS.items() if row.keys() <= cases.keys()]:
         found[study.GROUP] = Readings(dict.fromkeys(scenes, "s"))
-    return lambda rendered: found
+    return found
 
 
 LAB = MeasuringPage(

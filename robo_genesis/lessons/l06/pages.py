@@ -6,15 +6,10 @@ import numpy as np
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
-from robo_genesis.core.experiment import MeasuringPage, Run, counts, runs_of
+from robo_genesis.core.experiment import MeasuringPage, Run, runs_of
 from robo_genesis.core.palette import MARKS
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l06 import (
-    checks,
-    spec,
-    study,
-    throughput,
-)
+from robo_genesis.lessons.l06 import checks, spec, study, throughput
 from robo_genesis.lessons.l06.metrics import WorldMetrics, world_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.visual_shape import Part, ball
@@ -41,27 +36,28 @@ LECTURE = MeasuringPage(
     },
     kind=Trace,
     joints=JOINT_NAMES,
-    readings=study.readings,
+    readings=study.READINGS,
     measure=world_metrics,
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
 LAB = replace(
     LECTURE,
-    readings=lambda rendered: study.readings(rendered) | throughput.PROTOCOL.readings(),
+    readings=study.READINGS | throughput.PROTOCOL.readings(),
     checks=(*checks.CHECKS, checks.equal_work),
     parameters=lambda: spec.parameters() | throughput.PROTOCOL.parameters(),
 )
+MODEL = {"model": study.READINGS["model"]}
 MISTAKES = replace(
     LECTURE,
     runs={},
-    readings=lambda rendered: {"model": counts(spec.EXPECTED_MODEL)},
+    readings=MODEL,
     checks=(checks.mapping,),
     camera=False,
 )
 THROUGHPUT = replace(
     MISTAKES,
-    readings=lambda rendered: {"model": counts(spec.EXPECTED_MODEL)} | throughput.DEEPER.readings(),
+    readings=MODEL | throughput.DEEPER.readings(),
     checks=(checks.mapping, checks.equal_work),
     parameters=lambda: spec.parameters() | throughput.DEEPER.parameters(),
 )

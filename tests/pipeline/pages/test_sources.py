@@ -140,7 +140,7 @@ def test_a_page_that_runs_alone_records_elapsed_times():
     alone = [page for page in PAGES if page.alone]
     assert alone
     for page in alone:
-        groups = LESSONS[page.lesson].pages[page.page].readings(True).values()
+        groups = LESSONS[page.lesson].pages[page.page].groups(True).values()
         assert any(group.kind == "performance" for group in groups), page.docname
 
 
