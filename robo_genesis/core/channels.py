@@ -120,9 +120,14 @@ class Runs:
             )
 
     @property
+    def first(self) -> Run:
+        """The run of the first case."""
+        return next(iter(self.traces.values()))
+
+    @property
     def t(self) -> FloatArray:
         """Times of the states, (n+1,) [s]."""
-        return next(iter(self.traces.values())).t
+        return self.first.t
 
     @property
     def title(self) -> str:

@@ -58,7 +58,6 @@ from robo_genesis.site.replay.directive import (
     replay_folder,
     shape_file,
     stage,
-    still_picture,
 )
 
 
@@ -230,24 +229,23 @@ def postures(
         targets: as the key `postures` there.
         found: as the key `tables` there.
     """
-    from robo_genesis.site.replay.poster import picture as drawn  # these load slowly
-    from robo_genesis.site.replay.scenery import fitted
+    from robo_genesis.site.replay.scenery import fitted  # it loads slowly
 
     replay, env, run = find_replay(recorded.lesson), directive.env, recorded.experiment
     shape = shape_file(recorded.lesson, replay.thing)
     traces = {case: with_target(run.traces[case], of) for case, of in targets.items()}
     camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
     inputs = [name.encode(), shape.read_bytes(), *bundle_inputs(recorded.folder)]
-    model = derived("replay", inputs, lambda: glb(shape, run.links, traces, camera, replay.credit))
-    still = derived("poster", inputs, lambda: drawn(model, camera))
-    files, weight = leave_model(env, name, model)
+    alt = f"The {replay.thing} at the start, drawn from the recorded poses."
+    files, weight, still = leave_model(
+        env, name, inputs, lambda: glb(shape, run.links, traces, camera, replay.credit), camera, alt
+    )
     words = files | {"orbit": camera.orbit, "target": camera.target}
     words["alt"] = f"The {replay.thing} in 3D, in the chosen posture."
     yield opening("with-model", data, **words)
-    alt = f"The {replay.thing} at the start, drawn from the recorded poses."
     over = controls.over_the_picture("Show in 3D")
     caption = f"Recorded postures of the {replay.thing}. Yellow cross: the target."
-    yield stage(still_picture(env, name, still, alt), over, caption, f"{name}-model")
+    yield stage(still, over, caption, f"{name}-model")
     loads = f'<p role="status">Show in 3D loads the {escape(replay.thing)}: {weight} kB.</p>'
     yield panel(data, loads)
     yield from fold(directive, found)

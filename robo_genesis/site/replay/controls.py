@@ -105,7 +105,7 @@ def data(runs: Runs, camera: "Camera") -> dict[str, str]:
     return {
         "subject": runs.subject,
         "channels": as_json(channels),
-        "time-digits": str(time_digits(next(iter(runs.traces.values())).dt)),
+        "time-digits": str(time_digits(runs.first.dt)),
         "thing": thing,
         "alt": runs.replay.view or posture,
         "orbit": camera.orbit,

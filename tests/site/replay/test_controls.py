@@ -1,7 +1,5 @@
 """The controls of a replay name what it shows, and its table has every sample."""
 
-import base64
-import gzip
 import html
 import json
 import re
@@ -17,7 +15,6 @@ from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.html.checks import SERVICES
 from robo_genesis.site.replay import controls, viewer
-from robo_genesis.site.replay import directive as sphinx_replay
 from robo_genesis.site.replay.scenery import Camera, Scenery
 
 
@@ -109,16 +106,6 @@ def test_the_viewer_is_the_package_s_without_other_hosts():
     assert "sourceMappingURL" not in script
     assert "Licensed under the Apache License" in script  # the notices are all there
     assert script.startswith("/* See NOTICE.txt. */")
-
-
-def test_a_model_is_written_twice_and_weighed(tmp_path):
-    weight = sphinx_replay.write_model(tmp_path / "replay", "replay-x", b"glTF\0model")
-    script = (tmp_path / "replay" / "replay-x.js").read_bytes()
-    assert weight == len(gzip.compress(script))
-    assert (tmp_path / "replay" / "replay-x.glb").read_bytes() == b"glTF\0model"
-    packed = re.search(rb'\["replay-x"\] = "(.*)";', script)
-    assert packed is not None
-    assert base64.b64decode(packed[1]) == b"glTF\0model"
 
 
 def test_each_package_in_the_viewer_is_named_with_its_licence_beside_it(tmp_path):

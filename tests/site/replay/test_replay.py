@@ -3,6 +3,9 @@
 A page with two falling boxes shows what every replay does; the built lecture has a robot.
 """
 
+import base64
+import gzip
+import re
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
@@ -27,7 +30,7 @@ from robo_genesis.evidence.trace_files import read_any_trace, write_traces
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence import course_runs as sphinx_glance
 from robo_genesis.site.evidence.panel import response
-from robo_genesis.site.replay import directive as sphinx_replay
+from robo_genesis.site.replay import viewer
 from robo_genesis.site.replay.directive import replay_block
 
 LESSON, KEY = "l99", "l99/lecture/cpu"
@@ -97,6 +100,11 @@ def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, t
     assert model.asset.copyright is None
     assert "Franka" not in text
     assert ">licence</a>" in text  # the viewer's
+    script = (written / f"{NAME}.js").read_bytes()
+    packed = re.search(rb'"\] = "(.*)";', script)
+    assert base64.b64decode(packed[1]) == (written / f"{NAME}.glb").read_bytes()
+    weight = len(gzip.compress(script)) + len(gzip.compress(viewer.viewer()))
+    assert f"Play loads the box in 3D: {round(weight / 1000)} kB." in text
 
 
 def test_a_brief_replay_has_the_same_model_one_channel_and_no_sentences(dropped, tmp_path):
@@ -192,7 +200,7 @@ def test_the_box_falls_in_3d_in_the_place_of_its_picture(page):
     assert page.asked.count(f"{NAME}.js") == 0
     assert page.locator(".shown").inner_text() == "at the start"
     show_model(page)
-    assert {sphinx_replay.VIEWER, f"{NAME}.js"} <= {*page.asked}
+    assert {viewer.VIEWER, f"{NAME}.js"} <= {*page.asked}
     assert not picture.is_visible()
     assert stage.bounding_box() == place
     model = page.locator("model-viewer")
