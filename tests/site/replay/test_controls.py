@@ -34,15 +34,6 @@ def parsed(runs: Runs) -> BeautifulSoup:
     return BeautifulSoup(text, "html.parser").div
 
 
-def test_the_table_has_every_sample_of_each_channel(joint):
-    lines = [line.strip("| ").split(" | ") for line in controls.samples(joint).splitlines()]
-    heads = ["q [rad]", "q̇ [rad/s]", "force [N·m]"]
-    assert lines[0] == ["t [s]", *(f"{case} {head}" for case in joint.traces for head in heads)]
-    numbers = np.array([[float(c.replace("−", "-")) for c in row] for row in lines[2:]])
-    recorded = [channel.values[case] for case in joint.traces for channel in joint.channels]
-    assert numbers == pytest.approx(np.column_stack([joint.t, *recorded]), abs=6e-5)
-
-
 def test_the_controls_name_their_parts_and_have_the_script_s_data(joint):
     root = parsed(joint)
     slider = root.select_one("input[type=range]")

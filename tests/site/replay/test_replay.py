@@ -88,6 +88,8 @@ def test_pictures_draw_what_the_bundle_holds(dropped):
 def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, tmp_path):
     assert block["evidence_runs"] == (KEY,)
     rows = [[cell.astext() for cell in row] for row in block.findall(nodes.row)]
+    heads = ["z [m]", "ż [m/s]"]
+    assert rows[0] == ["t [s]", *(f"{case} {head}" for case in ("high", "low") for head in heads)]
     assert len(rows) == 1 + STEPS + 1
     assert rows[21] == ["0.2", "1.8", "−2", "0.8", "−2"]  # height and velocity: high, low
     text = block.astext()
