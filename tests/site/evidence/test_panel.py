@@ -183,22 +183,13 @@ def test_a_recorded_run_replays_from_its_own_record(tmp_path, record):
     assert f'data-model="../replay/{name}.js"' in block[0].astext()
 
 
-@pytest.mark.parametrize(
-    ("lesson", "options", "figures"),
-    [
-        ("l04", {"table": None}, []),  # as in a lecture
-        ("l99", {}, [["l99-amdgpu-initial"], ["l99-amdgpu-final"]]),  # it compares no cases
-    ],
-)
-def test_a_panel_without_compared_cases_has_its_metrics(
-    tmp_path, record, monkeypatch, lesson, options, figures
-):
+def test_in_a_lecture_a_panel_has_its_metrics_alone(tmp_path, record, monkeypatch):
     metrics = [nodes.paragraph("", "The metrics.")]
     monkeypatch.setattr(sphinx_panel, "comparison", lambda *asked: metrics)
-    panel = Panel(tmp_path / "book", **options).panel(record(lesson=lesson))
+    panel = Panel(tmp_path / "book", table=None).panel(record())
     assert "Reference run." in panel.astext()
     assert "The metrics." in panel.astext()
-    assert [figure["ids"] for figure in panel.findall(nodes.figure)] == figures
+    assert not list(panel.findall(nodes.figure))
     assert not [n for n in panel.findall(nodes.container) if "replay-block" in classes(n)]
 
 

@@ -75,14 +75,19 @@ def block(dropped, tmp_path) -> nodes.Node:
     return replay_block(Panel(tmp_path / "book"), KEY, dropped)
 
 
-def test_pictures_draw_what_the_bundle_holds(dropped):
-    glance, panel = sphinx_glance.response(dropped, DROPPED), response(dropped, DROPPED, "cpu")
-    assert glance.alt == "Height of the box over time: high and low."
-    assert glance.caption == "Height of the box, from get_links_pos."
+def test_pictures_draw_what_the_bundle_holds(dropped, tmp_path):
+    env = Panel(tmp_path / "book").env
+    glance = sphinx_glance.response(env, "glance", dropped, DROPPED)
+    panel = response(env, "panel", dropped, DROPPED, "cpu")
+    (shown,), (drawn,) = (of.findall(nodes.image) for of in (glance, panel))
+    assert shown["alt"] == "Height of the box over time: high and low."
+    assert glance[-1].astext() == "Height of the box, from get_links_pos."
     both = "Height and vertical velocity of the box over time on cpu"
-    assert panel.alt == f"{both}, with the cases high and low drawn over each other."
-    other = replace(DROPPED, cases=("low", "high"))
-    assert sphinx_glance.response(dropped, other).content != glance.content
+    assert drawn["alt"] == f"{both}, with the cases high and low drawn over each other."
+    other = sphinx_glance.response(env, "o", dropped, replace(DROPPED, cases=("low", "high")))
+    files = [next(of.findall(nodes.image))["uri"] for of in (glance, other)]
+    first, second = ((tmp_path / "book" / uri[1:]).read_bytes() for uri in files)
+    assert first != second
 
 
 def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, tmp_path):
