@@ -8,11 +8,25 @@ import mujoco
 import numpy as np
 
 from robo_genesis.core.trace import Trace
+from robo_genesis.sim.arm import kinematics
+from robo_genesis.sim.arm.engine_kinematics import IkAnswer
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import ControlCase, assemble
 from robo_genesis.sim.arm.laws import control_law
 from robo_genesis.sim.mujoco import joints as mujoco_joints
 from robo_genesis.sim.mujoco.kinematics import link_poses
+
+LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
+
+
+def answer(position, q_start, iterations) -> IkAnswer:
+    """Return what a solver like the engine's answers for a hand that points down."""
+    from robo_genesis.lessons.l05.spec import ARM_LIMITS, DOWN
+
+    target = kinematics.Pose(np.asarray(position), DOWN)
+    q = kinematics.solve(target, q_start[:7], *ARM_LIMITS, iterations=iterations, damping=0.01)
+    error = kinematics.pose_error(target, kinematics.hand_pose(q))
+    return IkAnswer(np.float32([*q, *q_start[7:]]), np.float32(error))
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Runs of one bundle as channels, which pictures draw and replays show."""
+"""What a lesson compares, and its runs as channels, which pictures draw and replays show."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robo_genesis.core.scene import FloatArray
+from robo_genesis.core.text import listed
 from robo_genesis.core.trace import BodyTrace, Trace
 
 MEASURES = False
@@ -47,38 +48,62 @@ class Level:
 
 
 @dataclass(frozen=True, slots=True)
-class ReplayView:
-    """The 3D view of runs.
+class Replay:
+    """Cases that a lesson compares: they share pictures, a replay and the words for both.
 
-    `thing` is the name of what moves: "robot". `alt` describes the view. `credit` names the authors
-    of the shape, None for a shape of the scene itself.
+    | field | meaning |
+    |---|---|
+    | `cases` | names of the runs |
+    | `follows` | the joint of a robot, or the link of free bodies, whose motion the curves show |
+    | `thing` | what moves, for a reader: "box" |
+    | `axes` | of the world, along which a link is followed; the first is that of small pictures |
+    | `band` | half width of the settling band around the target of a joint |
+    | `quality` | a sentence on one case, with its metrics in braces: `Rise time {rise_time}.` |
+    | `until` | end of the time axis of the small picture [s], None for the end of the runs |
+    | `places` | for all cases in one view, the horizontal position (x, y) of each [m] |
+    | `credit` | authors of the shape, None for a shape of the scene itself |
+    | `view` | alternative text of the 3D view |
+    | `alt`, `caption` | of a picture of the first channel |
+    | `filmed`, `filmed_run` | subject of the camera frames, and its run |
+
+    Texts that are not given are made from the names.
     """
 
+    cases: tuple[str, ...]
+    follows: str
     thing: str
-    alt: str
+    axes: tuple[str, ...] = ("z",)
+    band: float = 0.0
+    quality: str = ""
+    until: float | None = None
+    places: tuple[tuple[float, float], ...] = ()
     credit: str | None = None
+    view: str = ""
+    alt: str = ""
+    caption: str = ""
+    filmed: str = ""
+    filmed_run: str = "the baseline"
 
 
 @dataclass(frozen=True, slots=True)
 class Runs:
     """Runs with the same times; `subject` is the joint or body of the channels: `the box`.
 
-    `moves` describes by case the motion, with `**strong**` and code as its only markup. `alt` and
-    `caption` belong to a picture of the first channel.
+    `source` is the call of the engine that reads the first channel. `moves` describes by case the
+    motion, with `**strong**` and code as its only markup.
 
     Raises:
         ValueError: there are no runs or no channels, or the runs differ in their times.
     """
 
+    replay: Replay
     subject: str
+    source: str
     traces: Mapping[str, Run]
     links: Sequence[str]
     channels: Sequence[Channel]
-    levels: Sequence[Level]
     moves: Mapping[str, str]
-    view: ReplayView
-    alt: str
-    caption: str
+    levels: Sequence[Level] = ()
 
     def __post_init__(self) -> None:
         if not self.traces or not self.channels:
@@ -95,9 +120,30 @@ class Runs:
             )
 
     @property
+    def first(self) -> Run:
+        """The run of the first case."""
+        return next(iter(self.traces.values()))
+
+    @property
     def t(self) -> FloatArray:
         """Times of the states, (n+1,) [s]."""
-        return next(iter(self.traces.values())).t
+        return self.first.t
+
+    @property
+    def title(self) -> str:
+        """The first channel in words: `Height of the box`."""
+        return f"{self.channels[0].name.capitalize()} of {self.subject}"
+
+    @property
+    def alt(self) -> str:
+        """The alternative text of a picture of the first channel."""
+        cases = f": {listed(list(self.traces))}" if len(self.traces) > 1 else ""
+        return self.replay.alt or f"{self.title} over time{cases}."
+
+    @property
+    def caption(self) -> str:
+        """The caption of a picture of the first channel."""
+        return self.replay.caption or f"{self.title}, from {self.source}."
 
     def levels_of(self, channel: Channel) -> list[Level]:
         """Return the levels of a channel."""

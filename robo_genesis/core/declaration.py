@@ -1,17 +1,16 @@
 """The form of a lesson's declaration in its `__init__.py`."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, Protocol
 
-from robo_genesis.core.channels import ReplayView
+from robo_genesis.core.channels import Replay
 from robo_genesis.core.checks import claim_of
 from robo_genesis.core.comparison import Relation
 from robo_genesis.core.experiment import MeasuringPage
 from robo_genesis.core.metrics import CaseMetrics
-from robo_genesis.core.text import listed
 
 MEASURES = False
 
@@ -41,61 +40,6 @@ class Specification(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
-    """Cases that share one plot and one replay.
-
-    `until` is the end of the time axis of the small plot [s], None for the end of the runs. With
-    `places`, horizontal positions (x, y) [m], the replay shows all cases at once, each at its own.
-    """
-
-    cases: tuple[str, ...]
-    until: float | None = field(default=None, kw_only=True)
-    places: tuple[tuple[float, float], ...] = field(default=(), kw_only=True)
-
-    @property
-    def names(self) -> str:
-        """The cases as words: `G1, G2 and G3`."""
-        return listed(self.cases)
-
-
-@dataclass(frozen=True, slots=True)
-class Compared(Drawn):
-    """Cases that move one joint of a robot; `band` is the half width of its settling band.
-
-    `alt` and `caption` belong to a picture of the joint's position. `quality` is a sentence about
-    one case with its metrics by name in braces: `Rise time {rise_time}.`
-    """
-
-    joint: str
-    band: float
-    view: ReplayView
-    alt: str
-    caption: str
-    quality: str
-
-
-@dataclass(frozen=True, slots=True)
-class Moving(Drawn):
-    """Cases of free bodies, plotted as position and velocity of one link.
-
-    `link` is its name in the arrays, and `thing` its name for a reader, such as "box". `axes` are
-    axes of the world. The position along the first axis is the curve of the small pictures.
-    """
-
-    link: str
-    thing: str
-    axes: tuple[str, ...] = ("z",)
-
-
-@dataclass(frozen=True, slots=True)
-class Filmed:
-    """The subject of the camera frames in the words of their captions, and their run."""
-
-    thing: str
-    case: str = "the baseline"
-
-
-@dataclass(frozen=True, slots=True)
 class Lesson:
     """One lesson.
 
@@ -104,19 +48,13 @@ class Lesson:
     | `spec` | its module of data |
     | `metrics` | by case, the class of its metrics |
     | `pages` | the measuring pages by name |
-    | `filmed` | the subject of its camera frames |
-    | `compared` | the cases of its pictures and its replay, None for no replay |
-    | `further` | further replays by name |
-    | `marks` | the palette's marks of its cases; `baseline` needs none |
+    | `replays` | by name; the pictures of its evidence show the first |
     """
 
     spec: Specification
     metrics: Mapping[str, type[CaseMetrics]]
     pages: Mapping[str, MeasuringPage]
-    filmed: Filmed
-    compared: Compared | Moving | None = None
-    further: Mapping[str, Moving] = field(default_factory=dict)
-    marks: Mapping[str, str] = field(default_factory=dict)
+    replays: Mapping[str, Replay]
 
     def __post_init__(self) -> None:
         """Refuse checks without a claim; raises as `claim_of`."""

@@ -1,7 +1,7 @@
 """The declaration of a page that measures, and the experiment that one run of it is."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -55,7 +55,7 @@ def inputs(
 def case_inputs(cases: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Return every field of every case, which are dataclasses, as JSON values."""
     return {
-        name: {field: json_value(value) for field, value in asdict(case).items()}
+        name: {key: json_value(value) for key, value in asdict(case).items()}
         for name, case in cases.items()
     }
 
@@ -92,7 +92,8 @@ class MeasuringPage:
     | `kind` | the class of their traces |
     | `links` | labels of the arrays' links, none for any different ones |
     | `joints` | labels of the arrays' DOFs, none for free bodies |
-    | `readings` | the groups of values of the engine in a run with or without a camera |
+    | `readings` | the groups of values of the engine |
+    | `with_camera` | those that a run with a camera has besides or in their place |
     | `measure` | returns the metrics of a case from its trace |
     | `checks` | named checks in the order of their table |
     | `parameters` | returns every configured input as JSON values |
@@ -105,12 +106,13 @@ class MeasuringPage:
 
     runs: Mapping[str, Run]
     kind: type[TimeSeries]
-    readings: Callable[[bool], Mapping[str, Readings]]
+    readings: Mapping[str, Readings]
     measure: Callable[[Any, Any], CaseMetrics]
     checks: Sequence[Callable[["Experiment"], Iterable[Finding]]]
     parameters: Callable[[], dict[str, Any]]
     links: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
+    with_camera: Mapping[str, Readings] = field(default_factory=dict)
     camera: bool = True
     frames: tuple[str, ...] = ("initial", "final")
 
@@ -118,6 +120,10 @@ class MeasuringPage:
     def cases(self) -> dict[str, Any]:
         """The settings of each run."""
         return {name: run.case for name, run in self.runs.items()}
+
+    def groups(self, rendered: bool) -> dict[str, Readings]:
+        """Return the groups of values of a run with or without a camera."""
+        return {**self.readings, **(self.with_camera if rendered else {})}
 
     def metrics(self, traces: Mapping[str, Any]) -> dict[str, Any]:
         """Return the metrics of each run that has a trace and metrics.
@@ -168,10 +174,9 @@ class Experiment:
 
     def records(self) -> dict[str, dict[str, Record]]:
         """Return the content of `metrics.json`: readings of the engine and metrics of each run."""
-        declared = self.page.readings(self.rendered)
         of_engine = {
             name: reading_records(self.readings[name], of.units, of.kind)
-            for name, of in declared.items()
+            for name, of in self.page.groups(self.rendered).items()
         }
         return of_engine | case_records(self.metrics)
 

@@ -82,7 +82,7 @@ def readings(
             an integer.
     """
     found = {}
-    for group, declared in page.readings(rendered).items():
+    for group, declared in page.groups(rendered).items():
         recorded = metrics.get(group, {}).items()
         values = {name: metric.value for name, metric in recorded if metric.value is not None}
         what = f"list of values in {group}"

@@ -5,7 +5,8 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
-from robo_genesis.core.declaration import Compared, Filmed, Lesson, Moving
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage
 
 
@@ -23,7 +24,7 @@ class _Lessons(Mapping[str, Lesson]):
                 raise TypeError(
                     f"lessons/{name}/__init__.py declares LESSON as {lesson!r}. Each folder of a "
                     "lesson declares one: LESSON = Lesson(spec=..., metrics=..., pages=..., "
-                    "filmed=...)."
+                    "replays=...)."
                 )
             self.found[name] = lesson
         return lesson
@@ -42,12 +43,14 @@ LESSONS = _Lessons(sorted(init.parent.name for init in Path(__file__).parent.glo
 def course_marks() -> dict[str, str]:
     """Return the palette's mark of each case that has one of its own, from all lessons.
 
+    A lesson gives them as `CASE_MARKS` in its `spec`, if it has any.
+
     Raises:
         ValueError: two lessons give one case different marks.
     """
     found = {"baseline": "baseline"}
     for name, lesson in LESSONS.items():
-        for case, mark in lesson.marks.items():
+        for case, mark in getattr(lesson.spec, "CASE_MARKS", {}).items():
             if found.setdefault(case, mark) != mark:
                 raise ValueError(
                     f"{name} gives the case {case} the mark {mark!r}, an earlier lesson gives it "
@@ -67,33 +70,18 @@ def find_lesson(name: str) -> Lesson:
     return LESSONS[name]
 
 
-def compared_cases(lesson: str) -> Compared | Moving | None:
-    """Return the cases in the pictures of a lesson, None if it declares none."""
-    return LESSONS[lesson].compared if lesson in LESSONS else None
-
-
-def drawn_cases(lesson: str, name: str = "") -> Compared | Moving:
-    """Return the cases of a replay: the compared cases, or further cases by their name.
+def find_replay(lesson: str, name: str = "") -> Replay:
+    """Return a replay of a lesson by its name, the first without a name.
 
     Raises:
-        LookupError: the lesson declares no such cases; the message lists the declared names.
+        LookupError: it does not exist; the message lists those of the lesson.
     """
-    compared = compared_cases(lesson)
-    if compared is None:
-        raise LookupError(
-            f"The lesson {lesson} declares no compared cases, so it has no replay. Add `compared` "
-            f"to the LESSON in robo_genesis/lessons/{lesson}/__init__.py."
-        )
-    further = LESSONS[lesson].further
-    if name and name not in further:
-        known = ", ".join(further) or "none"
-        raise LookupError(f"{lesson} has no further cases called {name!r}. Choices: {known}.")
-    return further[name] if name else compared
-
-
-def filmed(lesson: str) -> Filmed:
-    """Return the subject of the camera frames, `the scene` for an unknown lesson."""
-    return LESSONS[lesson].filmed if lesson in LESSONS else Filmed("the scene")
+    replays = find_lesson(lesson).replays
+    name = name or next(iter(replays), "")
+    if name not in replays:
+        known = ", ".join(replays) or "none"
+        raise LookupError(f"{lesson} has no replay called {name!r}. Choices: {known}.")
+    return replays[name]
 
 
 def find_page(lesson: str, page: str) -> MeasuringPage:

@@ -80,6 +80,14 @@ def refused(folder) -> str:
     return str(caught.value)
 
 
+def accepted_then_refused(engine, outputs, lesson, page, run, spoil) -> str:
+    """Require that the bundle of a run is accepted, and return the refusal once it is spoiled."""
+    folder = written(engine, outputs, lesson, page, run)
+    assert all(check.passed for check in verify_bundle(folder).predicate.checks)
+    spoil(folder)
+    return refused(folder)
+
+
 def table(folder, case) -> list[dict[str, str]]:
     """Return the rows of a run's CSV file."""
     arrays = bundle.read_arrays(folder)

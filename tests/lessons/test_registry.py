@@ -5,13 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from robo_genesis import lessons as registry
 from robo_genesis.core.comparison import HELD_BY
-from robo_genesis.core.declaration import Compared
 from robo_genesis.core.palette import CASE_CLASSES
 from robo_genesis.core.project import BOOK, ROOT
 from robo_genesis.evidence.trace_files import KINDS
-from robo_genesis.lessons import LESSONS, find_lesson, find_page
+from robo_genesis.lessons import LESSONS, find_lesson, find_page, find_replay
 from robo_genesis.pipeline.pages.book import find_pages
 
 
@@ -25,14 +23,15 @@ def test_cases_and_metrics_of_a_lesson_exist(name):
     lesson = LESSONS[name]
     for page in lesson.pages.values():
         assert page.parameters()
-    drawn = [lesson.compared, *lesson.further.values()]
-    assert all(of is None or {*of.cases} <= {*lesson.spec.CASES} for of in drawn)
+    units = lesson.about_metrics("unit")
+    for replay in lesson.replays.values():
+        assert {*replay.cases} <= {*lesson.spec.CASES}
+        replay.quality.format_map(units)  # a name that is no metric raises KeyError
+    assert lesson.replays
     assert lesson.metrics.keys() == lesson.spec.CASES.keys()
-    assert lesson.marks.keys() <= lesson.spec.CASES.keys()
-    assert {*lesson.marks.values()} <= CASE_CLASSES.keys()
-    if isinstance(lesson.compared, Compared):
-        units = lesson.about_metrics("unit")
-        assert lesson.compared.quality.format_map(units)  # a name that is no metric raises KeyError
+    marks = getattr(lesson.spec, "CASE_MARKS", {})
+    assert marks.keys() <= lesson.spec.CASES.keys()
+    assert {*marks.values()} <= CASE_CLASSES.keys()
     for (first, second), metric, order, margin in lesson.spec.RELATIONS:
         assert {first, second} <= {*lesson.spec.CASES}
         units = {lesson.metrics[case].about("unit")[metric] for case in (first, second)}
@@ -70,11 +69,8 @@ def test_a_lookup_error_lists_the_choices():
         find_lesson("l00")
     with pytest.raises(LookupError, match=r"l04/exam does not measure anything\. Choices: l04/lab"):
         find_page("l04", "exam")
-
-
-def test_cases_are_written_as_words():
-    assert registry.Moving(("A", "B", "C"), link="box", thing="box").names == "A, B and C"
-    assert registry.Moving(("A",), link="box", thing="box").names == "A"
+    with pytest.raises(LookupError, match=r"no replay called 'falls'\. Choices: drops, slides\."):
+        find_replay("l03", "falls")
 
 
 def test_a_lesson_gives_its_modules_and_what_it_offers_when_they_are_used():

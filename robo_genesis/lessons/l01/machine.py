@@ -28,6 +28,11 @@ PARTS = ("import", "init", "scene", "build", "first_step", "more_steps")
 STARTS = ("first", "second")
 """A process that finds no compiled kernels, and one that finds those of the first."""
 
+READINGS = {
+    DOCTOR: counts(STEPS),
+    TIMES: Readings({f"{n}_{part}": "s" for n in STARTS for part in PARTS}, "performance"),
+}
+
 SCRIPT = f"""\
 import json, time
 marks = [time.perf_counter()]
@@ -54,12 +59,6 @@ sphere.get_pos()
 mark()
 print(json.dumps([b - a for a, b in zip(marks, marks[1:])]))
 """
-
-
-def readings() -> dict[str, Readings]:
-    """Return the groups of values that the lecture reads."""
-    seconds = {f"{start}_{part}": "s" for start in STARTS for part in PARTS}
-    return {DOCTOR: counts(STEPS), TIMES: Readings(seconds, "performance")}
 
 
 def examine(changed: Mapping[str, str] | None = None) -> dict[str, Any]:

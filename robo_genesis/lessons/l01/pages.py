@@ -2,8 +2,9 @@
 
 from dataclasses import replace
 
-from robo_genesis.core.declaration import Filmed, Lesson, Moving
-from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.experiment import MeasuringPage, counts, runs_of
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l01 import checks, machine, spec
 from robo_genesis.lessons.l01.metrics import FallMetrics, fall_metrics
@@ -11,23 +12,18 @@ from robo_genesis.lessons.l01.metrics import FallMetrics, fall_metrics
 MEASURES = False
 
 
-def readings(rendered: bool) -> dict[str, Readings]:
-    """Return the engine's counts of the scene."""
-    return {"model": counts(spec.EXPECTED_MODEL)}
-
-
 LAB = MeasuringPage(
     runs=runs_of(spec.CASES),
     kind=BodyTrace,
     links=(spec.LINK,),
-    readings=readings,
+    readings={"model": counts(spec.EXPECTED_MODEL)},
     measure=fall_metrics,
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
 LECTURE = replace(
     LAB,
-    readings=lambda rendered: readings(rendered) | machine.readings(),
+    readings={**LAB.readings, **machine.READINGS},
     checks=(*checks.CHECKS, checks.doctor),
     parameters=spec.lecture_parameters,
 )
@@ -36,6 +32,5 @@ LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, FallMetrics),
     pages={"lab": LAB, "lecture": LECTURE},
-    filmed=Filmed("the sphere"),
-    compared=Moving(tuple(spec.CASES), link=spec.LINK, thing="sphere"),
+    replays={"fall": Replay(tuple(spec.CASES), follows=spec.LINK, thing="sphere")},
 )

@@ -8,7 +8,6 @@ __getattr__ = on_demand(
     LECTURE="pages",
     LESSON="pages",
     MISTAKES="pages",
-    readings="pages",
     fallen="robo_genesis.sim.bodies.falls",
     read_model="robo_genesis.sim.bodies.rigid_bodies",
     run_drop="robo_genesis.sim.bodies.rigid_bodies",

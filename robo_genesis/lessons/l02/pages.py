@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from robo_genesis.core.declaration import Filmed, Lesson, Moving
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, Readings, counts, runs_of
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.lessons.l02 import checks, life_cycle, spec, study, trials
@@ -11,22 +12,11 @@ from robo_genesis.lessons.l02.metrics import DropMetrics, drop_metrics
 MEASURES = False
 
 
-def readings(rendered: bool) -> dict[str, Readings]:
-    """Return the engine's values of the scene and the box."""
-    return {"model": counts(spec.EXPECTED_MODEL), "body": Readings({"mass": "kg"})}
-
-
-def study_readings(rendered: bool) -> dict[str, Readings]:
-    """Return those of the lecture, which also tries each call on both sides of build."""
-    tried = {life_cycle.GROUP: counts(life_cycle.expected(rendered))}
-    return readings(rendered) | tried | trials.readings()
-
-
 LAB = MeasuringPage(
     runs=runs_of(spec.CASES),
     kind=BodyTrace,
     links=(spec.LINK,),
-    readings=readings,
+    readings={"model": counts(spec.EXPECTED_MODEL), "body": Readings({"mass": "kg"})},
     measure=drop_metrics,
     checks=checks.CHECKS,
     parameters=spec.parameters,
@@ -34,7 +24,12 @@ LAB = MeasuringPage(
 LECTURE = replace(
     LAB,
     runs=runs_of(spec.CASES | spec.SUBSTEP_CASES),
-    readings=study_readings,
+    readings={
+        **LAB.readings,
+        life_cycle.GROUP: counts(life_cycle.expected(rendered=False)),
+        **trials.READINGS,
+    },
+    with_camera={life_cycle.GROUP: counts(life_cycle.expected(rendered=True))},
     checks=(*checks.CHECKS, *study.CHECKS, life_cycle.sides_of_build, *trials.CHECKS),
     parameters=spec.study_parameters,
     frames=(*LAB.frames, spec.TRAYS),
@@ -45,6 +40,5 @@ LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, DropMetrics),
     pages={"lab": LAB, "lecture": LECTURE, "mistakes": MISTAKES},
-    filmed=Filmed("the box"),
-    compared=Moving(tuple(spec.CASES), link=spec.LINK, thing="box"),
+    replays={"fall": Replay(tuple(spec.CASES), follows=spec.LINK, thing="box")},
 )

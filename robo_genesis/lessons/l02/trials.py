@@ -24,13 +24,11 @@ PIECES, HULL = "pieces", "hull"
 FALLS = ("higher", "thrown", "heavier", "moon")
 
 
-def readings() -> dict[str, Readings]:
-    """Return the groups of values that the lecture reads."""
-    return {
-        SHAPES: counts(f"{name}_{what}" for name in spec.SHAPES for what in COUNTED),
-        TRAYS: Readings(dict.fromkeys((PIECES, HULL), "m")),
-        FURTHER: Readings(dict.fromkeys(FALLS, "m")),
-    }
+READINGS = {
+    SHAPES: counts(f"{name}_{what}" for name in spec.SHAPES for what in COUNTED),
+    TRAYS: Readings(dict.fromkeys((PIECES, HULL), "m")),
+    FURTHER: Readings(dict.fromkeys(FALLS, "m")),
+}
 
 
 def count_shapes(entities: Mapping[str, Any]) -> dict[str, int]:

@@ -3,8 +3,9 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
+from robo_genesis.core.channels import Replay
 from robo_genesis.core.checks import Finding
-from robo_genesis.core.declaration import Filmed, Lesson, Moving
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import (
     Experiment,
     MeasuringPage,
@@ -26,8 +27,8 @@ from robo_genesis.sim.bodies.contacts import SETTINGS, ContactCase
 MEASURES = False
 
 
-def readings(cases: Mapping[str, ContactCase]) -> Callable[[bool], dict[str, Readings]]:
-    """Return a function for the engine's values of a page with these cases.
+def readings(cases: Mapping[str, ContactCase]) -> dict[str, Readings]:
+    """Return the engine's values of a page with these cases.
 
     They are the counts of the cube's scene, the masses, the settings of the cases, and the time
     constants of the scenes side by side.
@@ -39,7 +40,7 @@ def readings(cases: Mapping[str, ContactCase]) -> Callable[[bool], dict[str, Rea
     }
     if scenes := [scene for scene, row in study.ROWS.items() if row.keys() <= cases.keys()]:
         found[study.GROUP] = Readings(dict.fromkeys(scenes, "s"))
-    return lambda rendered: found
+    return found
 
 
 LAB = MeasuringPage(
@@ -92,9 +93,8 @@ LESSON = Lesson(
         "contact": CONTACT,
         "energy": ENERGY,
     },
-    filmed=Filmed("the cube"),
-    compared=Moving(tuple(study_spec.DROPPED), link=spec.LINK, thing="cube", until=0.5),
-    further={
-        "slides": Moving(tuple(study_spec.HOPPED), link=spec.LINK, thing="cube", axes=("x", "z"))
+    replays={
+        "drops": Replay(tuple(study_spec.DROPPED), spec.LINK, "cube", until=0.5),
+        "slides": Replay(tuple(study_spec.HOPPED), spec.LINK, "cube", axes=("x", "z")),
     },
 )

@@ -5,16 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from robo_genesis.core.channels import ReplayView
-from robo_genesis.core.declaration import Compared, Filmed, Lesson
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, Run, case_inputs, counts, runs_of
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l05 import (
-    checks,
-    restarts,
-    spec,
-    study,
-)
+from robo_genesis.lessons.l05 import checks, restarts, spec, study
 from robo_genesis.lessons.l05.metrics import ReachMetrics, reach_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.camera import record as view_record
@@ -36,7 +31,7 @@ MOTION = MeasuringPage(
     runs=runs_of(spec.CASES),
     kind=Trace,
     joints=JOINT_NAMES,
-    readings=lambda rendered: MODEL | study.READINGS,
+    readings=MODEL | study.READINGS,
     measure=reach_metrics,
     checks=checks.WITHOUT_CAMERA,
     parameters=spec.parameters,
@@ -44,7 +39,7 @@ MOTION = MeasuringPage(
 )
 LAB = replace(
     MOTION,
-    readings=lambda rendered: MODEL | study.READINGS | SEEN | view_record.groups(spec.VIEWED),
+    readings=MODEL | study.READINGS | SEEN | view_record.groups(spec.VIEWED),
     checks=checks.CHECKS,
     camera=True,
     frames=("initial", "final", *view_record.frame_names(spec.VIEWED)),
@@ -55,7 +50,7 @@ ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS
 SOLUTIONS = replace(
     MOTION,
     runs={**MOTION.runs, **ANSWERS},
-    readings=lambda rendered: MODEL | study.READINGS | restarts.READINGS,
+    readings=MODEL | study.READINGS | restarts.READINGS,
     checks=(*checks.WITHOUT_CAMERA, *checks.SOLUTIONS),
     parameters=lambda: spec.parameters() | {"questions": case_inputs(spec.QUESTIONS)},
 )
@@ -64,7 +59,7 @@ SOLUTIONS = replace(
 CAMERAS = replace(
     MOTION,
     runs=runs_of({"baseline": spec.BASELINE}),
-    readings=lambda rendered: MODEL | SEEN | view_record.groups(*spec.VIEWS),
+    readings=MODEL | SEEN | view_record.groups(*spec.VIEWS),
     checks=checks.CAMERAS,
     parameters=spec.view_parameters,
     camera=True,
@@ -82,21 +77,20 @@ LESSON = Lesson(
         "solutions": SOLUTIONS,
         "cameras": CAMERAS,
     },
-    filmed=Filmed("the Franka"),
-    marks=spec.CASE_MARKS,
-    compared=Compared(
-        tuple(spec.CASES),
-        joint="joint4",
-        band=0.01,
-        until=0.6,
-        view=ReplayView(
+    replays={
+        "reach": Replay(
+            tuple(spec.CASES),
+            follows="joint4",
             thing="robot",
-            alt="The robot in the posture of the sample; a sphere marks the target of the hand.",
+            band=0.01,
+            until=0.6,
             credit=CREDIT,
-        ),
-        alt="Position of joint4 over time in three runs, and its command.",
-        caption="Position of joint4 in three runs, from get_dofs_position.",
-        quality="The hand starts {start_distance} from its target and ends {final_distance} and "
-        "{final_angle} from it.",
-    ),
+            view="The robot in the posture of the sample; a sphere marks the target of the hand.",
+            alt="Position of joint4 over time in three runs, and its command.",
+            caption="Position of joint4 in three runs, from get_dofs_position.",
+            quality="The hand starts {start_distance} from its target and ends {final_distance} "
+            "and {final_angle} from it.",
+            filmed="the Franka",
+        )
+    },
 )

@@ -4,17 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from robo_genesis.core.channels import ReplayView
-from robo_genesis.core.declaration import Compared, Filmed, Lesson
-from robo_genesis.core.experiment import MeasuringPage, Run, counts, runs_of
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
+from robo_genesis.core.experiment import MeasuringPage, Run, runs_of
 from robo_genesis.core.palette import MARKS
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l06 import (
-    checks,
-    spec,
-    study,
-    throughput,
-)
+from robo_genesis.lessons.l06 import checks, spec, study, throughput
 from robo_genesis.lessons.l06.metrics import WorldMetrics, world_metrics
 from robo_genesis.sim.arm.franka import CREDIT, JOINT_NAMES
 from robo_genesis.sim.visual_shape import Part, ball
@@ -41,27 +36,28 @@ LECTURE = MeasuringPage(
     },
     kind=Trace,
     joints=JOINT_NAMES,
-    readings=study.readings,
+    readings=study.READINGS,
     measure=world_metrics,
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
 LAB = replace(
     LECTURE,
-    readings=lambda rendered: study.readings(rendered) | throughput.PROTOCOL.readings(),
+    readings=study.READINGS | throughput.PROTOCOL.readings(),
     checks=(*checks.CHECKS, checks.equal_work),
     parameters=lambda: spec.parameters() | throughput.PROTOCOL.parameters(),
 )
+MODEL = {"model": study.READINGS["model"]}
 MISTAKES = replace(
     LECTURE,
     runs={},
-    readings=lambda rendered: {"model": counts(spec.EXPECTED_MODEL)},
+    readings=MODEL,
     checks=(checks.mapping,),
     camera=False,
 )
 THROUGHPUT = replace(
     MISTAKES,
-    readings=lambda rendered: {"model": counts(spec.EXPECTED_MODEL)} | throughput.DEEPER.readings(),
+    readings=MODEL | throughput.DEEPER.readings(),
     checks=(checks.mapping, checks.equal_work),
     parameters=lambda: spec.parameters() | throughput.DEEPER.parameters(),
 )
@@ -76,22 +72,22 @@ LESSON = Lesson(
         "mistakes": MISTAKES,
         "throughput": THROUGHPUT,
     },
-    filmed=Filmed("the robots of all environments", "the batch"),
-    marks=spec.CASE_MARKS,
-    compared=Compared(
-        tuple(spec.WORLDS),
-        joint="joint1",
-        band=0.01,
-        places=spec.PLACES,
-        view=ReplayView(
+    replays={
+        "batch": Replay(
+            tuple(spec.WORLDS),
+            follows="joint1",
             thing="robots",
-            alt="Four robots in 3D, in the postures of the sample that is shown. Spheres in the "
-            "colours of the runs are at the targets of the hands.",
+            band=0.01,
+            places=spec.PLACES,
             credit=CREDIT,
-        ),
-        alt="Position of joint1 over time in four environments.",
-        caption="Position of joint1 in four environments, from get_dofs_position.",
-        quality="The hand ends {final_distance} from its last target; after 1.8 s it moved "
-        "{moved_later}.",
-    ),
+            view="Four robots in 3D, in the postures of the sample that is shown. Spheres in the "
+            "colours of the runs are at the targets of the hands.",
+            alt="Position of joint1 over time in four environments.",
+            caption="Position of joint1 in four environments, from get_dofs_position.",
+            quality="The hand ends {final_distance} from its last target; after 1.8 s it moved "
+            "{moved_later}.",
+            filmed="the robots of all environments",
+            filmed_run="the batch",
+        )
+    },
 )

@@ -29,8 +29,8 @@ def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the link origins of environment 0."""
     if run.rendered:
         return plotting.both_ends({name: run.frames[name] for name in ("initial", "final")})
-    figure = plotting.figure(5)
-    plotting.schematic(figure.subplots(), run.traces["env_0"], LINK_PARENTS)
+    figure, ax = plotting.axes(5)
+    plotting.schematic(ax, run.traces["env_0"], LINK_PARENTS)
     return figure
 
 
@@ -45,8 +45,7 @@ def to_target(run: Experiment, name: str, world: Environment) -> FloatArray:
 
 def distances(run: Experiment, names: Iterable[str], title: str) -> tuple[Figure, Axes]:
     """Draw the distance of the hand from its target in some runs, on a logarithmic scale."""
-    figure = plotting.figure(3.6)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(3.6)
     for name in names:
         style = look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
         apart = to_target(run, name, run.cases[name])
@@ -71,8 +70,7 @@ def variants(run: Experiment) -> Figure:
 
 def alone(run: Experiment) -> Figure:
     """Draw the largest difference of an arm joint's position between each row and its run alone."""
-    figure = plotting.figure(3.4)
-    ax = figure.subplots()
+    figure, ax = plotting.axes(3.4)
     for k, name in enumerate(spec.WORLDS):
         row, other = run.traces[name], run.traces[f"alone_{k}"]
         apart = np.abs(row.q.astype(float) - other.q)[:, :ARM].max(axis=1)

@@ -23,14 +23,13 @@ MASSES = dict.fromkeys(spec.VARIANTS, "kg")
 """Mass of each hand, as it reads back."""
 
 
-def readings(rendered: bool) -> dict[str, Readings]:
-    """Return the groups of the engine's values on the lesson's pages."""
-    return {
-        "model": counts(spec.EXPECTED_MODEL),
-        "mixed": Readings(MIXED),
-        "mixed_accepted": counts(spec.WORLDS),
-        "hand_mass": Readings(MASSES),
-    }
+READINGS = {
+    "model": counts(spec.EXPECTED_MODEL),
+    "mixed": Readings(MIXED),
+    "mixed_accepted": counts(spec.WORLDS),
+    "hand_mass": Readings(MASSES),
+}
+"""The groups of the engine's values on the lesson's pages."""
 
 
 def read_mixed(page: Any, robot: Any) -> None:

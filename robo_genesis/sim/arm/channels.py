@@ -4,12 +4,42 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from robo_genesis.core.channels import Channel, Level
+from robo_genesis.core.channels import Channel, Level, Replay, Runs, farthest_link
 from robo_genesis.core.text import with_unit
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm.joints import JointMap
 
 MEASURES = False
+
+
+def runs(
+    traces: Mapping[str, Trace], links: Sequence[str], joints: JointMap, replay: Replay
+) -> Runs:
+    """Return the runs of a robot with their descriptions.
+
+    Args:
+        traces: by case.
+        links: names, in the order of the traces' arrays.
+        joints: of the DOFs.
+        replay: what is shown of them.
+
+    Raises:
+        ValueError: the robot has no such joint; as `Runs`.
+    """
+    joint = replay.follows
+    return Runs(
+        replay,
+        subject=joint,
+        source="get_dofs_position",
+        traces=traces,
+        links=links,
+        channels=channels(traces, joints, joint),
+        levels=levels(traces, joints, joint, replay.band),
+        moves={
+            case: f"**{case}**: {motion(trace, joints, joint)} {farthest_link(links, trace)}"
+            for case, trace in traces.items()
+        },
+    )
 
 
 def channels(traces: Mapping[str, Trace], joints: JointMap, joint: str) -> list[Channel]:

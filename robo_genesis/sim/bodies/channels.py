@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robo_genesis.core.channels import Channel, ReplayView, Runs, farthest_link
-from robo_genesis.core.text import listed, time_digits, with_unit
+from robo_genesis.core.channels import Channel, Replay, Runs, farthest_link
+from robo_genesis.core.text import time_digits, with_unit
 from robo_genesis.core.trace import BodyTrace
 
 MEASURES = False
@@ -32,51 +32,38 @@ AXES = {
 }
 
 
-def runs(
-    traces: Mapping[str, BodyTrace],
-    links: Sequence[str],
-    link: str,
-    thing: str,
-    axes: Sequence[str] = ("z",),
-) -> Runs:
+def runs(traces: Mapping[str, BodyTrace], links: Sequence[str], replay: Replay) -> Runs:
     """Return the runs of free bodies with their descriptions.
 
     Args:
         traces: by case.
         links: names, in the order of the traces' arrays.
-        link: the link whose origin the channels follow.
-        thing: the body in words: "box".
-        axes: of the world, each a key of `AXES`.
+        replay: what is shown of them; its axes are keys of `AXES`.
 
     Raises:
         ValueError: the runs have no such link, or there is no such axis; as `Runs`.
     """
-    for name, valid in ((link, links), *((axis, tuple(AXES)) for axis in axes)):
+    link, thing = replay.follows, replay.thing
+    for name, valid in ((link, links), *((axis, tuple(AXES)) for axis in replay.axes)):
         if name not in valid:
             raise ValueError(
                 f"{name!r} cannot be followed. Available: {', '.join(valid)}. Correct the lesson's "
-                "`Moving` declaration."
+                "`Replay`."
             )
-    subject, k, followed = f"the {thing}", links.index(link), [AXES[name] for name in axes]
-    first, cases = followed[0].position.capitalize(), listed(list(traces))
+    k, followed = links.index(link), [AXES[name] for name in replay.axes]
     return Runs(
-        subject=subject,
+        replay,
+        subject=f"the {thing}",
+        source="get_links_pos",
         traces=traces,
         links=links,
         channels=[channel for axis in followed for channel in _channels(traces, k, axis)],
-        levels=(),
         moves={
             case: f"**{case}**: the {thing} "
             + "; it ".join(_along(trace, k, axis) for axis in followed)
             + (f". {farthest_link(links, trace)}" if len(links) > 1 else ".")
             for case, trace in traces.items()
         },
-        view=ReplayView(
-            thing=thing,
-            alt=f"{subject.capitalize()} in 3D, where it is at the sample that is shown.",
-        ),
-        alt=f"{first} of {subject} over time{f': {cases}' if len(traces) > 1 else ''}.",
-        caption=f"{first} of {subject}, from get_links_pos.",
     )
 
 

@@ -17,11 +17,11 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
-from robo_genesis.core.declaration import Compared, Moving
+from robo_genesis.core.channels import Replay
 from robo_genesis.core.text import listed
 from robo_genesis.evidence.bundle import Predicate, read_manifest
 from robo_genesis.evidence.replay_data import read_runs
-from robo_genesis.lessons import compared_cases, course_marks, filmed
+from robo_genesis.lessons import course_marks, find_replay
 from robo_genesis.pipeline.pages.built import LAST_OUTPUTS
 from robo_genesis.site.course.course_map import MapDirective, page_link
 from robo_genesis.site.evidence.ledger_data import PageRun
@@ -94,17 +94,14 @@ class Glance(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the figures."""
         lesson = self.arguments[0]
-        compared = compared_cases(lesson)
-        if compared is None:
-            raise LookupError(f"{lesson} compares no cases. Declare `compared` in its LESSON.")
         run = page_run(Path(self.env.srcdir), lesson)
         predicate = shown_predicate(run)
         if predicate is None:
             raise LookupError(f"{lesson} has no accepted run: {run.status.reason}")
         box = nodes.container(classes=["glance"], evidence_runs=(run.key,))
-        prefix, shown = f"glance-{lesson}", filmed(lesson)
-        box += response(self.env, prefix, run.folder, compared)
-        box += frames(self.env, prefix, run.folder, shown, run.status.backend, ["final"])
+        prefix, replay = f"glance-{lesson}", find_replay(lesson)
+        box += response(self.env, prefix, run.folder, replay)
+        box += frames(self.env, prefix, run.folder, replay, run.status.backend, ["final"])
         if predicate.render.mode != "camera":
             box += nodes.paragraph("", "SKIP: rendering was off, so there is no camera frame.")
         return [box]
@@ -120,18 +117,16 @@ def shown_predicate(run: PageRun) -> Predicate | None:
     return run.predicate
 
 
-def response(
-    env: BuildEnvironment, prefix: str, folder: Path, compared: Compared | Moving
-) -> nodes.figure:
+def response(env: BuildEnvironment, prefix: str, folder: Path, replay: Replay) -> nodes.figure:
     """Return the first channel of the compared cases, drawn from a bundle's arrays."""
     from robo_genesis.core import plotting  # it loads slowly
 
-    runs = read_runs(folder, compared)
+    runs = read_runs(folder, replay)
 
     def draw(drawing: "Figure") -> None:
         ax = drawing.subplots()
         plotting.first_channel(ax, runs, course_marks())
-        ax.set_xlim(0, compared.until)
+        ax.set_xlim(0, replay.until)
         ends = [(values[0], values[-1]) for values in runs.channels[0].values.values()]
         fall = sum(last < first for first, last in ends) > len(ends) / 2
         ax.set_title(ax.get_title(loc="left"), loc="left", pad=6)

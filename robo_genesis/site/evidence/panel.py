@@ -18,13 +18,13 @@ from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
-from robo_genesis.core.declaration import Compared, Filmed, Moving
+from robo_genesis.core.channels import Replay
 from robo_genesis.core.text import listed
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.rows import DIFFERS
-from robo_genesis.lessons import compared_cases, course_marks, filmed
+from robo_genesis.lessons import course_marks, find_replay
 from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import BACKEND, READABLE
@@ -66,12 +66,10 @@ class Evidence(SphinxDirective):
             panel += introduction(status.sentence)
         else:
             panel += [introduction(status.sentence), backend_facts(run.predicate)]
-            compared, prefix = compared_cases(lesson), f"{lesson}-{status.backend}"
-            if compared:
-                panel += response(self.env, prefix, folder, compared, status.backend)
-            panel += frames(self.env, prefix, folder, filmed(lesson), status.backend)
-            if compared:
-                panel += replay_block(self, run.key, folder)
+            shown = f"{lesson}-{status.backend}", folder, find_replay(lesson), status.backend
+            panel += response(self.env, *shown)
+            panel += frames(self.env, *shown)
+            panel += replay_block(self, run.key, folder)
         here = measured.page_run(Path(self.env.srcdir), lesson)
         found = comparison(here.folder, folder)
         panel += nodes.container("", *found, evidence_runs=(here.key, run.key))
@@ -131,12 +129,12 @@ def backend_facts(predicate: Predicate) -> nodes.Node:
 
 
 def response(
-    env: BuildEnvironment, prefix: str, folder: Path, compared: Compared | Moving, backend: str
+    env: BuildEnvironment, prefix: str, folder: Path, replay: Replay, backend: str
 ) -> nodes.figure:
     """Return every channel of the compared cases, drawn from the bundle's arrays."""
     from robo_genesis.core import plotting  # it loads slowly
 
-    runs = read_runs(folder, compared)
+    runs = read_runs(folder, replay)
 
     def draw(drawing: "Figure") -> None:
         axes = drawing.subplots(len(runs.channels), 1, sharex=True, squeeze=False)[:, 0]
@@ -147,7 +145,7 @@ def response(
 
     names = listed([channel.name for channel in runs.channels])
     what = f"{names.capitalize()} of {runs.subject}"
-    several = f", with the cases {compared.names} drawn over each other"
+    several = f", with the cases {listed(replay.cases)} drawn over each other"
     alt = f"{what} over time on {backend}{several if len(runs.traces) > 1 else ''}."
     caption = f"{what} on {backend}, drawn from the arrays of the recorded run."
     return drawn_figure(env, prefix, 0.5 + 3 * len(runs.channels), draw, alt, caption)
@@ -169,15 +167,16 @@ def drawn_figure(
 
 
 def frames(
-    env: BuildEnvironment, prefix: str, folder: Path, shown: Filmed, backend: str,
+    env: BuildEnvironment, prefix: str, folder: Path, replay: Replay, backend: str,
     names: Sequence[str] = ("initial", "final"),
 ) -> Iterator[nodes.figure]:  # fmt: skip
     """Yield the unchanged camera frames as figures, nothing where rendering was off."""
     for name in names:
         path = folder / "frames" / f"{name}.png"
         if path.is_file():
-            state = f"{name} state of {shown.case}"
-            alt = f"Camera frame of {shown.thing}, {state} on {backend}."
+            state = f"{name} state of {replay.filmed_run}"
+            subject = replay.filmed or f"the {replay.thing}"
+            alt = f"Camera frame of {subject}, {state} on {backend}."
             caption = f"Camera frame on {backend}, {state}."
             yield figure(env, f"{prefix}-{name}", ".png", path.read_bytes(), alt, caption)
 

@@ -37,13 +37,12 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import tables
-from robo_genesis.core.declaration import Compared
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
 from robo_genesis.core.scene import FloatArray
 from robo_genesis.core.shown import find
 from robo_genesis.evidence import bundle
-from robo_genesis.lessons import drawn_cases
+from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.bound import accepted_experiment
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
@@ -59,7 +58,6 @@ from robo_genesis.site.replay.directive import (
     replay_folder,
     shape_file,
     stage,
-    still_picture,
 )
 
 
@@ -230,37 +228,28 @@ def postures(
         data: see the module's table.
         targets: as the key `postures` there.
         found: as the key `tables` there.
-
-    Raises:
-        LookupError: the lesson compares free bodies.
     """
-    from robo_genesis.site.replay.poster import picture as drawn  # these load slowly
-    from robo_genesis.site.replay.scenery import fitted
+    from robo_genesis.site.replay.scenery import fitted  # it loads slowly
 
-    compared, env = drawn_cases(recorded.lesson), directive.env
-    if not isinstance(compared, Compared):
-        raise LookupError(
-            f"{recorded.lesson} compares free bodies. Only postures of a robot can be shown."
-        )
-    view, run = compared.view, recorded.experiment
-    shape = shape_file(recorded.lesson, view.thing)
+    replay, env, run = find_replay(recorded.lesson), directive.env, recorded.experiment
+    shape = shape_file(recorded.lesson, replay.thing)
     traces = {case: with_target(run.traces[case], of) for case, of in targets.items()}
     camera = fitted(np.concatenate([t.link_pos.reshape(-1, 3) for t in traces.values()]))
     inputs = [name.encode(), shape.read_bytes(), *bundle_inputs(recorded.folder)]
-    model = derived("replay", inputs, lambda: glb(shape, run.links, traces, camera, view.credit))
-    still = derived("poster", inputs, lambda: drawn(model, camera))
-    files, weight = leave_model(env, name, model)
+    alt = f"The {replay.thing} at the start, drawn from the recorded poses."
+    files, weight, still = leave_model(
+        env, name, inputs, lambda: glb(shape, run.links, traces, camera, replay.credit), camera, alt
+    )
     words = files | {"orbit": camera.orbit, "target": camera.target}
-    words["alt"] = f"The {view.thing} in 3D, in the chosen posture."
+    words["alt"] = f"The {replay.thing} in 3D, in the chosen posture."
     yield opening("with-model", data, **words)
-    alt = f"The {view.thing} at the start, drawn from the recorded poses."
     over = controls.over_the_picture("Show in 3D")
-    caption = f"Recorded postures of the {view.thing}. Yellow cross: the target."
-    yield stage(still_picture(env, name, still, alt), over, caption, f"{name}-model")
-    loads = f'<p role="status">Show in 3D loads the {escape(view.thing)}: {weight} kB.</p>'
+    caption = f"Recorded postures of the {replay.thing}. Yellow cross: the target."
+    yield stage(still, over, caption, f"{name}-model")
+    loads = f'<p role="status">Show in 3D loads the {escape(replay.thing)}: {weight} kB.</p>'
     yield panel(data, loads)
     yield from fold(directive, found)
-    yield html(origin_html(name, recorded.folder, replay_folder(env), view.credit))
+    yield html(origin_html(name, recorded.folder, replay_folder(env), replay.credit))
 
 
 def setup(app: Sphinx) -> None:

@@ -57,18 +57,18 @@ def over_the_picture(button: str) -> str:
 def alt(runs: Runs) -> str:
     """Return the alternative text of the picture of the model."""
     case = next(iter(runs.traces))
-    return f"The {runs.view.thing} at the start of {case}, drawn from the recorded poses."
+    return f"The {runs.replay.thing} at the start of {case}, drawn from the recorded poses."
 
 
 def caption(runs: Runs, around: "Scenery") -> str:
     """Return the caption of the model, with the meaning of what it shows besides the bodies."""
-    parts = [f"Recorded poses of the {runs.view.thing}."]
+    parts = [f"Recorded poses of the {runs.replay.thing}."]
     if around.axis:
         parts.append(f"Yellow rod: the axis of {runs.subject}.")
     if around.target:
         parts.append(f"Dark and translucent: {runs.subject} at its target, other joints at rest.")
     if around.followed is not None:
-        parts.append(f"The view follows the {runs.view.thing} horizontally.")
+        parts.append(f"The view follows the {runs.replay.thing} horizontally.")
     return " ".join(parts)
 
 
@@ -85,7 +85,7 @@ def panel(name: str, runs: Runs, weight: int) -> str:
     terms = ["time", *(c.name for c in runs.channels), *(level.name for level in runs.levels)]
     return (
         '<div class="panel" hidden><p role="status">'
-        f"Play loads the {escape(runs.view.thing)} in 3D: {weight} kB.</p>"
+        f"Play loads the {escape(runs.replay.thing)} in 3D: {weight} kB.</p>"
         f"<fieldset><legend>Run of {escape(runs.subject)}</legend>{_cases(name, runs)}</fieldset>"
         f'<div class="controls">'
         f'<p><label for="{name}-time">Time</label><input type="range" id="{name}-time" min="0" '
@@ -99,14 +99,15 @@ def panel(name: str, runs: Runs, weight: int) -> str:
 
 def data(runs: Runs, camera: "Camera") -> dict[str, str]:
     """Return the data of all cases for `_static/replay.js`, the channels as JSON."""
-    view = runs.view
+    thing = runs.replay.thing
+    posture = f"The {thing} in 3D, where it is at the sample that is shown."
     channels = [{"name": c.name, "unit": c.unit, "digits": c.digits} for c in runs.channels]
     return {
         "subject": runs.subject,
         "channels": as_json(channels),
-        "time-digits": str(time_digits(next(iter(runs.traces.values())).dt)),
-        "thing": view.thing,
-        "alt": view.alt,
+        "time-digits": str(time_digits(runs.first.dt)),
+        "thing": thing,
+        "alt": runs.replay.view or posture,
         "orbit": camera.orbit,
         "target": camera.target,
     }

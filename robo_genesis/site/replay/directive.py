@@ -1,17 +1,19 @@
 """A recorded run that plays in the page, and the files that load only on a reader's request.
 
-A page writes ```` ```{replay} l04/lecture ````, or with the name of further cases that its lesson
-declares, ```` ```{replay} l03/lab slides ````. The option `:brief:` leaves out all channels but the
-first, and the sentences on each case. The panel of a recorded run also has a replay. Poses and
-curves come from the record; the shape comes from the model, which the lecture writes to a file.
+A page writes ```` ```{replay} l04/lecture ```` for the first replay that its lesson declares, for
+another one its name as well: ```` ```{replay} l03/lecture slides ````. The option `:brief:` leaves
+out all channels but the first, and the sentences on each case. The panel of a recorded run also has
+a replay. Poses and curves come from the record; the shape comes from the model, which the lecture
+writes to a file.
 """
 
 import base64
 import gzip
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from html import escape
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from docutils import nodes
 from docutils.parsers.rst.directives import flag
@@ -20,11 +22,10 @@ from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
-from robo_genesis.core.channels import Runs
 from robo_genesis.core.files import derived
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
-from robo_genesis.lessons import drawn_cases
+from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.ledger import scroll_box
@@ -34,6 +35,9 @@ from robo_genesis.site.figures.case_labels import labelled
 from robo_genesis.site.frame.incremental import note_files
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
+
+if TYPE_CHECKING:
+    from robo_genesis.site.replay.scenery import Camera
 
 SHAPE_PAGE = "lecture"
 
@@ -48,11 +52,11 @@ class ReplayDirective(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Return the replay.
 
-        Errors: the page has no bundle, or the lesson compares no such cases.
+        Errors: the page has no bundle, or the lesson has no such replay.
         """
-        lesson_page, *further = self.arguments
+        lesson_page, *chosen = self.arguments
         folder, brief = bundle_of(self, lesson_page), "brief" in self.options
-        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *further, brief=brief)]
+        return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *chosen, brief=brief)]
 
 
 def bundle_of(directive: SphinxDirective, lesson_page: str) -> Path:
@@ -68,7 +72,7 @@ def bundle_of(directive: SphinxDirective, lesson_page: str) -> Path:
 
 
 def replay_block(
-    directive: SphinxDirective, key: str, folder: Path, further: str = "", *, brief: bool = False
+    directive: SphinxDirective, key: str, folder: Path, chosen: str = "", *, brief: bool = False
 ) -> nodes.Node:
     """Return the replay of an accepted bundle, with all its information as text and as a table.
 
@@ -76,35 +80,36 @@ def replay_block(
         directive: the directive that shows it.
         key: names the run, as in the ledger.
         folder: of the bundle.
-        further: name of further cases, empty for those that the lesson compares.
+        chosen: name of the replay, empty for the first of the lesson.
         brief: whether to show the first channel alone, and no sentences on the cases.
 
     Raises:
-        DirectiveError: the lesson has no such cases, its runs cannot be played together, or no page
-            of this build wrote the shape of these links.
+        DirectiveError: the lesson has no such replay, its runs cannot be played together, or no
+            page of this build wrote the shape of these links.
     """
     from robo_genesis.site.replay import model as replay_model  # these load slowly
-    from robo_genesis.site.replay.poster import picture
     from robo_genesis.site.replay.scenery import scenery
     from robo_genesis.site.replay.side_by_side import side_by_side
 
     env, lesson = directive.env, key.split("/")[0]
-    name = "-".join(("replay", *key.split("/"), *filter(None, [further])))
+    name = "-".join(("replay", *key.split("/"), *filter(None, [chosen])))
     try:
-        drawn = drawn_cases(lesson, further)
-        runs = labelled(read_runs(folder, drawn), lesson)
-        shape = shape_file(lesson, runs.view.thing)
+        replay = find_replay(lesson, chosen)
+        runs = labelled(read_runs(folder, replay), lesson)
+        shape = shape_file(lesson, replay.thing)
         parts = visual_shape.load_shape(shape)
-        if drawn.places:
-            runs, parts = side_by_side(runs, parts, drawn.places)
-        around = scenery(parts, runs, hinged=not drawn.places)
-        drawn_by = repr((list(runs.traces), list(runs.links), runs.view.credit)).encode()
+        if replay.places:
+            runs, parts = side_by_side(runs, parts)
+        around = scenery(parts, runs)
+        drawn_by = repr((list(runs.traces), list(runs.links), replay.credit)).encode()
         inputs = [drawn_by, shape.read_bytes(), *bundle_inputs(folder)]
-        what = around, runs.links, runs.traces, runs.view.credit
-        model = derived("replay", inputs, lambda: replay_model.glb(*what))
-        still = derived("poster", inputs, lambda: picture(model, around.camera))
-        files, weight = leave_model(env, name, model)
-        shown = first_channel(runs) if brief else runs  # the model is the same
+        what = around, runs.links, runs.traces, replay.credit
+        files, weight, still = leave_model(
+            env, name, inputs, lambda: replay_model.glb(*what), around.camera, controls.alt(runs)
+        )
+        shown, (first, *_) = runs, runs.channels
+        if brief:  # the model is the same
+            shown = replace(runs, channels=[first], levels=runs.levels_of(first), moves={})
         opening = controls.opening("replay", files | controls.data(shown, around.camera))
     except (LookupError, ValueError) as error:
         raise directive.error(f"replay: {key}: {error}") from error
@@ -113,15 +118,15 @@ def replay_block(
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
     block += nodes.raw("", opening, format="html")
-    poster, over = still_picture(env, name, still, controls.alt(runs)), controls.over_the_picture
-    block += stage(poster, over("Play"), controls.caption(runs, around), f"{name}-model")
+    over = controls.over_the_picture("Play")
+    block += stage(still, over, controls.caption(runs, around), f"{name}-model")
     block += nodes.raw("", controls.panel(name, shown, weight), format="html")
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
     if shown.moves:
         lines = (nodes.paragraph("", "", *marked(text)) for text in shown.moves.values())
         block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
     block += scroll_box(summary, *directive.parse_text_to_nodes(controls.samples(shown)))
-    origin = origin_html(name, folder, replay_folder(env), runs.view.credit)
+    origin = origin_html(name, folder, replay_folder(env), replay.credit)
     block += nodes.raw("", f"</details>{origin}", format="html")
     return block
 
@@ -131,36 +136,47 @@ def replay_folder(env: BuildEnvironment) -> str:
     return "../" * env.docname.count("/") + FOLDER
 
 
-def leave_model(env: BuildEnvironment, name: str, model: bytes) -> tuple[dict[str, str], int]:
-    """Write a model for the page that is read.
+def leave_model(
+    env: BuildEnvironment, name: str, inputs: Sequence[bytes], make: Callable[[], bytes],
+    camera: "Camera", alt: str,
+) -> tuple[dict[str, str], int, nodes.image]:  # fmt: skip
+    """Write a model for the page that is read, as GLB and as a classic script.
+
+    A page that was opened from disk cannot fetch files, but it can add a script.
+
+    Args:
+        env: of the page.
+        name: of the model.
+        inputs: everything that decides it.
+        make: returns it.
+        camera: that sees its start.
+        alt: text of the picture that it replaces.
 
     Returns:
-        Name and addresses of what loads on a reader's request, and its compressed size [kB].
+        Name and addresses of what loads on a reader's request, its compressed size [kB], and the
+        still picture.
     """
-    files_of, up = Path(env.app.outdir) / FOLDER, replay_folder(env)
-    written = write_model(files_of, name, model)
-    note_files(env, files_of / f"{name}.glb", files_of / f"{name}.js")
-    weight = round((written + len(gzip.compress(viewer.viewer()))) / 1000)
-    return {"name": name, "model": f"{up}/{name}.js", "viewer": f"{up}/{VIEWER}"}, weight
+    from robo_genesis.site.replay.poster import picture  # it loads slowly
 
-
-def still_picture(env: BuildEnvironment, name: str, still: bytes, alt: str) -> nodes.image:
-    """Return the picture that a model replaces."""
-    picture = image(env, f"{name}.jpg", still, alt)
-    picture["kind"], picture["classes"] = "model", ["still"]
-    return picture
+    model = derived("replay", inputs, make)
+    still = derived("poster", inputs, lambda: picture(model, camera))
+    text = base64.b64encode(model).decode()
+    script = f'(globalThis.replayModels ??= {{}})["{name}"] = "{text}";\n'.encode()
+    folder, up = Path(env.app.outdir) / FOLDER, replay_folder(env)
+    folder.mkdir(parents=True, exist_ok=True)
+    for file, content in ((f"{name}.glb", model), (f"{name}.js", script)):
+        (folder / file).write_bytes(content)
+        note_files(env, folder / file)
+    weight = round(sum(len(gzip.compress(of)) for of in (script, viewer.viewer())) / 1000)
+    shown = image(env, f"{name}.jpg", still, alt)
+    shown["kind"], shown["classes"] = "model", ["still"]
+    return {"name": name, "model": f"{up}/{name}.js", "viewer": f"{up}/{VIEWER}"}, weight, shown
 
 
 def stage(picture: nodes.image, over: str, caption: str, anchor: str) -> nodes.figure:
     """Return a figure with some markup on top of its picture."""
     content = nodes.container("", picture, nodes.raw("", over, format="html"), classes=["stage"])
     return nodes.figure("", content, nodes.caption("", caption), ids=[anchor])
-
-
-def first_channel(runs: Runs) -> Runs:
-    """Return runs with their first channel and its levels alone, and without sentences."""
-    first = runs.channels[0]
-    return replace(runs, channels=[first], levels=runs.levels_of(first), moves={})
 
 
 def shape_file(lesson: str, thing: str) -> Path:
@@ -204,24 +220,6 @@ def origin_html(name: str, folder: Path, up: str, credit: str | None) -> str:
         f"{escape(run.engine.version)}, run {run.run_id[:8]}. "
         f'3D model: <a href="{up}/{name}.glb" download>GLB</a>, {shape}</p>'
     )
-
-
-def write_model(folder: Path, name: str, model: bytes) -> int:
-    """Write a model as GLB and as a classic script, and return the script's compressed size.
-
-    A page that was opened from disk cannot fetch files, but it can add a script.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    script = script_of(name, model)
-    (folder / f"{name}.glb").write_bytes(model)
-    (folder / f"{name}.js").write_bytes(script)
-    return len(gzip.compress(script))
-
-
-def script_of(name: str, model: bytes) -> bytes:
-    """Return a model as a classic script."""
-    text = base64.b64encode(model).decode()
-    return f'(globalThis.replayModels ??= {{}})["{name}"] = "{text}";\n'.encode()
 
 
 def setup(app: Sphinx) -> None:

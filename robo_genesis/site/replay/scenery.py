@@ -95,14 +95,14 @@ class Scenery:
     followed: int | None = None
 
 
-def scenery(shape: Sequence[Part], runs: Runs, hinged: bool = True) -> Scenery:
-    """Return what the replay of some runs shows, with the axis of a joint if it is `hinged`.
+def scenery(shape: Sequence[Part], runs: Runs) -> Scenery:
+    """Return what the replay of some runs shows; several robots in one view have no axis.
 
     Raises:
         ValueError: a part belongs to a link that is not in the record, or two links have one name.
     """
     check_links(shape, runs.links)
-    hinge, followed = find_hinge(runs) if hinged else None, find_followed(runs)
+    hinge, followed = None if runs.replay.places else find_hinge(runs), find_followed(runs)
     moved = hinge.moved if hinge else range(len(runs.links))
     camera = fitted(swept(shape, runs, moved, followed))
     parts = [*shape, *floor_of(shape)]
@@ -125,7 +125,7 @@ def find_hinge(runs: Runs) -> Hinge | None:
     one before it, in the frame of that one, contains no motion of other joints.
     """
     angle = next(iter(runs.channels[0].values.values())).astype(float)
-    trace, last = first_of(runs), int(np.abs(angle - angle[0]).argmax())
+    trace, last = runs.first, int(np.abs(angle - angle[0]).argmax())
     turned = angle[last] - angle[0]
     links = [poses(trace, k)[[0, last]] for k in range(len(runs.links))]
     moved = [k for k, (start, end) in enumerate(links) if turn(start, end)[0] > abs(turned) / 2]
@@ -154,7 +154,7 @@ def target_poses(runs: Runs, hinge: Hinge) -> dict[str, FloatArray]:
     if len(targets) != 1 or len(starts) != 1:
         return {}
     ((target,),), (start,) = targets, starts
-    trace = first_of(runs)
+    trace = runs.first
     parent = poses(trace, hinge.parent)[0]
     axis, point = parent[:3, :3] @ hinge.axis, (parent @ [*hinge.point, 1.0])[:3]
     turned = rotation_matrix(target - start, axis, point)
@@ -223,11 +223,6 @@ def fitted(points: FloatArray) -> Camera:
     right, up, back = (seen - middle).T
     reach = ROOM * np.maximum(np.abs(right) / ASPECT, np.abs(up)) / np.tan(FIELD / 2)
     return Camera(middle @ axes, float((back + reach).max()))
-
-
-def first_of(runs: Runs) -> Run:
-    """Return the run of the first case."""
-    return next(iter(runs.traces.values()))
 
 
 def poses(trace: Run, link: int) -> FloatArray:

@@ -13,22 +13,19 @@ OF_LINKS = ("link_pos", "link_quat", "link_vel", "link_ang")
 """The arrays with an axis of links; free bodies have them all, robots the first two."""
 
 
-def side_by_side(
-    runs: Runs, shape: Sequence[Part], places: Sequence[tuple[float, float]]
-) -> tuple[Runs, list[Part]]:
+def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
     """Return runs whose traces all have the links of all runs, and the shape of these links.
 
     A case then decides which curves are drawn bold, and not what moves.
 
     Args:
-        runs: the runs, each with the links of one robot.
+        runs: the runs, each with the links of one robot; their replay has a place for each.
         shape: of the robot; parts of the world remain where they are.
-        places: by run, how far it is moved along x and y [m].
 
     Raises:
         ValueError: there is not one place for each run.
     """
-    traces = list(runs.traces.items())
+    places, traces = runs.replay.places, list(runs.traces.items())
     if len(places) != len(traces):
         raise ValueError(
             f"{len(places)} places given for {len(traces)} runs: {', '.join(runs.traces)}. Give "

@@ -9,7 +9,6 @@ from lessons.body_runs import body_run, make_drop
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l01 import LECTURE, machine, spec, text
 from robo_genesis.lessons.l01.metrics import fall_metrics
-from robo_genesis.sim.bodies.rigid_bodies import run_drop
 
 CASE = spec.BASELINE
 TIMES = {f"{start}_{part}": 0.5 for start in machine.STARTS for part in machine.PARTS}
@@ -60,16 +59,3 @@ def test_the_text_says_what_was_measured(frames):
     assert "| first divided by second | 1.0 |" in text.start_table(run)
     other = experiment(frames, case=replace(CASE, gravity=9.82))
     assert ["more than rounding" in text.conclusion(of) for of in (run, other)] == [False, True]
-
-
-@pytest.mark.engine
-def test_a_second_fall_is_the_same_to_the_last_bit(real_engine):
-    gs = real_engine.gs
-    scene = gs.Scene(
-        sim_options=gs.options.SimOptions(dt=CASE.dt, substeps=CASE.substeps), show_viewer=False
-    )
-    scene.add_entity(gs.morphs.Plane())
-    sphere = scene.add_entity(gs.morphs.Sphere(radius=spec.RADIUS, pos=(0, 0, CASE.height)))
-    scene.build()
-    first, second = (run_drop(scene, sphere, CASE) for _ in range(2))
-    assert np.array_equal(first.link_pos, second.link_pos)

@@ -20,7 +20,7 @@ CLEAN = study_spec.ELLIPTIC | study_spec.FINER_SLIDES
 
 def readings_of(page: str) -> dict[str, Mapping[str, float]]:
     """Return the engine's values of sound runs of a page."""
-    declared = LESSON.pages[page].readings(True)
+    declared = LESSON.pages[page].readings
     cases = {n: c for n, c in LESSON.pages[page].cases.items() if n not in study_spec.IN_MUJOCO}
     known = {"model": spec.EXPECTED_MODEL, "mass": MASSES, study.GROUP: SECONDS}
     known |= {name: {n: getattr(of, name) for n, of in cases.items()} for name in SETTINGS}

@@ -29,7 +29,7 @@ def own_checks():
 def of_page(run: Experiment, name: str) -> Experiment:
     """Return what one page measured of all studies."""
     page, group = LESSON.pages[name], studies.GROUP
-    kept = page.readings(True).get(group)
+    kept = page.readings.get(group)
     readings = {"model": run.readings["model"]}
     if kept:
         readings[group] = {unit: run.readings[group][unit] for unit in kept.units}

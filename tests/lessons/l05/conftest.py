@@ -4,33 +4,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from robot_runs import assigned, driven
+from robot_runs import LINKS, answer, assigned, driven
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05 import SOLUTIONS, restarts, spec
 from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim.arm import kinematics
-from robo_genesis.sim.arm.engine_kinematics import IkAnswer
 from robo_genesis.sim.arm.franka import Q_START
-
-LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
-DOWN = kinematics.Pose(spec.TARGET, spec.DOWN)
-
-
-def answer(position, iterations=100) -> IkAnswer:
-    """Return what a solver like the engine's answers from the course's start."""
-    target = kinematics.Pose(np.asarray(position), spec.DOWN)
-    q = kinematics.solve(target, Q_START[:7], *spec.ARM_LIMITS, iterations=iterations, damping=0.01)
-    error = kinematics.pose_error(target, kinematics.hand_pose(q))
-    return IkAnswer(np.float32([*q, *Q_START[7:]]), np.float32(error))
 
 
 @pytest.fixture(scope="session")
 def reaches(joints) -> Experiment:
     """A run of the page about many solutions that passes its checks."""
-    found = answer(spec.TARGET)
+    found = answer(spec.TARGET, Q_START, 100)
     runs = {n: driven(control_case(case, found), LINKS) for n, case in spec.CASES.items()}
-    refused = answer(spec.BEYOND_REACH, 20).q.astype(float)[None]
+    refused = answer(spec.BEYOND_REACH, Q_START, 20).q.astype(float)[None]
     apart, angle = kinematics.distances(found.error)
     solver = {"residual_m": float(apart), "residual_rad": float(angle), "jacobian_difference": 0.0}
     runs["unreachable"] = assigned(spec.UNREACHABLE.start, LINKS, refused)

@@ -52,16 +52,13 @@ CHANGES = {
 }
 
 
-def test_plausible_runs_pass(reaches):
-    assert not failed(reaches)
-
-
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_check_fails_when_its_input_changes(reaches, name):
     assert name in failed(CHANGES[name](reaches))
 
 
 def test_each_check_of_the_page_has_such_a_change(reaches):
+    assert not failed(reaches)
     names = {check.__name__ for check in reaches.page.checks}
     assert names == CHANGES.keys() | {"laws_of_motion"}
 

@@ -4,33 +4,22 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from robot_runs import driven
+from robot_runs import LINKS, answer, driven
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l06 import LECTURE, checks, spec, study
 from robo_genesis.lessons.l06.run import Environment
-from robo_genesis.sim.arm import kinematics
-from robo_genesis.sim.arm.franka import JOINT_NAMES
-from robo_genesis.sim.mujoco.kinematics import bare_robot, gravity_effort
+from robo_genesis.sim.mujoco.kinematics import gravity_effort
 
-LINKS = (*(f"link{n}" for n in range(8)), "hand", "left_finger", "right_finger")
 ROUNDING = np.float32(1.2e-7)
-
-
-def command(world: Environment, number: int) -> np.ndarray:
-    """Return joint positions (9,) for a target as a solver like the engine's answers."""
-    target = kinematics.Pose(world.positions[number], world.quat)
-    joint = bare_robot()[0].joint
-    limits = np.transpose([joint(name).range for name in JOINT_NAMES[:7]])
-    q = kinematics.solve(target, world.q_start[:7], *limits, iterations=50, damping=0.01)
-    return np.float32([*q, *world.q_start[7:]]).astype(float)
 
 
 def run_of(world: Environment) -> Trace:
     """Return the run of one world."""
-    targets = np.repeat(command(world, 0)[None], world.steps, axis=0)
-    targets[world.switch :] = command(world, -1)
+    first, last = (answer(world.positions[k], world.q_start, 50).q for k in (0, -1))
+    targets = np.repeat(first[None].astype(float), world.steps, axis=0)
+    targets[world.switch :] = last
 
     def weight(q):
         if not world.load:

@@ -69,8 +69,6 @@ CASES = {
     "throughput": {
         "right": timed,
         "mean": partial(timed, middle=np.mean),
-        "slowest": partial(timed, middle=max),
-        "fastest": partial(timed, middle=min),
         "last": partial(timed, middle=lambda times: times[-1]),
         "queue before the clock": partial(timed, before=False),
         "queue after the clock": partial(timed, after=False),

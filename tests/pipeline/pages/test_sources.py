@@ -130,7 +130,7 @@ def test_a_page_that_runs_alone_records_elapsed_times():
     alone = [page for page in PAGES if page.alone]
     assert alone
     for page in alone:
-        groups = LESSONS[page.lesson].pages[page.page].readings(True).values()
+        groups = LESSONS[page.lesson].pages[page.page].groups(True).values()
         assert any(group.kind == "performance" for group in groups), page.docname
 
 
@@ -166,7 +166,7 @@ CHANGES = [
     ("site/text/glossary", CONSTANT, NONE, NONE),
     ("lessons/l04/theory", CONSTANT, ("l04",), ("l04",)),
     ("lessons/l04/spec", ('"rad": (1e-4, 1e-3)', '"rad": (1e-3, 1e-2)'), ("l04",), NONE),
-    ("lessons/l04/pages", ('Filmed("the Franka")', 'Filmed("the arm")'), ("l04",), NONE),
+    ("lessons/l04/pages", ('filmed="the Franka"', 'filmed="the arm"'), ("l04",), NONE),
     ("lessons/l02/plots", CONSTANT, ("l02",), NONE),
     ("lessons/l04/tables", CONSTANT, ("l04",), NONE),
     ("lessons/l02/mistakes", CONSTANT, ("l02",), NONE),

@@ -10,11 +10,11 @@ from playwright.sync_api import Page
 
 from robo_genesis.core import plotting
 from robo_genesis.core.palette import GROUNDS, MARKS, PARTS, contrast, css_name
-from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons.l04 import spec
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
-CASES = {"baseline": "baseline"} | dict(LESSONS["l04"].marks)
+CASES = {"baseline": "baseline"} | spec.CASE_MARKS
 """The mark of each case on the lecture."""
 
 LECTURE = "lessons/l04-joint-control/lecture.html"

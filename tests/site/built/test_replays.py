@@ -14,7 +14,7 @@ from watching import POSES, choose, errors, show_model
 from robo_genesis.core.project import BOOK
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.trace_files import read_trace
-from robo_genesis.lessons import LESSONS
+from robo_genesis.lessons import find_replay
 from robo_genesis.lessons.l04.study_spec import ASSIGNED
 from robo_genesis.site.replay.model import rotations
 
@@ -81,7 +81,7 @@ def test_links_and_their_copies_are_where_the_record_says(lecture, site):
     folder = site.parent / "pages" / "l04" / "lecture" / "cpu"
     arrays = bundle.read_arrays(folder)
     links = arrays.coords["link"]
-    for case in LESSONS["l04"].compared.cases:
+    for case in find_replay("l04").cases:
         trace = read_trace(folder, arrays, case)
         for sample in (0, 9, trace.steps):
             choose(lecture, case, sample, REPLAY)

@@ -15,7 +15,7 @@ from spoilers import edit, on, part, predicate
 from without_sphinx import Panel, rows_of
 
 from robo_genesis.core import project
-from robo_genesis.core.declaration import Filmed
+from robo_genesis.core.channels import Replay
 from robo_genesis.core.files import put
 from robo_genesis.evidence import bundle, recorder, replay_data, report
 from robo_genesis.evidence.compare import compare
@@ -28,7 +28,7 @@ from robo_genesis.site.evidence import ledger_data, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
 from robo_genesis.site.evidence.ledger_data import PageRun
 
-FILMED = Filmed("the box", "the first run")
+FILMED = Replay(("G1",), "box", "box", filmed_run="the first run")
 SCRIPT = "<script>alert(1)</script>"
 ATTACKS = (
     SCRIPT,
@@ -184,22 +184,13 @@ def test_a_recorded_run_replays_from_its_own_record(tmp_path, record):
     assert f'data-model="../replay/{name}.js"' in block[0].astext()
 
 
-@pytest.mark.parametrize(
-    ("lesson", "options", "figures"),
-    [
-        ("l04", {"table": None}, []),  # as in a lecture
-        ("l99", {}, [["l99-amdgpu-initial"], ["l99-amdgpu-final"]]),  # it compares no cases
-    ],
-)
-def test_a_panel_without_compared_cases_has_its_metrics(
-    tmp_path, record, monkeypatch, lesson, options, figures
-):
+def test_in_a_lecture_a_panel_has_its_metrics_alone(tmp_path, record, monkeypatch):
     metrics = [nodes.paragraph("", "The metrics.")]
     monkeypatch.setattr(sphinx_panel, "comparison", lambda *asked: metrics)
-    panel = Panel(tmp_path / "book", **options).panel(record(lesson=lesson))
+    panel = Panel(tmp_path / "book", table=None).panel(record())
     assert "Reference run." in panel.astext()
     assert "The metrics." in panel.astext()
-    assert [figure["ids"] for figure in panel.findall(nodes.figure)] == figures
+    assert not list(panel.findall(nodes.figure))
     assert not [n for n in panel.findall(nodes.container) if "replay-block" in classes(n)]
 
 

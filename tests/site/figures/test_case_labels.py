@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from robo_genesis.core import palette
-from robo_genesis.core.channels import Channel, Level, ReplayView, Runs
+from robo_genesis.core.channels import Channel, Level, Replay, Runs
 from robo_genesis.site.figures.case_labels import MARKS, label, labelled
 
 CASES = ("dt10_sub1", "baseline")
@@ -16,15 +16,14 @@ def runs() -> Runs:
     trace = SimpleNamespace(t=np.arange(3.0), steps=2, dt=1.0)
     by_case = dict.fromkeys(CASES, trace.t)
     return Runs(
+        Replay(CASES, "body", "cube"),
         subject="the cube",
+        source="",
         traces=dict.fromkeys(CASES, trace),
         links=("body",),
         channels=(Channel("height", "z", "m", 4, by_case),),
         levels=(Level("target", "height", next(iter(palette.MARKS)), "", by_case, by_case),),
         moves={case: f"**{case}**: the cube falls." for case in CASES},
-        view=ReplayView("cube", "The cube."),
-        alt="",
-        caption="",
     )
 
 

@@ -14,8 +14,7 @@ from playwright.sync_api import Browser, Page
 from watching import POSES, errors, violations
 from without_sphinx import Panel, falling, page_of
 
-from robo_genesis.core.channels import ReplayView as BodyView
-from robo_genesis.core.declaration import Compared
+from robo_genesis.core.channels import Replay
 from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.core.trace import Trace
 from robo_genesis.evidence.picture_file import write_picture
@@ -113,9 +112,7 @@ def postures(folder, tmp_path, monkeypatch) -> nodes.Node:
     box = trimesh.creation.box((0.2, 0.2, 0.2))
     part = visual_shape.Part("box", (200, 80, 0), box.vertices, box.faces)
     visual_shape.write_shape(tmp_path, [part])
-    drawn = object.__new__(Compared)
-    object.__setattr__(drawn, "view", BodyView("box", "A box."))
-    monkeypatch.setattr(explorer, "drawn_cases", lambda lesson: drawn)
+    monkeypatch.setattr(explorer, "find_replay", lambda lesson: Replay((), "box", "box"))
     monkeypatch.setattr(explorer, "shape_file", lambda *_: tmp_path / visual_shape.FILE)
     rows = {run: [{"answer": f"{k}", "left [mm]": f"{10 * k}"} for k in of]
             for run, of in (("upright", range(1, 6)), ("level", range(7, 10)))}  # fmt: skip

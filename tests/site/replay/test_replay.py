@@ -3,6 +3,9 @@
 A page with two falling boxes shows what every replay does; the built lecture has a robot.
 """
 
+import base64
+import gzip
+import re
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
@@ -19,20 +22,20 @@ from watching import POSES, choose, errors, show_model, violations
 from without_sphinx import STEPS, Panel, falling, page_of
 
 from robo_genesis import lessons as registry
-from robo_genesis.core.declaration import Filmed, Lesson, Moving
+from robo_genesis.core.channels import Replay
+from robo_genesis.core.declaration import Lesson
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import read_any_trace, write_traces
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence import course_runs as sphinx_glance
 from robo_genesis.site.evidence.panel import response
-from robo_genesis.site.replay import directive as sphinx_replay
+from robo_genesis.site.replay import viewer
 from robo_genesis.site.replay.directive import replay_block
 
 LESSON, KEY = "l99", "l99/lecture/cpu"
 NAME = "replay-l99-lecture-cpu"
-DROPPED = Moving(("high", "low"), link="box", thing="box")
+DROPPED = Replay(("high", "low"), "box", "box")
 G = 10.0
 
 
@@ -58,7 +61,7 @@ def dropped(folder, monkeypatch, tmp_path, built):
     arrays = write_traces(folder, traces, None, ["box"])
     write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
     spec = registry.LESSONS["l04"].spec
-    lesson = Lesson(spec, {}, {}, Filmed("the box"), DROPPED)
+    lesson = Lesson(spec, {}, {}, {"drops": DROPPED})
     monkeypatch.setitem(registry.LESSONS.found, LESSON, lesson)
     built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
     box = trimesh.creation.box((0.2, 0.2, 0.2))
@@ -72,26 +75,26 @@ def block(dropped, tmp_path) -> nodes.Node:
     return replay_block(Panel(tmp_path / "book"), KEY, dropped)
 
 
-def test_runs_of_joints_are_not_read_as_bodies_nor_the_other_way(dropped, pristine):
-    with pytest.raises(bundle.BundleRefused, match="joints of free bodies"):
-        read_runs(pristine, Moving(("G1",), link="hand", thing="hand"))
-    with pytest.raises(bundle.BundleRefused):
-        read_runs(dropped, replace(registry.LESSONS["l04"].compared, cases=("high", "low")))
-
-
-def test_pictures_draw_what_the_bundle_holds(dropped):
-    glance, panel = sphinx_glance.response(dropped, DROPPED), response(dropped, DROPPED, "cpu")
-    assert glance.alt == "Height of the box over time: high and low."
-    assert glance.caption == "Height of the box, from get_links_pos."
+def test_pictures_draw_what_the_bundle_holds(dropped, tmp_path):
+    env = Panel(tmp_path / "book").env
+    glance = sphinx_glance.response(env, "glance", dropped, DROPPED)
+    panel = response(env, "panel", dropped, DROPPED, "cpu")
+    (shown,), (drawn,) = (of.findall(nodes.image) for of in (glance, panel))
+    assert shown["alt"] == "Height of the box over time: high and low."
+    assert glance[-1].astext() == "Height of the box, from get_links_pos."
     both = "Height and vertical velocity of the box over time on cpu"
-    assert panel.alt == f"{both}, with the cases high and low drawn over each other."
-    other = Moving(("low", "high"), link="box", thing="box")
-    assert sphinx_glance.response(dropped, other).content != glance.content
+    assert drawn["alt"] == f"{both}, with the cases high and low drawn over each other."
+    other = sphinx_glance.response(env, "o", dropped, replace(DROPPED, cases=("low", "high")))
+    files = [next(of.findall(nodes.image))["uri"] for of in (glance, other)]
+    first, second = ((tmp_path / "book" / uri[1:]).read_bytes() for uri in files)
+    assert first != second
 
 
 def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, tmp_path):
     assert block["evidence_runs"] == (KEY,)
     rows = [[cell.astext() for cell in row] for row in block.findall(nodes.row)]
+    heads = ["z [m]", "ż [m/s]"]
+    assert rows[0] == ["t [s]", *(f"{case} {head}" for case in ("high", "low") for head in heads)]
     assert len(rows) == 1 + STEPS + 1
     assert rows[21] == ["0.2", "1.8", "−2", "0.8", "−2"]  # height and velocity: high, low
     text = block.astext()
@@ -104,6 +107,11 @@ def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, t
     assert model.asset.copyright is None
     assert "Franka" not in text
     assert ">licence</a>" in text  # the viewer's
+    script = (written / f"{NAME}.js").read_bytes()
+    packed = re.search(rb'"\] = "(.*)";', script)
+    assert base64.b64decode(packed[1]) == (written / f"{NAME}.glb").read_bytes()
+    weight = len(gzip.compress(script)) + len(gzip.compress(viewer.viewer()))
+    assert f"Play loads the box in 3D: {round(weight / 1000)} kB." in text
 
 
 def test_a_brief_replay_has_the_same_model_one_channel_and_no_sentences(dropped, tmp_path):
@@ -199,7 +207,7 @@ def test_the_box_falls_in_3d_in_the_place_of_its_picture(page):
     assert page.asked.count(f"{NAME}.js") == 0
     assert page.locator(".shown").inner_text() == "at the start"
     show_model(page)
-    assert {sphinx_replay.VIEWER, f"{NAME}.js"} <= {*page.asked}
+    assert {viewer.VIEWER, f"{NAME}.js"} <= {*page.asked}
     assert not picture.is_visible()
     assert stage.bounding_box() == place
     model = page.locator("model-viewer")

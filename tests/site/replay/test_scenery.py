@@ -9,7 +9,7 @@ from falling import LINKS as BOXES
 from falling import falling
 from trimesh.transformations import quaternion_from_matrix, rotation_matrix, translation_matrix
 
-from robo_genesis.core.channels import Channel, Level, ReplayView, Runs
+from robo_genesis.core.channels import Channel, Level, Replay, Runs
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.bodies import channels as body_channels
 from robo_genesis.sim.visual_shape import WORLD, Part, floor, slab
@@ -54,17 +54,8 @@ def turning(
     )  # fmt: skip
     position = Channel("position", "q", unit, 4, {"run": q + np.linspace(0, off, 11)})
     level = Level("target", "position", "target", "", {"run": (target,)}, {"run": "x"})
-    return Runs(
-        "joint",
-        {"run": trace},
-        LINKS,
-        [position],
-        [level],
-        {"run": ""},
-        ReplayView("arm", ""),
-        "",
-        "",
-    )
+    replay = Replay(("run",), "joint", "arm")
+    return Runs(replay, "joint", "", {"run": trace}, LINKS, [position], {}, [level])
 
 
 def test_the_axis_of_a_joint_is_found_while_other_joints_move():
@@ -122,7 +113,7 @@ def test_a_single_body_that_moves_away_is_followed_horizontally(drift, followed)
         trace, **{name: getattr(trace, name)[:, 1:] for name in ("link_pos", "link_quat")},
         **{name: getattr(trace, name)[:, 1:] for name in ("link_vel", "link_ang")},
     )  # fmt: skip
-    runs = body_channels.runs({"run": one}, ["box"], "box", "box")
+    runs = body_channels.runs({"run": one}, ["box"], Replay(("run",), "box", "box"))
     found = scenery.scenery([Part("box", (9, 9, 9), BOX.vertices, BOX.faces)], runs)
     assert (found.followed, found.axis, found.target) == (followed, False, {})
     lowest, highest = one.link_pos[:, 0, 2].min() - 0.1, one.link_pos[:, 0, 2].max() + 0.1
@@ -164,11 +155,12 @@ SHAPE = [Part("box", (1, 2, 3), np.eye(3), np.array([[0, 1, 2]])), floor(2.0)]
 def runs():
     one = falling(1.0)
     other = replace(one, link_pos=one.link_pos * 2)
-    return body_channels.runs({"one": one, "other": other}, BOXES, "box", "box")
+    replay = Replay(("one", "other"), "box", "box", places=PLACES)
+    return body_channels.runs({"one": one, "other": other}, BOXES, replay)
 
 
 def test_each_case_moves_all_links_and_keeps_its_curve(runs):
-    found, parts = side_by_side(runs, SHAPE, PLACES)
+    found, parts = side_by_side(runs, SHAPE)
     assert found.links == [f"{run}: {link}" for run in ("one", "other") for link in BOXES]
     assert [part.link for part in parts] == ["one: box", "other: box", WORLD]
     for trace in found.traces.values():
@@ -176,15 +168,11 @@ def test_each_case_moves_all_links_and_keeps_its_curve(runs):
             moved = trace.link_pos[:, 2 * k + 1] - source.link_pos[:, 1]
             assert moved == pytest.approx(np.tile([x, y, 0], (len(moved), 1)), abs=1e-6)
     assert found.channels == runs.channels
-
-
-def test_the_view_has_neither_axis_nor_followed_link(runs):
-    found, parts = side_by_side(runs, SHAPE, PLACES)
-    around = scenery.scenery(parts, found, hinged=False)
+    around = scenery.scenery(parts, found)
     assert not around.axis
     assert around.followed is None
 
 
 def test_a_run_without_a_place_is_refused(runs):
     with pytest.raises(ValueError, match="1 places given for 2 runs: one, other"):
-        side_by_side(runs, SHAPE, PLACES[:1])
+        side_by_side(replace(runs, replay=replace(runs.replay, places=PLACES[:1])), SHAPE)
