@@ -22,7 +22,7 @@ from robo_genesis.pipeline.pages.syntax import PACKAGE
 
 IMPORTING = {"__import__", "eval", "exec", "exec_module", "import_module", "run_module", "run_path"}
 MADE_NAMES = {
-    "pipeline/html/sphinx_process.py": "importlib.import_module(extension)",
+    "pipeline/html/sphinx_process.py": "importlib.import_module(name)",
     "core/shown.py": "import_module(place)",
     "core/declaration.py": "import_module(module)",
     "lessons/__init__.py": "import_module(f'{__name__}.{name}')",
