@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.core.comparison import differences
-from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle, bundle_files, rows
 from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import (
     NOT_COMPARABLE,
     SEVERITY,

@@ -11,10 +11,10 @@ from typing import TypeVar
 import numpy as np
 
 from robo_genesis.core.comparison import differences
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.core.trace import BodyTrace, ContactTrace, TimeSeries, Trace, TraceError
 from robo_genesis.evidence.bundle import Arrays, CaseArrays, JointRecord, Variable
 from robo_genesis.evidence.npz_archive import read_archive, write_archive
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.sim.arm.joints import EFFORT_UNIT, POSITION_UNIT, JointMap
 
 Field = tuple[str, list[str], str | None, str]

@@ -13,7 +13,7 @@ from bundles import RENDERER
 from PIL import Image
 from tiny_book import commit, git
 
-from robo_genesis.core.refusals import LINE_LIMIT
+from robo_genesis.core.text import LINE_LIMIT
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence import recorder as record
 from robo_genesis.evidence.bundle import read_manifest, read_metrics

@@ -10,10 +10,10 @@ from robo_genesis.core.checks import FAILED, Check
 from robo_genesis.core.comparison import agree, differences
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import derived
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, unexpected
 from robo_genesis.evidence import bundle, bundle_files, manifest_rules
 from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, unexpected
 from robo_genesis.pipeline.bundles import keys as evidence_key
 
 
