@@ -38,20 +38,16 @@ def test_a_colour_of_a_drawing_tells_what_it_is():
     assert len({*colours}) == len(colours)
 
 
-@pytest.mark.parametrize("field", ["light", "dark", "dashes"])
-def test_no_two_marks_share_colour_or_dashes(field):
+@pytest.mark.parametrize("field", ["dark", "dashes"])
+def test_no_two_marks_share_colour_or_dashes_which_alternate_with_gaps(field):
     assert len({getattr(mark, field) for mark in MARKS.values()}) == len(MARKS)
-
-
-def test_dashes_and_gaps_alternate():
     assert all(len(mark.dashes) % 2 == 0 for mark in MARKS.values())
 
 
-@pytest.mark.parametrize("mark", MARKS)
-def test_plots_draw_the_palette_s_light_colours(mark):
-    dashes = MARKS[mark].dashes
-    drawn = {"color": MARKS[mark].light, "linestyle": (0, dashes) if dashes else "-"}
-    assert plotting.look(mark) == drawn
+def test_plots_draw_the_palette_s_light_colours():
+    for name, mark in MARKS.items():
+        line = (0, mark.dashes) if mark.dashes else "-"
+        assert plotting.look(name) == {"color": mark.light, "linestyle": line}
 
 
 @pytest.mark.parametrize(
