@@ -70,11 +70,8 @@ class Side:
 
     @property
     def checks(self) -> dict[str, bool]:
-        """Whether each check passed; a repeated check passed if all its outcomes passed."""
-        passed: dict[str, bool] = {}
-        for check in self.manifest.predicate.checks:
-            passed[check.name] = check.passed and passed.get(check.name, True)
-        return passed
+        """Whether each check passed."""
+        return {check.name: check.passed for check in self.manifest.predicate.checks}
 
 
 @dataclass(frozen=True, slots=True)

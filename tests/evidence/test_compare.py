@@ -114,7 +114,7 @@ def test_circumstances_are_noted_and_are_not_a_difference(compared, spoiler, not
     [
         (part("parameters", stepped_joint="joint2"), "parameters.stepped_joint"),
         (predicate(seed=1), "The seed differs: 0 and 1"),
-        (part("engine", precision="64"), "The precision differs: '32' and '64'"),
+        (part("engine", precision="64"), "The precision differs: 32 and 64"),
         (part("backend", actual_at_end="cuda"), "changed during the run, from cpu to cuda"),
         (both(ACCELERATED, UPGRADED), "9.9.9 (quadrants " + QUADRANTS + ") and backend cpu → cuda"),
     ],

@@ -80,8 +80,8 @@ def test_the_build_names_run_command_and_page(quiet, tmp_path, engine, experimen
 
 def test_a_new_bundle_replaces_an_old_one_and_what_an_earlier_failure_left(recorder, experiment):
     outputs = recorder.contract.outputs
-    partial = outputs / f".l04-lab-{recorder.run_id}.partial"
-    for left in (recorder.write(experiment, RENDERER), partial):
+    written = recorder.write(experiment, RENDERER)
+    for left in (written, written.with_name(f".{written.name}.next")):
         left.mkdir(exist_ok=True)
         (left / "stray.txt").write_text("old")
     assert "stray.txt" not in files(recorder.write(experiment, RENDERER))
