@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from robo_genesis.core.scene import CAMERA_RES
-from robo_genesis.evidence import bundle, bundle_files, picture_file, trace_files
+from robo_genesis.core.trace import Trace
+from robo_genesis.evidence import bundle, bundle_files, picture_file
 from robo_genesis.evidence.fields import LINE_LIMIT
 from robo_genesis.evidence.npz_archive import UNPACKED_LIMIT, write_archive
 from robo_genesis.evidence.picture_file import read_picture, write_picture
@@ -25,7 +26,7 @@ from robo_genesis.lessons.l04 import LAB
 
 MANIFEST, ARRAYS, METRICS = "manifest.json", "arrays.json", "metrics.json"
 G1, LOG, INITIAL = "arrays/G1.npz", "log.txt", "frames/initial.png"
-FIELDS = {field: name for field, (name, *_) in trace_files.FIELDS.items()}
+FIELDS = {field: name for field, (name, *_) in Trace.arrays().items()}
 CHECKS = [check.__name__ for check in LAB.checks]
 
 

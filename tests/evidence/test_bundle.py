@@ -32,9 +32,7 @@ def test_a_digest_has_64_lower_case_hex_digits(value):
 
 def test_the_place_of_a_wrong_field_is_named(folder):
     part("engine", version=1)(folder)
-    with pytest.raises(
-        BundleRefused, match=r"^bad-schema: .*predicate\.engine\.version"
-    ):
+    with pytest.raises(BundleRefused, match=r"^bad-schema: .*predicate\.engine\.version"):
         read_manifest(folder)
 
 

@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from robo_genesis.core.trace import Trace
 from robo_genesis.evidence.trace_files import (
-    FIELDS,
     joint_records,
     read_joints,
     read_trace,
@@ -21,7 +21,7 @@ def written(tmp_path, traces, joints):
 
 def test_arrays_come_back_bit_for_bit(written, traces):
     found = read_trace(*written, "G1")
-    for field in FIELDS:
+    for field in Trace.arrays():
         before, after = getattr(traces["G1"], field), getattr(found, field)
         assert (after.dtype, after.shape) == (before.dtype, before.shape)
         assert after.tobytes() == before.tobytes()
@@ -47,5 +47,5 @@ UNITS |= dict.fromkeys(("start_control_force", "effort_limit"), EFFORT)
 
 @pytest.mark.parametrize("field", UNITS)
 def test_each_dof_has_its_own_unit(written, field):
-    name, (arm, finger) = FIELDS[field][0], UNITS[field]
+    name, (arm, finger) = Trace.arrays()[field].name, UNITS[field]
     assert written[1].cases["G1"].variables[name].unit == [arm] * 7 + [finger] * 2
