@@ -1,9 +1,10 @@
 """The palette is readable in both themes, and cases drawn together have different marks."""
 
 import pytest
+from contrast import GROUNDS, contrast
 
 from robo_genesis.core import plotting
-from robo_genesis.core.palette import GROUNDS, MARKS, PARTS, contrast, marks_of
+from robo_genesis.core.palette import MARKS, PARTS, marks_of
 
 TEXT, GRAPHICS = 4.5, 3
 """Least contrast of text and of graphics, WCAG 2.2, 1.4.3 and 1.4.11."""
