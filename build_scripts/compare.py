@@ -10,9 +10,10 @@ import sys
 from pathlib import Path
 
 from robo_genesis.core.project import CACHE
-from robo_genesis.core.refusals import BundleRefused, printable
+from robo_genesis.core.text import printable
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import compare
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import DIFFERS, INCONCLUSIVE, NOT_COMPARABLE
 
 STATUS = {DIFFERS: 1, INCONCLUSIVE: 1, NOT_COMPARABLE: 2}

@@ -12,11 +12,12 @@ from contextlib import suppress
 from pathlib import Path
 
 from robo_genesis.core.project import BOOK, PUBLISHED
-from robo_genesis.core.refusals import BundleRefused, printable
+from robo_genesis.core.text import printable
 from robo_genesis.evidence import bundle_files, report
 from robo_genesis.evidence.advice import advice
 from robo_genesis.evidence.bundle import read_manifest
 from robo_genesis.evidence.compare import compare
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,
     Status,

@@ -14,10 +14,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-from robo_genesis.core.refusals import BundleRefused, printable
+from robo_genesis.core.text import printable
 from robo_genesis.evidence import report
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison, compare
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import DIFFERS, EQUAL, INCONCLUSIVE, NOT_COMPARABLE, WITHIN
 
 LARGEST = 500_000_000

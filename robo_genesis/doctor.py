@@ -28,7 +28,8 @@ from typing import Any, Literal
 
 from robo_genesis.core import project
 from robo_genesis.core.project import OUTPUTS_DIR
-from robo_genesis.core.refusals import BundleRefused, printable
+from robo_genesis.core.text import printable
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.sim import diagnosis
 from robo_genesis.sim.diagnosis import Bench, StepResult, shareable
 

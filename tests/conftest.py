@@ -109,21 +109,6 @@ LINKS = ("link0", "link4", "hand")
 
 
 @pytest.fixture(scope="session")
-def second_order() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
-    """Unit step response of y″ + 2ζω y′ + ω² y = ω² from rest, and its slope."""
-
-    def response(t: np.ndarray, omega: float, zeta: float) -> tuple[np.ndarray, np.ndarray]:
-        decay = np.exp(-zeta * omega * t)
-        if zeta == 1:
-            return 1 - decay * (1 + omega * t), omega**2 * t * decay
-        r = omega * np.sqrt(complex(zeta**2 - 1))
-        y = 1 - decay * (np.cosh(r * t) + zeta * omega / r * np.sinh(r * t))
-        return y.real, (omega**2 / r * decay * np.sinh(r * t)).real
-
-    return response
-
-
-@pytest.fixture(scope="session")
 def make_trace() -> Callable[..., Trace]:
     """Build a run of one joint from its positions; arrays that are not given are zero."""
 
@@ -158,38 +143,6 @@ def joints() -> JointMap:
         lower=per_joint(-2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973, 0, 0),
         upper=per_joint(2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973, 0.04, 0.04),
     )
-
-
-@pytest.fixture(scope="session")
-def make_run(second_order) -> Callable[..., Trace]:
-    """Make a synthetic run of a case of L04: float32 as from the engine, efforts clipped."""
-
-    def run(name: str, omega: float, zeta: float) -> Trace:
-        case, t = l04.CASES[name], np.arange(l04.STEPS + 1) * DT
-        y, yd = second_order(t, omega, zeta)
-        step = case.q_target - case.q_start
-        q = (case.q_start + y[:, None] * step).astype(np.float32)
-        qd = (yd[:, None] * step).astype(np.float32)
-        demand = case.kp * (case.q_target - q) - case.kv * qd
-        effort = np.clip(demand, -case.effort_limit, case.effort_limit).astype(np.float32)
-        link_pos = np.zeros((len(t), len(LINKS), 3), np.float32)
-        link_pos[:, 1:, 2] = 0.5
-        link_pos[:, 2, 0] = y
-        return Trace(
-            t=t,
-            q=q,
-            qd=qd[1:],
-            target=np.tile(case.q_target, (l04.STEPS, 1)),
-            control_force=effort[1:],
-            internal_force=effort[1:] / 2,
-            start_control_force=effort[0],
-            start_qd=qd[0],
-            effort_limit=case.effort_limit.astype(np.float32),
-            link_pos=link_pos,
-            link_quat=np.tile(np.float32([1, 0, 0, 0]), (len(t), len(LINKS), 1)),
-        )
-
-    return run
 
 
 @pytest.fixture(scope="session")

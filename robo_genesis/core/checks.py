@@ -5,6 +5,7 @@ its claim: what it requires. Each finding pairs a measured value with a judgemen
 """
 
 import math
+import operator
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, TypeVar
@@ -105,20 +106,24 @@ def nearly(label: str, found: float | None, expected: float, share: float) -> Fi
 
 def at_most(label: str, found: float | None, limit: float) -> Finding:
     """Require a value up to the limit."""
-    passed = found is not None and found <= limit
-    return Finding(label, found, bool(passed), f"at most {limit:g}")
+    return _limited(label, found, operator.le, "at most", limit)
 
 
 def below(label: str, found: float | None, limit: float) -> Finding:
     """Require a value below the limit."""
-    passed = found is not None and found < limit
-    return Finding(label, found, bool(passed), f"less than {limit:g}")
+    return _limited(label, found, operator.lt, "less than", limit)
 
 
 def above(label: str, found: float | None, limit: float) -> Finding:
     """Require a value above the limit."""
-    passed = found is not None and found > limit
-    return Finding(label, found, bool(passed), f"more than {limit:g}")
+    return _limited(label, found, operator.gt, "more than", limit)
+
+
+def _limited(
+    label: str, found: float | None, order: Callable[[Any, Any], Any], words: str, limit: float
+) -> Finding:
+    passed = found is not None and order(found, limit)
+    return Finding(label, found, bool(passed), f"{words} {limit:g}")
 
 
 def model_counts(found: Mapping[str, float], expected: Mapping[str, float]) -> Iterator[Finding]:

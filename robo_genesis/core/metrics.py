@@ -1,11 +1,11 @@
-"""Metrics as dataclass fields with unit, label and source arrays.
+"""Arrays and metrics as dataclass fields: names, units, labels, and the sources of a metric.
 
 A record in `metrics.json` has value, unit, class and source. A value that was not observed is None.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import Field, field, fields
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 Kind = Literal["value", "exact", "performance"]
 """What another run must do with a value: agree within a tolerance, repeat it, or nothing."""
@@ -14,6 +14,25 @@ Record = dict[str, Any]
 
 ENGINE = ["engine"]
 """The source of a value that the engine reported and that is in no array."""
+
+
+class Stored(NamedTuple):
+    """How one array of a run is stored: the name ends with the unit.
+
+    `dims` are `state` (n+1), `step` (n), `dof`, `link`, `axis` (x, y, z) and `wxyz`. `unit` is None
+    if each DOF has its own. The engine computes in float32.
+    """
+
+    name: str
+    dims: tuple[str, ...]
+    unit: str | None
+    long_name: str
+    dtype: str = "float32"
+
+
+def array(name: str, dims: str, unit: str | None, long_name: str, dtype: str = "float32") -> Any:
+    """Return a dataclass field for one array; see `Stored`. Spaces separate the `dims`."""
+    return field(metadata={"stored": Stored(name, tuple(dims.split()), unit, long_name, dtype)})
 
 
 def metric(unit: str, label: str, *sources: str, noun: str = "") -> Any:

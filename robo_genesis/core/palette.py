@@ -9,9 +9,6 @@ from dataclasses import dataclass
 
 MEASURES = False
 
-GROUNDS = {"light": ("#ffffff", "#f3f4f5"), "dark": ("#14181e", "#222832", "#29313d")}
-"""Backgrounds in each theme: page, panels and tables."""
-
 
 @dataclass(frozen=True, slots=True)
 class Mark:
@@ -79,18 +76,3 @@ def marks_of(cases: Sequence[str], declared: Mapping[str, str]) -> dict[str, str
 def css_name(mark: str) -> str:
     """Return the name of a mark in style sheets: `case-g1`, `target`."""
     return CASE_CLASSES.get(mark, mark)
-
-
-def contrast(one: str, other: str) -> float:
-    """Return the contrast ratio of two colours `#rrggbb`, 1 to 21.
-
-    Source: WCAG 2.2, definitions of relative luminance and contrast ratio.
-    """
-    darker, lighter = sorted((_luminance(one), _luminance(other)))
-    return (lighter + 0.05) / (darker + 0.05)
-
-
-def _luminance(colour: str) -> float:
-    channels = [int(colour[at : at + 2], 16) / 255 for at in (1, 3, 5)]
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
-    return sum(w * c for w, c in zip((0.2126, 0.7152, 0.0722), linear, strict=True))

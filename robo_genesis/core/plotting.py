@@ -195,19 +195,16 @@ def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
         trace: its first and last link positions are drawn, x against z [m].
         parents: for each link the local index of its parent, -1 for the base.
     """
-    ends = (("before the first step", 0, "other"), ("after the last step", -1, "baseline"))
-    for label, when, name in ends:
-        points = trace.link_pos[when]
-        drawn = look(name, marker="o", markersize=4)
-        bones = [points[[parent, link]] for link, parent in enumerate(parents) if parent >= 0]
-        for number, bone in enumerate(bones):
-            ax.plot(bone[:, 0], bone[:, 2], label="" if number else label, **drawn)
-    ax.set_aspect("equal")
-    ax.set_xlabel("x [m]")
-    ax.set_ylabel("z [m]")
-    ax.set_title("Schematic of measured link origins:\nthis is not a camera frame")
-    ax.legend()
-    return ax
+    ends = {"before the first step": 0, "after the last step": -1}
+    bones = {
+        label: [
+            trace.link_pos[when][[parent, link]][:, [0, 2]]
+            for link, parent in enumerate(parents)
+            if parent >= 0
+        ]
+        for label, when in ends.items()
+    }
+    return _from_the_side(ax, "link origins", bones, marker="o", markersize=4)
 
 
 def body_schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) -> Axes:
@@ -219,15 +216,22 @@ def body_schematic(ax: Axes, trace: BodyTrace, size: float, floor: float = 0.0) 
         size: edge of the cube [m].
         floor: height of the surface below it [m].
     """
-    for label, when, name in (("start", 0, "other"), ("end", -1, "baseline")):
-        x, _, z = trace.link_pos[when, 0]
-        left, right, low, top = (x - size / 2, x + size / 2, z - size / 2, z + size / 2)
-        ax.plot([left, right, right, left, left], [low, low, top, top, low], label=label,
-                **look(name))  # fmt: skip
+    corners = size / 2 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
+    ends = {"start": 0, "end": -1}
+    squares = {label: [trace.link_pos[k, 0, [0, 2]] + corners] for label, k in ends.items()}
     ax.axhline(floor, **LINE)
-    ax.set_aspect("equal")
-    ax.set(xlabel="x [m]", ylabel="z [m]")
-    ax.set_title("Schematic of measured positions:\nthis is not a camera frame")
+    return _from_the_side(ax, "positions", squares)
+
+
+def _from_the_side(
+    ax: Axes, what: str, ends: Mapping[str, Sequence[np.ndarray]], **more: Any
+) -> Axes:
+    """Draw lines (n, 2) of both ends of a run by label, x against z [m]."""
+    for (label, lines), name in zip(ends.items(), ("other", "baseline"), strict=True):
+        for number, line in enumerate(lines):
+            ax.plot(*line.T, label="" if number else label, **look(name, **more))
+    title = f"Schematic of measured {what}:\nthis is not a camera frame"
+    ax.set(aspect="equal", xlabel="x [m]", ylabel="z [m]", title=title)
     ax.legend()
     return ax
 

@@ -5,7 +5,6 @@ import os
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
@@ -96,35 +95,24 @@ def engine_pin(root: Path = ROOT) -> str:
     from_metadata = root == ROOT and not in_checkout()
     if from_metadata:
         file = f"The metadata of the installed package {COURSE}"
-        fix = "Install the course's wheel again with pip"
+        fix = "Install the course's wheel again with pip, or use a checkout"
     try:
         if from_metadata:
-            requirements = [Requirement(line) for line in requires(COURSE) or ()]
+            lines = requires(COURSE) or []
         else:
-            requirements = _requirements(Path(file).read_text("utf8"))
-    except PackageNotFoundError as error:
-        raise ProjectError(
-            f"{ROOT} has neither a pyproject.toml nor an installed {COURSE}. Install the course's "
-            "wheel with pip, or use a checkout."
-        ) from error
-    except (KeyError, ValueError) as error:  # InvalidRequirement is a ValueError
+            lines = tomllib.loads(Path(file).read_text("utf8"))["project"]["dependencies"]
+        engines = [line for line in map(Requirement, lines) if line.name == ENGINE]
+    except (KeyError, ValueError, PackageNotFoundError) as error:
         raise ProjectError(
             f'{file} cannot be read: {error}\nValid dependencies are like "numpy>=2.0". {fix}.'
         ) from error
-    found = [line for line in requirements if line.name == ENGINE]
-    pins = [spec for line in found for spec in line.specifier]
+    pins = [spec for line in engines for spec in line.specifier]
     if len(pins) != 1 or pins[0].operator != "==" or pins[0].version.endswith("*"):
         raise ProjectError(
-            f"{file} declares {', '.join(map(str, found)) or 'no engine'}. Valid is exactly one "
+            f"{file} declares {', '.join(map(str, engines)) or 'no engine'}. Valid is exactly one "
             f'dependency "{ENGINE}==X". {fix}.'
         )
     return pins[0].version
-
-
-@lru_cache(maxsize=8)
-def _requirements(text: str) -> list[Requirement]:
-    """Return the dependencies that the text of a pyproject.toml declares."""
-    return [Requirement(line) for line in tomllib.loads(text)["project"]["dependencies"]]
 
 
 def installed_version(package: str) -> str | None:

@@ -1,4 +1,4 @@
-"""Measured values and lists as text, with the digits of each unit."""
+"""Measured values and lists as text, and text that others wrote, made safe for messages."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -9,6 +9,12 @@ MEASURES = False
 
 NOT_OBSERVED = "not observed"
 LONGEST_SHOWN = 160
+
+LINE_LIMIT = 2**14
+"""Characters of one line of the engine's log, and of one warning. Most have less than 400."""
+
+BLANK = "\n\t\N{NO-BREAK SPACE}\N{ZERO WIDTH JOINER}"
+"""Characters of a message that are not printable by themselves."""
 
 DIGITS = {
     "s": 2, "rad": 4, "m": 4, "rad/s": 3, "m/s": 3, "N·m": 2, "N": 2, "kg": 3, "J": 4, "%": 1,
@@ -116,3 +122,21 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
 def time_digits(dt: float) -> int:
     """Return the number of digits after the point of times k · `dt` [s], at least two."""
     return next((n for n in (2, 3, 4, 5) if abs(round(dt, n) - dt) < 1e-9), 6)
+
+
+def printable(text: str) -> str:
+    r"""Return text as one line that a terminal shows and does not obey.
+
+    Line breaks, control characters, reversed directions and other invisible characters become
+    escapes such as `\x1b`.
+    """
+    odd = (c for c in {*text} if not c.isprintable())
+    return text.translate({ord(c): c.encode("unicode_escape").decode() for c in odd})
+
+
+def clean_message(text: str, limit: int) -> str:
+    """Return a message of several lines without control characters, shortened to a length."""
+    plain = "".join(
+        c if c.isprintable() or c in BLANK else "\N{REPLACEMENT CHARACTER}" for c in text
+    )
+    return plain if len(plain) <= limit else f"{plain[: limit - 1]}…"

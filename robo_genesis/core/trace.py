@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from robo_genesis.core.metrics import Stored, array
 from robo_genesis.core.scene import FloatArray
 
 
@@ -18,24 +19,34 @@ class TimeSeries:
     A value that `scene.step()` produces has the time at which the step ends. `t`: (n+1,) [s].
     """
 
-    t: FloatArray
+    t: FloatArray = array(
+        "t_s", "state", "s", "time of each state, the first before any step", "float64"
+    )
+
+    @classmethod
+    def arrays(cls) -> dict[str, Stored]:
+        """Return how each array is stored, by its field."""
+        return {one.name: one.metadata["stored"] for one in fields(cls)}
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            array = np.array(getattr(self, field.name))
-            if not np.isfinite(array).all():
-                where = np.argwhere(~np.isfinite(array))[0].tolist()
-                raise TraceError(f"{field.name} is not finite at index {where}.")
-            array.setflags(write=False)
-            object.__setattr__(self, field.name, array)
-        states = self.t.shape[0] if self.t.ndim == 1 else 0
-        for name, shape in self._expected(states).items():
-            found = getattr(self, name).shape
-            if found != shape or states < 2:
+        states = np.shape(self.t)[0] if np.ndim(self.t) == 1 else 0
+        lengths = {"state": states, "step": states - 1, "axis": 3, "wxyz": 4}
+        for name, (_, dims, *_) in self.arrays().items():
+            values = np.array(getattr(self, name))
+            if not np.isfinite(values).all():
+                where = np.argwhere(~np.isfinite(values))[0].tolist()
+                raise TraceError(f"{name} is not finite at index {where}.")
+            if values.ndim == len(dims):  # the first array with DOFs or links says how many
+                lengths = dict(zip(dims, values.shape, strict=True)) | lengths
+            expected = tuple(lengths.get(dim, 0) for dim in dims)
+            if values.shape != expected or states < 2:
                 raise TraceError(
-                    f"{name} has shape {found}, expected {shape}: a run of {states - 1} steps has "
-                    f"{states} states (t = 0 included) and {states - 1} values after a step."
+                    f"{name} has shape {values.shape}, expected {expected}: a run of {states - 1} "
+                    f"steps has {states} states (t = 0 included) and {states - 1} values after a "
+                    "step."
                 )
+            values.setflags(write=False)
+            object.__setattr__(self, name, values)
         if self.t[0] != 0.0:
             raise TraceError(
                 f"t starts at {self.t[0]} s, expected 0: the state before the first step."
@@ -44,10 +55,6 @@ class TimeSeries:
         if self.t[1] <= 0 or not np.allclose(self.t, expected, rtol=0, atol=1e-9):
             k = int(np.argmax(np.abs(self.t - expected)))
             raise TraceError(f"t[{k}] is {self.t[k]} s, expected {expected[k]} s: k · dt.")
-
-    def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
-        """Return the shape of each array of a run with a number of states."""
-        return {"t": (states,)}
 
     @property
     def dt(self) -> float:
@@ -63,6 +70,10 @@ class TimeSeries:
     def t_step(self) -> FloatArray:
         """Times of the values after each step, t[1] … t[n], shape (n,) [s]."""
         return self.t[1:]
+
+
+LINK_POS = array("link_pos_m", "state link axis", "m", "link position in the world")
+LINK_QUAT = array("link_quat_wxyz", "state link wxyz", "1", "link orientation")
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,29 +95,28 @@ class Trace(TimeSeries):
     | `link_quat` | (n+1, l, 4) | link orientations in the world, (w, x, y, z) |
     """
 
-    q: FloatArray
-    qd: FloatArray
-    target: FloatArray
-    control_force: FloatArray
-    internal_force: FloatArray
-    start_control_force: FloatArray
-    start_qd: FloatArray
-    effort_limit: FloatArray
-    link_pos: FloatArray
-    link_quat: FloatArray
-
-    def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
-        dofs = self.q.shape[1] if self.q.ndim == 2 else 0
-        links = self.link_pos.shape[1] if self.link_pos.ndim == 3 else 0
-        return {
-            "t": (states,),
-            "q": (states, dofs),
-            "start_control_force": (dofs,),
-            "start_qd": (dofs,),
-            "effort_limit": (dofs,),
-            "link_pos": (states, links, 3),
-            "link_quat": (states, links, 4),
-        } | dict.fromkeys(("qd", "target", "control_force", "internal_force"), (states - 1, dofs))
+    q: FloatArray = array("q_rad_or_m", "state dof", None, "position")
+    qd: FloatArray = array("qd_rad_s_or_m_s", "step dof", None, "velocity after each step")
+    target: FloatArray = array(
+        "target_rad_or_m", "step dof", None, "position command of each step", "float64"
+    )
+    control_force: FloatArray = array(
+        "control_force_Nm_or_N", "step dof", None, "get_dofs_control_force after each step"
+    )
+    internal_force: FloatArray = array(
+        "internal_force_Nm_or_N", "step dof", None, "get_dofs_force after each step"
+    )
+    start_control_force: FloatArray = array(
+        "start_control_force_Nm_or_N", "dof", None, "control force before the first step"
+    )
+    start_qd: FloatArray = array(
+        "start_qd_rad_s_or_m_s", "dof", None, "velocity before the first step"
+    )
+    effort_limit: FloatArray = array(
+        "effort_limit_Nm_or_N", "dof", None, "get_dofs_force_range, read back"
+    )
+    link_pos: FloatArray = LINK_POS
+    link_quat: FloatArray = LINK_QUAT
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,15 +132,12 @@ class BodyTrace(TimeSeries):
     | `link_ang` | (n+1, l, 3) | angular velocities in the world's axes [rad/s] |
     """
 
-    link_pos: FloatArray
-    link_quat: FloatArray
-    link_vel: FloatArray
-    link_ang: FloatArray
-
-    def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
-        links = self.link_pos.shape[1] if self.link_pos.ndim == 3 else 0
-        shapes = dict.fromkeys(("link_pos", "link_vel", "link_ang"), (states, links, 3))
-        return {"t": (states,), "link_quat": (states, links, 4)} | shapes
+    link_pos: FloatArray = LINK_POS
+    link_quat: FloatArray = LINK_QUAT
+    link_vel: FloatArray = array(
+        "link_vel_m_s", "state link axis", "m/s", "velocity of the link's origin"
+    )
+    link_ang: FloatArray = array("link_ang_rad_s", "state link axis", "rad/s", "angular velocity")
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,13 +153,13 @@ class ContactTrace(BodyTrace):
     are those of the beginning of its last solver step: one solver step older than the positions.
     """
 
-    contacts: np.ndarray
-    penetration: FloatArray
-
-    def _expected(self, states: int) -> dict[str, tuple[int, ...]]:
-        shapes = BodyTrace._expected(self, states)
-        links = shapes["link_pos"][1]
-        return shapes | dict.fromkeys(("contacts", "penetration"), (states, links))
+    contacts: np.ndarray = array(
+        "contacts", "state link", "1",
+        "contact points with the surface at the beginning of the last solver step", "int32",
+    )  # fmt: skip
+    penetration: FloatArray = array(
+        "penetration_m", "state link", "m", "depth of the deepest of them"
+    )
 
 
 def first_time(t: np.ndarray, reached: np.ndarray) -> float | None:

@@ -18,7 +18,6 @@ from typing import Any, Literal
 import rfc8785
 from pydantic import Field, TypeAdapter, ValidationError
 
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.core.text import LONGEST_SHOWN
 from robo_genesis.evidence.fields import (
     Found,
@@ -31,6 +30,7 @@ from robo_genesis.evidence.fields import (
     Strict,
     Timestamp,
 )
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.evidence.strict_json import read_json
 
 STATEMENT_TYPE = "https://in-toto.io/Statement/v1"

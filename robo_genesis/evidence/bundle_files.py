@@ -5,8 +5,8 @@ import re
 import stat
 from pathlib import Path
 
-from robo_genesis.core.refusals import expect, unexpected
 from robo_genesis.evidence.bundle import Manifest, sha256
+from robo_genesis.evidence.refusals import expect, unexpected
 
 MANIFEST = "manifest.json"
 MIB = 2**20

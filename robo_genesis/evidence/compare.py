@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robo_genesis.core.comparison import differences
-from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle, bundle_files, rows
 from robo_genesis.evidence.bundle import Predicate
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import (
     NOT_COMPARABLE,
     SEVERITY,
@@ -140,14 +140,11 @@ def axes(old: Predicate, new: Predicate) -> list[str]:
 
 
 def _obstacles(old: Predicate, new: Predicate) -> Iterator[str]:
-    required = (
-        ("seed", old.seed, new.seed),
-        ("precision", old.engine.precision, new.engine.precision),
+    was_asked, is_asked = (
+        {"The seed": p.seed, "The precision": p.engine.precision, "parameters": p.parameters}
+        for p in (old, new)
     )
-    for what, was, now in required:
-        if was != now:
-            yield f"The {what} differs: {was!r} and {now!r}."
-    for path, was, now in differences(old.parameters, new.parameters, path="parameters"):
+    for path, was, now in differences(was_asked, is_asked):
         yield f"{path} differs: {quoted(was)} and {quoted(now)}."
     for word, side in (("old", old), ("new", new)):
         if side.backend.actual != side.backend.actual_at_end:

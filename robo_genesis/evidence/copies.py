@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from robo_genesis.core.comparison import same_arrays
-from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import read_side
+from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.evidence.rows import Side
 
 IMPORTER = "(MJCF)"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from robo_genesis.core import tables
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.refusals import printable
+from robo_genesis.core.text import printable
 from robo_genesis.evidence.rows import SEVERITY
 
 Cells = tuple[str, ...]

@@ -6,9 +6,9 @@ from datetime import datetime
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, unexpected
 from robo_genesis.evidence.bundle import Manifest, Predicate, evidence_key
 from robo_genesis.evidence.fields import LINE_LIMIT
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, unexpected
 from robo_genesis.lessons import LESSONS
 from robo_genesis.sim.backends import contradictions
 from robo_genesis.sim.camera.frames import Renderer

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.lib import format as npy
 
-from robo_genesis.core.refusals import AGAIN, BundleRefused
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused
 
 UNPACKED_LIMIT = 32 * 2**20
 """Bytes of all arrays of one case. Those of a lesson have less than 0.2 MiB."""

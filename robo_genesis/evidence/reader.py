@@ -7,11 +7,11 @@ import numpy as np
 
 from robo_genesis.core.comparison import differences
 from robo_genesis.core.experiment import Experiment, MeasuringPage
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.core.scene import CAMERA_RES
 from robo_genesis.evidence import bundle, trace_files
 from robo_genesis.evidence.bundle import Arrays, Manifest, Metric, Predicate
 from robo_genesis.evidence.picture_file import read_picture
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.lessons import find_page
 
 

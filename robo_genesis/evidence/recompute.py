@@ -6,10 +6,10 @@ from pathlib import Path
 from robo_genesis.core.checks import FAILED, Check
 from robo_genesis.core.comparison import agree, differences
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect, unexpected
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect, unexpected
 
 
 def recompute(folder: Path, manifest: Manifest) -> bytes:

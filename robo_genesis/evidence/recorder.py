@@ -6,7 +6,6 @@ import importlib.metadata
 import math
 import os
 import platform
-import shutil
 import uuid
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -17,6 +16,7 @@ from typing import Any
 
 from robo_genesis.core import project
 from robo_genesis.core.experiment import Experiment
+from robo_genesis.core.files import replaced
 from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.picture_file import write_picture
@@ -100,16 +100,9 @@ class Recorder:
                 "if the contract asks for it."
             )
         require_complete(experiment)
-        partial = self.contract.outputs / f".{self.lesson}-{self.page}-{self.run_id}.partial"
-        shutil.rmtree(partial, ignore_errors=True)
-        partial.mkdir(parents=True)
-        try:
-            self._write_files(partial, experiment, renderer)
-            self.folder.parent.mkdir(parents=True, exist_ok=True)
-            shutil.rmtree(self.folder, ignore_errors=True)
-            partial.rename(self.folder)
-        finally:
-            shutil.rmtree(partial, ignore_errors=True)
+        with replaced(self.folder) as following:
+            following.mkdir(parents=True)
+            self._write_files(following, experiment, renderer)
         return self.folder
 
     def _write_files(self, folder: Path, run: Experiment, renderer: Renderer | None) -> None:

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import astuple
 
-from robo_genesis.core.refusals import printable
+from robo_genesis.core.text import printable
 from robo_genesis.evidence.bundle import Predicate
 from robo_genesis.evidence.compare import BundleComparison
 from robo_genesis.evidence.document import Cells, Document, Part

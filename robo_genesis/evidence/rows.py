@@ -16,7 +16,6 @@ from robo_genesis.core.comparison import (
 from robo_genesis.core.text import six_digits
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence.bundle import Arrays, JointRecord, Manifest, Metric, by_full_name
-from robo_genesis.evidence.trace_files import fields_of
 
 EQUAL, SHOWN, WITHIN, INCONCLUSIVE, DIFFERS, NOT_COMPARABLE = SEVERITY = (
     "equal", "shown", "within tolerance", "inconclusive", "differs", "not comparable",
@@ -70,11 +69,8 @@ class Side:
 
     @property
     def checks(self) -> dict[str, bool]:
-        """Whether each check passed; a repeated check passed if all its outcomes passed."""
-        passed: dict[str, bool] = {}
-        for check in self.manifest.predicate.checks:
-            passed[check.name] = check.passed and passed.get(check.name, True)
-        return passed
+        """Whether each check passed."""
+        return {check.name: check.passed for check in self.manifest.predicate.checks}
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +198,7 @@ def arrays(old: Side, new: Side, spec: PageSpecification) -> Iterator[Row]:
     values must be equal. The row names the value that exceeds its tolerance most.
     """
     for case in [name for name in old.traces if name in new.traces]:
-        for field, (name, *_) in fields_of(old.traces[case]).items():
+        for field, (name, *_) in old.traces[case].arrays().items():
             a, b = (getattr(side.traces[case], field, np.empty(0)) for side in (old, new))
             what, unit = f"{case} {name}", old.arrays.cases[case].variables[name].unit
             if a.shape != b.shape or a.dtype != b.dtype:

@@ -8,8 +8,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.refusals import AGAIN, BundleRefused
 from robo_genesis.core.text import quoted
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused
 
 LARGEST = 2**53 - 1
 """The largest magnitude of a number: up to here, a float holds every integer."""

@@ -11,65 +11,17 @@ from typing import TypeVar
 import numpy as np
 
 from robo_genesis.core.comparison import differences
-from robo_genesis.core.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.core.trace import BodyTrace, ContactTrace, TimeSeries, Trace, TraceError
 from robo_genesis.evidence.bundle import Arrays, CaseArrays, JointRecord, Variable
 from robo_genesis.evidence.npz_archive import read_archive, write_archive
+from robo_genesis.evidence.refusals import AGAIN, BundleRefused, expect
 from robo_genesis.sim.arm.joints import EFFORT_UNIT, POSITION_UNIT, JointMap
-
-Field = tuple[str, list[str], str | None, str]
-
-# Trace field → name in the file, dimensions, unit (None if each DOF has its own), long name.
-FIELDS: dict[str, Field] = {
-    "t": ("t_s", ["state"], "s", "time of each state, the first before any step"),
-    "q": ("q_rad_or_m", ["state", "dof"], None, "position"),
-    "qd": ("qd_rad_s_or_m_s", ["step", "dof"], None, "velocity after each step"),
-    "target": ("target_rad_or_m", ["step", "dof"], None, "position command of each step"),
-    "control_force": (
-        "control_force_Nm_or_N", ["step", "dof"], None, "get_dofs_control_force after each step"),
-    "internal_force": (
-        "internal_force_Nm_or_N", ["step", "dof"], None, "get_dofs_force after each step"),
-    "start_control_force": (
-        "start_control_force_Nm_or_N", ["dof"], None, "control force before the first step"),
-    "start_qd": ("start_qd_rad_s_or_m_s", ["dof"], None, "velocity before the first step"),
-    "effort_limit": ("effort_limit_Nm_or_N", ["dof"], None, "get_dofs_force_range, read back"),
-    "link_pos": ("link_pos_m", ["state", "link", "axis"], "m", "link position in the world"),
-    "link_quat": ("link_quat_wxyz", ["state", "link", "wxyz"], "1", "link orientation"),
-}  # fmt: skip
-
-BODY_FIELDS: dict[str, Field] = {
-    "t": FIELDS["t"],
-    "link_pos": FIELDS["link_pos"],
-    "link_quat": FIELDS["link_quat"],
-    "link_vel": ("link_vel_m_s", ["state", "link", "axis"], "m/s", "velocity of the link's origin"),
-    "link_ang": ("link_ang_rad_s", ["state", "link", "axis"], "rad/s", "angular velocity"),
-}  # fmt: skip
-
-CONTACT_FIELDS: dict[str, Field] = BODY_FIELDS | {
-    "contacts": (
-        "contacts", ["state", "link"], "1",
-        "contact points with the surface at the beginning of the last solver step"),
-    "penetration": ("penetration_m", ["state", "link"], "m", "depth of the deepest of them"),
-}  # fmt: skip
-
-KINDS: dict[type[TimeSeries], dict[str, Field]] = {
-    Trace: FIELDS,
-    BodyTrace: BODY_FIELDS,
-    ContactTrace: CONTACT_FIELDS,
-}
-DTYPES = {"t": "float64", "target": "float64", "contacts": "int32"}
-"""Types of fields; all others are float32, in which the engine computes."""
 
 Kind = TypeVar("Kind", bound=TimeSeries)
 
 
-def fields_of(trace: TimeSeries) -> dict[str, Field]:
-    """Return name in the file, dimensions, unit and long name of each array of a run."""
-    return KINDS[type(trace)]
-
-
 def dof_units(name: str, types: Sequence[str]) -> list[str]:
-    """Return the unit of each DOF in one array of `FIELDS`, from the types of the joints."""
+    """Return the unit of each DOF in one array, by its name, from the types of the joints."""
     positions = [POSITION_UNIT[kind] for kind in types]
     if name.startswith(("q_", "target")):
         return positions
@@ -98,7 +50,7 @@ def write_traces(
     types, cases = joints.types if joints else (), {}
     for case, trace in traces.items():
         cases[case] = described = _description(case, trace, types, (notes or {}).get(case, ""))
-        values = {name: getattr(trace, field) for field, (name, *_) in fields_of(trace).items()}
+        values = {of.name: getattr(trace, field) for field, of in trace.arrays().items()}
         write_archive(folder / described.file, values)
     coords = {"dof": list(joints.names)} if joints else {}
     records = joint_records(joints) if joints else []
@@ -108,14 +60,14 @@ def write_traces(
 def _description(case: str, trace: TimeSeries, types: Sequence[str], note: str) -> CaseArrays:
     """Return the entry of `arrays.json` of one run, whose joints have these types."""
     variables = {}
-    for field, (name, dims, unit, long_name) in fields_of(trace).items():
+    for field, of in trace.arrays().items():
         array = getattr(trace, field)
-        variables[name] = Variable(
-            dims=dims,
+        variables[of.name] = Variable(
+            dims=list(of.dims),
             shape=list(array.shape),
             dtype=str(array.dtype),
-            unit=dof_units(name, types) if unit is None else unit,
-            long_name=long_name,
+            unit=dof_units(of.name, types) if of.unit is None else of.unit,
+            long_name=of.long_name,
         )
     return CaseArrays(file=f"arrays/{case}.npz", note=note, variables=variables)
 
@@ -193,22 +145,22 @@ def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:
         BundleRefused: `labels`, `path`, `too-big` or `bad-array`; `bad-trace` if the arrays do not
             form one run.
     """
-    described, fields, place = arrays.cases[case], KINDS[kind], f"arrays.json {case}"
+    described, fields, place = arrays.cases[case], kind.arrays(), f"arrays.json {case}"
     expect("path", place, "file", described.file, f"arrays/{case}.npz")
     if kind is not Trace:
         expect("labels", "arrays.json", "number of joints of free bodies", len(arrays.joints), 0)
     types = read_joints(arrays).types if arrays.joints else ()
-    dtypes = {name: DTYPES.get(field, "float32") for field, (name, *_) in fields.items()}
+    dtypes = {of.name: of.dtype for of in fields.values()}
     expect("labels", place, "list of arrays", sorted(described.variables), sorted(dtypes))
     values = read_archive(folder / described.file, described.file, dtypes)
     try:
-        trace = kind(**{field: values[name] for field, (name, *_) in fields.items()})
+        trace = kind(**{field: values[of.name] for field, of in fields.items()})
     except TraceError as error:
         raise BundleRefused("bad-trace", f"{described.file}: {error} {AGAIN}") from error
     found = {
         dim: length
-        for field, (_, dims, *_) in fields.items()
-        for dim, length in zip(dims, getattr(trace, field).shape, strict=True)
+        for field, of in fields.items()
+        for dim, length in zip(of.dims, getattr(trace, field).shape, strict=True)
         if dim in ("dof", "link")
     }
     labels = {axis: len(names) for axis, names in arrays.coords.items()}

@@ -10,10 +10,10 @@ from pathlib import Path
 from bs4 import BeautifulSoup
 
 from robo_genesis.core.project import STORE, locked_versions
-from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence import report
 from robo_genesis.evidence.compare import BundleComparison, compare
 from robo_genesis.evidence.document import Document, Part
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.evidence.rows import SEVERITY, worst
 from robo_genesis.pipeline.bundles.status import Status, recorded_folders, recorded_status
 from robo_genesis.pipeline.pages.book import code_digest, find_pages

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.project import BACKEND, BOOK, BUILD_BACKEND, CACHE, RENDER, ProjectError
-from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.evidence.refusals import BundleRefused
 
 TIMEOUT = 1500
 """Seconds for one cell; a page's front matter may set another."""

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from robo_genesis.core.project import without_home
-from robo_genesis.core.refusals import LINE_LIMIT, clean_message
+from robo_genesis.core.text import LINE_LIMIT, clean_message
 
 
 class EngineLog(logging.Handler):

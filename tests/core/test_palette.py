@@ -1,9 +1,10 @@
 """The palette is readable in both themes, and cases drawn together have different marks."""
 
 import pytest
+from contrast import GROUNDS, contrast
 
 from robo_genesis.core import plotting
-from robo_genesis.core.palette import GROUNDS, MARKS, PARTS, contrast, marks_of
+from robo_genesis.core.palette import MARKS, PARTS, marks_of
 
 TEXT, GRAPHICS = 4.5, 3
 """Least contrast of text and of graphics, WCAG 2.2, 1.4.3 and 1.4.11."""
@@ -38,20 +39,16 @@ def test_a_colour_of_a_drawing_tells_what_it_is():
     assert len({*colours}) == len(colours)
 
 
-@pytest.mark.parametrize("field", ["light", "dark", "dashes"])
-def test_no_two_marks_share_colour_or_dashes(field):
+@pytest.mark.parametrize("field", ["dark", "dashes"])
+def test_no_two_marks_share_colour_or_dashes_which_alternate_with_gaps(field):
     assert len({getattr(mark, field) for mark in MARKS.values()}) == len(MARKS)
-
-
-def test_dashes_and_gaps_alternate():
     assert all(len(mark.dashes) % 2 == 0 for mark in MARKS.values())
 
 
-@pytest.mark.parametrize("mark", MARKS)
-def test_plots_draw_the_palette_s_light_colours(mark):
-    dashes = MARKS[mark].dashes
-    drawn = {"color": MARKS[mark].light, "linestyle": (0, dashes) if dashes else "-"}
-    assert plotting.look(mark) == drawn
+def test_plots_draw_the_palette_s_light_colours():
+    for name, mark in MARKS.items():
+        line = (0, mark.dashes) if mark.dashes else "-"
+        assert plotting.look(name) == {"color": mark.light, "linestyle": line}
 
 
 @pytest.mark.parametrize(

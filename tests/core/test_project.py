@@ -15,51 +15,37 @@ def checkout(folder: Path, *dependencies: str) -> Path:
     return folder
 
 
-@pytest.mark.parametrize(
-    ("lines", "words"),
-    [
-        (["genesis-world=1.3"], "cannot be read: "),
-        (["genesis-world>=1.3"], "declares genesis-world>=1.3. Valid is exactly one dependency"),
-        (None, "declares no engine. Valid is exactly one dependency"),
-    ],
-)
-def test_without_a_checkout_a_wrong_pin_is_that_of_the_installed_package(monkeypatch, lines, words):
-    monkeypatch.setattr(project, "in_checkout", lambda: False)
-    monkeypatch.setattr(project, "requires", lambda package: ["genesis-world==9.8.7"])
-    assert project.engine_pin() == "9.8.7"
-    monkeypatch.setattr(project, "requires", lambda package: lines)
-    with pytest.raises(project.ProjectError) as caught:
-        project.engine_pin()
-    message = str(caught.value)
-    assert message.startswith(f"The metadata of the installed package robo-genesis {words}")
-    assert message.endswith("Install the course's wheel again with pip.")
-    assert "pyproject" not in message
-
-
 DECLARED = PYPROJECT.format
-NO_PIN = r"Valid is exactly one dependency \"genesis-world==X\""
+NO_PIN = 'Valid is exactly one dependency "genesis-world==X"'
 
 
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
-        (DECLARED('"numpy>=2", "genesis-world==9.8.7"'), None),
         (DECLARED('"numpy"'), NO_PIN),
-        (DECLARED('"genesis-world"'), NO_PIN),
         (DECLARED('"genesis-world>=1.3"'), NO_PIN),
         (DECLARED('"genesis-world==1.*"'), NO_PIN),
-        (DECLARED('"genesis-world=1.3"'), "cannot be read: .*genesis-world=1.3"),
-        ("[project", "cannot be read"),
-        ("[project]\n", "cannot be read"),
+        (DECLARED('"genesis-world=1.3"'), "cannot be read: "),
+        ("[project", "cannot be read: "),
+        ("[project]\n", "cannot be read: "),
     ],
 )
 def test_the_pin_is_one_exact_version(tmp_path, text, reason):
-    (tmp_path / "pyproject.toml").write_text(text)
-    if reason is None:
-        assert project.engine_pin(tmp_path) == "9.8.7"
-    else:
-        with pytest.raises(project.ProjectError, match=rf"(?s)pyproject\.toml .*{reason}"):
-            project.engine_pin(tmp_path)
+    root = checkout(tmp_path, "numpy>=2", "genesis-world==9.8.7")
+    assert project.engine_pin(root) == "9.8.7"
+    (root / "pyproject.toml").write_text(text)
+    with pytest.raises(project.ProjectError, match=rf"(?s)pyproject\.toml .*{reason}"):
+        project.engine_pin(root)
+
+
+def test_without_a_checkout_the_pin_is_that_of_the_installed_package(monkeypatch):
+    monkeypatch.setattr(project, "in_checkout", lambda: False)
+    monkeypatch.setattr(project, "requires", lambda package: ["genesis-world==9.8.7"])
+    assert project.engine_pin() == "9.8.7"
+    monkeypatch.setattr(project, "requires", lambda package: None)
+    said = rf"^The metadata of the installed package .* {NO_PIN}.*Install the course's wheel again"
+    with pytest.raises(project.ProjectError, match=said):
+        project.engine_pin()
 
 
 def test_what_pip_leaves_in_a_checkout_is_no_installed_package(tmp_path):
@@ -71,10 +57,8 @@ def test_what_pip_leaves_in_a_checkout_is_no_installed_package(tmp_path):
 def test_another_installed_engine_is_refused_with_both_versions(tmp_path):
     root = checkout(tmp_path, "genesis-world==0.0.1")
     installed = project.installed_version("genesis-world")
-    with pytest.raises(project.ProjectError) as caught:
+    with pytest.raises(project.ProjectError, match=rf"{installed}.* 0\.0\.1"):
         project.require_pinned_engine(root)
-    assert "0.0.1" in str(caught.value)
-    assert str(installed) in str(caught.value)
 
 
 def test_a_missing_lock_is_refused_with_the_command_that_writes_it(tmp_path):
@@ -104,13 +88,6 @@ def test_stale_kernel_locks_go_and_kernels_stay(tmp_path):
     assert [path.name for path in kernels.iterdir()] == ["kernel.ll"]
 
 
-def test_the_environment_contract_fills_in_defaults():
-    assert project.environment_contract({"ROBO_GENESIS_RENDER": "0", "HOME": "/"}) == {
-        "ROBO_GENESIS_BACKEND": "cpu",
-        "ROBO_GENESIS_RENDER": "0",
-    }
-
-
 ADMINISTRATOR = pwd.getpwuid(0).pw_dir
 
 
@@ -134,5 +111,6 @@ def test_a_home_folder_is_not_named(text, kept, monkeypatch):
 def test_the_environment_contract_holds_the_engines_switches_and_not_its_cache_folders(tmp_path):
     switches = {f"{prefix}X": "1" for prefix in project.ENGINE_PREFIXES}
     folders = project.engine_cache_environment(checkout(tmp_path, "genesis-world==9.8.7"))
-    contract = project.environment_contract({**switches, **folders})
-    assert contract.keys() - {"ROBO_GENESIS_BACKEND", "ROBO_GENESIS_RENDER"} == switches.keys()
+    given = {**switches, **folders, "ROBO_GENESIS_RENDER": "0", "HOME": "/"}
+    defaults = {"ROBO_GENESIS_BACKEND": "cpu", "ROBO_GENESIS_RENDER": "0"}
+    assert project.environment_contract(given) == switches | defaults

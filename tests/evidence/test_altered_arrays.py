@@ -14,10 +14,10 @@ from built_site import MEASURING_PAGES, executed_pages
 
 from robo_genesis.core.checks import evaluate
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.core.trace import TimeSeries, TraceError
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.sim.mujoco import contacts as mujoco_contacts
 from robo_genesis.sim.mujoco import joints as mujoco_joints
 

@@ -5,7 +5,6 @@ from robo_genesis.core.comparison import agree, differences
 from robo_genesis.evidence.bundle import (
     BundleRefused,
     Digest,
-    Metric,
     canonical_sha256,
     evidence_key,
     read_manifest,
@@ -17,10 +16,6 @@ def predicate(pristine):
     return read_manifest(pristine).predicate.model_dump()
 
 
-def refused(start):
-    return pytest.raises(BundleRefused, match=f"^{start}")
-
-
 def test_differences_name_the_path_and_both_values():
     found = differences({"a": {"b": 1, "c": [2]}}, {"a": {"b": None, "c": [2]}, "d": 3})
     assert list(found) == [("a.b", 1, None), ("d", "absent", 3)]
@@ -29,35 +24,15 @@ def test_differences_name_the_path_and_both_values():
     ]
 
 
-@pytest.mark.parametrize(
-    "value", ["0" * 63, "0" * 65, "g" * 64, "A" * 64, "0" * 64 + "\n", 0, None]
-)
+@pytest.mark.parametrize("value", ["0" * 63, "A" * 64, "0" * 64 + "\n", None])
 def test_a_digest_has_64_lower_case_hex_digits(value):
     with pytest.raises(ValueError, match="sha256"):
         Digest(sha256=value)
 
 
-METRIC = {"value": 0.1, "unit": "s", "class": "value", "from": ["q"]}
-
-
-WRONG = [("value", "0.1"), ("value", float("nan")), ("value", float("inf")), ("class", "guess"),
-         ("unit", None), ("from", "q"), ("note", "fine")]  # fmt: skip
-
-
-@pytest.mark.parametrize(("field", "value"), WRONG)
-def test_a_metric_of_another_form_is_refused(field, value):
-    with pytest.raises(ValueError, match=field):
-        Metric.model_validate({**METRIC, field: value})
-
-
-def test_records_are_frozen(pristine):
-    with pytest.raises(ValueError, match="frozen"):
-        read_manifest(pristine).predicate.seed = 1
-
-
 def test_the_place_of_a_wrong_field_is_named(folder):
     part("engine", version=1)(folder)
-    with refused(r"bad-schema: manifest\.json\.predicate\.engine\.version"):
+    with pytest.raises(BundleRefused, match=r"^bad-schema: .*predicate\.engine\.version"):
         read_manifest(folder)
 
 

@@ -1,12 +1,10 @@
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from robo_genesis.core.trace import Trace
 from robo_genesis.evidence.trace_files import (
-    FIELDS,
-    dof_units,
     joint_records,
     read_joints,
     read_trace,
@@ -21,13 +19,9 @@ def written(tmp_path, traces, joints):
     return tmp_path, write_traces(tmp_path, {"G1": traces["G1"]}, joints, LINKS)
 
 
-def test_every_field_of_a_trace_is_written():
-    assert list(FIELDS) == [field.name for field in fields(Trace)]
-
-
 def test_arrays_come_back_bit_for_bit(written, traces):
     found = read_trace(*written, "G1")
-    for field in FIELDS:
+    for field in Trace.arrays():
         before, after = getattr(traces["G1"], field), getattr(found, field)
         assert (after.dtype, after.shape) == (before.dtype, before.shape)
         assert after.tobytes() == before.tobytes()
@@ -45,13 +39,6 @@ def test_joints_come_back_as_they_were_and_a_limit_that_is_missing_is_null(writt
         assert getattr(found, name).tolist() == getattr(free, name).tolist()
 
 
-def test_a_limit_that_is_no_number_is_not_written(joints):
-    lower = np.array(joints.lower)
-    lower[0] = np.nan
-    with pytest.raises(ValueError, match="lower"):
-        joint_records(replace(joints, lower=lower))
-
-
 POSITION, SPEED, EFFORT = ("rad", "m"), ("rad/s", "m/s"), ("N·m", "N")
 UNITS = {"q": POSITION, "target": POSITION, "qd": SPEED, "start_qd": SPEED}
 UNITS |= dict.fromkeys(("control_force", "internal_force"), EFFORT)
@@ -59,7 +46,6 @@ UNITS |= dict.fromkeys(("start_control_force", "effort_limit"), EFFORT)
 
 
 @pytest.mark.parametrize("field", UNITS)
-def test_each_dof_has_its_own_unit(joints, written, field):
-    name, (arm, finger) = FIELDS[field][0], UNITS[field]
-    assert dof_units(name, joints.types) == [arm] * 7 + [finger] * 2
+def test_each_dof_has_its_own_unit(written, field):
+    name, (arm, finger) = Trace.arrays()[field].name, UNITS[field]
     assert written[1].cases["G1"].variables[name].unit == [arm] * 7 + [finger] * 2

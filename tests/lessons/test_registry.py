@@ -8,7 +8,6 @@ import pytest
 from robo_genesis.core.comparison import HELD_BY
 from robo_genesis.core.palette import CASE_CLASSES
 from robo_genesis.core.project import BOOK, ROOT
-from robo_genesis.evidence.trace_files import KINDS
 from robo_genesis.lessons import LESSONS, find_lesson, find_page, find_replay
 from robo_genesis.pipeline.pages.book import find_pages
 
@@ -42,7 +41,9 @@ def test_cases_and_metrics_of_a_lesson_exist(name):
     assert units <= lesson.spec.RESOLUTION.keys()
     assert units - {"1"} <= lesson.spec.TOLERANCES.keys()
     sources = {name for of in lesson.about_metrics("sources").values() for name in of}
-    assert sources <= {name for fields in KINDS.values() for name, *_ in fields.values()}
+    assert sources <= {
+        of.name for kind in (Trace, BodyTrace, ContactTrace) for of in kind.arrays().values()
+    }
 
 
 @pytest.mark.parametrize("name", LESSONS)

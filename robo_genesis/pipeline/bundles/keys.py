@@ -11,10 +11,10 @@ from robo_genesis.core import project
 from robo_genesis.core.comparison import differences
 from robo_genesis.core.files import derived
 from robo_genesis.core.project import PUBLISHED
-from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.core.scene import SEED
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle
+from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.pages import sources, syntax
 from robo_genesis.sim import session

@@ -5,8 +5,8 @@ from typing import Any
 
 from robo_genesis.core.files import derived
 from robo_genesis.core.project import BACKEND, RENDER, environment_contract
-from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.evidence.bundle import Manifest
+from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.command import Progress
 from robo_genesis.pipeline.pages import bound as shown

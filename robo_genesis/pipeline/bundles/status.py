@@ -8,10 +8,10 @@ from pathlib import Path
 from robo_genesis.core import project
 from robo_genesis.core.checks import FAILED
 from robo_genesis.core.comparison import HELD, Relation, outcome
-from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence import bundle, copies
 from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.compare import specification
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles import keys as evidence_key
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.pages.guards import contradicted

@@ -16,11 +16,11 @@ from nbformat import NotebookNode
 
 from robo_genesis.core import shown
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.refusals import BundleRefused, expect
 from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.pipeline.pages.book import Page
 
 PAGE = "page"

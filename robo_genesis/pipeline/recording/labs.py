@@ -10,9 +10,10 @@ from typing import Any
 from robo_genesis.core import project
 from robo_genesis.core.files import put, require_replaceable, require_writable, settle_below
 from robo_genesis.core.project import BACKEND, RENDER
-from robo_genesis.core.refusals import BundleRefused, expect, printable
+from robo_genesis.core.text import printable
 from robo_genesis.evidence.bundle_files import MANIFEST
 from robo_genesis.evidence.recorder import git_record
+from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.pipeline.bundles.of_build import require_contract
 from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, bundle_status, cpu_runs
 from robo_genesis.pipeline.bundles.verify import verify_bundle

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robo_genesis.core.refusals import printable
+from robo_genesis.core.text import printable
 
 COLUMNS = ("lab", "backend", "device", "state", "checks", "seconds", "place or reason")
 STATUS = {"recorded": 0, "kept": 0, "failed": 1, "interrupted": 130}

@@ -3,7 +3,7 @@
 import re
 import shutil
 import tomllib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -18,7 +18,7 @@ from robo_genesis.core.files import derived
 from robo_genesis.core.trace import TimeSeries
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import Arrays, Predicate, Variable
-from robo_genesis.evidence.trace_files import fields_of, read_any_trace
+from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.sources import Tree
 from robo_genesis.site.evidence.ledger_data import csv_bytes
@@ -180,7 +180,7 @@ def csv_text(trace: TimeSeries, described: Arrays, case: str) -> str:
     that reproduces the recorded value.
     """
     columns: dict[str, list[str]] = {}
-    for field, (name, dims, *_) in fields_of(trace).items():
+    for field, (name, dims, *_) in trace.arrays().items():
         if field not in AT_REST.values():
             labels = _labels(field, described.cases[case].variables[name], described)
             for label, column in zip(labels, _by_state(trace, field, dims), strict=True):
@@ -188,7 +188,7 @@ def csv_text(trace: TimeSeries, described: Arrays, case: str) -> str:
     return csv_bytes([list(columns), *zip(*columns.values(), strict=True)]).decode()
 
 
-def _by_state(trace: TimeSeries, field: str, dims: list[str]) -> list[tuple[np.generic, ...]]:
+def _by_state(trace: TimeSeries, field: str, dims: Sequence[str]) -> list[tuple[np.generic, ...]]:
     """Return the columns of a field, each with one entry per state, None where nothing was read."""
     values = np.asarray(getattr(trace, field))
     rows = list(values.reshape(len(values), -1) if dims[0] in ("state", "step") else values[None])

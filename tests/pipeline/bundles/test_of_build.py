@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from robo_genesis.core.refusals import BundleRefused
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.pipeline.bundles.of_build import outputs_compared, require_contract
 from robo_genesis.pipeline.pages import bound as shown
 from robo_genesis.pipeline.pages.folder import RECORD

@@ -66,7 +66,7 @@ STATES = [
     ("stale", "stale", modules(metrics="0" * 64), "The course's code changed since."),
     ("stale", "older-schema", predicate(schema_version=1),
      "It was recorded in an older form of the bundle."),
-    ("failed", "failed", failing("two joints on one DOF"), "did not all pass."),
+    ("failed", "failed", failing, "did not all pass."),
     ("refused", "files", remove("log.txt"), UNREADABLE),
     # A bundle cannot set its own state.
     ("refused", "bad-schema", predicate(state="verified"), UNREADABLE),

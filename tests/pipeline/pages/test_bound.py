@@ -11,9 +11,9 @@ from lessons.lesson_bundles import recorded
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from robo_genesis.core import shown
-from robo_genesis.core.refusals import BundleRefused
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.reader import from_bundle
+from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.bound import difference_of, require_shown

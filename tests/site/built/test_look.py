@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 import matplotlib as mpl
 import pytest
+from contrast import GROUNDS, contrast
 from playwright.sync_api import Page
 
 from robo_genesis.core import plotting
-from robo_genesis.core.palette import GROUNDS, MARKS, PARTS, contrast, css_name
+from robo_genesis.core.palette import MARKS, PARTS, css_name
 from robo_genesis.lessons.l04 import spec
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
