@@ -8,6 +8,7 @@ import pytest
 from robo_genesis.core.comparison import HELD_BY
 from robo_genesis.core.palette import CASE_CLASSES
 from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.core.trace import BodyTrace, ContactTrace, Trace
 from robo_genesis.lessons import LESSONS, find_lesson, find_page, find_replay
 from robo_genesis.pipeline.pages.book import find_pages
 
