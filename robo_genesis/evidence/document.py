@@ -62,11 +62,8 @@ class Document:
 
     def markdown(self) -> str:
         """Return the report as a Markdown page."""
-        blocks = [
-            f"# {_plain(self.title)}",
-            f"**{self.verdict}**",
-            bullets(map(_plain, self.remarks)),
-        ]
+        remarks = bullets(map(_plain, self.remarks))
+        blocks = [f"# {_plain(self.title)}", f"**{self.verdict}**", remarks]
         for part in self.parts:
             state = f": {part.state}" if part.state else ""
             blocks += [f"## {_plain(part.heading)}{state}", bullets(map(_plain, part.remarks))]
