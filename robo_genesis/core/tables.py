@@ -5,7 +5,6 @@ from functools import wraps
 from typing import Any
 
 from robo_genesis.core import text
-from robo_genesis.core.checks import Check
 from robo_genesis.core.comparison import HELD_BY, Comparison
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
@@ -94,17 +93,12 @@ def metric_table(
     )
 
 
-def check_table(outcomes: Sequence[Check]) -> str:
-    """Return one row per check with its name, its outcome and its detail."""
-    words = {True: "passed", False: "**FAILED**"}
-    return markdown(
-        [{"check": f"`{c.name}`", "outcome": words[c.passed], "what": c.detail} for c in outcomes]
-    )
-
-
-def checks_of_run(run: Any) -> str:
-    """Return the table of the named checks of an experiment."""
-    return check_table(run.outcomes())
+@as_table
+def checks_of_run(run: Experiment) -> Iterable[Mapping[str, Any]]:
+    """Return the table of the named checks: name, outcome and detail."""
+    for check in run.outcomes():
+        outcome = "passed" if check.passed else "**FAILED**"
+        yield {"check": f"`{check.name}`", "outcome": outcome, "what": check.detail}
 
 
 def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:

@@ -4,6 +4,7 @@ import os
 import re
 import stat
 from pathlib import Path
+from typing import Any
 
 from robo_genesis.evidence.bundle import Manifest, sha256
 from robo_genesis.evidence.refusals import expect, unexpected
@@ -47,6 +48,15 @@ def scan(folder: Path) -> set[str]:
             raise unexpected("too-big", name, "number of bytes", found.st_size, f"at most {limit}")
         names.add(name)
     return names
+
+
+def list_files(folder: Path) -> list[dict[str, Any]]:
+    """Return the list in a manifest: each other file of a bundle with its digest."""
+    return [
+        {"name": path.relative_to(folder).as_posix(), "digest": {"sha256": sha256(path)}}
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and path.name != MANIFEST
+    ]
 
 
 def check_files(folder: Path, present: set[str], manifest: Manifest) -> None:

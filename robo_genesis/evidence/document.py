@@ -10,7 +10,7 @@ from pathlib import Path
 
 from robo_genesis.core import tables
 from robo_genesis.core.files import write_whole
-from robo_genesis.core.text import printable
+from robo_genesis.core.text import bullets, printable
 from robo_genesis.evidence.rows import SEVERITY
 
 Cells = tuple[str, ...]
@@ -62,10 +62,11 @@ class Document:
 
     def markdown(self) -> str:
         """Return the report as a Markdown page."""
-        blocks = [f"# {_plain(self.title)}", f"**{self.verdict}**", _bullets(self.remarks)]
+        remarks = bullets(map(_plain, self.remarks))
+        blocks = [f"# {_plain(self.title)}", f"**{self.verdict}**", remarks]
         for part in self.parts:
             state = f": {part.state}" if part.state else ""
-            blocks += [f"## {_plain(part.heading)}{state}", _bullets(part.remarks)]
+            blocks += [f"## {_plain(part.heading)}{state}", bullets(map(_plain, part.remarks))]
             blocks.append(_markdown_table(part.rows) if len(part.rows) > 1 else part.empty)
         return "\n\n".join(block for block in blocks if block) + "\n"
 
@@ -91,10 +92,6 @@ class Document:
         for path, text in pages.items():
             write_whole(path, text.encode())
         return list(pages)
-
-
-def _bullets(lines: Sequence[str]) -> str:
-    return "\n".join(f"- {_plain(line)}" for line in lines)
 
 
 def _markdown_table(rows: Sequence[Cells]) -> str:

@@ -19,6 +19,7 @@ from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.files import replaced
 from robo_genesis.core.git import git_or_none
 from robo_genesis.evidence import bundle
+from robo_genesis.evidence.bundle_files import list_files
 from robo_genesis.evidence.picture_file import write_picture
 from robo_genesis.evidence.strict_json import write_json
 from robo_genesis.evidence.trace_files import write_traces
@@ -116,14 +117,7 @@ class Recorder:
         (folder / "log.txt").write_text(self.engine.log.text(), encoding="utf-8")
         statement = {
             "_type": bundle.STATEMENT_TYPE,
-            "subject": [
-                {
-                    "name": path.relative_to(folder).as_posix(),
-                    "digest": {"sha256": bundle.sha256(path)},
-                }
-                for path in sorted(folder.rglob("*"))
-                if path.is_file()
-            ],
+            "subject": list_files(folder),
             "predicateType": bundle.PREDICATE_TYPE,
             "predicate": self._predicate(run, renderer),
         }

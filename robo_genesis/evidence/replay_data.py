@@ -6,7 +6,7 @@ from pathlib import Path
 from robo_genesis.core.channels import Replay, Runs
 from robo_genesis.core.text import format_value
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.trace_files import any_bodies, read_joints, read_trace
+from robo_genesis.evidence.trace_files import read_any_trace, read_joints
 from robo_genesis.sim.arm import channels as joint_channels
 from robo_genesis.sim.bodies import channels as body_channels
 
@@ -24,12 +24,11 @@ def read_runs(folder: Path, replay: Replay) -> Runs:
     """
     arrays = bundle.read_arrays(folder)
     links = arrays.coords["link"]
+    traces = {case: read_any_trace(folder, arrays, case) for case in replay.cases}
     if arrays.joints:
-        robots = {case: read_trace(folder, arrays, case) for case in replay.cases}
-        runs = joint_channels.runs(robots, links, read_joints(arrays), replay)
+        runs = joint_channels.runs(traces, links, read_joints(arrays), replay)
     else:
-        bodies = {case: any_bodies(folder, arrays, case) for case in replay.cases}
-        runs = body_channels.runs(bodies, links, replay)
+        runs = body_channels.runs(traces, links, replay)
     metrics, moves = bundle.read_metrics(folder), {}
     for case, move in runs.moves.items():
         values = {name: format_value(m.value, m.unit) for name, m in metrics.get(case, {}).items()}

@@ -6,7 +6,7 @@ joints, of free bodies.
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -113,23 +113,14 @@ def read_joints(arrays: Arrays) -> JointMap:
     )
 
 
-def read_trace(folder: Path, arrays: Arrays, case: str) -> Trace:
-    """Return one run of joints; see `read_run`."""
-    return read_run(folder, arrays, case, Trace)
-
-
-def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Trace | BodyTrace:
-    """Return one run of joints if the bundle has any, else of free bodies; see `read_run`."""
-    return read_trace(folder, arrays, case) if arrays.joints else any_bodies(folder, arrays, case)
-
-
-def any_bodies(folder: Path, arrays: Arrays, case: str) -> BodyTrace:
-    """Return one run of free bodies, with contacts if they are described; see `read_run`.
+def read_any_trace(folder: Path, arrays: Arrays, case: str) -> Any:
+    """Return one run of the kind that a bundle describes; see `read_run`.
 
     Verification does not use it, because a bundle must not choose the kind of its own runs.
     """
     has_contacts = "contacts" in arrays.cases[case].variables
-    return read_run(folder, arrays, case, ContactTrace if has_contacts else BodyTrace)
+    kind = Trace if arrays.joints else ContactTrace if has_contacts else BodyTrace
+    return read_run(folder, arrays, case, kind)
 
 
 def read_run(folder: Path, arrays: Arrays, case: str, kind: type[Kind]) -> Kind:

@@ -29,6 +29,9 @@ LIBRARIES = ("libEGL.so.1", "libGL.so.1")
 """What the engine needs even without a camera."""
 
 PRECISION = "32"
+ARGUMENTS = {"seed": SEED, "precision": PRECISION, "use_deterministic_algorithms": True}
+"""Of each `gs.init` of the course, beside backend and log."""
+
 INSTALL = "Install it again: pip install --force-reinstall -r requirements.lock."
 
 
@@ -115,13 +118,7 @@ def start(contract: Contract) -> Engine:
             engine, Quadrants and Torch disagree on the backend.
     """
     backend = requested_backend(contract)
-    import_engine().init(
-        backend=backend,
-        seed=SEED,
-        precision=PRECISION,
-        use_deterministic_algorithms=True,
-        **plain_log(),
-    )
+    import_engine().init(backend=backend, **ARGUMENTS, **plain_log())
     return started(contract)
 
 
@@ -150,6 +147,12 @@ def plain_log() -> dict[str, str]:
     return {"theme": plain_theme(), "logging_level": "info"}
 
 
+def plain_theme() -> str:
+    """Return the engine's name for a log without colour codes: `raw`, in older versions `dumb`."""
+    styles = importlib.import_module("genesis.styles")
+    return "raw" if hasattr(styles, "THEME") else "dumb"
+
+
 def started(contract: Contract) -> Engine:
     """Return the engine that `gs.init` started, after checking how it was started.
 
@@ -171,10 +174,9 @@ def started(contract: Contract) -> Engine:
         "precision": str(8 * np.dtype(gs.np_float).itemsize),
         "use_deterministic_algorithms": getattr(gs, "use_deterministic_algorithms", True),
     }
-    valid = {"seed": SEED, "precision": PRECISION, "use_deterministic_algorithms": True}
-    if found != valid:
+    if found != ARGUMENTS:
         raise EngineError(
-            f"gs.init was called with {found}, valid is {valid}. Restart the kernel and write "
+            f"gs.init was called with {found}, valid is {ARGUMENTS}. Restart the kernel and write "
             "gs.init(backend=rg.backend(), seed=rg.SEED, precision=rg.PRECISION, "
             "use_deterministic_algorithms=True, **rg.PLAIN_LOG)."
         )
@@ -187,12 +189,6 @@ def started(contract: Contract) -> Engine:
 def _kept_logs() -> list[EngineLog]:
     """Return the handlers of the engine's logger that keep its lines."""
     return [h for h in logging.getLogger("genesis").handlers if isinstance(h, EngineLog)]
-
-
-def plain_theme() -> str:
-    """Return the engine's name for a log without colour codes: `raw`, in older versions `dumb`."""
-    styles = importlib.import_module("genesis.styles")
-    return "raw" if hasattr(styles, "THEME") else "dumb"
 
 
 def import_engine() -> Any:
@@ -232,17 +228,6 @@ def asset(name: str) -> Path:
     if not path.is_file():
         raise EngineError(f"{project.ENGINE} has no file genesis/assets/{name}. {INSTALL}")
     return path
-
-
-def require_built(scene: Any, case: Any, error: type[Exception]) -> None:
-    """Raise `error` unless a scene is built with the `dt` and `substeps` of a case."""
-    if not scene.is_built:
-        raise error("The scene is not built: call scene.build() before any joint call or step.")
-    if (scene.dt, scene.substeps) != (case.dt, case.substeps):
-        raise error(
-            f"The scene was built with dt={scene.dt}, substeps={scene.substeps}; the case asks for "
-            f"dt={case.dt}, substeps={case.substeps}. Restart and build the scene for this case."
-        )
 
 
 def require_libraries() -> None:

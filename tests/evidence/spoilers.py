@@ -142,14 +142,9 @@ def filed_as(name):
 
 def seal(folder):
     """List every file with its digest and make the key right, as a careful forger would."""
-    files = sorted(p for p in folder.rglob("*") if p.is_file() and p.name != MANIFEST)
-    subject = [
-        {"name": p.relative_to(folder).as_posix(), "digest": {"sha256": bundle.sha256(p)}}
-        for p in files
-    ]
 
     def change(m):
-        m["subject"] = subject
+        m["subject"] = bundle_files.list_files(folder)
         m["predicate"]["evidence_key"] = bundle.evidence_key(m["predicate"])
 
     edit(folder, MANIFEST, change)

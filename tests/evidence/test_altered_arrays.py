@@ -5,8 +5,9 @@ if the arrays form no run, a law is broken, or a check fails.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -31,6 +32,7 @@ NOISE = "A landed cube turns by less than float32 resolves in a step, so nothing
 SCHEME = "MuJoCo does not have the engine's resolution of the elliptic cone."
 ON_EDGE = "A cube that lands on an edge has other contact points in the two engines."
 EARLIER = "The engine's force of a step before the run, whose states are assigned."
+ALONE = "A record of one answer has no other to compare."
 LOADED = "The mechanics of a robot with a load in its hand are not computed again."
 ROUNDING = "The alteration is no larger than what float32 resolves of a position."
 
@@ -47,17 +49,12 @@ ACCEPTED = {
     },
     **{("l06", "internal_force", how): LOADED for how in ("× 1.02", "× 0.98", "zero", "sample")},
     ("l06", "qd", "sample"): LOADED,
-    (
-        "l05",
-        "internal_force",
-        "sample",
-    ): f"{EARLIER} A record of one answer has no other to compare.",
+    ("l05", "internal_force", "sample"): f"{EARLIER} {ALONE}",
 }
 """By lesson, array and alteration, why a try may be accepted. No other may."""
 
 
-@dataclass(frozen=True)
-class Try:
+class Try(NamedTuple):
     lesson: str
     page: str
     run: str

@@ -149,7 +149,7 @@ def test_a_start_keeps_the_log_and_the_switches_that_the_engine_did_not_set(
     assert engine.log.text() == "WARNING initialised\n"
 
 
-VALID = {"seed": session.SEED, "precision": "32", "use_deterministic_algorithms": True}
+VALID = session.ARGUMENTS
 KEPT = {"logging_level": "info"}
 
 

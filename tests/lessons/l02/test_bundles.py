@@ -7,11 +7,11 @@ import pytest
 from bundles import written
 from lessons.lesson_bundles import in_archive, in_json, pop, refused
 
-from robo_genesis.core.trace import BodyTrace
+from robo_genesis.core.trace import BodyTrace, Trace
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.compare import compare
-from robo_genesis.evidence.trace_files import read_run, read_trace
+from robo_genesis.evidence.trace_files import read_run
 from robo_genesis.lessons.l02 import spec
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 
@@ -39,7 +39,7 @@ def test_a_sound_one_is_accepted(sound, run):
 
 def test_runs_of_bodies_and_of_joints_are_not_exchanged(sound, folder):
     with pytest.raises(BundleRefused, match="labels"):
-        read_trace(sound, bundle.read_arrays(sound), "baseline")
+        read_run(sound, bundle.read_arrays(sound), "baseline", Trace)
     with pytest.raises(BundleRefused, match=r"number of joints of free bodies"):
         read_run(folder, bundle.read_arrays(folder), "G1", BodyTrace)
 

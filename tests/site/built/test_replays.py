@@ -13,7 +13,7 @@ from watching import POSES, choose, errors, show_model
 
 from robo_genesis.core.project import BOOK
 from robo_genesis.evidence import bundle
-from robo_genesis.evidence.trace_files import read_trace
+from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_replay
 from robo_genesis.lessons.l04.study_spec import ASSIGNED
 from robo_genesis.site.replay.model import rotations
@@ -82,7 +82,7 @@ def test_links_and_their_copies_are_where_the_record_says(lecture, site):
     arrays = bundle.read_arrays(folder)
     links = arrays.coords["link"]
     for case in find_replay("l04").cases:
-        trace = read_trace(folder, arrays, case)
+        trace = read_any_trace(folder, arrays, case)
         for sample in (0, 9, trace.steps):
             choose(lecture, case, sample, REPLAY)
             lecture.wait_for_function(POSED, arg=[case, float(trace.t[sample])])
@@ -97,7 +97,7 @@ def test_links_and_their_copies_are_where_the_record_says(lecture, site):
             assert places == pytest.approx(trace.link_pos[sample], abs=1e-6), (case, sample)
             assert turns == pytest.approx(recorded, abs=1e-6), (case, sample)
         assert np.abs(trace.link_pos[9] - trace.link_pos[0]).max() > 1e-3
-    assigned = read_trace(folder, arrays, ASSIGNED)
+    assigned = read_any_trace(folder, arrays, ASSIGNED)
     for link in BELOW:
         copy, k = found[f"target_{link}"], links.index(link)
         assert copy["position"] == pytest.approx(assigned.link_pos[-1, k], abs=2e-6), link

@@ -19,7 +19,7 @@ from robo_genesis.core.channels import Replay
 from robo_genesis.core.files import put
 from robo_genesis.evidence import bundle, recorder, replay_data, report
 from robo_genesis.evidence.compare import compare
-from robo_genesis.evidence.trace_files import read_trace
+from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.bundles.status import Status, recorded_status
 from robo_genesis.sim import visual_shape
 from robo_genesis.sim.visual_shape import Part
@@ -76,9 +76,9 @@ def test_what_a_run_says_reaches_no_parser(tmp_path, record, monkeypatch):
     folder = record().folder
     edit(folder, "arrays.json", lambda a: a["coords"].update(link=[SCRIPT, "b", "c"]))
     write_shape(folder, tmp_path)
-    trace = read_trace(folder, bundle.read_arrays(folder), "G1")
+    trace = read_any_trace(folder, bundle.read_arrays(folder), "G1")
     turned = dataclasses.replace(trace, link_pos=trace.link_pos[:, [2, 1, 0]])
-    monkeypatch.setattr(replay_data, "read_trace", lambda *asked: turned)
+    monkeypatch.setattr(replay_data, "read_any_trace", lambda *asked: turned)
     monkeypatch.setattr(sphinx_panel, "comparison", lambda *asked: [])
     panel = Panel(tmp_path / "book").panel(accepted("l04/lab", folder, recorded=True))
     assert f"The link {SCRIPT} moves farthest" in panel.astext()
