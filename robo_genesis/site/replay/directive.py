@@ -30,7 +30,7 @@ from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
-from robo_genesis.site.evidence.plain_nodes import image, marked
+from robo_genesis.site.evidence.plain_nodes import bullets, image, marked
 from robo_genesis.site.figures.case_labels import labelled
 from robo_genesis.site.frame.incremental import note_files
 from robo_genesis.site.pages import PageDirective
@@ -119,8 +119,7 @@ def replay_block(
     block += nodes.raw("", controls.panel(name, shown, weight), format="html")
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
     if shown.moves:
-        lines = (nodes.paragraph("", "", *marked(text)) for text in shown.moves.values())
-        block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
+        block += bullets(*map(marked, shown.moves.values()))
     block += scroll_box(summary, *directive.parse_text_to_nodes(controls.samples(shown)))
     origin = origin_html(name, folder, replay_folder(env), replay.credit)
     block += nodes.raw("", f"</details>{origin}", format="html")
