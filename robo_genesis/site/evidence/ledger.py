@@ -76,7 +76,7 @@ def run_block(docname: str, run: PageRun) -> nodes.Node:
     name = ledger_data.archive_name(run)
     facts["bundle"] = _link(name, relative_uri(f"{docname}.html", f"{DOWNLOADS}/{name}"))
     facts["its sha256"] = _digest(ledger_data.sha256(ledger_data.archive(run.folder)))
-    block += scroll(f"Run {run.page} on {run.status.backend}", (), list(facts.items()))
+    block += scroll_box(f"Run {run.page} on {run.status.backend}", table((), list(facts.items())))
     return block
 
 
@@ -100,7 +100,7 @@ def item_table(app: Sphinx, docname: str) -> nodes.Node:
             ]
         )
         anchors.append(item.row)
-    return scroll("Figures and tables", COLUMNS, rows, anchors)
+    return scroll_box("Figures and tables", table(COLUMNS, rows, anchors))
 
 
 def _of_runs(runs: Sequence[PageRun]) -> list[Cell]:
@@ -138,13 +138,6 @@ def _digest(value: str) -> nodes.Node:
 
 def _link(text: str, address: str) -> nodes.Node:
     return nodes.reference("", text, internal=True, refuri=address)
-
-
-def scroll(
-    label: str, head: Sequence[str], rows: Sequence[Sequence[Cell]], anchors: Sequence[str] = ()
-) -> nodes.Node:
-    """Return a table in a scroll box; see `plain_nodes.table`."""
-    return scroll_box(label, table(head, rows, anchors))
 
 
 def scroll_box(label: str, *inside: nodes.Node) -> between:

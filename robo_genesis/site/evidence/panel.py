@@ -15,7 +15,6 @@ from docutils import nodes
 from docutils.parsers.rst.directives import flag
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
-from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
 from robo_genesis.core.channels import Replay
@@ -29,6 +28,7 @@ from robo_genesis.site.evidence import measured
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import BACKEND, READABLE
 from robo_genesis.site.evidence.plain_nodes import bullets, image, marked, paragraph, text_table
+from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay.directive import replay_block
 
 if TYPE_CHECKING:
@@ -39,13 +39,13 @@ VALUES, RELATIONS = ("Values", "Exact counts"), "Relations"
 RECORDING = "{doc}`/evidence/recording` says what that machine needs."
 
 
-class Evidence(SphinxDirective):
+class Evidence(PageDirective):
     """Show the recorded runs of a lesson, the reference backend first; `:table:` the metrics."""
 
     required_arguments = 1
     option_spec = {"table": flag}  # noqa: RUF012 - as docutils declares it
 
-    def run(self) -> list[nodes.Node]:
+    def shown(self) -> list[nodes.Node]:
         """Return one panel per backend; the reference backend has one even without a run."""
         runs = measured.recorded_runs(Path(self.env.srcdir), self.arguments[0])
         return [self.panel(run) for run in runs]
@@ -62,10 +62,9 @@ class Evidence(SphinxDirective):
             panel += self.parse_text_to_nodes(RECORDING)
             return panel
         panel["evidence_runs"] = (run.key,)
-        if "table" in self.options:
-            panel += introduction(status.sentence)
-        else:
-            panel += [introduction(status.sentence), backend_facts(run.predicate)]
+        panel += introduction(status.sentence)
+        if "table" not in self.options:
+            panel += backend_facts(run.predicate)
             shown = f"{lesson}-{status.backend}", folder, find_replay(lesson), status.backend
             panel += response(self.env, *shown)
             panel += frames(self.env, *shown)

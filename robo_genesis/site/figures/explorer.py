@@ -70,7 +70,7 @@ class ExplorerDirective(PageDirective):
     def shown(self) -> list[nodes.Node]:
         """Return the explorer, or SKIP for a picture of a run without a camera."""
         lesson_page, *name = self.arguments
-        recorded = Recorded(lesson_page.split("/")[0], bundle_of(self, lesson_page))
+        recorded = Recorded(lesson_page.split("/")[0], bundle_of(lesson_page))
         return [explorer_block(self, f"{lesson_page}/{BACKEND}", recorded, *name)]
 
 

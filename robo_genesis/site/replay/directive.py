@@ -30,9 +30,10 @@ from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
-from robo_genesis.site.evidence.plain_nodes import image, marked
+from robo_genesis.site.evidence.plain_nodes import bullets, image, marked
 from robo_genesis.site.figures.case_labels import labelled
 from robo_genesis.site.frame.incremental import note_files
+from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls, viewer
 from robo_genesis.site.replay.viewer import FOLDER, NOTICE, VIEWER, VIEWER_LICENCE
 
@@ -42,32 +43,29 @@ if TYPE_CHECKING:
 SHAPE_PAGE = "lecture"
 
 
-class ReplayDirective(SphinxDirective):
+class ReplayDirective(PageDirective):
     """Play the runs of a page's bundle of this build."""
 
     required_arguments = 1
     optional_arguments = 1
     option_spec = {"brief": flag}  # noqa: RUF012 - as docutils declares it
 
-    def run(self) -> list[nodes.Node]:
-        """Return the replay.
-
-        Errors: the page has no bundle, or the lesson has no such replay.
-        """
+    def shown(self) -> list[nodes.Node]:
+        """Return the replay."""
         lesson_page, *chosen = self.arguments
-        folder, brief = bundle_of(self, lesson_page), "brief" in self.options
+        folder, brief = bundle_of(lesson_page), "brief" in self.options
         return [replay_block(self, f"{lesson_page}/{BACKEND}", folder, *chosen, brief=brief)]
 
 
-def bundle_of(directive: SphinxDirective, lesson_page: str) -> Path:
+def bundle_of(lesson_page: str) -> Path:
     """Return the folder of the bundle that a page wrote in this build.
 
     Raises:
-        DirectiveError: it has none.
+        LookupError: it has none.
     """
     folder = page_outputs(lesson_page) / BACKEND
     if not (folder / "manifest.json").is_file():
-        raise directive.error(f"{directive.name}: {lesson_page} has no bundle on {BACKEND}.")
+        raise LookupError(f"{lesson_page} has no bundle on {BACKEND}.")
     return folder
 
 
@@ -84,8 +82,9 @@ def replay_block(
         brief: whether to show the first channel alone, and no sentences on the cases.
 
     Raises:
-        DirectiveError: the lesson has no such replay, its runs cannot be played together, or no
-            page of this build wrote the shape of these links.
+        LookupError: the lesson has no such replay.
+        ValueError: its runs cannot be played together, or no page of this build wrote the shape of
+            these links.
     """
     from robo_genesis.site.replay import model as replay_model  # these load slowly
     from robo_genesis.site.replay.scenery import scenery
@@ -93,26 +92,23 @@ def replay_block(
 
     env, lesson = directive.env, key.split("/")[0]
     name = "-".join(("replay", *key.split("/"), *filter(None, [chosen])))
-    try:
-        replay = find_replay(lesson, chosen)
-        runs = labelled(read_runs(folder, replay), lesson)
-        shape = shape_file(lesson, replay.thing)
-        parts = visual_shape.load_shape(shape)
-        if replay.places:
-            runs, parts = side_by_side(runs, parts)
-        around = scenery(parts, runs)
-        drawn_by = repr((list(runs.traces), list(runs.links), replay.credit)).encode()
-        inputs = [drawn_by, shape.read_bytes(), *bundle_inputs(folder)]
-        what = around, runs.links, runs.traces, replay.credit
-        files, weight, still = leave_model(
-            env, name, inputs, lambda: replay_model.glb(*what), around.camera, controls.alt(runs)
-        )
-        shown, (first, *_) = runs, runs.channels
-        if brief:  # the model is the same
-            shown = replace(runs, channels=[first], levels=runs.levels_of(first), moves={})
-        opening = controls.opening("replay", files | controls.data(shown, around.camera))
-    except (LookupError, ValueError) as error:
-        raise directive.error(f"replay: {key}: {error}") from error
+    replay = find_replay(lesson, chosen)
+    runs = labelled(read_runs(folder, replay), lesson)
+    shape = shape_file(lesson, replay.thing)
+    parts = visual_shape.load_shape(shape)
+    if replay.places:
+        runs, parts = side_by_side(runs, parts)
+    around = scenery(parts, runs)
+    drawn_by = repr((list(runs.traces), list(runs.links), replay.credit)).encode()
+    inputs = [drawn_by, shape.read_bytes(), *bundle_inputs(folder)]
+    what = around, runs.links, runs.traces, replay.credit
+    files, weight, still = leave_model(
+        env, name, inputs, lambda: replay_model.glb(*what), around.camera, controls.alt(runs)
+    )
+    shown, (first, *_) = runs, runs.channels
+    if brief:  # the model is the same
+        shown = replace(runs, channels=[first], levels=runs.levels_of(first), moves={})
+    opening = controls.opening("replay", files | controls.data(shown, around.camera))
     samples = f"samples of {', '.join(runs.traces)} as a table"
     summary = f"Results and all {samples}" if shown.moves else f"All {samples}"
 
@@ -123,8 +119,7 @@ def replay_block(
     block += nodes.raw("", controls.panel(name, shown, weight), format="html")
     block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
     if shown.moves:
-        lines = (nodes.paragraph("", "", *marked(text)) for text in shown.moves.values())
-        block += nodes.bullet_list("", *(nodes.list_item("", line) for line in lines))
+        block += bullets(*map(marked, shown.moves.values()))
     block += scroll_box(summary, *directive.parse_text_to_nodes(controls.samples(shown)))
     origin = origin_html(name, folder, replay_folder(env), replay.credit)
     block += nodes.raw("", f"</details>{origin}", format="html")

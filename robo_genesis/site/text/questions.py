@@ -112,8 +112,10 @@ class Choice(Question):
         lesson_page, metric, *cases = self.arguments
         text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
         order, unit, answer, origin = measured_order(lesson_page, metric, cases)
-        margin = declared_margin(lesson_page.split("/")[0], metric)
-        shown = options(unit, order, smallest_difference(lesson_page, unit), causes, margin)
+        lesson = lesson_page.split("/")[0]
+        margin = declared_margin(lesson, metric)
+        resolution = small(find_lesson(lesson).spec.RESOLUTION[unit], unit)
+        shown = options(unit, order, resolution, causes, margin)
         return text, choice(name, answer, origin, shown)
 
 
@@ -218,11 +220,6 @@ def small(value: float, unit: str) -> str:
     if unit in SCALED and value < 0.1:
         value, unit = 1000 * value, SCALED[unit]
     return f"{value:g} {'samples' if unit == '1' else unit}"
-
-
-def smallest_difference(lesson_page: str, unit: str) -> str:
-    """Return the resolution of a unit that a lesson declares, as text."""
-    return small(find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[unit], unit)
 
 
 def declared_margin(lesson: str, metric: str) -> float:

@@ -26,21 +26,11 @@ def test_the_page_links_every_file_with_its_size(site, page):
     there = {path for path in (site / FOLDER).rglob("*") if path.is_file()}
     there |= {path for path in (site / "takeaways").iterdir() if path.is_file()}
     assert files == there
+    constraints = (site / "takeaways" / "constraints.txt").read_text()
+    assert constraints == (project.ROOT / "requirements.lock").read_text()
     for link in links:
         size = (site / LAB).parent.joinpath(link["href"]).stat().st_size
         assert str(link.next_sibling).startswith(f" ({max(1, round(size / 1000))} kB)")
-
-
-def test_the_box_names_the_files_that_are_there(site, page):
-    box = page.select_one(".run-it-yourself")
-    commands = box.select_one("pre").get_text().replace(" \\\n ", "").split("\n")
-    assert commands[0] == "python3 -m venv course"
-    (wheel,) = (site / "takeaways").glob("*.whl")
-    assert " install -c constraints.txt --extra-index-url https://" in commands[1]
-    assert commands[1].endswith(f" ./{wheel.name} jupyterlab")
-    constraints = (site / "takeaways" / "constraints.txt").read_text()
-    assert constraints == (project.ROOT / "requirements.lock").read_text()
-    assert commands[2].endswith(" l04-lab.ipynb")
 
 
 def test_figures_are_those_of_the_page(site, page):
