@@ -41,6 +41,11 @@ def put(index, value):
     return change
 
 
+def shift(index, by):
+    """Return a change of some elements of an array by a number or by several."""
+    return lambda array: put(index, array[index] + by)(array)
+
+
 def trace(name, **arrays):
     return lambda run: with_trace(run, name, **arrays)
 
