@@ -7,8 +7,9 @@ import pytest
 from lessons.body_runs import make_drop
 from lessons.changed_runs import case, copied, failed, frames, put, reading, trace, with_reading
 
-from robo_genesis.lessons.l02 import LAB, life_cycle, plots, spec, text, trials
+from robo_genesis.lessons.l02 import life_cycle, plots, spec, text, trials
 from robo_genesis.lessons.l02.metrics import drop_metrics
+from robo_genesis.lessons.l02.pages import LAB
 
 
 def test_the_metrics_are_the_largest_of_all_samples():

@@ -10,7 +10,8 @@ from lessons.lesson_bundles import accepted_then_refused, in_archive, in_json, m
 
 from robo_genesis.core.checks import evaluate
 from robo_genesis.core.scene import CAMERA_RES, FRAME_SHAPE
-from robo_genesis.lessons.l05 import LAB, checks, plots, spec, text
+from robo_genesis.lessons.l05 import checks, plots, spec, text
+from robo_genesis.lessons.l05.pages import LAB
 from robo_genesis.sim.camera import record as view_record
 from robo_genesis.sim.camera.checks import Marker
 

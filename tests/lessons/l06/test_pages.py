@@ -8,7 +8,8 @@ from lessons.changed_runs import with_trace
 from lessons.lesson_bundles import accepted_then_refused, in_archive, metric
 
 from robo_genesis.core.palette import MARKS
-from robo_genesis.lessons.l06 import LECTURE, plots, spec, study, target_parts, text
+from robo_genesis.lessons.l06 import plots, spec, study, target_parts, text
+from robo_genesis.lessons.l06.pages import LECTURE
 from robo_genesis.sim.arm.kinematics import HAND
 
 
