@@ -19,8 +19,8 @@ from robo_genesis.core import project
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.scene import CAMERA, DT, FRAME_SHAPE, SUBSTEPS
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l04 import LAB
 from robo_genesis.lessons.l04 import spec as l04
+from robo_genesis.lessons.l04.pages import LAB
 from robo_genesis.pipeline import stages
 from robo_genesis.sim import session
 from robo_genesis.sim.arm import joints as robot_model

@@ -1,8 +1,9 @@
 """The declaration of a page that measures, and the experiment that one run of it is."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -124,6 +125,22 @@ class MeasuringPage:
     def groups(self, rendered: bool) -> dict[str, Readings]:
         """Return the groups of values of a run with or without a camera."""
         return {**self.readings, **(self.with_camera if rendered else {})}
+
+    def with_more(
+        self,
+        parameters: Callable[[], dict[str, Any]],
+        runs: Mapping[str, Run] = MappingProxyType({}),
+        readings: Mapping[str, Readings] = MappingProxyType({}),
+        checks: Sequence[Callable[["Experiment"], Iterable[Finding]]] = (),
+    ) -> "MeasuringPage":
+        """Return a page that has all of this one, and more runs, readings, checks and inputs."""
+        return replace(
+            self,
+            runs={**self.runs, **runs},
+            readings={**self.readings, **readings},
+            checks=(*self.checks, *checks),
+            parameters=lambda: self.parameters() | parameters(),
+        )
 
     def metrics(self, traces: Mapping[str, Any]) -> dict[str, Any]:
         """Return the metrics of each run that has a trace and metrics.

@@ -22,7 +22,7 @@ from robo_genesis.evidence.fields import LINE_LIMIT
 from robo_genesis.evidence.npz_archive import UNPACKED_LIMIT, write_archive
 from robo_genesis.evidence.picture_file import read_picture, write_picture
 from robo_genesis.evidence.reader import from_bundle
-from robo_genesis.lessons.l04 import LAB
+from robo_genesis.lessons.l04.pages import LAB
 
 MANIFEST, ARRAYS, METRICS = "manifest.json", "arrays.json", "metrics.json"
 G1, LOG, INITIAL = "arrays/G1.npz", "log.txt", "frames/initial.png"

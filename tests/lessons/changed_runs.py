@@ -17,17 +17,6 @@ def with_fields(of, fields):
     return replace(of, **new)
 
 
-def with_trace(run, name, **arrays):
-    """Return the run with other arrays in one trace."""
-    return replace(run, traces={**run.traces, name: with_fields(run.traces[name], arrays)})
-
-
-def with_reading(run, group, name, value):
-    """Return the run with another value that the engine reported."""
-    readings = run.readings | {group: run.readings[group] | {name: value}}
-    return replace(run, readings=readings)
-
-
 # What follows returns a function that changes a run, for tables of spoiled runs.
 
 
@@ -41,8 +30,16 @@ def put(index, value):
     return change
 
 
+def shift(index, by):
+    """Return a change of some elements of an array by a number or by several."""
+    return lambda array: put(index, array[index] + by)(array)
+
+
 def trace(name, **arrays):
-    return lambda run: with_trace(run, name, **arrays)
+    """Give one run other arrays."""
+    return lambda run: replace(
+        run, traces={**run.traces, name: with_fields(run.traces[name], arrays)}
+    )
 
 
 def copied(name, other):
@@ -51,7 +48,10 @@ def copied(name, other):
 
 
 def reading(group, name, value):
-    return lambda run: with_reading(run, group, name, value)
+    """Change a value that the engine reported."""
+    return lambda run: replace(
+        run, readings=run.readings | {group: run.readings[group] | {name: value}}
+    )
 
 
 def case(name, **fields):

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from lessons.exercise_cells import require_exercise
+from lessons.exercise_cells import page_of
 
 from robo_genesis.core.project import BOOK
 from robo_genesis.pipeline.pages.book import find_pages
@@ -19,7 +19,15 @@ STUBS = [
 
 @pytest.mark.parametrize("stub", STUBS, ids=lambda stub: " ".join(stub))
 def test_the_student_writes_at_most_fifteen_lines_below_a_docstring(stub):
-    require_exercise(*stub)
+    """Only the site shows the solution, and a cell tests what the student wrote."""
+    lesson, name, page = stub
+    all_cells = page_of(lesson, page).notebook.cells
+    empty, solution = [c for c in all_cells if c.source.startswith(f"def {name}(")]
+    assert '"""' in empty.source
+    assert "solution" not in empty.metadata.get("tags", [])
+    assert "solution" in solution.metadata["tags"]
+    assert len(solution.source.splitlines()) - 1 <= 15
+    assert re.search(rf"exercises\.\w+\({name}[,)]", "\n".join(c.source for c in all_cells))
 
 
 def test_each_lab_leaves_functions_to_write():

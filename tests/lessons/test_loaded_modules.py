@@ -150,17 +150,3 @@ def is_made(node):
         case [ast.Constant(value=str(name))] if not name.startswith((".", PACKAGE)):
             return ast.unparse(node.func).split(".")[-1] != "import_module"
     return True
-
-
-@pytest.mark.parametrize(
-    ("source", "made"),
-    [
-        ("import_module(name)", True),
-        ("exec('from . import run')", True),
-        ("from importlib import import_module as load", True),
-        ("importlib.import_module('torch')", False),
-        ("from robo_genesis.sim import run", False),
-    ],
-)
-def test_a_made_import_is_known_from_others(source, made):
-    assert bool(made_imports(source)) == made

@@ -4,8 +4,6 @@ from robo_genesis.core.declaration import on_demand
 
 __getattr__ = on_demand(
     __name__,
-    LAB="pages",
-    LECTURE="pages",
     LESSON="pages",
     read_model="robo_genesis.sim.bodies.rigid_bodies",
     run_drop="robo_genesis.sim.bodies.rigid_bodies",

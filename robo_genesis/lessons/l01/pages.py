@@ -1,7 +1,5 @@
 """The measuring pages of L01, and its declaration."""
 
-from dataclasses import replace
-
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
 from robo_genesis.core.experiment import MeasuringPage, counts, runs_of
@@ -21,12 +19,7 @@ LAB = MeasuringPage(
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
-LECTURE = replace(
-    LAB,
-    readings={**LAB.readings, **machine.READINGS},
-    checks=(*checks.CHECKS, checks.doctor),
-    parameters=spec.lecture_parameters,
-)
+LECTURE = LAB.with_more(spec.lecture_parameters, readings=machine.READINGS, checks=(checks.doctor,))
 
 LESSON = Lesson(
     spec=spec,

@@ -4,11 +4,7 @@ from robo_genesis.core.declaration import on_demand
 
 __getattr__ = on_demand(
     __name__,
-    LAB="pages",
-    LECTURE="pages",
     LESSON="pages",
-    MISTAKES="pages",
-    fallen="robo_genesis.sim.bodies.falls",
     read_model="robo_genesis.sim.bodies.rigid_bodies",
     run_drop="robo_genesis.sim.bodies.rigid_bodies",
     floor="robo_genesis.sim.visual_shape",

@@ -34,11 +34,10 @@ LECTURE = replace(
     parameters=spec.study_parameters,
     frames=(*LAB.frames, spec.TRAYS),
 )
-MISTAKES = replace(LAB)
 
 LESSON = Lesson(
     spec=spec,
     metrics=dict.fromkeys(spec.CASES, DropMetrics),
-    pages={"lab": LAB, "lecture": LECTURE, "mistakes": MISTAKES},
+    pages={"lab": LAB, "lecture": LECTURE, "mistakes": LAB},
     replays={"fall": Replay(tuple(spec.CASES), follows=spec.LINK, thing="box")},
 )

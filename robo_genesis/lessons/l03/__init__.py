@@ -4,12 +4,7 @@ from robo_genesis.core.declaration import on_demand
 
 __getattr__ = on_demand(
     __name__,
-    CONTACT="pages",
-    ENERGY="pages",
-    LAB="pages",
-    LECTURE="pages",
     LESSON="pages",
-    MISTAKES="pages",
     SURFACE_SIZE="robo_genesis.sim.bodies.contacts",
     TOP="robo_genesis.sim.bodies.contacts",
     build_world="robo_genesis.sim.bodies.contacts",

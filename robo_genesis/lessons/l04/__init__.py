@@ -4,13 +4,7 @@ from robo_genesis.core.declaration import on_demand
 
 __getattr__ = on_demand(
     __name__,
-    BATCH="pages",
-    FORMULA="pages",
-    INTEGRATOR="pages",
-    LAB="pages",
-    LECTURE="pages",
     LESSON="pages",
-    MISTAKES="pages",
     CAMERA="robo_genesis.core.scene",
     DT="robo_genesis.core.scene",
     SUBSTEPS="robo_genesis.core.scene",

@@ -1,6 +1,7 @@
 """The measuring pages of L04, and its declaration."""
 
 from dataclasses import replace
+from functools import partial
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.declaration import Lesson
@@ -31,49 +32,34 @@ ASSIGNED = Run(
     measured=False,
     note="state overwritten at each sample, no step taken; its time is nominal",
 )
-LECTURE = replace(
-    LAB,
-    runs={
-        **LAB.runs,
-        **runs_of(study_spec.EXAMPLE_CASES | study_spec.LONGER_CASES),
-        study_spec.ASSIGNED: ASSIGNED,
-    },
-    readings={**LAB.readings, study.GROUP: Readings(study.GRAVITY)},
-    checks=(*LAB.checks, study_checks.study_factors, *lecture_checks.LECTURE),
-    parameters=lambda: spec.parameters() | study_spec.parameters("lecture"),
+LECTURE = LAB.with_more(
+    partial(study_spec.parameters, "lecture"),
+    runs_of(study_spec.EXAMPLE_CASES | study_spec.LONGER_CASES) | {study_spec.ASSIGNED: ASSIGNED},
+    {study.GROUP: Readings(study.GRAVITY)},
+    (study_checks.study_factors, *lecture_checks.LECTURE),
 )
-FORMULA = replace(
-    MISTAKES,
+FORMULA = MISTAKES.with_more(
+    partial(study_spec.parameters, "formula"),
     # A run that holds its start has no step, so it has no metrics.
-    runs={
-        **LAB.runs,
-        **{n: Run(case, not n.endswith("_hold")) for n, case in study_spec.STEP_CASES.items()},
-    },
-    readings={
-        **LAB.readings,
-        study.GROUP: Readings(study.AT_START | study.MASSES | study.GRAVITY),
-    },
-    checks=(*MISTAKES.checks, *study_checks.FORMULA),
-    parameters=lambda: spec.parameters() | study_spec.parameters("formula"),
+    {n: Run(case, not n.endswith("_hold")) for n, case in study_spec.STEP_CASES.items()},
+    {study.GROUP: Readings(study.AT_START | study.MASSES | study.GRAVITY)},
+    study_checks.FORMULA,
 )
 IN_MUJOCO = {
     name: Run(spec.CASES[second.case], note="run in MuJoCo, not in Genesis")
     for name, second in study_spec.SECOND_RUNS.items()
 }
-INTEGRATOR = replace(
-    MISTAKES,
-    runs={**LAB.runs, **runs_of(study_spec.SUBSTEP_CASES), **IN_MUJOCO},
-    readings={**LAB.readings, study.GROUP: Readings(study.AT_START | study.IN_MUJOCO)},
-    checks=(*MISTAKES.checks, *study_checks.INTEGRATOR),
-    parameters=lambda: spec.parameters() | study_spec.parameters("integrator"),
+INTEGRATOR = MISTAKES.with_more(
+    partial(study_spec.parameters, "integrator"),
+    runs_of(study_spec.SUBSTEP_CASES) | IN_MUJOCO,
+    {study.GROUP: Readings(study.AT_START | study.IN_MUJOCO)},
+    study_checks.INTEGRATOR,
 )
 GRID_NOTE = "in a scene with a copy of the robot for each run of the grid"
-GRID = {name: Run(case, note=GRID_NOTE) for name, case in study_spec.GRID_CASES.items()}
-BATCH = replace(
-    MISTAKES,
-    runs={**LAB.runs, **GRID},
-    checks=(*MISTAKES.checks, *study_checks.GRID_CHECKS),
-    parameters=lambda: spec.parameters() | study_spec.parameters("batch"),
+BATCH = MISTAKES.with_more(
+    partial(study_spec.parameters, "batch"),
+    {name: Run(case, note=GRID_NOTE) for name, case in study_spec.GRID_CASES.items()},
+    checks=study_checks.GRID_CHECKS,
 )
 
 LESSON = Lesson(

@@ -4,9 +4,7 @@ from robo_genesis.core.declaration import on_demand
 
 __getattr__ = on_demand(
     __name__,
-    LAB="pages",
     LESSON="pages",
-    SOLUTIONS="pages",
     target_part="pages",
     DT="robo_genesis.core.scene",
     SUBSTEPS="robo_genesis.core.scene",

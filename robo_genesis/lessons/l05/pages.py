@@ -47,12 +47,11 @@ LAB = replace(
 
 ANSWERS_NOTE = "answers of the solver assigned to the state, no step taken; its time is nominal"
 ANSWERS = {name: Run(case, False, ANSWERS_NOTE) for name, case in spec.QUESTIONS.items()}
-SOLUTIONS = replace(
-    MOTION,
-    runs={**MOTION.runs, **ANSWERS},
-    readings=MODEL | study.READINGS | restarts.READINGS,
-    checks=(*checks.WITHOUT_CAMERA, *checks.SOLUTIONS),
-    parameters=lambda: spec.parameters() | {"questions": case_inputs(spec.QUESTIONS)},
+SOLUTIONS = MOTION.with_more(
+    lambda: {"questions": case_inputs(spec.QUESTIONS)},
+    ANSWERS,
+    restarts.READINGS,
+    checks.SOLUTIONS,
 )
 """The page about many solutions, the map of targets and the target beyond reach."""
 

@@ -4,15 +4,10 @@ from robo_genesis.core.declaration import on_demand
 
 __getattr__ = on_demand(
     __name__,
-    LAB="pages",
-    LECTURE="pages",
     LESSON="pages",
-    MISTAKES="pages",
-    THROUGHPUT="pages",
     target_parts="pages",
     set_link_mass="robo_genesis.sim.arm.batch",
     FRANKA_MJCF="robo_genesis.sim.arm.franka",
     describe="robo_genesis.sim.arm.joint_control",
-    resolve_joints="robo_genesis.sim.arm.joints",
     read_shape="robo_genesis.sim.visual_shape",
 )

@@ -41,26 +41,18 @@ LECTURE = MeasuringPage(
     checks=checks.CHECKS,
     parameters=spec.parameters,
 )
-LAB = replace(
-    LECTURE,
-    readings=study.READINGS | throughput.PROTOCOL.readings(),
-    checks=(*checks.CHECKS, checks.equal_work),
-    parameters=lambda: spec.parameters() | throughput.PROTOCOL.parameters(),
-)
 MODEL = {"model": study.READINGS["model"]}
-MISTAKES = replace(
-    LECTURE,
-    runs={},
-    readings=MODEL,
-    checks=(checks.mapping,),
-    camera=False,
-)
-THROUGHPUT = replace(
-    MISTAKES,
-    readings=MODEL | throughput.DEEPER.readings(),
-    checks=(checks.mapping, checks.equal_work),
-    parameters=lambda: spec.parameters() | throughput.DEEPER.parameters(),
-)
+MISTAKES = replace(LECTURE, runs={}, readings=MODEL, checks=(checks.mapping,), camera=False)
+
+
+def timed(page: MeasuringPage, protocol: throughput.Protocol) -> MeasuringPage:
+    """Return a page that also measures a throughput."""
+    readings, work = protocol.readings(), (checks.equal_work,)
+    return page.with_more(protocol.parameters, readings=readings, checks=work)
+
+
+LAB = timed(LECTURE, throughput.PROTOCOL)
+THROUGHPUT = timed(MISTAKES, throughput.DEEPER)
 """The page that explains why the curve of throughput bends."""
 
 LESSON = Lesson(

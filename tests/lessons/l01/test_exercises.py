@@ -43,30 +43,27 @@ def fall(scene, sphere, steps, *, reset=True, late=True):
     return sphere.get_pos()[2].item() if late else kept
 
 
-@pytest.mark.parametrize(
-    ("function", "passes"),
-    [
-        (SOLVED["height_after"], True),
-        (lambda z0, g, h, n: height(z0, g, h, n, school=True), False),
-        (lambda z0, g, h, n: height(z0, g, h, n, extra=-1), False),
-        (lambda z0, g, h, n: height(0.5, 9.81, h, n), False),
-        (lambda z0, g, h, n: height(0, g, h, n), False),
-    ],
-)
-def test_the_height_is_that_of_the_stepped_fall(function, passes):
-    assert [check.passed for check in exercises.height_after(function)] == [passes]
+CASES = {
+    "height_after": {
+        "right": SOLVED["height_after"],
+        "school": lambda z0, g, h, n: height(z0, g, h, n, school=True),
+        "explicit Euler": lambda z0, g, h, n: height(z0, g, h, n, extra=-1),
+        "typed values": lambda z0, g, h, n: height(0.5, 9.81, h, n),
+        "distance for height": lambda z0, g, h, n: height(0, g, h, n),
+    },
+    "fall": {
+        "right": SOLVED["fall"],
+        "no reset": partial(fall, reset=False),
+        "read too early": partial(fall, late=False),
+        "one step more": lambda scene, sphere, steps: fall(scene, sphere, steps + 1),
+        "typed result": lambda scene, sphere, steps: 0.298895,
+    },
+}
 
 
-@pytest.mark.parametrize(
-    ("function", "passes"),
-    [
-        (SOLVED["fall"], True),
-        (partial(fall, reset=False), False),
-        (partial(fall, late=False), False),
-        (lambda scene, sphere, steps: fall(scene, sphere, steps + 1), False),
-        (lambda scene, sphere, steps: 0.298895, False),
-    ],
-)
-def test_the_fall_starts_anew_each_time(function, passes):
+@pytest.mark.parametrize(("name", "how"), [(n, how) for n, of in CASES.items() for how in of])
+def test_only_the_right_solution_passes(name, how):
     sphere = FallingSphere()
-    assert [check.passed for check in exercises.fall(function, sphere, sphere)] == [passes]
+    more = {"fall": (sphere, sphere)}.get(name, ())
+    (check,) = getattr(exercises, name)(CASES[name][how], *more)
+    assert check.passed == (how == "right"), check.detail

@@ -7,8 +7,9 @@ import pytest
 from lessons.body_runs import body_run, make_drop
 
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l01 import LECTURE, machine, spec, text
+from robo_genesis.lessons.l01 import machine, spec, text
 from robo_genesis.lessons.l01.metrics import fall_metrics
+from robo_genesis.lessons.l01.pages import LECTURE
 
 CASE = spec.BASELINE
 TIMES = {f"{start}_{part}": 0.5 for start in machine.STARTS for part in machine.PARTS}

@@ -4,7 +4,8 @@ import pytest
 from lessons.body_runs import make_drop
 
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l02 import LECTURE, life_cycle, spec, trials
+from robo_genesis.lessons.l02 import life_cycle, spec, trials
+from robo_genesis.lessons.l02.pages import LECTURE
 
 SHAPES = {"box": (12, 12, 1), "duck": (3534, 500, 1), "tray": (260, 344, 5), "hammer": (24, 24, 2)}
 

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.body_runs import make_drop
-from lessons.changed_runs import case, copied, failed, frames, put, reading, trace, with_reading
+from lessons.changed_runs import case, copied, failed, frames, put, reading, trace
 
-from robo_genesis.lessons.l02 import LAB, life_cycle, plots, spec, text, trials
+from robo_genesis.lessons.l02 import life_cycle, plots, spec, text, trials
 from robo_genesis.lessons.l02.metrics import drop_metrics
+from robo_genesis.lessons.l02.pages import LAB
 
 
 def test_the_metrics_are_the_largest_of_all_samples():
@@ -83,7 +84,7 @@ def test_each_check_has_a_run_that_fails_it(run):
 def test_the_task_of_the_lab_fails_the_checks_of_its_answer(run, frames, changes, names):
     case = replace(spec.BASELINE, **changes)
     changed = replace(
-        with_reading(run, "body", "mass", case.mass),
+        reading("body", "mass", case.mass)(run),
         page=LAB, traces={"baseline": make_drop(case)}, frames=frames,
     )  # fmt: skip
     assert {check.name for check in changed.outcomes() if not check.passed} == names

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from lessons.body_runs import body_at, slide_on_corners
-from lessons.changed_runs import case, copied, failed, frames, put, reading, trace
+from lessons.changed_runs import case, copied, failed, frames, put, reading, shift, trace
 
 from robo_genesis.lessons.l03 import LESSON, spec, study, study_spec, text
 from robo_genesis.lessons.l03.metrics import case_metrics
@@ -13,14 +13,9 @@ from robo_genesis.lessons.l03.metrics import case_metrics
 REST = spec.BASELINE.rest_height
 
 
-def shift(name, by, field="link_pos", axis=2, first=0, end=None):
+def moved(name, by, field="link_pos", axis=2, first=0, end=None):
     """Return a function that changes an array of one run along an axis from `first` until `end`."""
-
-    def change(array):
-        array[first:end, 0, axis] += by
-        return array
-
-    return trace(name, **{field: change})
+    return trace(name, **{field: shift((slice(first, end), 0, axis), by)})
 
 
 def on_corners(*names, **changes):
@@ -77,18 +72,18 @@ FAILING = {
         "a missing step": (case("low_on_030", duration=2.01), {"stamps", "one_factor"}),
         "a second factor": (case("bounce_sub4", spring=(1.0, 0.02)), {"one_factor"}),
         "a cube that hovers": (trace("baseline", contacts=np.zeros_like), {"lands"}),
-        "a cube that falls through": (shift("baseline", -0.05, first=30), {"lands", "settles"}),
+        "a cube that falls through": (moved("baseline", -0.05, first=30), {"lands", "settles"}),
         "depths of the same state": (
             trace("dt10_sub1", penetration=lambda a: np.roll(a, -1)), {"reported_late"}),
         "other positions at shared times": (
-            shift("dt20_sub2", 1e-5, axis=0, first=5), {"equal_step_equal_states"}),
+            moved("dt20_sub2", 1e-5, axis=0, first=5), {"equal_step_equal_states"}),
         "a cube that does not stop": (
-            shift("low_on_030", 0.5, "link_vel", 0, first=60),
+            moved("low_on_030", 0.5, "link_vel", 0, first=60),
             {"stops", "friction_orders", "near_coulomb"}),
         "a table that changes the other cube": (
-            shift("high_on_030", 0.01, axis=0, first=20), {"friction_orders"}),
+            moved("high_on_030", 0.01, axis=0, first=20), {"friction_orders"}),
         "energy that leaks in flight": (
-            shift("bounce_sub20", 0.002, first=10), {"level_in_flight"}),
+            moved("bounce_sub20", 0.002, first=10), {"level_in_flight"}),
         "no flight": (
             lambda run: replace(run, traces=run.traces | {"bounce_sub20": STILL}),
             {"level_in_flight", "energy_converges"}),
@@ -101,27 +96,27 @@ FAILING = {
         "another time constant": (
             reading(study.GROUP, "h_20000us", 0.01), {"time_constants"}),
         "a record of each step that moves otherwise": (
-            shift(study_spec.AS_BASELINE, 1e-5, first=20, end=40), {"records_each_step"}),
+            moved(study_spec.AS_BASELINE, 1e-5, first=20, end=40), {"records_each_step"}),
         "a rebound that stays with smaller steps": (
             trace("h_500us_10000", link_pos=put((-20, 0, 2), REST + 0.002)), {"rebound_goes"}),
         "no rebound at all": (never_rebounding, {"records_each_step", "rebound_goes"}),
         "a depth that depends on the start at fine steps": (
             trace("h_125us_10000", link_pos=deeper), {"scatter_shrinks", "depth_by_hand"}),
         "a clean slide that hops": (
-            shift("low_on_030_elliptic", 0.001, first=10, end=12), {"clean_slides_stay_down"}),
+            moved("low_on_030_elliptic", 0.001, first=10, end=12), {"clean_slides_stay_down"}),
         "a clean slide on three corners": (
             trace("low_on_030_elliptic", contacts=put(5, 3)), {"clean_slides_stay_down"}),
         "a clean slide that stops elsewhere": (
-            shift("high_on_030_elliptic", 0.001, axis=0, first=10),
+            moved("high_on_030_elliptic", 0.001, axis=0, first=10),
             {"clean_slides_are_coulomb_s", "clean_slides_order"}),
         "another rule of friction": (
             on_corners("low_on_050_elliptic", friction=0.3, surface_friction=0.3),
             {"clean_slides_are_coulomb_s", "clean_slides_order", "larger_friction_rules"}),
         "a hop that a finer step does not reduce": (
-            shift("hop_2500us_low", 0.02, first=1), {"hop_follows_step"}),
+            moved("hop_2500us_low", 0.02, first=1), {"hop_follows_step"}),
         "a hop that stays at the finest step": (
-            shift("hop_100us_high", 0.02, first=1), {"hop_follows_step"}),
-        "a slow push that hops": (shift("hop_200mm_s", 0.002, first=1), {"hop_follows_speed"}),
+            moved("hop_100us_high", 0.02, first=1), {"hop_follows_step"}),
+        "a slow push that hops": (moved("hop_200mm_s", 0.002, first=1), {"hop_follows_speed"}),
     },
     "contact": {
         "a pushed cube that stays down": (
@@ -129,22 +124,22 @@ FAILING = {
             {"default_cone_hops", "hop_is_paid_by_friction", "half_the_step_contradicts",
              "engines_hop_alike"}),
         "a blow that friction does not explain": (
-            shift("low_on_050", -0.1, "link_vel", 0, first=1, end=2), {"hop_is_paid_by_friction"}),
+            moved("low_on_050", -0.1, "link_vel", 0, first=1, end=2), {"hop_is_paid_by_friction"}),
         "a stop far from Coulomb's": (
-            shift("low_on_050", 0.05, axis=0, first=10), {"stops_nearly_right"}),
+            moved("low_on_050", 0.05, axis=0, first=10), {"stops_nearly_right"}),
         "a round cone that stays down": (
             copied("low_on_050_convex", "low_on_050_elliptic"),
             {"the_cone_alone_hops", "engines_hop_alike"}),
         "a stop that does not converge": (
-            shift("stop_100us_low", 0.05, axis=0, first=10), {"one_stop_converges"}),
+            moved("stop_100us_low", 0.05, axis=0, first=10), {"one_stop_converges"}),
         "engines that land apart": (
             copied("mujoco_baseline", study_spec.OWN_DEFAULTS), {"engines_land_alike"}),
     },
     "energy": {
         "a release that is too fast": (
-            shift("release_5ms_10000", 0.2, "link_vel", 2, first=220), {"release_speed"}),
+            moved("release_5ms_10000", 0.2, "link_vel", 2, first=220), {"release_speed"}),
         "a soft contact that rebounds": (
-            shift("release_10ms_10000", 0.01, first=270), {"stiff_contacts_rebound"}),
+            moved("release_10ms_10000", 0.01, first=270), {"stiff_contacts_rebound"}),
     },
 }  # fmt: skip
 

@@ -6,9 +6,10 @@ import pytest
 from robot_runs import assigned, driven
 
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l04 import LECTURE, LESSON, study_spec
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.lessons.l04 import study as studies
+from robo_genesis.lessons.l04 import study_spec
+from robo_genesis.lessons.l04.pages import LECTURE, LESSON
 from robo_genesis.sim.arm.franka import Q_START
 from robo_genesis.sim.arm.joint_control import run_case
 from robo_genesis.sim.mujoco import joints as mujoco_joints

@@ -1,4 +1,4 @@
-"""The built pages of L04: the mistakes and what the lecture prints."""
+"""The built pages of L04: the mistakes, and measured numbers of the lecture."""
 
 import re
 
@@ -24,14 +24,7 @@ def test_each_symptom_is_visible_before_the_fold_that_explains_it(site):
     assert len(drawings) == 6
 
 
-def test_the_lecture_shows_two_failures_and_where_its_numbers_come_from(site):
+def test_a_measured_number_says_where_it_comes_from(site):
     page = parsed(site, f"{FOLDER}/lecture")
-    blocks = [block.get_text() for block in page.select("div.cell_output pre")]
-    (moved,) = (text for text in blocks if "finger_joint1 " in text and "joint7" in text)
-    changes = {line.split()[0]: float(line.split()[1]) for line in moved.splitlines()[-9:]}
-    assert abs(changes["joint7"]) > 100 * abs(changes["joint4"])
-    (after,) = (text for text in blocks if "after step 1:" in text)
-    first, last = (float(value) for value in re.findall(r"moved (\S+) rad", after))
-    assert 0 < first < last
     origins = {number["data-provenance"] for number in page.select(".measured")}
     assert any(re.search(r"l04/lecture on cpu, Genesis .*, run \w{8}", of) for of in origins)

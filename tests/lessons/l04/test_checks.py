@@ -7,8 +7,9 @@ import pytest
 from lessons.changed_runs import case, copied, frames, metric, put, reading, trace, with_fields
 
 from robo_genesis.core.checks import CheckFailed, evaluate, require
-from robo_genesis.lessons.l04 import LAB, spec, study, study_spec
+from robo_genesis.lessons.l04 import spec, study, study_spec
 from robo_genesis.lessons.l04.laws import laws_of_motion
+from robo_genesis.lessons.l04.pages import LAB
 
 K = spec.ENTRY
 GRID_G2 = study_spec.CASE_POINTS["G2"].name

@@ -1,13 +1,13 @@
 """L04 on the real engine: what its runs repeat, and what its modules refuse."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from lessons.l04.conftest import LINKS
 
+from robo_genesis.core.comparison import same_arrays
 from robo_genesis.core.scene import DT, SUBSTEPS
-from robo_genesis.core.trace import Trace
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import step_metrics
 from robo_genesis.sim.arm import dynamics
@@ -34,13 +34,6 @@ def robot_in_scene(lab, substeps=SUBSTEPS, envs=0, **options):
     return scene, robot, resolve_joints(robot, JOINT_NAMES)
 
 
-def same(one, other):
-    return all(
-        getattr(one, field.name).tobytes() == getattr(other, field.name).tobytes()
-        for field in fields(Trace)
-    )
-
-
 def test_a_case_repeats_to_the_last_bit_whatever_ran_before(lab, run):
     first = {name: run(spec.CASES[name]) for name in ("G1", "G2")}
     dofs = lab.joints.dofs_idx_local.tolist()
@@ -50,7 +43,7 @@ def test_a_case_repeats_to_the_last_bit_whatever_ran_before(lab, run):
     for _ in range(10):
         lab.scene.step()
     for name in ("G2", "G1"):
-        assert same(run(spec.CASES[name]), first[name]), name
+        assert same_arrays(run(spec.CASES[name]), first[name]), name
 
 
 def test_the_map_is_what_each_joint_owns(lab, joints):
@@ -64,7 +57,7 @@ def test_a_batch_repeats_and_refuses_cases_that_do_not_fit(lab):
     few = study_spec.COMPARED
     batch = robot_in_scene(lab, envs=3, batch_dofs_info=True, enable_self_collision=False)
     first, again = (run_batch(*batch, few) for _ in "ab")
-    assert all(same(first[name], again[name]) for name in few)
+    assert all(same_arrays(first[name], again[name]) for name in few)
     with pytest.raises(CaseError, match="Build it with n_envs=2"):
         run_batch(*batch, {"G1": spec.G1, "G2": spec.G2})
     with pytest.raises(CaseError, match="cases of equal length"):

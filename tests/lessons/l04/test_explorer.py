@@ -23,17 +23,13 @@ def data(site) -> dict:
     return json.loads(parsed(site, LECTURE).select_one(".explorer")["data-explorer"])
 
 
-@pytest.fixture(scope="module", params=["served", "from disk"])
+@pytest.fixture(scope="module", params=["light", "dark"])
 def opened(request, browser, address, site) -> Iterator[tuple[Page, str]]:
     """A window of a phone and the address of the lecture: in the light, from disk in the dark."""
-    base, scheme = {"served": (address, "light"), "from disk": (site.as_uri(), "dark")}[
-        request.param
-    ]
-    page = browser.new_page(
-        viewport={"width": 320, "height": 900}, color_scheme=scheme, has_touch=True
-    )
+    base, size = {"light": address, "dark": site.as_uri()}, {"width": 320, "height": 900}
+    page = browser.new_page(viewport=size, color_scheme=request.param, has_touch=True)
     problems = errors(page)
-    yield page, f"{base}/{LECTURE}.html"
+    yield page, f"{base[request.param]}/{LECTURE}.html"
     assert problems == []
     page.close()
 
@@ -123,11 +119,8 @@ def test_a_prediction_is_judged_by_the_recorded_runs(
     without_question(page, *first)
     before = shown(page)[1]
     choose(page, *second)
-    assert (
-        page.locator(".explorer .question legend")
-        .inner_text()
-        .endswith(f"what happens to the {noun}?")
-    )
+    question = page.locator(".explorer .question legend").inner_text()
+    assert question.endswith(f"what happens to the {noun}?")
     assert shown(page)[1] == before  # nothing is shown before the answer
     answer(page, said)
     output, metrics = shown(page)

@@ -5,21 +5,12 @@ from pathlib import Path
 import pytest
 
 from robo_genesis.core import project
-from robo_genesis.lessons.l04 import spec, study_spec
+from robo_genesis.lessons.l04 import LESSON, spec, study_spec
 from robo_genesis.pipeline.pages.sources import measuring_modules
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 
 PACKAGE = Path(spec.__file__).parents[2]
 PAGES = ("lecture", "formula", "integrator", "batch")
-
-
-def test_the_lessons_values():
-    base = spec.BASELINE
-    assert (spec.STEPS, base.dt, base.substeps, base.seed) == (120, 0.01, 2, 0)
-    gains = [(case.kp[3], case.kv[3]) for case in spec.CASES.values()]
-    assert gains == [(3500, 350), (3500, 100), (7000, 100), (7000, 300)]
-    for case in spec.CASES.values():
-        assert (case.q_target - case.q_start).tolist() == [0, 0, 0, 0.25, 0, 0, 0, 0, 0]
 
 
 def test_the_grid_has_the_compared_cases_and_each_point_once():
@@ -42,38 +33,27 @@ OTHER = {
 
 
 @pytest.mark.parametrize(
-    ("name", "other", "counts"),
+    ("module", "name", "other", "pages"),
     [
-        *((name, other, True) for name, other in OTHER.items()),
-        ("RELATIONS", (), False),
-        ("EXPECTED_MODEL", {**spec.EXPECTED_MODEL, "links": 12}, False),
+        *((spec, name, other, PAGES) for name, other in OTHER.items()),
+        (spec, "RELATIONS", (), ()),
+        (spec, "EXPECTED_MODEL", {**spec.EXPECTED_MODEL, "links": 12}, ()),
+        (study_spec, "AT_REST", 0.02, ()),
+        (study_spec, "KP", (3500.0, 7000.0), ("batch",)),
+        (study_spec, "SECOND_RUNS", {}, ("integrator",)),
+        (study_spec, "STEP_CASES", {}, ("formula",)),
+        (study_spec, "LONGER_CASES", {}, ("lecture",)),
+        (study_spec, "EXAMPLE_CASES", {}, ("lecture",)),
     ],
 )
-def test_what_decides_a_run_is_a_parameter_and_a_judgement_is_none(
-    monkeypatch, name, other, counts
+def test_an_input_is_a_parameter_of_its_pages_and_a_judgement_of_none(
+    monkeypatch, module, name, other, pages
 ):
-    before = spec.parameters()
-    monkeypatch.setattr(spec, name, other)
-    assert (spec.parameters() != before) == counts
-
-
-@pytest.mark.parametrize(
-    ("name", "other", "page"),
-    [
-        ("AT_REST", 0.02, None),
-        ("KP", (3500.0, 7000.0), "batch"),
-        ("SECOND_RUNS", {}, "integrator"),
-        ("STEP_CASES", {}, "formula"),
-        ("LONGER_CASES", {}, "lecture"),
-        ("EXAMPLE_CASES", {}, "lecture"),
-    ],
-)
-def test_an_input_of_a_page_is_a_parameter_of_that_page_alone(monkeypatch, name, other, page):
-    before = {page: study_spec.parameters(page) for page in PAGES}
+    before = {page: LESSON.pages[page].parameters() for page in PAGES}
     assert json.loads(json.dumps(before, allow_nan=False)) == before
-    monkeypatch.setattr(study_spec, name, other)
-    found = [name for name in PAGES if study_spec.parameters(name) != before[name]]
-    assert found == ([page] if page else [])
+    monkeypatch.setattr(module, name, other)
+    changed = [page for page in PAGES if LESSON.pages[page].parameters() != before[page]]
+    assert changed == [*pages]
 
 
 def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():

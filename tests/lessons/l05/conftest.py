@@ -7,7 +7,8 @@ import pytest
 from robot_runs import LINKS, answer, assigned, driven
 
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.lessons.l05 import SOLUTIONS, restarts, spec
+from robo_genesis.lessons.l05 import restarts, spec
+from robo_genesis.lessons.l05.pages import SOLUTIONS
 from robo_genesis.lessons.l05.run import control_case
 from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.franka import Q_START

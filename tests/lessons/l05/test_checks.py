@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from lessons.changed_runs import failed, with_reading, with_trace
+from lessons.changed_runs import failed, put, reading, shift, trace
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l05 import restarts, spec, study
@@ -17,38 +17,34 @@ from robo_genesis.sim.arm.engine_kinematics import IkAnswer, NotAccepted
 from robo_genesis.sim.arm.kinematics import HAND
 
 
-def moved_hand(run, name, by):
-    places = np.array(run.traces[name].link_pos)
-    places[:, HAND] += by
-    return with_trace(run, name, link_pos=places)
+def moved_hand(name, by):
+    return trace(name, link_pos=shift((slice(None), HAND), by))
 
 
 def lower_gain(run: Experiment) -> Experiment:
     """Explain the baseline by another gain than its own."""
     of = run.traces["kp_doubled"]
-    return with_trace(run, "baseline", q=of.q, link_pos=of.link_pos, link_quat=of.link_quat)
+    return trace("baseline", q=of.q, link_pos=of.link_pos, link_quat=of.link_quat)(run)
 
 
-def with_answer(run, position, quat, name="unreachable"):
+def with_answer(position, quat, name="unreachable"):
     """Let the engine's answers of a run put the hand into a pose."""
-    trace = run.traces[name]
-    places, turns = np.array(trace.link_pos), np.array(trace.link_quat)
-    places[1:, HAND], turns[1:, HAND] = position, quat
-    return with_trace(run, name, link_pos=places, link_quat=turns)
+    index = slice(1, None), HAND
+    return trace(name, link_pos=put(index, position), link_quat=put(index, quat))
 
 
 CHANGES = {
     "mapping": lambda run: replace(run, links=(*run.links[:8], "flange", *run.links[9:])),
-    "stamps": lambda run: with_trace(run, "baseline", t=run.traces["baseline"].t * 2),
-    "acceptance": lambda run: with_reading(run, "ik", "residual_m", 6e-4),
-    "forward_kinematics": lambda run: moved_hand(run, "kp_doubled", 1e-5),
-    "second_engine": lambda run: with_reading(run, "ik", "jacobian_difference", 1e-4),
-    "arrived": lambda run: moved_hand(run, "kp_doubled", 0.05),
+    "stamps": trace("baseline", t=lambda t: 2 * t),
+    "acceptance": reading("ik", "residual_m", 6e-4),
+    "forward_kinematics": moved_hand("kp_doubled", 1e-5),
+    "second_engine": reading("ik", "jacobian_difference", 1e-4),
+    "arrived": moved_hand("kp_doubled", 0.05),
     "sag_explains": lower_gain,
-    "repeatable": lambda run: with_reading(run, "ik_repeated", "entries_that_differ", 1),
-    "restarts_repeat": lambda run: with_reading(run, "ik_restarts", "after_a_new_init", 1),
-    "unreachable_refused": lambda run: with_answer(run, spec.BEYOND_REACH, spec.DOWN),
-    "nearest_is_nearer": lambda run: with_answer(run, *kinematics.hand_pose(study.nearest()[0])),
+    "repeatable": reading("ik_repeated", "entries_that_differ", 1),
+    "restarts_repeat": reading("ik_restarts", "after_a_new_init", 1),
+    "unreachable_refused": with_answer(spec.BEYOND_REACH, spec.DOWN),
+    "nearest_is_nearer": with_answer(*kinematics.hand_pose(study.nearest()[0])),
 }
 
 
@@ -69,7 +65,7 @@ def test_a_count_that_was_not_recorded_fails(reaches):
 
 
 def test_a_question_that_needs_no_restart_is_refused(reaches):
-    assert "restarts_repeat" in failed(with_answer(reaches, spec.TARGET, spec.DOWN, "many_starts"))
+    assert "restarts_repeat" in failed(with_answer(spec.TARGET, spec.DOWN, "many_starts")(reaches))
 
 
 def test_answers_of_two_processes_are_compared_in_pairs(monkeypatch):
@@ -86,7 +82,7 @@ def test_the_record_of_answers_has_the_dt_of_its_case():
 
 
 def test_a_link_out_of_place_breaks_a_law(reaches):
-    moved = moved_hand(reaches, "unreachable", 1e-4)
+    moved = moved_hand("unreachable", 1e-4)(reaches)
     wrong = [finding for finding in laws_of_motion(moved) if not finding.passed]
     assert ["link_pos" in finding.label for finding in wrong] == [True]
 

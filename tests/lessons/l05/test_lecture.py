@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from closed_views import PLANE, closed_view, looking
-from lessons.changed_runs import with_reading
+from lessons.changed_runs import reading
 from lessons.lesson_bundles import accepted_then_refused, in_archive, in_json, metric
 
 from robo_genesis.core.checks import evaluate
 from robo_genesis.core.scene import CAMERA_RES, FRAME_SHAPE
-from robo_genesis.lessons.l05 import LAB, checks, plots, spec, text
+from robo_genesis.lessons.l05 import checks, plots, spec, text
+from robo_genesis.lessons.l05.pages import LAB
 from robo_genesis.sim.camera import record as view_record
 from robo_genesis.sim.camera.checks import Marker
 
@@ -58,7 +59,7 @@ def test_the_ground_is_judged_in_each_view_of_the_page(run):
     assert {label.split(".")[0] for label in ground.found} == {"world", "hand"}
     for name in ("world", "hand"):  # a camera that is 1 cm too high
         height = readings[f"view_{name}"]["transform_23"] + 0.01
-        raised = with_reading(both, f"view_{name}", "transform_23", height)
+        raised = reading(f"view_{name}", "transform_23", height)(both)
         (ground,) = evaluate([checks.plane_surface], raised)
         assert f"{name}.largest_m is 0.01" in ground.detail
     without = {key: of for key, of in readings.items() if key != "view_world"}

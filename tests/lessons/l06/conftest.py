@@ -8,7 +8,8 @@ from robot_runs import LINKS, answer, driven
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import Trace
-from robo_genesis.lessons.l06 import LECTURE, checks, spec, study
+from robo_genesis.lessons.l06 import checks, spec, study
+from robo_genesis.lessons.l06.pages import LECTURE
 from robo_genesis.lessons.l06.run import Environment
 from robo_genesis.sim.mujoco.kinematics import gravity_effort
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lessons.changed_runs import failed, with_reading, with_trace
+from lessons.changed_runs import failed, put, reading, shift, trace
 
 from robo_genesis.lessons.l06 import spec
 from robo_genesis.lessons.l06.laws import laws_of_motion
@@ -16,23 +16,12 @@ from robo_genesis.sim.arm.kinematics import HAND
 PLAIN, STIFF, LOADED, _ = spec.VARIANTS
 
 
-def shifted(run, name, array, by, samples=slice(None)):
-    """Change one array of a run by a number, in all samples or in some."""
-    values = np.array(getattr(run.traces[name], array))
-    values[samples] += by
-    return with_trace(run, name, **{array: values})
+def moved_hand(name, by, samples):
+    return trace(name, link_pos=shift((samples, HAND, 0), by))
 
 
-def moved_hand(run, name, by, samples):
-    places = np.array(run.traces[name].link_pos)
-    places[samples, HAND, 0] += by
-    return with_trace(run, name, link_pos=places)
-
-
-def still(run, name):
-    places = np.array(run.traces[name].link_pos)
-    places[spec.SWITCH :] = places[spec.SWITCH]
-    return with_trace(run, name, link_pos=places)
+def still(name):
+    return trace(name, link_pos=lambda at: put(slice(spec.SWITCH, None), at[spec.SWITCH])(at))
 
 
 def swapped(run, one, other):
@@ -40,25 +29,25 @@ def swapped(run, one, other):
 
 
 CHANGES = [
-    ("mapping", lambda run: with_reading(run, "model", "dofs", 8)),
-    ("stamps", lambda run: with_trace(run, "env_3", t=run.traces["env_3"].t * 2)),
-    ("acceptance_per_row", lambda run: with_reading(run, "mixed_accepted", "env_2", 1)),
+    ("mapping", reading("model", "dofs", 8)),
+    ("stamps", trace("env_3", t=lambda t: 2 * t)),
+    ("acceptance_per_row", reading("mixed_accepted", "env_2", 1)),
     # an answer that was commanded beyond its tolerance
-    ("acceptance_per_row", lambda run: shifted(run, LOADED, "target", 1e-2)),
-    ("arrived", lambda run: moved_hand(run, "alone_1", 0.05, slice(-1, None))),
-    ("row_equals_alone", lambda run: shifted(run, "alone_2", "qd", 1e-4, 40)),
-    ("row_equals_alone", lambda run: shifted(run, "alone_0", "target", 1e-7)),
-    ("permuted_rows", lambda run: shifted(run, "permuted_3", "q", 1e-6, 7)),
-    ("untouched_keep_their_state", lambda run: moved_hand(run, "env_0", 2e-5, slice(300, None))),
+    ("acceptance_per_row", trace(LOADED, target=shift(..., 1e-2))),
+    ("arrived", moved_hand("alone_1", 0.05, slice(-1, None))),
+    ("row_equals_alone", trace("alone_2", qd=shift(40, 1e-4))),
+    ("row_equals_alone", trace("alone_0", target=shift(..., 1e-7))),
+    ("permuted_rows", trace("permuted_3", q=shift(7, 1e-6))),
+    ("untouched_keep_their_state", moved_hand("env_0", 2e-5, slice(300, None))),
     # a neighbour that leaked into a row, and an environment without its second command
-    ("untouched_keep_their_state", lambda run: shifted(run, "beside_2", "q", 1e-6, 35)),
-    ("untouched_keep_their_state", lambda run: still(run, "env_1")),
-    ("partial_reset", lambda run: shifted(run, "again_1", "q", 1e-6, 3)),
-    ("own_gains_and_mass", lambda run: with_reading(run, "hand_mass", LOADED, spec.HAND_MASS)),
+    ("untouched_keep_their_state", trace("beside_2", q=shift(35, 1e-6))),
+    ("untouched_keep_their_state", still("env_1")),
+    ("partial_reset", trace("again_1", q=shift(3, 1e-6))),
+    ("own_gains_and_mass", reading("hand_mass", LOADED, spec.HAND_MASS)),
     # a load in another row, a stiff row that kept its gains, a plain row with a neighbour's
     ("own_gains_and_mass", lambda run: swapped(run, STIFF, LOADED)),
-    ("own_gains_and_mass", lambda run: with_trace(run, STIFF, q=run.traces[PLAIN].q)),
-    ("own_gains_and_mass", lambda run: with_trace(run, PLAIN, q=run.traces[STIFF].q)),
+    ("own_gains_and_mass", lambda run: trace(STIFF, q=run.traces[PLAIN].q)(run)),
+    ("own_gains_and_mass", lambda run: trace(PLAIN, q=run.traces[STIFF].q)(run)),
 ]
 
 

@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lessons.changed_runs import with_trace
+from lessons.changed_runs import shift, trace
 from lessons.lesson_bundles import accepted_then_refused, in_archive, metric
 
 from robo_genesis.core.palette import MARKS
-from robo_genesis.lessons.l06 import LECTURE, plots, spec, study, target_parts, text
+from robo_genesis.lessons.l06 import plots, spec, study, target_parts, text
+from robo_genesis.lessons.l06.pages import LECTURE
 from robo_genesis.sim.arm.kinematics import HAND
 
 
@@ -42,9 +43,7 @@ def test_the_conclusions_follow_the_runs(run):
     assert "Rows 0, 1 and 3 are accepted" in said
     named = min(run.metrics[f"env_{k}"].moved_later for k in (1, 3))
     assert f"moved by {1000 * named:.2f} mm or more, the others did not move" in said
-    places = run.traces["env_0"].link_pos.copy()
-    places[300:, HAND, 0] += 2e-6
-    moved = with_trace(run, "env_0", link_pos=places)
+    moved = trace("env_0", link_pos=shift((slice(300, None), HAND, 0), 2e-6))(run)
     assert "the others by 2 µm or less" in text.conclusions(moved)
 
 
