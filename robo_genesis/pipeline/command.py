@@ -36,12 +36,8 @@ class Progress:
 
     def __call__(self, stage: str, what: str, event: str = "") -> None:
         """Print one line."""
-        self.say(self.line(stage, what, event))
-
-    def line(self, stage: str, what: str, event: str = "") -> str:
-        """Return the line that is printed now."""
         elapsed = time.monotonic() - self.begin
-        return f"[{elapsed:7.1f} s] {stage:8} {what}  {event}".rstrip()
+        self.say(f"[{elapsed:7.1f} s] {stage:8} {what}  {event}".rstrip())
 
 
 def collect_rarely() -> None:
