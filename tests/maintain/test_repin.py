@@ -210,7 +210,7 @@ sys.exit(run(lambda: run_repin(Repin(sys.argv[2], root, root / ".cache")), "chan
     [(signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)],
 )
 def test_an_end_by_signal_takes_the_children_along_and_the_next_one_works(root, sent, status):
-    before, sleeper = state(root), root / ".cache" / "repin" / "work" / "sleeper"
+    before, sleeper = state(root), root / ".cache" / "repin" / "work" / "checkout" / "sleeper"
     process = subprocess.Popen([sys.executable, "-c", RUN, str(root), HANGS], cwd=ROOT)
     wait_for(process, sleeper)
     child = psutil.Process(int(sleeper.read_text()))
