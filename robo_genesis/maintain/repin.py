@@ -1,4 +1,4 @@
-"""The steps of `make repin`: try another engine version in a fresh checkout, then change pin and lock.
+"""The steps of `make repin`: try another engine in a fresh checkout, then change pin and lock.
 
 Nothing of the checkout is touched before the last step, which writes two files.
 """
@@ -25,7 +25,7 @@ from robo_genesis.maintain.pin import (
 )
 from robo_genesis.pipeline.command import ANSI, Progress, end_with_parent, say
 from robo_genesis.pipeline.fresh_checkout import environment, fresh_checkout
-from robo_genesis.pipeline.pages.kernels import kill_with_descendants
+from robo_genesis.pipeline.pages.kernels import wait_or_kill
 
 LINES = 50
 """How many last lines of a log an error and the report show."""
@@ -96,7 +96,7 @@ def write(root: Path, files: dict[str, bytes]) -> None:
 
 @dataclass(slots=True)
 class Trial:
-    """The steps in the fresh checkout, each with its log; `before` is what the old version built."""
+    """The steps in the checkout, each with its log; `before` is what the old version built."""
 
     request: Repin
     old: str
@@ -186,8 +186,4 @@ def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
             start_new_session=True,  # a Ctrl-C of the terminal reaches this process alone
             preexec_fn=end_with_parent(signal.SIGTERM),  # make passes it on
         )
-        try:
-            return process.wait()
-        finally:
-            if process.poll() is None:
-                kill_with_descendants([process.pid])
+        return wait_or_kill(process)

@@ -23,7 +23,7 @@ from robo_genesis.pipeline.pages.kernels import (
     ALLOWED,
     MACHINE,
     interrupts_blocked,
-    kill_with_descendants,
+    wait_or_kill,
 )
 
 FOLDER, CHECKOUT = "release", "checkout"
@@ -157,8 +157,4 @@ def _build(work: Path, arguments: Sequence[str], environment: Mapping[str, str])
             env=environment,
             preexec_fn=end_with_parent(),
         )
-    try:
-        return process.wait()
-    finally:
-        if process.poll() is None:
-            kill_with_descendants([process.pid])
+    return wait_or_kill(process)

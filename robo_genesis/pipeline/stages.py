@@ -224,9 +224,8 @@ def _accepted(
     if refused := refused + refused_records(build.book, _labs(results)):
         raise BuildError("\n".join(refused))
     if build.release:
-        problems = unclean(build.root)
-        problems += missing_for_release(build.book, _labs(results), manifests, build.root)
-        if problems:
+        lacking = missing_for_release(build.book, _labs(results), manifests, build.root)
+        if problems := lacking + unclean(build.root):
             raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
         progress("release", "clean tree, current evidence")
     return manifests

@@ -60,6 +60,11 @@ def refuse(folder: Path, run_id: str) -> SimpleNamespace:
     raise BundleRefused("metrics", "metrics.json g1.rise_time is not what the arrays say.")
 
 
+def without_camera(folder: Path, run_id: str) -> SimpleNamespace:
+    facts = {**vars(FACTS), "render": SimpleNamespace(mode="skip")}
+    return SimpleNamespace(predicate=SimpleNamespace(**facts))
+
+
 def build(folder: Path, said: list[str] | None = None, **settings) -> list[str]:
     settings = {"verify": accept, "say": (said if said is not None else []).append} | settings
     return run_build(Build(book=folder / "book", cache=folder / "cache", **settings))
@@ -136,12 +141,20 @@ def test_pages_from_elsewhere_are_built_without_a_run(built, tmp_path):
     ("page", "settings", "error", "said"),
     [
         (LAB, {"verify": refuse}, BuildError, "lab: the bundle .* is refused: metrics: metrics.js"),
+        (LAB, {"verify": without_camera}, BuildError, "render.mode is skip, expected camera"),
         (FORGED_LAB, {}, BuildError, "shown: lab, code cell 2: number of measured outputs is 1"),
         ("# A\n\n<script src='https://example.org/a.js'></script>\n", {}, BuildError, "third p"),
         (LAB, {"executed": Path()}, StoreError, r"lab is not among them\.\nExecute these pages"),
         (LAB, {"release": True}, BuildError, r"RELEASE=1 cannot be met\.\n.* 1 changed file"),
     ],
-    ids=["refused bundle", "refused output", "refused site", "missing page", "changed tree"],
+    ids=[
+        "refused bundle",
+        "another contract",
+        "refused output",
+        "refused site",
+        "missing page",
+        "changed tree",
+    ],
 )
 def test_a_build_that_is_refused_leaves_the_old_site(
     tmp_path, monkeypatch, page, settings, error, said
@@ -166,13 +179,6 @@ def test_a_site_with_problems_is_rendered_from_nothing_the_next_time(tmp_path):
     with pytest.raises(BuildError, match=r"'nowhere\.html' leads to no file"):
         build(tmp_path)
     assert not state.exists()
-
-
-def test_a_build_compares_its_bundles_with_its_own_contract(tmp_path, monkeypatch):
-    make_book(tmp_path, lab=LAB)
-    monkeypatch.setenv("ROBO_GENESIS_RENDER", "0")
-    with pytest.raises(BuildError, match=r"lab: .* render\.mode is camera, expected skip"):
-        build(tmp_path)
 
 
 def test_a_broken_page_fails_with_status_1_a_report_and_the_old_site(tmp_path):

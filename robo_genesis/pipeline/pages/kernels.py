@@ -4,6 +4,7 @@ import multiprocessing
 import os
 import shutil
 import signal
+import subprocess
 import threading
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -122,6 +123,15 @@ def interrupts_blocked() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def wait_or_kill(process: subprocess.Popen[bytes]) -> int:
+    """Wait for a process and return its exit status; an exception kills it and all below it."""
+    try:
+        return process.wait()
+    finally:
+        if process.poll() is None:
+            kill_with_descendants([process.pid])
 
 
 def kill_with_descendants(pids: Iterable[int]) -> None:
