@@ -147,14 +147,7 @@ def test_pages_from_elsewhere_are_built_without_a_run(built, tmp_path):
         (LAB, {"executed": Path()}, StoreError, r"lab is not among them\.\nExecute these pages"),
         (LAB, {"release": True}, BuildError, r"RELEASE=1 cannot be met\.\n.* 1 changed file"),
     ],
-    ids=[
-        "refused bundle",
-        "another contract",
-        "refused output",
-        "refused site",
-        "missing page",
-        "changed tree",
-    ],
+    ids=["bundle", "another contract", "output", "site", "missing page", "changed tree"],
 )
 def test_a_build_that_is_refused_leaves_the_old_site(
     tmp_path, monkeypatch, page, settings, error, said
