@@ -26,16 +26,17 @@ from urllib.request import urlopen
 
 from robo_genesis.core import project
 from robo_genesis.pipeline.command import positive, run
+from robo_genesis.pipeline.fresh_checkout import CHECKOUT, environment, fresh_checkout
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK
 from robo_genesis.pipeline.pages.store import folders
-from robo_genesis.pipeline.worktree import environment, worktree
 
 LIMITS = {"unchanged": 1.5, "prose": 1.5, "live": 0.7, "lab": 1.2}
 """The limit of the ratio of medians, by the name of the row."""
 
-TREE, STORE = project.CACHE / "bench", project.CACHE / project.STORE
+FOLDER, STORE = project.CACHE / "bench", project.CACHE / project.STORE
+TREE = FOLDER / CHECKOUT
 PYTHON = quote(sys.executable)
 MAKE = f"make PYTHON={PYTHON}"
 SPHINX = f"{PYTHON} -m sphinx -c bare book bare/html"
@@ -53,7 +54,7 @@ myst_enable_extensions = yaml.safe_load(open("book/_config.yml"))["parse"]["myst
 
 
 def shell(line: str, says: str = "", **variables: str) -> None:
-    """Run a line of the shell in the worktree.
+    """Run a line of the shell in the checkout.
 
     Raises:
         ProjectError: it failed, or its output lacks the words `says`.
@@ -105,7 +106,7 @@ def sides(name: str, started: ExitStack) -> tuple[partial[None], partial[None]]:
     """
     page = [page for page in find_pages(TREE / "book") if page.page == "lab"][-1]
     if name == "lab":
-        shell(f"mkdir warm && ln -s ../../{project.COMPILED} warm")
+        shell(f"mkdir warm && ln -s ../.cache/{project.COMPILED} warm")
         course = partial(shell, LAB, PAGE=page.docname, TO="warm/exported")
         course()  # compiles what is not compiled yet
         notebook = quote(str(folders(STORE, page)[0] / NOTEBOOK))
@@ -153,7 +154,7 @@ def measure() -> list[str]:
     if unknown := [name for name in names if name not in LIMITS]:
         valid = ", ".join(LIMITS)
         raise project.ProjectError(f"ROWS names {', '.join(unknown)}. Choices: {valid}.")
-    with worktree(project.ROOT, TREE, project.CACHE):
+    with fresh_checkout(project.ROOT, FOLDER, project.CACHE):
         return [measured(name, runs) for name in names]
 
 

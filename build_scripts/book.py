@@ -22,7 +22,6 @@ from robo_genesis.pipeline.command import (
     path,
     positive,
     run,
-    run_status,
     set_contract,
 )
 from robo_genesis.pipeline.html.sphinx_process import LOG, SphinxProcess
@@ -50,7 +49,7 @@ def main() -> int:
         from robo_genesis.pipeline.fresh_checkout import release as build_fresh
 
         options = ["--to", str(args.book), "--timeout", str(args.timeout)]
-        return run_status(lambda: build_fresh(options, args.cache, executed=executed), "published")
+        return run(lambda: build_fresh(options, args.cache, executed=executed), "published")
     published = args.book / PUBLISHED
     with SphinxProcess(args.book, args.cache / LOG) as sphinx:  # it loads Sphinx from here on
         if not (release or executed) and (lines := nothing_changed(ROOT, args.book, published)):

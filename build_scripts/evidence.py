@@ -10,7 +10,7 @@ import os
 import sys
 
 from robo_genesis.core.project import RENDER
-from robo_genesis.pipeline.command import choice, parser, path, run_status
+from robo_genesis.pipeline.command import choice, parser, path, run
 from robo_genesis.pipeline.recording.labs import Recording, record
 
 if __name__ == "__main__":
@@ -23,4 +23,4 @@ if __name__ == "__main__":
         to=path("TO"),
         **vars(args),
     )
-    sys.exit(run_status(lambda: record(recording), "recorded"))
+    sys.exit(run(lambda: record(recording), "recorded"))

@@ -9,7 +9,7 @@ ended with Ctrl-C.
 import asyncio
 import sys
 
-from robo_genesis.pipeline.command import choice, parser, port, run_status, set_contract
+from robo_genesis.pipeline.command import choice, parser, port, run, set_contract
 from robo_genesis.pipeline.html.live import Live
 from robo_genesis.pipeline.html.live_server import serve
 
@@ -18,4 +18,4 @@ if __name__ == "__main__":
     set_contract()
     execute = choice("EXECUTE", "0", ("0", "1")) == "1"
     live = Live(args.book, args.cache, execute=execute, timeout=args.timeout)
-    sys.exit(run_status(lambda: asyncio.run(serve(live, port())), "published"))
+    sys.exit(run(lambda: asyncio.run(serve(live, port())), "published"))

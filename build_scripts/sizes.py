@@ -6,7 +6,7 @@ Exit status: 0 all pages keep their limits; 1 otherwise.
 import sys
 
 from robo_genesis.core.project import BOOK
-from robo_genesis.pipeline.command import run_status
+from robo_genesis.pipeline.command import run
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.course.sizes import report
 
@@ -20,4 +20,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(run_status(main, "compared"))
+    sys.exit(run(main, "compared"))

@@ -27,7 +27,7 @@ from robo_genesis.pipeline.bundles.status import (
     recorded_folders,
     recorded_status,
 )
-from robo_genesis.pipeline.command import path, run_status
+from robo_genesis.pipeline.command import path, run
 
 
 def all_bundles() -> Iterator[tuple[str, Status]]:
@@ -102,4 +102,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(run_status(main, "verified"))
+    sys.exit(run(main, "verified"))

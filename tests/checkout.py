@@ -9,7 +9,7 @@ from tiny_book import SETTINGS
 
 from robo_genesis.core.git import git
 from robo_genesis.core.project import ROOT
-from robo_genesis.pipeline.worktree import environment
+from robo_genesis.pipeline.fresh_checkout import environment
 
 
 def copy_checkout(work: Path) -> Path:

@@ -25,13 +25,15 @@ KEPT = 30 * 24 * 3600
 
 
 @contextmanager
-def locked(path: Path, refusal: Callable[[str], Exception]) -> Iterator[None]:
+def locked(path: Path, what: str) -> Iterator[None]:
     """Lock a file that names this process; the operating system frees the lock of a killed process.
 
     Args:
         path: the lock file; its folder is made if it is missing.
-        refusal: returns the exception to raise while another process holds the lock. Its argument
-            is the id of that process, or `unknown`.
+        what: the beginning of the message: what holds the lock.
+
+    Raises:
+        ProjectError: another process holds the lock; the message names it.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("a+") as lock:
@@ -39,7 +41,11 @@ def locked(path: Path, refusal: Callable[[str], Exception]) -> Iterator[None]:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             lock.seek(0)
-            raise refusal(lock.read().strip() or "unknown") from None
+            process = lock.read().strip() or "unknown"
+            raise ProjectError(
+                f"{what} runs here (process {process}). Wait until it ends, or stop it with Ctrl-C "
+                f"in its terminal or `kill {process}`."
+            ) from None
         lock.truncate(0)
         lock.write(str(os.getpid()))
         lock.flush()

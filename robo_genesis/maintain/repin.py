@@ -1,4 +1,4 @@
-"""The steps of `make repin`: try another engine version in a worktree, then change pin and lock.
+"""The steps of `make repin`: try another engine in a fresh checkout, then change pin and lock.
 
 Nothing of the checkout is touched before the last step, which writes two files.
 """
@@ -24,8 +24,8 @@ from robo_genesis.maintain.pin import (
     wanted_version,
 )
 from robo_genesis.pipeline.command import ANSI, Progress, end_with_parent, say
-from robo_genesis.pipeline.pages.kernels import kill_with_descendants
-from robo_genesis.pipeline.worktree import environment, worktree
+from robo_genesis.pipeline.fresh_checkout import environment, fresh_checkout
+from robo_genesis.pipeline.pages.kernels import wait_or_kill
 
 LINES = 50
 """How many last lines of a log an error and the report show."""
@@ -42,7 +42,7 @@ class Repin:
 
 
 def run_repin(request: Repin) -> list[str]:
-    """Try the version in a worktree of the last commit, then write pin and lock.
+    """Try the version in a checkout of the last commit, then write pin and lock.
 
     Args:
         request: see there.
@@ -61,10 +61,9 @@ def run_repin(request: Repin) -> list[str]:
     require_locked_packages(root)
     before = texts(root)
 
-    busy = "Another make repin runs here (process {}). Wait for it, or stop it with Ctrl-C there."
     with (
-        locked(folder / "lock", lambda process: RepinError(busy.format(process))),
-        worktree(root, folder / "work", request.cache) as work,
+        locked(folder / "lock", "Another make repin"),
+        fresh_checkout(root, folder / "work", request.cache) as work,
     ):
         trial = Trial(request, old, new, work, Progress(request.say))
         pages, new = trial.run(), trial.new
@@ -97,7 +96,7 @@ def write(root: Path, files: dict[str, bytes]) -> None:
 
 @dataclass(slots=True)
 class Trial:
-    """The steps in the worktree, each with its log; `before` is what the old version built."""
+    """The steps in the checkout, each with its log; `before` is what the old version built."""
 
     request: Repin
     old: str
@@ -128,7 +127,7 @@ class Trial:
         return pages
 
     def command(self, stage: str, what: str, *command: str) -> None:
-        """Run one command in the worktree; a failure names it and its log, and ends with a report.
+        """Run one command there; a failure names it and its log, and ends with a report.
 
         Raises:
             RepinError: the command failed.
@@ -168,11 +167,11 @@ def last_words(log: Path) -> list[str]:
 
 
 def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
-    """Run a command in a worktree with its output in a log, and return its exit status.
+    """Run a command in a checkout with its output in a log, and return its exit status.
 
     Args:
         command: program and arguments; it ends with this process.
-        folder: the worktree.
+        folder: the checkout.
         log: file of its output, written over.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
@@ -187,8 +186,4 @@ def run_logged(command: Sequence[str], folder: Path, log: Path) -> int:
             start_new_session=True,  # a Ctrl-C of the terminal reaches this process alone
             preexec_fn=end_with_parent(signal.SIGTERM),  # make passes it on
         )
-        try:
-            return process.wait()
-        finally:
-            if process.poll() is None:
-                kill_with_descendants([process.pid])
+        return wait_or_kill(process)

@@ -36,12 +36,8 @@ class Progress:
 
     def __call__(self, stage: str, what: str, event: str = "") -> None:
         """Print one line."""
-        self.say(self.line(stage, what, event))
-
-    def line(self, stage: str, what: str, event: str = "") -> str:
-        """Return the line that is printed now."""
         elapsed = time.monotonic() - self.begin
-        return f"[{elapsed:7.1f} s] {stage:8} {what}  {event}".rstrip()
+        self.say(f"[{elapsed:7.1f} s] {stage:8} {what}  {event}".rstrip())
 
 
 def collect_rarely() -> None:
@@ -53,31 +49,25 @@ def collect_rarely() -> None:
     gc.set_threshold(1_000_000, 20, 100)
 
 
-def run(task: Callable[[], Sequence[str]], done: str) -> int:
-    """Run a task, print its last lines and return the exit status.
+def run(task: Callable[[], Sequence[str] | int], done: str) -> int:
+    """Run a task, print the last lines that it returns, and return the exit status.
 
     A cancelled CI job sends SIGTERM, which ends the task as Ctrl-C does, so that no kernel is left.
 
     Args:
-        task: does the work and returns the last lines for the user.
+        task: does the work and returns the last lines for the user, or the exit status.
         done: the verb for its result: `published`, `recorded`.
 
     Returns:
         0 done, 1 failed, 130 interrupted.
     """
-
-    def printed() -> int:
-        print("\n".join(task()))
-        return 0
-
-    return run_status(printed, done)
-
-
-def run_status(task: Callable[[], int], done: str) -> int:
-    """Run a task that returns an exit status; see `run`."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        return task()
+        result = task()
+        if isinstance(result, int):
+            return result
+        print("\n".join(result))
+        return 0
     except KeyboardInterrupt:
         print(f"\nInterrupted: nothing was {done}.", file=sys.stderr)
         return 130

@@ -1,31 +1,43 @@
-"""`make book RELEASE=1`: the build runs in a fresh checkout of HEAD, with caches of its own.
+"""A fresh checkout of HEAD, and the build of `make book RELEASE=1` in it.
 
 The fresh checkout gets the commit's objects through git's own transfer, which computes their names
 again, and nothing else: no file that the user's checkout or its index hides or changes, no
-configuration of git, no bytecode, nothing of `.cache` except what the engine compiled. Compiling
-takes minutes, and a test requires equal arrays from reused and from new kernels.
+configuration of git, no bytecode, and of `.cache` only the named folders. A release shares what the
+engine compiled: compiling takes minutes, and a test requires equal arrays from reused and from new
+kernels.
 """
 
 import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from robo_genesis.core.files import locked
 from robo_genesis.core.git import git, unclean
-from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.core.project import COMPILED, ROOT, STORE, ProjectError
 from robo_genesis.pipeline.command import end_with_parent
 from robo_genesis.pipeline.pages.kernels import (
     ALLOWED,
     MACHINE,
     interrupts_blocked,
-    kill_with_descendants,
+    wait_or_kill,
 )
 
-FOLDER = "release"
-"""The fresh checkout in the folder of the caches. It stays if the release fails, with its log."""
+FOLDER, CHECKOUT = "release", "checkout"
+"""Folders of a release in the caches, and of the checkout in it. They stay if a release fails."""
+
+SHARED = ("derived", COMPILED, "npm", STORE)
+"""Caches whose folders are named by their inputs; a release shares what is compiled alone."""
+
+OUTER = (
+    "GENESIS", "PYTHON", "BUNDLE", "RELEASE", "EXECUTED", "MAKEFLAGS", "MFLAGS", "MAKELEVEL",
+    "PYTEST_ADDOPTS",
+)  # fmt: skip
+"""Variables of the outer make that a make in another checkout must not get: a new pin makes
+recorded bundles stale, which a release would refuse."""
 
 SETTINGS = ("RENDER", "JOBS", "SITE_URL", "SOLUTIONS", "SOURCE_DATE_EPOCH", "ROBO_GENESIS_BACKEND")
 NETWORK = ("HTTP_PROXY", "HTTPS_PROXY", "NO_PROXY", "NODE_EXTRA_CA_CERTS")
@@ -59,31 +71,38 @@ def release(
     """
     if problems := unclean(root):
         raise ProjectError("\n".join(["RELEASE=1 cannot be met.", *problems]))
-    busy = "Another release runs here (process {}). Wait for it, or stop it with Ctrl-C there."
-    with locked(cache / "release.lock", lambda process: ProjectError(busy.format(process))):
-        work = check_out(root, cache / FOLDER)
-        (cache / "engine").mkdir(parents=True, exist_ok=True)
-        (work / ".cache").mkdir()
-        (work / ".cache" / "engine").symlink_to((cache / "engine").resolve())
-        status = _build(work, [*arguments], environment(work, executed))
+    with locked(cache / "release.lock", "Another release"):
+        work = check_out(root, cache / FOLDER, cache, (COMPILED,))
+        status = _build(work, [*arguments], release_environment(work, executed))
         if status == 0:
             shutil.rmtree(cache / FOLDER)
         return status
 
 
-def check_out(root: Path, folder: Path) -> Path:
+@contextmanager
+def fresh_checkout(root: Path, folder: Path, cache: Path) -> Iterator[Path]:
+    """Check HEAD out with all shared caches, and remove it in the end; see `check_out`."""
+    try:
+        yield check_out(root, folder, cache, SHARED)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def check_out(root: Path, folder: Path, cache: Path, shared: Sequence[str]) -> Path:
     """Check HEAD of a repository out into a new one; return its folder.
 
     Args:
         root: the checkout whose HEAD is taken, with its history.
         folder: its older content is removed.
+        cache: the folder of the caches.
+        shared: the names of the caches that the new checkout uses as well.
 
     Raises:
         ProjectError: git failed.
     """
     commit = git(root, "rev-parse", "HEAD").strip()
     shutil.rmtree(folder, ignore_errors=True)
-    work = folder / "checkout"
+    work = folder / CHECKOUT
     work.mkdir(parents=True)
     config = folder / "gitconfig"
     config.write_text(GIT_CONFIG)
@@ -92,10 +111,20 @@ def check_out(root: Path, folder: Path) -> Path:
     source = root.resolve().as_uri()
     git(work, "fetch", "--quiet", "--no-tags", "--update-shallow", source, "HEAD", **own)
     git(work, "checkout", "--quiet", "--detach", commit, **own)
+    (work / ".cache").mkdir()
+    for name in shared:
+        (cache / name).mkdir(parents=True, exist_ok=True)
+        (work / ".cache" / name).symlink_to((cache / name).resolve())
     return work
 
 
-def environment(work: Path, executed: Path | None = None) -> dict[str, str]:
+def environment(work: Path, *without: str) -> dict[str, str]:
+    """Return the variables for a command in a checkout: those of this process, with fewer names."""
+    kept = {name: os.environ[name] for name in os.environ.keys() - {*OUTER, *without}}
+    return kept | {"PYTHONPATH": str(work)}
+
+
+def release_environment(work: Path, executed: Path | None = None) -> dict[str, str]:
     """Return the whole environment of a release's build: of this process's, only listed names.
 
     Args:
@@ -128,8 +157,4 @@ def _build(work: Path, arguments: Sequence[str], environment: Mapping[str, str])
             env=environment,
             preexec_fn=end_with_parent(),
         )
-    try:
-        return process.wait()
-    finally:
-        if process.poll() is None:
-            kill_with_descendants([process.pid])
+    return wait_or_kill(process)

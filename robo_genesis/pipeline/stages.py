@@ -31,8 +31,7 @@ from robo_genesis.pipeline.html.sums import write_sums
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.execute import execute_pages, kernel_environment
-from robo_genesis.pipeline.pages.kernels import described
-from robo_genesis.pipeline.pages.progress import reporting
+from robo_genesis.pipeline.pages.progress import Lines
 from robo_genesis.pipeline.pages.results import PageResult, failure_report
 from robo_genesis.pipeline.pages.store import (
     Verify,
@@ -148,8 +147,8 @@ def export_one(name: str, to: Path | None, build: Build) -> list[str]:
         The last lines for the user: where the page is, and what executed it.
 
     Raises:
-        BuildError: there is no such page, it failed, or a build runs here. Nothing was exported.
-        ProjectError: folder, checkout or book are not fit for it.
+        BuildError: there is no such page, or it failed. Nothing was exported.
+        ProjectError: folder, checkout or book are not fit for it, or a build runs here.
     """
     with build_lock(build.cache):
         engine, pages, into = _prepare(build)
@@ -198,17 +197,16 @@ def _execute(
     A release is executed at its commit, so it reuses only what was imported for it.
     """
     progress("execute", f"{len(pages)} pages")
-    with reporting(progress) as report:
-        results = execute_pages(
-            pages,
-            into,
-            reuse=bool(build.executed) or not build.release,
-            jobs=build.jobs,
-            timeout=build.timeout,
-            environment=kernel_environment(build.root, build.cache, build.command),
-            logs=build.cache / project.LOGS,
-            report=report,
-        )
+    results = execute_pages(
+        pages,
+        into,
+        reuse=bool(build.executed) or not build.release,
+        jobs=build.jobs,
+        timeout=build.timeout,
+        environment=kernel_environment(build.root, build.cache, build.command),
+        logs=build.cache / project.LOGS,
+        report=Lines(partial(progress, "execute")),
+    )
     if any(result.failure for result in results):
         raise BuildError(failure_report(results))
     return results
@@ -226,9 +224,8 @@ def _accepted(
     if refused := refused + refused_records(build.book, _labs(results)):
         raise BuildError("\n".join(refused))
     if build.release:
-        problems = unclean(build.root)
-        problems += missing_for_release(build.book, _labs(results), manifests, build.root)
-        if problems:
+        lacking = missing_for_release(build.book, _labs(results), manifests, build.root)
+        if problems := lacking + unclean(build.root):
             raise BuildError("\n".join(["RELEASE=1 cannot be met.", *problems]))
         progress("release", "clean tree, current evidence")
     return manifests
@@ -277,12 +274,7 @@ def build_lock(cache: Path) -> AbstractContextManager[None]:
             folders may share.
 
     Raises:
-        BuildError: another process holds it; the message names that process, its command and start.
+        ProjectError: another process holds it; the message names that process.
     """
-    return locked(
-        cache / project.COMPILED / "build.lock",
-        lambda process: BuildError(
-            f"Another build, or a test of the engine, runs here:\n{described(process)}\n"
-            f"Wait until it ends, or stop it with Ctrl-C in its terminal or `kill {process}`."
-        ),
-    )
+    lock = cache / project.COMPILED / "build.lock"
+    return locked(lock, "Another build, or a test of the engine,")

@@ -54,21 +54,22 @@ def test_a_clean_commit_with_its_own_evidence_lacks_nothing(checkout, built, boo
     assert "new.md" in unclean(checkout)[0]
 
 
-def test_a_lesson_without_a_lab_is_named(checkout, book):
-    [line] = missing(book, {"l04": None}, checkout)
-    assert line.startswith("l04 has no lab in the table of contents")
-
-
-def test_stale_evidence_of_the_minimum_hardware_is_named(checkout, built, book):
-    spoil_stale(built["l04"])
-    [line] = missing(book, built, checkout)
-    assert line.startswith("l04 requires evidence of its minimum hardware, cpu, which is stale: ")
-
-
-def test_hardware_that_this_build_has_not_must_be_recorded(checkout, built, book, monkeypatch):
-    monkeypatch.setattr(l04, "MINIMUM_HARDWARE", "amdgpu")
-    [line] = missing(book, built, checkout)
-    assert "its minimum hardware, amdgpu, which is missing" in line
+@pytest.mark.parametrize(
+    ("hardware", "has_lab", "said"),
+    [
+        ("cpu", False, "l04 has no lab in the table of contents"),
+        ("cpu", True, "l04 requires evidence of its minimum hardware, cpu, which is stale: "),
+        ("amdgpu", True, "l04 requires evidence of its minimum hardware, amdgpu, which is missing"),
+    ],
+)
+def test_required_evidence_that_is_lacking_is_named(
+    checkout, built, book, monkeypatch, hardware, has_lab, said
+):
+    monkeypatch.setattr(l04, "MINIMUM_HARDWARE", hardware)
+    if hardware == "cpu":
+        spoil_stale(built["l04"])
+    [line] = missing(book, built if has_lab else {"l04": None}, checkout)
+    assert line.startswith(said)
 
 
 @pytest.mark.parametrize(

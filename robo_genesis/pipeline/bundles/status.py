@@ -155,8 +155,9 @@ def bundle_status(
                 reason += contradicted(book, about, reason)
         state = STATE_OF_CODE.get(code, "refused")
         return Status(state, backend, reason, None, code, summary)
+    numbers = bundle.by_full_name(bundle.read_metrics(folder))
     claims = specification(manifest.predicate.lesson, manifest.predicate.page).relations
-    lines = not_shown(bundle.by_full_name(bundle.read_metrics(folder)), claims)
+    lines = not_shown(numbers, claims)
     if not lines:
         return Status("verified", backend, "", manifest)
     reason = f"Not shown of what the lesson claims: {'; '.join(lines)}."

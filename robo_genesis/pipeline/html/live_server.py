@@ -7,10 +7,8 @@ from pathlib import Path
 from tornado.web import RequestHandler
 
 from robo_genesis.core.files import locked
-from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.html.live import Live
 from robo_genesis.pipeline.html.serve import SiteFile, listen
-from robo_genesis.pipeline.pages.kernels import described
 
 INTERVAL = 0.1
 """Seconds between two looks at the files; a look takes milliseconds."""
@@ -64,14 +62,7 @@ async def serve(live: Live, port: int) -> None:
     Raises:
         ProjectError: the port cannot be used, or another process shows a book with this cache.
     """
-
-    def in_use(process: str) -> ProjectError:
-        return ProjectError(
-            f"Another make live runs here:\n{described(process)}\n"
-            f"Stop it with Ctrl-C in its terminal or `kill {process}`."
-        )
-
-    with locked(live.folder / "lock", in_use):
+    with locked(live.folder / "lock", "Another make live"):
         at = listen(port, live.site, LiveFile, (("/live-reload", State),))
         try:
             await asyncio.to_thread(watch, live, at)

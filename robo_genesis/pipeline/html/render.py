@@ -60,7 +60,8 @@ def _render_changes(
     """Render what changed since the last render in a folder."""
     before = read_state(sphinx.book, built)
     was_kept = prepare(folder, before)
-    sphinx.render(folder, built.keeping(folder / STATES), meanwhile)
+    kept = built.model_copy(update={"states": folder / STATES})
+    sphinx.render(folder, kept, meanwhile)
     if was_kept and not fit(folder):  # the state is gone, so this one starts from nothing
         with SphinxProcess(sphinx.book, sphinx.log) as another:
             return _render_changes(another, folder, built)

@@ -46,10 +46,6 @@ class BuiltPages(Strict):
         if page.declares_bundle:
             self.outputs[f"{page.lesson}/{page.page}"] = folder / OUTPUTS
 
-    def keeping(self, states: Path) -> Self:
-        """Return these pages with a folder for the states of their runs."""
-        return self.model_copy(update={"states": states})
-
     def write(self, path: Path) -> dict[str, str]:
         """Write the file and return the variable that names it."""
         path.write_text(self.model_dump_json(indent=1), "utf8")

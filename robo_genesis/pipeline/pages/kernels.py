@@ -2,13 +2,12 @@
 
 import multiprocessing
 import os
-import shlex
 import shutil
 import signal
+import subprocess
 import threading
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -126,6 +125,15 @@ def interrupts_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+def wait_or_kill(process: subprocess.Popen[bytes]) -> int:
+    """Wait for a process and return its exit status; an exception kills it and all below it."""
+    try:
+        return process.wait()
+    finally:
+        if process.poll() is None:
+            kill_with_descendants([process.pid])
+
+
 def kill_with_descendants(pids: Iterable[int]) -> None:
     """Kill processes and everything below them.
 
@@ -145,20 +153,6 @@ def kill_with_descendants(pids: Iterable[int]) -> None:
         with suppress(psutil.NoSuchProcess):
             process.kill()
     psutil.wait_procs(doomed, timeout=10)
-
-
-def described(pid: str) -> str:
-    """Return id, command and start of a process, or what is known of it.
-
-    Args:
-        pid: its id, or a word where that is not known.
-    """
-    try:
-        process = psutil.Process(int(pid))
-        command, begin = shlex.join(process.cmdline()), process.create_time()
-    except (ValueError, psutil.Error):  # no number, gone, or another user's
-        return f"process {pid}"
-    return f"process {pid} since {datetime.fromtimestamp(begin):%Y-%m-%d %H:%M:%S}: {command}"
 
 
 def die_with_parent(scratch: Path) -> None:

@@ -1,23 +1,13 @@
-"""How far the running pages are: lines, or bars on a terminal."""
+"""How far the running pages are, in lines."""
 
-import os
-import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from robo_genesis.pipeline.command import Progress, say
 from robo_genesis.pipeline.pages.folder import Record
 
-if TYPE_CHECKING:
-    from rich.console import Console
-
 HEARTBEAT = 30.0
-REFRESH = 0.5
 
 
 @dataclass(slots=True)
@@ -98,71 +88,3 @@ class Lines:
             now = time.monotonic()
             states = "; ".join(f"{page.name}: {page.state(now)}" for page in pages)
             self.say(f"{len(pages)} running: {states}", "")
-
-
-class Bars(Lines):
-    """Reports pages as bars below the lines of starts and ends.
-
-    No thread draws them: it would receive a Ctrl-C that `kernels.interrupts_blocked` holds back
-    from this one.
-    """
-
-    def __init__(self, line: Callable[[str, str], str], console: "Console") -> None:
-        """Draw on a terminal.
-
-        Args:
-            line: returns a line for the name of a page and an event.
-            console: the terminal.
-        """
-        from rich.progress import BarColumn, TextColumn
-        from rich.progress import Progress as Drawn
-
-        # The terminal breaks lines, so that a copied path has no line end in it.
-        above = partial(console.print, soft_wrap=True, markup=False, highlight=False)
-        super().__init__(lambda what, event: above(line(what, event)))
-        columns = (
-            TextColumn("{task.description}", markup=False),
-            BarColumn(10),
-            TextColumn("{task.fields[state]}", markup=False),
-        )
-        self.drawn = Drawn(
-            *columns,
-            console=console,
-            auto_refresh=False,
-            transient=True,
-            redirect_stdout=False,
-            redirect_stderr=False,
-        )
-
-    def pause(self) -> float:
-        """Return the seconds after which the bars are drawn again."""
-        return REFRESH
-
-    def show(self, pages: Sequence[Underway]) -> None:
-        """Draw one bar for each running page."""
-        now = time.monotonic()
-        for task in self.drawn.task_ids:
-            self.drawn.remove_task(task)
-        for page in pages:
-            done, state = max(0, page.cell - 1), page.state(now)
-            self.drawn.add_task(page.name, total=page.cells, completed=done, state=state)
-        self.drawn.refresh()
-
-
-@contextmanager
-def reporting(progress: Progress) -> Iterator[Lines]:
-    """Report the execution of pages as bars on a terminal, and as lines elsewhere and in CI.
-
-    Args:
-        progress: prints the lines of the command; bars appear only if it prints to stdout.
-    """
-    if progress.say is say and sys.stdout.isatty() and not os.environ.get("CI"):
-        from rich.console import Console
-
-        console = Console()
-        if console.is_interactive:  # not where TERM is dumb
-            bars = Bars(partial(progress.line, "execute"), console)
-            with bars.drawn:
-                yield bars
-            return
-    yield Lines(partial(progress, "execute"))

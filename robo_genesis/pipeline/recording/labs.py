@@ -4,6 +4,7 @@ import shutil
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ from robo_genesis.pipeline.command import TIMEOUT, Progress, say
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.execute import execute_pages, kernel_environment
 from robo_genesis.pipeline.pages.kernels import users_variables
-from robo_genesis.pipeline.pages.progress import reporting
+from robo_genesis.pipeline.pages.progress import Lines
 from robo_genesis.pipeline.pages.results import failure_report
 from robo_genesis.pipeline.pages.store import Verify, places
 from robo_genesis.pipeline.recording.report import STATUS, Outcome, report
@@ -90,8 +91,8 @@ def record(recording: Recording) -> int:
 
     Raises:
         RecordingError: the lesson or backend is not valid, or a step of the probe is broken.
-        BuildError: a build, or another recording, runs here.
-        ProjectError: checkout, environment or the folder of bundles is not fit for it.
+        ProjectError: checkout, environment or the folder of bundles is not fit for it, or a build
+            or another recording runs here.
     """
     if recording.expected not in (None, *BACKENDS):
         raise RecordingError(
@@ -210,15 +211,14 @@ def _execute(
     contract = recording.contract
     progress("execute", page.docname, f"{BACKEND}={contract[BACKEND]}")
     environment = kernel_environment(recording.root, recording.cache, COMMAND, **contract)
-    with reporting(progress) as shown:
-        [result] = execute_pages(
-            [page],
-            places([page], folder, recording.root, environment),
-            timeout=recording.timeout,
-            environment=environment,
-            logs=recording.cache / project.LOGS,
-            report=shown,
-        )
+    [result] = execute_pages(
+        [page],
+        places([page], folder, recording.root, environment),
+        timeout=recording.timeout,
+        environment=environment,
+        logs=recording.cache / project.LOGS,
+        report=Lines(partial(progress, "execute")),
+    )
     if failure := result.failure:
         report = failure_report([result])
         raise RecordingError(f"{failure.error}: {failure.message}\n\n{report}")

@@ -164,7 +164,7 @@ def test_invalid_settings_are_refused(tmp_path):
 
 def test_a_second_server_with_the_same_cache_is_refused_with_the_process(live):
     report = fails("live.py", live.folder, PORT="0")
-    assert f"Another make live runs here:\nprocess {live.process.pid} since" in report
+    assert f"Another make live runs here (process {live.process.pid})" in report
 
 
 def test_sphinx_is_started_again_after_it_was_killed(live):

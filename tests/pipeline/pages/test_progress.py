@@ -1,15 +1,11 @@
-"""What is said of the pages that run: lines, and bars on a terminal."""
+"""What is said of the pages that run."""
 
 import re
-import sys
-from io import StringIO
 from types import SimpleNamespace
 
 import pytest
-from rich.console import Console
 
-from robo_genesis.pipeline.command import Progress, say
-from robo_genesis.pipeline.pages.progress import Bars, Lines, Underway, reporting
+from robo_genesis.pipeline.pages.progress import Lines, Underway
 
 LAST = SimpleNamespace(seconds=20.0, cell_seconds=[4.0, 6.0, 5.0])
 
@@ -50,35 +46,3 @@ def test_running_pages_are_reported_only_after_a_silence(every, lines):
     report.show([])
     assert len(said) == lines
     assert all(re.fullmatch(r"1 running: lab: cell 2 of 3, \d+ s, ~\d+ s left", s) for s in said)
-
-
-def test_bars_stand_below_whole_lines():
-    terminal = StringIO()
-    console = Console(file=terminal, force_terminal=True, width=60, _environ={})
-    long = "a/path/that/is/longer/than/the/terminal/is/wide/" * 2
-    bars = Bars(Progress(print).line, console)
-    with bars.drawn:
-        bars.show([underway(2)])
-        bars.say(long, "started")
-        bars.show([])
-    text = terminal.getvalue()
-    assert "cell 2 of 3" in text
-    assert f"{long}" in text
-
-
-@pytest.mark.parametrize(
-    ("terminal", "settings", "kind"),
-    [
-        (True, {"CI": ""}, Bars),
-        (True, {"CI": "true"}, Lines),
-        (True, {"CI": "", "TERM": "dumb"}, Lines),
-        (False, {"CI": ""}, Lines),
-    ],
-    ids=["terminal", "CI", "dumb terminal", "redirected"],
-)
-def test_bars_are_drawn_on_a_terminal_only(monkeypatch, terminal, settings, kind):
-    monkeypatch.setattr(sys.stdout, "isatty", lambda: terminal)
-    for name, value in ({"TERM": "xterm"} | settings).items():
-        monkeypatch.setenv(name, value)
-    with reporting(Progress(say)) as report:
-        assert type(report) is kind

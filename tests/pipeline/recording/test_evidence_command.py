@@ -25,19 +25,6 @@ def test_a_recording_without_a_camera_is_refused(tmp_path):
     assert "RENDER='0' is not valid for a recording, which always has camera fr" in report
 
 
-def test_failures_are_status_1_the_last_lines_their_table_and_the_old_bundle_stays(tmp_path):
-    old = old_bundle(tmp_path, "cpu")
-    other = notebook(cell("1 / 0"), front=LAB_FRONT.replace("l04", "l03"))
-    make_book(tmp_path, lab=notebook(cell("1 / 0"), front=LAB_FRONT), other=other)
-    process = start("evidence.py", tmp_path, BACKEND="cpu", TO=str(tmp_path / "kept"))
-    out, err = process.communicate(timeout=120)
-    assert (process.returncode, err) == (1, "")
-    head, *rows = out.splitlines()[-3:]
-    assert head.split()[:3] == ["lab", "backend", "device"]
-    assert [row.split()[:4] for row in rows] == [[f"l0{n}", "cpu", "–", "failed"] for n in (4, 3)]
-    assert old.read_text() == "old"
-
-
 def test_ctrl_c_leaves_the_old_bundle_and_no_part_of_a_new_one(tmp_path):
     old, started = old_bundle(tmp_path, "cpu"), tmp_path / "started"
     waits = f"{WRITE_BUNDLE}\npathlib.Path({str(started)!r}).write_text('1')\nimport time"

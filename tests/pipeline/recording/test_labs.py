@@ -17,7 +17,7 @@ from robo_genesis.pipeline.pages.kernels import clean_environment
 from robo_genesis.pipeline.recording import labs as recording
 from robo_genesis.pipeline.recording.labs import Recording, RecordingError, record
 from robo_genesis.pipeline.recording.report import checkout
-from robo_genesis.pipeline.stages import BuildError, build_lock
+from robo_genesis.pipeline.stages import build_lock
 from robo_genesis.sim.diagnosis import StepResult
 
 
@@ -157,7 +157,7 @@ def test_what_cannot_be_recorded_is_refused_before_the_run(tmp_path, monkeypatch
 
 
 def test_a_recording_beside_a_build_is_refused(tmp_path):
-    with build_lock(tmp_path / "cache"), pytest.raises(BuildError, match="Another build"):
+    with build_lock(tmp_path / "cache"), pytest.raises(ProjectError, match="Another build"):
         run(tmp_path, lab("cuda"))
 
 
