@@ -87,7 +87,7 @@ def with_chapter(toc: str, lesson: str) -> str:
     Raises:
         LessonError: it names no lesson.
     """
-    head, *chapters = re.split(f"(?m)^(?={CHAPTER})", toc)
+    head, *chapters = re.split(f"(?m)^(?={CHAPTER})", f"{toc.rstrip()}\n")
     lessons = [k for k, text in enumerate(chapters) if text.startswith(f"{CHAPTER}lessons/")]
     if not lessons:
         raise LessonError(f"book/_toc.yml has no line `{CHAPTER}lessons/...`. Add one there.")
@@ -105,14 +105,14 @@ def with_entry(course_map: str, lesson: str) -> str:
     Raises:
         LessonError: the map already names a page of this lesson.
     """
-    head, *entries = re.split(f"(?m)^(?={ENTRY})", course_map)
+    head, *entries = re.split(f"(?m)^(?={ENTRY})", f"{course_map.rstrip()}\n")
     names, name = [entry.split()[2] for entry in entries], lesson.upper()
     new = f"  page: lessons/{lesson}-new-lesson/lecture\n  outcomes: [{OUTCOME}]\n"
-    at = sum(other < name for other in names)
     if name not in names:
+        at = sum(other < name for other in names)
         entries.insert(at, f"{ENTRY}{name}\n  title: {TITLE}\n{new}")
-    elif "\n  page:" in entries[at]:
+    elif "\n  page:" in entries[names.index(name)]:
         raise LessonError(f"book/course_map.yml names a page of {name}. Remove that line.")
     else:
-        entries[at] += new
+        entries[names.index(name)] += new
     return "".join([head, *entries])

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from robo_genesis.core import project
-from robo_genesis.core.files import locked
+from robo_genesis.core.files import locked, write_whole
 from robo_genesis.core.git import git, unclean
 from robo_genesis.core.project import ENGINE, PUBLISHED, locked_versions
 from robo_genesis.maintain import report as refresh
@@ -91,7 +91,7 @@ def texts(root: Path) -> dict[str, bytes]:
 def write(root: Path, files: dict[str, bytes]) -> None:
     """Write the files of the pin."""
     for name, content in files.items():
-        (root / name).write_bytes(content)
+        write_whole(root / name, content)
 
 
 @dataclass(slots=True)

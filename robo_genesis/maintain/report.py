@@ -36,7 +36,7 @@ HIDDEN = "math, svg, .cell_input"
 BREAK = "\x1e"
 LEFT_OUT = {Path("evidence", "ledger.html"), Path("performance", "costs.html")}
 """The ledger lists digests of other pages; the costs are the times of the build itself."""
-NOTHING = "Nothing was found here."
+NOTHING = "Nothing was found here, or the trial failed before."
 
 
 @dataclass(frozen=True, slots=True)

@@ -100,6 +100,14 @@ def test_the_lists_stay_in_order(lesson, before):
     assert rows == before | {name: rows[name]}
 
 
+def test_a_list_in_another_order_without_a_last_line_break_loses_nothing():
+    rows = [{"id": name, "title": name} for name in ("L03", "L02")]
+    found = yaml.safe_load(with_entry(yaml.safe_dump(rows, sort_keys=False).rstrip(), "l02"))
+    page = {"page": "lessons/l02-new-lesson/lecture", "outcomes": [OUTCOME]}
+    assert found == [rows[0], rows[1] | page]
+    assert with_chapter(TOC.read_text().rstrip(), "l99") == with_chapter(TOC.read_text(), "l99")
+
+
 def test_a_list_without_lessons_is_refused():
     with pytest.raises(LessonError, match="has no line"):
         with_chapter("format: jb-book\nroot: index\n", "l05")

@@ -37,14 +37,16 @@ def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
     except LookupError as error:
         raise BundleRefused("lesson", f"manifest.json: {error}") from error
     digest, imports = page_code(lesson, page, book)
-    lock = (root / "requirements.lock").read_text("utf8")
+    locked = project.locked_versions((root / "requirements.lock").read_text("utf8"))
+    if "quadrants" not in locked:
+        raise project.ProjectError("requirements.lock lacks quadrants. Run `make lock`.")
     return {
         "schema_version": bundle.SCHEMA_VERSION,
         "lesson": lesson,
         "page": page,
         "engine": {
             "version": project.engine_pin(root),
-            "quadrants_version": project.locked_versions(lock)["quadrants"],
+            "quadrants_version": locked["quadrants"],
             "precision": session.PRECISION,
         },
         "seed": SEED,

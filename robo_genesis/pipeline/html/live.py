@@ -61,7 +61,7 @@ class Live:
         self.started: list[subprocess.Popen[str]] = []
         self.is_ended = False
         self.runs = BuiltPages()
-        self.reported: set[Path] = set()
+        self.reported: set[Path | str] = set()
         self.seen = self.look()
 
     def look(self) -> Seen:
@@ -111,8 +111,11 @@ class Live:
         found, into = BuiltPages(), places(pages, self.cache / project.STORE)
         for page in pages:
             place = into[page.docname]  # another after any change that may help
-            if not place.is_dir() and place not in self.reported:
-                self.reported.add(place)
+            told = place if self.execute else page.docname  # a failed run, or a run that is needed
+            if place.is_dir():
+                self.reported -= {place, page.docname}
+            elif told not in self.reported:
+                self.reported.add(told)
                 if self.execute:
                     self.run_page(page)
                 else:

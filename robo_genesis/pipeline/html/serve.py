@@ -21,6 +21,10 @@ class SiteFile(StaticFileHandler):
         self.set_header("Cache-Control", "no-store")
         self.set_header("X-Content-Type-Options", "nosniff")
 
+    def get_cache_time(self, *file: object) -> int:
+        """Return 0: Tornado would let browsers keep a file whose address has a version."""
+        return 0
+
 
 def listen(
     port: int, site: Path, handler: type[SiteFile] = SiteFile, more: tuple[Any, ...] = ()

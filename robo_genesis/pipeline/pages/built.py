@@ -100,9 +100,12 @@ def page_record(docname: str) -> Record:
     """Return the record of an executed page.
 
     Raises:
-        KeyError: the page is not executed.
+        LookupError: the page is not executed.
     """
-    return read_record(built_pages().folders[docname])
+    folder = built_pages().folders.get(docname)
+    if folder is None:
+        raise LookupError(f"{docname} is not executed. Build with `make book`.")
+    return read_record(folder)
 
 
 def measuring_page(docname: str) -> str:

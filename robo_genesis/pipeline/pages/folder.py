@@ -179,7 +179,8 @@ def require_this_page(place: Path, record: Record, page: Page, fingerprint: str)
         nbformat.validate(notebook)
     except Exception as error:  # nbformat passes on a dozen kinds of exceptions
         raise PageRefused("notebook", f"{NOTEBOOK} is not a notebook: {error}") from error
-    if code_and_kernel(notebook) != code_and_kernel(page.notebook):
+    cells = code_and_kernel(notebook) == code_and_kernel(page.notebook)
+    if not cells or record.code != code_digest(page):
         raise PageRefused("code", f"its code cells are not those of {page.path}.")
     if record.fingerprint != fingerprint:
         raise PageRefused(

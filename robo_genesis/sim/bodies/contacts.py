@@ -27,6 +27,13 @@ SHARED = (
 SETTINGS = ("friction", "surface_friction", "substeps")
 """Settings that no array of a run shows; they are read back from the scene."""
 
+CHOICES: dict[str, tuple[str | None, ...]] = {
+    "shape": ("cube", "ball"),
+    "cone": ("pyramidal", "elliptic"),
+    "resolution": (None, "convex", "signorini"),
+}
+"""The words that a case takes, by setting."""
+
 State = tuple[FloatArray, FloatArray, FloatArray, FloatArray, np.ndarray, FloatArray]
 
 
@@ -68,6 +75,10 @@ class ContactCase:
     gravity: float = GRAVITY
 
     def __post_init__(self) -> None:
+        for name, choices in CHOICES.items():
+            if (given := getattr(self, name)) not in choices:
+                valid = ", ".join(map(repr, choices))
+                raise ContactError(f"{name}={given!r} is not valid. Choices: {valid}.")
         for name in ("duration", "settle"):
             seconds = getattr(self, name)
             if abs(round(seconds / self.dt) * self.dt - seconds) > 1e-9:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import yaml
 from docutils import nodes
-from pydantic import TypeAdapter
+from pydantic import TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 from sphinx import addnodes
 from sphinx.application import Sphinx
@@ -54,12 +54,14 @@ def read_map(book: Path) -> list[Lesson]:
     """Return the lessons of a book's map in their order.
 
     Raises:
-        ValidationError: the file is not a list of lessons.
-        CourseMapError: an id occurs twice, a lesson needs one that does not come before it, a
-            published one has no outcomes, or two are featured.
+        CourseMapError: the file is not a list of lessons, an id occurs twice, a lesson needs one
+            that does not come before it, a published one has no outcomes, or two are featured.
     """
-    rows = yaml.safe_load((book / FILE).read_text("utf8"))
-    lessons = TypeAdapter(list[Lesson]).validate_python(rows)
+    try:
+        rows = yaml.safe_load((book / FILE).read_text("utf8"))
+        lessons = TypeAdapter(list[Lesson]).validate_python(rows)
+    except (yaml.YAMLError, ValidationError) as error:
+        raise CourseMapError(f"{FILE}: {error}") from error
     for place, lesson in enumerate(lessons):
         known = [earlier.id for earlier in lessons[:place]]
         if lesson.id in known:

@@ -22,18 +22,18 @@ def site(tmp_path):
     return site
 
 
-def ask(port: int, path: str) -> tuple[int, str | None, str]:
+def ask(port: int, path: str) -> tuple[int, dict[str, str], str]:
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
     connection.request("GET", path)
     answer = connection.getresponse()
-    found = answer.status, answer.getheader("X-Content-Type-Options"), answer.read().decode()
+    found = answer.status, dict(answer.getheaders()), answer.read().decode()
     connection.close()
     return found
 
 
 @pytest.mark.parametrize(
     ("path", "body"),
-    [("/", "home"), ("/sub/", "page")]
+    [("/", "home"), ("/sub/", "page"), ("/index.html?v=1", "home")]
     + [(path, None) for path in ("/file.txt", "/folder/secret.txt", "/folder/", "/linked/",
                                  "/../outside/secret.txt", "/%2e%2e/outside/secret.txt", "/empty/",
                                  "/gone.html")],
@@ -42,7 +42,8 @@ def test_files_of_the_site_are_sent_and_nothing_else(site, path, body):
     async def answer():
         return await asyncio.to_thread(ask, listen(0, site), path)
 
-    status, sniff, sent = asyncio.run(answer())
-    assert sniff == "nosniff"
+    status, headers, sent = asyncio.run(answer())
+    assert headers["X-Content-Type-Options"] == "nosniff"
+    assert headers["Cache-Control"] == "no-store"
     assert (status == 200) == (sent == body) == (body is not None)
     assert status in (200, 403, 404)

@@ -24,6 +24,7 @@ def test_a_case_knows_its_step_mass_and_place():
     [
         ({"dt": 0.4}, r"duration is 1\.5 s, no whole number .* 0\.4 s"),
         ({"settle": 0.005}, r"settle is 0\.005 s"),
+        ({"resolution": "convexx"}, "'convexx' is not valid. Choices: None, 'convex', 'signorini'"),
     ],
 )
 def test_a_case_that_cannot_be_run_is_refused(changes, message):

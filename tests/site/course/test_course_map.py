@@ -52,7 +52,7 @@ def test_the_list_of_decision_records_has_each_of_them():
     [
         ([{"id": "L01"}], "title\n *Field required"),
         ([{"id": "L01", "title": "One", "state": "verified"}], "state\n *Unexpected keyword"),
-        (["L01"], "should be a dictionary"),
+        (["L01"], f"^{FILE}: .*\n.*\n *Input should be a dictionary"),
         ([MAP[0] | {"outcomes": "walk"}], "outcomes\n *Input should be a valid tuple"),
         ([MAP[0] | {"page": "page"}], "L01 is published and has no outcomes"),
         ([MAP[0], MAP[0]], "names L01 twice"),
