@@ -15,11 +15,6 @@ def page(site):
     return parsed(site, LAB)
 
 
-@pytest.fixture(scope="module")
-def run(site):
-    return site.parent / "evidence" / "l04" / "cpu"
-
-
 def test_the_page_links_every_file_with_its_size(site, page):
     links = page.select("a.takeaway")
     files = {(site / LAB).parent.joinpath(link["href"]).resolve() for link in links}

@@ -34,7 +34,7 @@ def parsed(runs: Runs) -> BeautifulSoup:
     return BeautifulSoup(text, "html.parser").div
 
 
-def test_the_controls_name_their_parts_and_have_the_script_s_data(joint):
+def test_the_controls_name_parts_and_levels_and_have_the_script_s_data(joint):
     root = parsed(joint)
     slider = root.select_one("input[type=range]")
     assert root.legend.get_text() == "Run of joint4"
@@ -59,10 +59,6 @@ def test_the_controls_name_their_parts_and_have_the_script_s_data(joint):
     assert (root["data-model"], root["data-viewer"]) == (*FILES.values(),)
     assert root.select_one(f"label[for={slider['id']}]").get_text() == "Time"
     assert len(root.select(".plots > .plot")) == 3
-
-
-def test_levels_are_given_to_the_script_and_explained(joint):
-    root = parsed(joint)
     target, limit = json.loads(root.select_one("input[type=radio]")["data-levels"])
     assert target == {
         "channel": "position", "mark": "target", "values": [-1.75], "text": "−1.7500 rad",
