@@ -28,14 +28,13 @@ AROUND = Scenery([], CAMERA, axis=True, target={"hand": np.eye(4)})
 FILES = {"model": "replay/a.js", "viewer": "replay/viewer.js"}
 
 
-def parsed(runs: Runs) -> BeautifulSoup:
+def markup(runs: Runs) -> str:
     words = FILES | controls.data(runs, CAMERA)
-    text = controls.opening("replay", words) + controls.panel("replay-x", runs, 560)
-    return BeautifulSoup(text, "html.parser").div
+    return controls.opening("replay", words) + controls.panel("replay-x", runs, 560)
 
 
 def test_the_controls_name_parts_and_levels_and_have_the_script_s_data(joint):
-    root = parsed(joint)
+    root = BeautifulSoup(markup(joint), "html.parser").div
     slider = root.select_one("input[type=range]")
     assert root.legend.get_text() == "Run of joint4"
     assert root.select_one("[role=status]").get_text() == "Play loads the robot in 3D: 560 kB."
@@ -81,8 +80,7 @@ def test_a_joint_s_motion_ends_with_its_quality(joint, traces):
 
 
 def test_words_are_escaped(joint):
-    runs = replace(joint, subject='a"<b')
-    text = controls.opening("replay", controls.data(runs, CAMERA)) + controls.panel("x", runs, 560)
+    text = markup(replace(joint, subject='a"<b'))
     assert 'a"<b' not in text
     assert html.unescape(re.search('data-subject="([^"]*)"', text)[1]) == 'a"<b'
 

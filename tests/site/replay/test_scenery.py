@@ -151,15 +151,11 @@ PLACES = ((-0.5, 0.0), (0.5, 0.25))
 SHAPE = [Part("box", (1, 2, 3), np.eye(3), np.array([[0, 1, 2]])), floor(2.0)]
 
 
-@pytest.fixture(scope="module")
-def runs():
+def test_each_case_moves_all_links_and_keeps_its_curve_and_none_is_without_a_place():
     one = falling(1.0)
     other = replace(one, link_pos=one.link_pos * 2)
     replay = Replay(("one", "other"), "box", "box", places=PLACES)
-    return body_channels.runs({"one": one, "other": other}, BOXES, replay)
-
-
-def test_each_case_moves_all_links_and_keeps_its_curve(runs):
+    runs = body_channels.runs({"one": one, "other": other}, BOXES, replay)
     found, parts = side_by_side(runs, SHAPE)
     assert found.links == [f"{run}: {link}" for run in ("one", "other") for link in BOXES]
     assert [part.link for part in parts] == ["one: box", "other: box", WORLD]
@@ -171,8 +167,5 @@ def test_each_case_moves_all_links_and_keeps_its_curve(runs):
     around = scenery.scenery(parts, found)
     assert not around.axis
     assert around.followed is None
-
-
-def test_a_run_without_a_place_is_refused(runs):
     with pytest.raises(ValueError, match="1 places given for 2 runs: one, other"):
         side_by_side(replace(runs, replay=replace(runs.replay, places=PLACES[:1])), SHAPE)
