@@ -37,6 +37,14 @@ def small_site(tmp_path_factory) -> Path:
     return render_small_book(tmp_path_factory.mktemp("small"))
 
 
+@pytest.fixture
+def page(browser):
+    """A new page in a browser."""
+    page = browser.new_page()
+    yield page
+    page.close()
+
+
 @pytest.fixture(scope="module")
 def browser_3d():
     """A browser that draws in 3D without a graphics card."""

@@ -12,13 +12,11 @@ REPLAY = ".replay[data-name=replay-l04-lecture-cpu]"
 BLOCK = f".replay-block:has({REPLAY})"
 
 
-def test_the_skip_link_leads_past_the_menu(browser, address):
-    page = browser.new_page(viewport={"width": 1280, "height": 700})
+def test_the_skip_link_leads_past_the_menu(page, address):
     page.goto(f"{address}/{LECTURE}")
     for key in ("Tab", "Enter", "Tab"):
         page.keyboard.press(key)
     assert page.evaluate("document.activeElement.closest('main') !== null")
-    page.close()
 
 
 MOST = 150
@@ -32,18 +30,15 @@ LECTURES = [name for (_, page), name in LESSON_PAGES.items() if page == "lecture
 
 
 @pytest.mark.parametrize("name", LECTURES)
-def test_a_lecture_has_few_tab_stops(browser, address, name):
-    page = browser.new_page()
+def test_a_lecture_has_few_tab_stops(page, address, name):
     page.goto(f"{address}/{name}.html")
     stops = page.evaluate(STOPS)
     assert 0 < stops <= MOST
     page.evaluate("document.querySelector('article').innerHTML += '<a href=#x>a</a>'.repeat(151)")
     assert page.evaluate(STOPS) > MOST
-    page.close()
 
 
-def test_code_can_be_copied_where_the_pointer_or_the_focus_is(browser, address):
-    page = browser.new_page()
+def test_code_can_be_copied_where_the_pointer_or_the_focus_is(page, address):
     page.goto(f"{address}/{LECTURE}")
     block = page.locator("article .highlight:has(> pre):visible").first
     button = block.locator("button.copybtn")
@@ -54,15 +49,13 @@ def test_code_can_be_copied_where_the_pointer_or_the_focus_is(browser, address):
     expect(button).to_be_hidden()
     block.locator("pre").evaluate("code => { code.tabIndex = 0; code.focus(); }")
     expect(button).to_be_visible()
-    page.close()
 
 
 def wide(locator) -> bool:
     return locator.bounding_box()["width"] > 100
 
 
-def test_the_words_come_with_mouse_and_focus_and_stay_for_what_was_not_measured(browser, address):
-    page = browser.new_page()
+def test_the_words_come_with_mouse_and_focus_and_stay_for_what_was_not_measured(page, address):
     page.goto(f"{address}/{MEASURED}")
     measured = page.locator("article .provenance.as-icon:visible").first
     words, icon = measured.locator(".provenance-text"), measured.locator("a")
@@ -78,7 +71,6 @@ def test_the_words_come_with_mouse_and_focus_and_stay_for_what_was_not_measured(
     for other in page.locator("article .provenance:not(.as-icon):visible").all():
         assert "Measured" not in other.inner_text()
         assert wide(other)
-    page.close()
 
 
 def test_without_scripts_all_but_replay_and_explorer_remains(browser, address):

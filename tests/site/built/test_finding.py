@@ -12,11 +12,9 @@ LECTURE = "lessons/l04-joint-control/lecture"
 
 
 @pytest.fixture
-def page(browser):
-    page = browser.new_page()
+def page(page):
     problems = errors(page)
     yield page
-    page.close()
     assert [text for text in problems if "404 (" not in text] == []
 
 

@@ -132,13 +132,12 @@ FEEDBACK += [("x57.3", "No. In degrees.")]
 
 
 @pytest.mark.browser
-def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tolerance(browser):
+def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tolerance(page):
     shown = questions.options("s", None, "5 ms", {"lower": "Why"})
     first = question_nodes.choice("choice-3", options=shown, **MEASURED)
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
     second = question_nodes.number("choice-4", **MEASURED, **given)
     script, style = (BOOK / "_static" / name for name in ("choice.js", "course.css"))
-    page = browser.new_page()
     page.set_content(
         f"<!doctype html><style>{style.read_text()}</style>{written(first)}{written(second)}"
     )
@@ -162,4 +161,3 @@ def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tole
         assert said.last.inner_text() == text
         shown = [t.inner_text() for t in page.locator(".number .feedback").all() if t.is_visible()]
         assert shown == [text] * bool(text)
-    page.close()
