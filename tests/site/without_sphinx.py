@@ -5,12 +5,15 @@ from collections import defaultdict
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
+import trimesh
 from docutils import nodes
 from docutils.core import publish_doctree, publish_from_doctree
 from docutils.utils import new_document
 from myst_parser.parsers.docutils_ import Parser
 
 from robo_genesis.core.project import BOOK
+from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.evidence import panel
 from robo_genesis.site.evidence.plain_nodes import between
 from robo_genesis.site.figures import palette_css
@@ -62,6 +65,12 @@ def page_of(block: nodes.Node, folder: Path) -> Path:
     file = site / "lessons" / "page.html"
     file.write_text(html.replace("</head>", f"{''.join(head)}</head>"))
     return file
+
+
+def box(link, size=0.2, rgb=(200, 80, 0), at=(0, 0, 0)) -> Part:
+    """A cube as the shape of a link; its width and the place of its middle are in [m]."""
+    mesh = trimesh.creation.box((size, size, size), trimesh.transformations.translation_matrix(at))
+    return Part(link, rgb, mesh.vertices.astype(np.float32), mesh.faces)
 
 
 def rows_of(found):

@@ -5,12 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pygltflib
 import pytest
-import trimesh
 from closed_views import plane_depth, sphere_depth
 from docutils import nodes
 from falling import LINKS, falling
 from watching import POSES, violations
-from without_sphinx import Panel, rows_of
+from without_sphinx import Panel, box, rows_of
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.scene import CAMERA_RES
@@ -83,9 +82,7 @@ def assigned(height: float) -> Trace:
 
 @pytest.fixture
 def postures(folder, tmp_path, monkeypatch) -> nodes.Node:
-    box = trimesh.creation.box((0.2, 0.2, 0.2))
-    part = visual_shape.Part("box", (200, 80, 0), box.vertices, box.faces)
-    visual_shape.write_shape(tmp_path, [part])
+    visual_shape.write_shape(tmp_path, [box("box")])
     monkeypatch.setattr(explorer, "find_replay", lambda lesson: Replay((), "box", "box"))
     monkeypatch.setattr(explorer, "shape_file", lambda *_: tmp_path / visual_shape.FILE)
     rows = {run: [{"answer": f"{k}", "left [mm]": f"{10 * k}"} for k in of]
@@ -213,8 +210,8 @@ def test_a_pixel_has_its_recorded_depth_point_and_closed_form(picture, open_bloc
         read = choose(*at)
         assert [read[k] for k in (1, 2, 4, 5)] == says
         assert "−0.0000" not in read[3]
-    box = page.locator(".stage").bounding_box()
-    page.mouse.click(box["x"] + box["width"] / 4, box["y"] + box["height"] / 2)
+    stage = page.locator(".stage").bounding_box()
+    page.mouse.click(stage["x"] + stage["width"] / 4, stage["y"] + stage["height"] / 2)
     column, row = (int(part.split()[-1]) for part in texts(page, "dd")[0].split(","))
     assert (column, row) == (pytest.approx(width / 4, abs=3), pytest.approx(height / 2, abs=3))
     page.get_by_label("Column").press("ArrowRight")

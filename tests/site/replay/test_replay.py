@@ -12,13 +12,12 @@ from dataclasses import replace
 import numpy as np
 import pygltflib
 import pytest
-import trimesh
 from browsers import chromium
 from docutils import nodes
 from falling import LINKS, G, falling
 from playwright.sync_api import Page
 from watching import POSES, choose, show_model, violations
-from without_sphinx import Panel, rows_of
+from without_sphinx import Panel, box, rows_of
 
 from robo_genesis import lessons as registry
 from robo_genesis.core.channels import Replay
@@ -61,9 +60,7 @@ def dropped(folder, monkeypatch, tmp_path, built):
     lesson = Lesson(spec, {}, {}, {"drops": DROPPED})
     monkeypatch.setitem(registry.LESSONS.found, LESSON, lesson)
     built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
-    box = trimesh.creation.box((0.2, 0.2, 0.2))
-    part = visual_shape.Part("box", (200, 80, 0), box.vertices.astype(np.float32), box.faces)
-    visual_shape.write_shape(tmp_path / LESSON / "lecture", [part, visual_shape.floor(1.0)])
+    visual_shape.write_shape(tmp_path / LESSON / "lecture", [box("box"), visual_shape.floor(1.0)])
     return folder
 
 

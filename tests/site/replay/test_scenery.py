@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import trimesh
 from falling import LINKS as BOXES
 from falling import falling
 from trimesh.transformations import quaternion_from_matrix, rotation_matrix, translation_matrix
+from without_sphinx import box
 
 from robo_genesis.core.channels import Channel, Level, Replay, Runs
 from robo_genesis.core.trace import BodyTrace
@@ -27,7 +27,6 @@ POSES_AT_REST = [
     rotation_matrix(angle, [1, 2, k]) @ translation_matrix([0.2 * k, 0.1, 0.3])
     for k, angle in enumerate((0.1, 0.4, 1.2, 2.0))
 ]  # fmt: skip
-BOX = trimesh.creation.box((0.1, 0.1, 0.2))
 
 
 def turned(angle: float, sag: float = 0.0) -> list[np.ndarray]:
@@ -89,7 +88,7 @@ def test_runs_with_several_targets_show_none():
 
 
 def test_an_arm_gets_floor_axis_and_target_and_the_view_of_what_moves():
-    shape = [Part(link, (9, 9, 9), BOX.vertices, BOX.faces) for link in LINKS]
+    shape = [box(link) for link in LINKS]
     found = scenery.scenery(shape, turning())
     assert found.axis
     assert found.followed is None
@@ -107,7 +106,7 @@ def test_a_single_body_that_moves_away_is_followed_horizontally(drift, followed)
         **{name: getattr(trace, name)[:, 1:] for name in ("link_vel", "link_ang")},
     )  # fmt: skip
     runs = body_channels.runs({"run": one}, ["box"], Replay(("run",), "box", "box"))
-    found = scenery.scenery([Part("box", (9, 9, 9), BOX.vertices, BOX.faces)], runs)
+    found = scenery.scenery([box("box")], runs)
     assert (found.followed, found.axis, found.target) == (followed, False, {})
     lowest, highest = one.link_pos[:, 0, 2].min() - 0.1, one.link_pos[:, 0, 2].max() + 0.1
     middle = [0, (lowest + highest) / 2, 0]
@@ -121,7 +120,7 @@ def test_tiles_lie_on_the_highest_still_part_and_a_marker_in_the_air_is_no_groun
     low, high = tiles.vertices.min(axis=0), tiles.vertices.max(axis=0)
     assert low == pytest.approx([-0.5, -0.2, 0.7005])
     assert high == pytest.approx([0.5, 0.2, 0.7005])
-    marker = Part(WORLD, (9, 9, 9), BOX.vertices * 0.3 + (0.4, 0, 0.5), BOX.faces)
+    marker = box(WORLD, 0.05, at=(0.4, 0, 0.5))
     for still in ([], [marker]):
         ground, tiles = floor_of(still)
         assert np.ptp(ground.vertices[:, 2]) == 0
