@@ -4,20 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
+import sweep_scripts as scripts
 from playwright.sync_api import Browser, Page
-from sweep_scripts import (
-    IMAGES,
-    LAYOUT,
-    LOADED,
-    MIDDLE_ROWS,
-    NOTE_FOCUS,
-    ONE_OF_EACH,
-    OPEN_FOLDS,
-    READ,
-    SCROLL_BOXES,
-    TAB_ORDER,
-    WATCH_SHIFTS,
-)
 from watching import MOVING, drawn, foreign, settle, violations, watch
 
 BUDGET = 490_000
@@ -105,7 +93,7 @@ class Visit:
             viewport={"width": width, "height": height}, color_scheme=kind.scheme
         )
         self.wrong["messages"], self.wrong["foreign hosts"] = watch(page), foreign(page, base)
-        page.add_init_script(WATCH_SHIFTS)
+        page.add_init_script(scripts.WATCH_SHIFTS)
         page.goto(f"{base}/{name}")
         if "?q=" in name:
             page.wait_for_selector("#search-results li a")
@@ -114,7 +102,7 @@ class Visit:
         page.clock.install()  # it runs as ever, and can be put forward
         self._resize(page, kind.narrow)
         self.note("motion", page.evaluate(MOVING))
-        page.evaluate(ONE_OF_EACH)
+        page.evaluate(scripts.ONE_OF_EACH)
         self._with_closed_folds(page)
         self._with_open_folds(page)
         page.close()
@@ -133,23 +121,24 @@ class Visit:
             page.wait_for_load_state("networkidle")
         theme = page.evaluate("document.documentElement.dataset.theme")
         self.note("theme", [] if theme == self.kind.scheme else [f"shown in {theme}"])
-        loaded = page.evaluate(LOADED)
+        loaded = page.evaluate(scripts.LOADED)
         weights = {entry["name"]: entry["bytes"] for entry in loaded}
         self.note("weight", [str(weights)] if sum(weights.values()) > BUDGET else [])
         blocking = [entry["name"] for entry in loaded if entry["blocking"]]
         self.note("blocking scripts", [file for file in blocking if not file.endswith(".css")])
         self.note("blocking scripts", [] if blocking else ["not even a style sheet: is it told?"])
         if "layout shift" in self.wrong:
-            page.evaluate(READ)
+            page.evaluate(scripts.READ)
             shifts = page.evaluate("allShifts()")
             moved = sum(value for value, _ in shifts) > STILL
             self.note("layout shift", map(str, shifts) if moved else [])
-        self.note("images", page.evaluate(IMAGES))
+        self.note("images", page.evaluate(scripts.IMAGES))
 
     def _with_closed_folds(self, page: Page) -> None:
-        self.note("tab order", page.evaluate(TAB_ORDER))
+        self.note("tab order", page.evaluate(scripts.TAB_ORDER))
         if "focus" in self.wrong and (self.every_state or self.kind.narrow < 768):
-            without = page.add_style_tag(content=f"{MIDDLE_ROWS} {{ display: none !important }}")
+            hidden = f"{scripts.MIDDLE_ROWS} {{ display: none !important }}"
+            without = page.add_style_tag(content=hidden)
             settle(page)
             self.note("focus", focus_complaints(page))
             without.evaluate("style => style.remove()")
@@ -166,17 +155,17 @@ class Visit:
             page.evaluate("document.documentElement.style.fontSize = '100%'")
 
     def _with_open_folds(self, page: Page) -> None:
-        page.evaluate(OPEN_FOLDS)
+        page.evaluate(scripts.OPEN_FOLDS)
         settle(page)
-        self.note("scroll boxes", page.evaluate(SCROLL_BOXES))
+        self.note("scroll boxes", page.evaluate(scripts.SCROLL_BOXES))
         for width in self.kind.widths:
             page.set_viewport_size({"width": width, "height": self.kind.size[1]})
             drawn(page)
-            layout = page.evaluate(LAYOUT)
+            layout = page.evaluate(scripts.LAYOUT)
             self.note("width", ["wider than the window"] if layout["wide"] else [], f"{width} px")
             self.note("width", layout["out"], f"{width} px")
             self.note("lines", layout["long"], f"{width} px")
-        page.eval_on_selector_all(MIDDLE_ROWS, "rows => rows.forEach(row => row.remove())")
+        page.eval_on_selector_all(scripts.MIDDLE_ROWS, "rows => rows.forEach(row => row.remove())")
         for width, options in self.kind.axe.items():
             self._resize(page, width)
             self.note("axe", violations(page, **options), f"{width} px")
@@ -184,7 +173,7 @@ class Visit:
 
 def focus_complaints(page: Page) -> list[str]:
     """Press Tab until the focus leaves the page or comes back; return the stops not seen."""
-    page.evaluate(NOTE_FOCUS)
+    page.evaluate(scripts.NOTE_FOCUS)
     for _ in range(100):
         for _ in range(15):
             page.keyboard.press("Tab")

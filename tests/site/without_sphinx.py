@@ -2,25 +2,25 @@
 
 import shutil
 from collections import defaultdict
-from collections.abc import Sequence
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import trimesh
 from docutils import nodes
 from docutils.core import publish_doctree, publish_from_doctree
 from docutils.utils import new_document
 from myst_parser.parsers.docutils_ import Parser
 
 from robo_genesis.core.project import BOOK
-from robo_genesis.core.trace import BodyTrace
+from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.evidence import panel
 from robo_genesis.site.evidence.plain_nodes import between
 from robo_genesis.site.figures import palette_css
 from robo_genesis.site.replay import viewer
 
-STEPS, DT, G = 40, 0.01, 10.0
-"""Samples after the first one, time between two [s], and gravity of a fall [m/s²]."""
+SCRIPTS = ("plot.js", "stage.js", "replay.js", "explorer.js")
+SHEETS = ("course.css", "plot.css", "replay.css", "explorer.css")
 
 
 class Panel(panel.Evidence):
@@ -39,14 +39,12 @@ class Panel(panel.Evidence):
         return publish_doctree(text, parser=Parser()).children
 
 
-def page_of(block: nodes.Node, folder: Path, scripts: Sequence[str], sheets: Sequence[str]) -> Path:
+def page_of(block: nodes.Node, folder: Path) -> Path:
     """Write a page that holds one block alone, for a browser, and return its file.
 
     Args:
         block: of a directive for the book `folder / "book"`.
         folder: of the test.
-        scripts: names of the scripts that it loads.
-        sheets: names of its style sheets beside the palette.
     """
     document = new_document("page")
     document += block.deepcopy()
@@ -59,24 +57,20 @@ def page_of(block: nodes.Node, folder: Path, scripts: Sequence[str], sheets: Seq
     (site / "lessons").mkdir(parents=True, exist_ok=True)
     (site / "palette.css").write_text(palette_css.css())
     viewer.write_viewer(SimpleNamespace(outdir=site), None)
-    head = ['<link rel="stylesheet" href="../palette.css">']
-    for name in (*(f"{n}.css" for n in sheets), *(f"{n}.js" for n in scripts)):
+    for name in SHEETS + SCRIPTS:
         shutil.copy(BOOK / "_static" / name, site)
-    head += [f'<link rel="stylesheet" href="../{name}.css">' for name in sheets]
-    head += [f'<script defer src="../{name}.js"></script>' for name in scripts]
+    sheets = ("palette.css", *SHEETS)
+    head = [f'<link rel="stylesheet" href="../{name}">' for name in sheets]
+    head += [f'<script defer src="../{name}"></script>' for name in SCRIPTS]
     file = site / "lessons" / "page.html"
     file.write_text(html.replace("</head>", f"{''.join(head)}</head>"))
     return file
 
 
-def falling(height: float) -> BodyTrace:
-    """A box that falls from a height [m] and turns about x while it does."""
-    t = np.arange(STEPS + 1) * DT
-    pos, vel, spin = np.zeros((3, STEPS + 1, 1, 3), np.float32)
-    pos[:, 0, 2], vel[:, 0, 2], spin[..., 0] = height - G * t**2 / 2, -G * t, 1.0
-    quat = np.zeros((STEPS + 1, 1, 4), np.float32)
-    quat[:, 0, 0], quat[:, 0, 1] = np.cos(t / 2), np.sin(t / 2)
-    return BodyTrace(t=t, link_pos=pos, link_quat=quat, link_vel=vel, link_ang=spin)
+def box(link, size=0.2, rgb=(200, 80, 0), at=(0, 0, 0)) -> Part:
+    """A cube as the shape of a link; its width and the place of its middle are in [m]."""
+    mesh = trimesh.creation.box((size, size, size), trimesh.transformations.translation_matrix(at))
+    return Part(link, rgb, mesh.vertices.astype(np.float32), mesh.faces)
 
 
 def rows_of(found):

@@ -1,11 +1,8 @@
 """A lecture by keyboard and without scripts, which the sweep of all pages only looks at."""
 
-from collections.abc import Iterator
-
 import pytest
 from built_site import LESSON_PAGES
-from playwright.sync_api import Page, expect
-from watching import MOVING
+from playwright.sync_api import expect
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -15,23 +12,11 @@ REPLAY = ".replay[data-name=replay-l04-lecture-cpu]"
 BLOCK = f".replay-block:has({REPLAY})"
 
 
-@pytest.fixture(scope="module")
-def lecture(browser, address) -> Iterator[Page]:
-    page = browser.new_page(viewport={"width": 1280, "height": 700})
+def test_the_skip_link_leads_past_the_menu(page, address):
     page.goto(f"{address}/{LECTURE}")
-    yield page
-    page.close()
-
-
-def test_the_skip_link_leads_past_the_menu(lecture):
-    lecture.keyboard.press("Tab")
-    lecture.keyboard.press("Enter")
-    lecture.keyboard.press("Tab")
-    assert lecture.evaluate("document.activeElement.closest('main') !== null")
-
-
-def test_motion_remains_without_the_request(lecture):
-    assert lecture.evaluate(MOVING)
+    for key in ("Tab", "Enter", "Tab"):
+        page.keyboard.press(key)
+    assert page.evaluate("document.activeElement.closest('main') !== null")
 
 
 MOST = 150
@@ -45,19 +30,16 @@ LECTURES = [name for (_, page), name in LESSON_PAGES.items() if page == "lecture
 
 
 @pytest.mark.parametrize("name", LECTURES)
-def test_a_lecture_has_few_tab_stops(browser, address, name):
-    page = browser.new_page()
+def test_a_lecture_has_few_tab_stops(page, address, name):
     page.goto(f"{address}/{name}.html")
     stops = page.evaluate(STOPS)
     assert 0 < stops <= MOST
     page.evaluate("document.querySelector('article').innerHTML += '<a href=#x>a</a>'.repeat(151)")
     assert page.evaluate(STOPS) > MOST
-    page.close()
 
 
-def test_code_can_be_copied_where_the_pointer_or_the_focus_is(browser, address):
-    page = browser.new_page()
-    page.goto(f"{address}/lessons/l02-life-cycle/lecture.html")
+def test_code_can_be_copied_where_the_pointer_or_the_focus_is(page, address):
+    page.goto(f"{address}/{LECTURE}")
     block = page.locator("article .highlight:has(> pre):visible").first
     button = block.locator("button.copybtn")
     expect(button).to_be_hidden()
@@ -67,15 +49,13 @@ def test_code_can_be_copied_where_the_pointer_or_the_focus_is(browser, address):
     expect(button).to_be_hidden()
     block.locator("pre").evaluate("code => { code.tabIndex = 0; code.focus(); }")
     expect(button).to_be_visible()
-    page.close()
 
 
 def wide(locator) -> bool:
     return locator.bounding_box()["width"] > 100
 
 
-def test_the_words_come_with_mouse_and_focus_and_stay_for_what_was_not_measured(browser, address):
-    page = browser.new_page()
+def test_the_words_come_with_mouse_and_focus_and_stay_for_what_was_not_measured(page, address):
     page.goto(f"{address}/{MEASURED}")
     measured = page.locator("article .provenance.as-icon:visible").first
     words, icon = measured.locator(".provenance-text"), measured.locator("a")
@@ -91,22 +71,12 @@ def test_the_words_come_with_mouse_and_focus_and_stay_for_what_was_not_measured(
     for other in page.locator("article .provenance:not(.as-icon):visible").all():
         assert "Measured" not in other.inner_text()
         assert wide(other)
-    page.close()
 
 
-@pytest.fixture(scope="module")
-def bare(browser, address) -> Iterator[Page]:
-    page = browser.new_page(java_script_enabled=False)
-    page.goto(f"{address}/{MEASURED}")
-    yield page
-    page.close()
-
-
-def test_the_page_has_its_colours(bare):
+def test_without_scripts_all_but_replay_and_explorer_remains(browser, address):
+    bare = browser.new_page(java_script_enabled=False)
+    bare.goto(f"{address}/{MEASURED}")
     expect(bare.locator("article h2").first).to_have_css("border-top-width", "1px")
-
-
-def test_of_the_replay_picture_figures_and_table_remain(bare):
     assert bare.locator(f"{REPLAY} .still").is_visible()
     assert bare.locator(f"{REPLAY} .shown").inner_text() == "at the start"
     assert not bare.locator(f"{REPLAY} button").is_visible()
@@ -117,8 +87,6 @@ def test_of_the_replay_picture_figures_and_table_remain(bare):
     assert bare.get_by_text("moves farthest").first.is_visible()
     assert bare.locator(f"{BLOCK} tbody tr").count() == 121
     assert bare.locator(f"{BLOCK} table").is_visible()
-
-
-def test_of_the_explorer_a_sentence_remains(bare):
     assert not bare.locator(".explorer .panel").is_visible()
     assert bare.get_by_text("The explorer needs JavaScript").is_visible()
+    bare.close()

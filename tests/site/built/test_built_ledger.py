@@ -20,23 +20,6 @@ SHOWN = (
 )
 
 
-def shown(pages) -> set[tuple[str, str]]:
-    """Return (page, anchor) of each picture and measured table, found by what HTML they are."""
-    found = set()
-    for name, page in pages.items():
-        for tag in page.select(SHOWN):
-            holder = tag.find_parent("figure") or tag
-            found.add((name, holder.get("id", f"no anchor: {str(tag)[:80]}")))
-    return found
-
-
-def listed(pages) -> list[tuple[str, str]]:
-    """Return (page, anchor) that each row of the ledger leads to."""
-    rows = pages[LEDGER].select("#figures-and-tables tbody tr")
-    links = [row.select_one("td a")["href"] for row in rows]
-    return [place(link) for link in links]
-
-
 def place(link: str) -> tuple[str, str]:
     """Return (page, anchor) that a link of the ledger leads to."""
     address, _, anchor = link.partition("#")
@@ -50,8 +33,16 @@ def pages(parsed_pages) -> dict[str, BeautifulSoup]:
 
 
 def test_each_figure_and_measured_table_has_one_row_and_each_row_its_place(pages):
-    rows = listed(pages)
-    assert {*rows} == shown(pages)
+    rows = [
+        place(row.select_one("td a")["href"])
+        for row in pages[LEDGER].select("#figures-and-tables tbody tr")
+    ]
+    shown = set()
+    for name, page in pages.items():
+        for tag in page.select(SHOWN):
+            holder = tag.find_parent("figure") or tag
+            shown.add((name, holder.get("id", f"no anchor: {str(tag)[:80]}")))
+    assert {*rows} == shown
     assert len(rows) == len(set(rows)) >= 25
 
 

@@ -83,34 +83,23 @@ def test_build_ends_with_what_it_was_made_of(build_output):
     assert [words for words in expected if words not in tail] == []
 
 
-@pytest.fixture(scope="module")
-def anchors(parsed_pages) -> set[str]:
-    """Return page#anchor of each heading, figure and term that a reader may link to.
+def test_published_anchors_stay_and_new_ones_are_kept_from_now_on(parsed_pages):
+    """An anchor is that of a heading, figure or term, to which a reader may link.
 
     Recorded runs come and go with the machines that made them, so what is in their panels is none.
     """
-    return {
+    anchors = {
         f"{name}#{tag['id']}"
         for name, page in parsed_pages.items()
         if not name.startswith("evidence/")
         for tag in page.select(PLACES)
         if not NUMBERED.match(tag["id"]) and not tag.find_parent(class_="evidence-panel")
     }
-
-
-def published_anchors() -> set[str]:
-    return {anchor for file in ANCHORS for anchor in file.read_text().split()}
-
-
-def test_anchors_that_were_published_stay(anchors):
-    published = published_anchors()
+    published = {anchor for file in ANCHORS for anchor in file.read_text().split()}
     assert len(published) > 100
     gone = sorted(published - anchors)
     assert gone == [], "Links elsewhere lead there: keep the old name as a target `(name)=` above."
-
-
-def test_new_anchors_are_kept_from_now_on(anchors):
-    new = sorted(anchors - published_anchors())
+    new = sorted(anchors - published)
     assert new == [], "Add these lines to anchors.txt in tests/lessons/lNN or tests/site."
 
 

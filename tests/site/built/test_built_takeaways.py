@@ -1,7 +1,6 @@
 """What the lab's page offers to take away, as it stands in the built site."""
 
 import pytest
-from built_site import parsed
 
 from robo_genesis.core import project
 
@@ -10,18 +9,8 @@ LAB = "lessons/l04-joint-control/lab"
 FOLDER = "takeaways/l04-lab"
 
 
-@pytest.fixture(scope="module")
-def page(site):
-    return parsed(site, LAB)
-
-
-@pytest.fixture(scope="module")
-def run(site):
-    return site.parent / "evidence" / "l04" / "cpu"
-
-
-def test_the_page_links_every_file_with_its_size(site, page):
-    links = page.select("a.takeaway")
+def test_the_page_links_every_file_with_its_size(site, parsed_pages):
+    links = parsed_pages[LAB].select("a.takeaway")
     files = {(site / LAB).parent.joinpath(link["href"]).resolve() for link in links}
     there = {path for path in (site / FOLDER).rglob("*") if path.is_file()}
     there |= {path for path in (site / "takeaways").iterdir() if path.is_file()}
@@ -33,7 +22,8 @@ def test_the_page_links_every_file_with_its_size(site, page):
         assert str(link.next_sibling).startswith(f" ({max(1, round(size / 1000))} kB)")
 
 
-def test_figures_are_those_of_the_page(site, page):
+def test_figures_are_those_of_the_page(site, parsed_pages):
+    page = parsed_pages[LAB]
     figures = {figure["id"] for figure in page.select("figure[id]")}
     drawn = {path.stem: path.read_text() for path in (site / FOLDER).glob("*.svg")}
     assert drawn.keys() == figures

@@ -115,29 +115,18 @@ def test_on_a_phone_no_figure_is_cut_off_and_its_letters_can_be_read(browser, ad
     page.close()
 
 
-def lines(page: Page, selector: str) -> list[list]:
-    """Return class, colour and dashes of each drawn line."""
-    found = page.eval_on_selector_all(
-        selector,
+def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
+    names = {css_name(name): name for name in MARKS}
+    lines = page.eval_on_selector_all(
+        ".replay[data-name=replay-l04-lecture-cpu] svg :is(.curve, .level)",
         """lines => lines.map(line => {
           const { stroke, strokeDasharray } = getComputedStyle(line);
           return [line.classList.item(1), stroke, strokeDasharray.match(/[\\d.]+/g) ?? []];
         })""",
     )
-    return [[name, hexadecimal(ink), [float(d) for d in dashes]] for name, ink, dashes in found]
-
-
-def look(name: str, theme: str) -> list:
-    """Return colour and dashes of a mark, for lines two units wide."""
-    mark = MARKS[name]
-    return [getattr(mark, theme), [2 * length for length in mark.dashes]]
-
-
-def test_each_run_of_the_replay_has_its_case_s_line(page, theme):
-    names = {css_name(name): name for name in MARKS}
-    count: Counter[str] = Counter()
-    runs = ".replay[data-name=replay-l04-lecture-cpu] svg :is(.curve, .level)"
-    for css_class, *drawn in lines(page, runs):
-        assert drawn == look(names[css_class], theme), css_class
-        count[names[css_class]] += 1
+    for css_class, ink, dashes in lines:
+        mark = MARKS[names[css_class]]
+        assert hexadecimal(ink) == getattr(mark, theme), css_class
+        assert [float(dash) for dash in dashes] == [2 * length for length in mark.dashes], css_class
+    count = Counter(names[css_class] for css_class, *_ in lines)
     assert count == {"first": 3, "second": 3, "third": 3, "target": 1, "limit": 2}

@@ -5,10 +5,9 @@ from io import BytesIO
 
 import numpy as np
 import pytest
-from browsers import SOFTWARE, launched
 from built_site import PAGES
 from PIL import Image
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Page
 from watching import POSES, choose, errors, show_model
 
 from robo_genesis.core.project import BOOK
@@ -59,15 +58,9 @@ POSED = """([name, time]) => {
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with launched(*SOFTWARE) as browser:
-        yield browser
-
-
-@pytest.fixture(scope="module")
-def lecture(browser, site) -> Iterator[Page]:
+def lecture(browser_3d, site) -> Iterator[Page]:
     """The lecture from disk with the robot loaded."""
-    page = browser.new_page(viewport={"width": 480, "height": 700}, color_scheme="dark")
+    page = browser_3d.new_page(viewport={"width": 480, "height": 700}, color_scheme="dark")
     problems = errors(page)
     page.goto((site / f"{LECTURE}.html").as_uri())
     show_model(page, REPLAY)
@@ -129,9 +122,9 @@ def lightness(page, stage, part) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", PLAYING)
-def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(browser, address, name):
+def test_play_is_on_the_first_screen_and_nothing_is_cut_off_or_collides(browser_3d, address, name):
     """At each sample of each run of each replay of a page."""
-    page = browser.new_page(viewport={"width": 390, "height": 844})
+    page = browser_3d.new_page(viewport={"width": 390, "height": 844})
     page.goto(f"{address}/{name}.html")
     play = page.locator(".replay .play").first.bounding_box()
     assert play["y"] + play["height"] < 844 or name not in FIRST_SCREEN

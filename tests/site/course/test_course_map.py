@@ -67,8 +67,9 @@ def test_a_map_that_cannot_be_right_is_refused(tmp_path, rows, said):
         read_map(tmp_path)
 
 
-def test_a_published_lesson_is_a_card_with_outcomes_prerequisites_and_minutes(small_site):
-    cards = parsed(small_site, "cards").select("ul.course-map > li")
+def test_a_published_lesson_is_a_card_and_a_planned_one_a_title_without_a_link(small_site):
+    page = parsed(small_site, "cards")
+    cards = page.select("ul.course-map > li")
     assert [[p.get_text() for p in card.select("p")] for card in cards] == [
         ["L04 Four", "read a qpos", "stop", "Builds on L01 and L02.", "Lecture: 1 min to read"],
         [
@@ -80,10 +81,7 @@ def test_a_published_lesson_is_a_card_with_outcomes_prerequisites_and_minutes(sm
     links = [a["href"] for a in cards[1].select("a")]
     assert links == [f"lessons/l06-six/{name}.html" for name in pages]
     assert cards[0].code.get_text() == "qpos"
-
-
-def test_a_planned_lesson_is_a_title_without_a_link(small_site):
-    planned = parsed(small_site, "cards").select_one("ul.planned-lessons")
+    planned = page.select_one("ul.planned-lessons")
     lines = {item["id"]: item.get_text().strip() for item in planned.select("li")}
     assert lines == {"lesson-l01": "L01 One", "lesson-l02": "L02 Two"}
     assert not planned.select("a")

@@ -11,22 +11,6 @@ from robo_genesis.site.course import facts
 from robo_genesis.site.text.question_nodes import question
 
 
-def commit(folder, text, subject):
-    (folder / "page.md").write_text(text)
-    git(folder, "add", "page.md")
-    git(folder, "commit", "-q", "-m", subject)
-
-
-@pytest.fixture
-def checkout(tmp_path):
-    folder = tmp_path / "checkout"
-    folder.mkdir()
-    git(folder, "init", "-q")
-    commit(folder, "one", "First <words>")
-    commit(folder, "two", "Second words")
-    return folder
-
-
 def history(file):
     return BeautifulSoup(facts.history_html(file), "html.parser")
 
@@ -69,16 +53,21 @@ def test_work_is_in_visible_code_questions_functions_and_a_lab_s_work_sheet(tmp_
     assert not facts.count_minutes(document, tmp_path / "lecture.md").sheet
 
 
-def test_history_lists_the_latest_commits_newest_first_and_uncommitted_changes(checkout):
+def test_history_is_the_latest_commits_and_uncommitted_changes_or_the_reason_why_there_is_none(
+    tmp_path,
+):
+    checkout = tmp_path / "checkout"
+    git(tmp_path, "init", "-q", "checkout")
     page = checkout / "page.md"
+    for subject in ("First <words>", "Second words"):
+        page.write_text(subject)
+        git(checkout, "add", "page.md")
+        git(checkout, "commit", "-q", "-m", subject)
     items = history(page).select("li")
     assert [item.get_text().split(" ", 1)[1] for item in items] == ["Second words", "First <words>"]
     assert not history(page).select("p")
     page.write_text("three")
     assert history(page).p.get_text() == "The page has changes that are in no commit yet."
-
-
-def test_an_unknown_history_has_its_reason(checkout, tmp_path):
     git(tmp_path, "clone", "-q", "--depth=1", checkout.as_uri(), "shallow")
     (checkout / "new.md").touch()
     for file, reason in (

@@ -4,15 +4,7 @@ import pytest
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook
 
 from robo_genesis.pipeline.pages.book import Page
-from robo_genesis.site.course.sizes import (
-    COLUMN,
-    LIMITS,
-    MEASURES,
-    count_words,
-    excess,
-    report,
-    size,
-)
+from robo_genesis.site.course import sizes
 
 
 @pytest.mark.parametrize(
@@ -29,7 +21,7 @@ from robo_genesis.site.course.sizes import (
     ],
 )
 def test_folds_tables_captions_and_code_are_not_prose(text, words):
-    assert count_words(text) == words
+    assert sizes.count_words(text) == words
 
 
 EXCERPT = "```{literalinclude} code.py\n:language: python\n:pyobject: f\n```"
@@ -44,7 +36,7 @@ def test_a_page_s_size(tmp_path):
         new_code_cell("page.show(l04.study_plots.theory)", metadata={"tags": ["hide-input"]}),
         new_code_cell("c = 3"),
     ]
-    found = size(new_notebook(cells=cells), tmp_path / "lecture.md")
+    found = sizes.size(new_notebook(cells=cells), tmp_path / "lecture.md")
     assert found == {
         "words": 400, "cells": 2, "longest": 3, "plots": 2, "minutes": 4, "widest": 81,
     }  # fmt: skip
@@ -54,29 +46,29 @@ def test_the_minutes_of_a_lab_contain_its_functions_a_run_and_the_work_sheet(tmp
     stubs = [new_code_cell(f"def f{k}(x):\n    raise NotImplementedError") for k in range(3)]
     solution = new_code_cell("def f0(x):\n    return x", metadata={"tags": ["hide-cell"]})
     lab = new_notebook(cells=[new_markdown_cell("word " * 400), *stubs, solution])
-    assert size(lab, tmp_path / "lab.md")["minutes"] == round(2 + 0.6 + 3 * 10 + 5)
+    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == round(2 + 0.6 + 3 * 10 + 5)
     (tmp_path / "worksheet.md").touch()
-    assert size(lab, tmp_path / "lab.md")["minutes"] == round(2 + 0.6 + 3 * 10 + 5 + 10)
+    assert sizes.size(lab, tmp_path / "lab.md")["minutes"] == round(2 + 0.6 + 3 * 10 + 5 + 10)
 
 
 @pytest.mark.parametrize(
     ("kind", "name", "limit"),
     [
-        ("index", "widest", COLUMN),
-        *((kind, *item) for kind, limits in LIMITS.items() for item in limits.items()),
+        ("index", "widest", sizes.COLUMN),
+        *((kind, *item) for kind, limits in sizes.LIMITS.items() for item in limits.items()),
     ],
 )
 def test_each_limit_is_kept_exactly(kind, name, limit):
-    found = dict.fromkeys(MEASURES, 0) | {name: limit}
-    assert excess(found, kind) == []
-    (phrase,) = excess(found | {name: limit + 1}, kind)
+    found = dict.fromkeys(sizes.MEASURES, 0) | {name: limit}
+    assert sizes.excess(found, kind) == []
+    (phrase,) = sizes.excess(found | {name: limit + 1}, kind)
     assert phrase.endswith(f"(at most {limit:,})")
 
 
 def test_a_large_page_is_named(tmp_path):
     large = new_notebook(cells=[new_markdown_cell("word " * 3400)])
     pages = [Page(name, tmp_path / f"{name}.md", large, None, None) for name in ("lecture", "lab")]
-    lines, (problem,) = report(pages)
+    lines, (problem,) = sizes.report(pages)
     assert [line.partition(":")[0] for line in lines] == ["lecture", "lab"]
     assert problem.startswith("lecture is over its size: 3,400 words of prose (at most 3,300)")
     assert problem.endswith("Shorten it, or move a part to a deeper page.")

@@ -10,22 +10,18 @@ from robo_genesis.site.evidence.ledger import run_block
 from robo_genesis.site.evidence.ledger_data import PageRun
 
 
-@pytest.fixture
-def bundle(tmp_path):
+def test_the_same_bundle_gives_the_same_bytes_whenever_it_was_written(tmp_path):
+    log = tmp_path / "log.txt"
+    log.write_text("a log")
     (tmp_path / "arrays").mkdir()
     (tmp_path / "arrays" / "G1.npz").write_bytes(b"numbers")
-    (tmp_path / "log.txt").write_text("a log")
-    return tmp_path
-
-
-def test_the_same_bundle_gives_the_same_bytes_whenever_it_was_written(bundle):
-    before = ledger_data.archive(bundle)
-    (bundle / "log.txt").touch()
-    (bundle / "log.txt").chmod(0o600)
-    assert ledger_data.archive(bundle) == before
+    before = ledger_data.archive(tmp_path)
+    log.touch()
+    log.chmod(0o600)
+    assert ledger_data.archive(tmp_path) == before
     assert zipfile.ZipFile(io.BytesIO(before)).namelist() == ["arrays/G1.npz", "log.txt"]
-    (bundle / "log.txt").write_text("another log")
-    assert ledger_data.archive(bundle) != before
+    log.write_text("another log")
+    assert ledger_data.archive(tmp_path) != before
 
 
 @pytest.mark.parametrize(

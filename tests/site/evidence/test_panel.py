@@ -5,14 +5,12 @@ import shutil
 from collections import defaultdict
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
-import trimesh
 from bundles import engine_on, written
 from docutils import nodes
 from docutils.utils import new_document
 from spoilers import edit, on, part, predicate
-from without_sphinx import Panel, rows_of
+from without_sphinx import Panel, box, rows_of
 
 from robo_genesis.core import project
 from robo_genesis.core.channels import Replay
@@ -22,7 +20,6 @@ from robo_genesis.evidence.compare import compare
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.pipeline.bundles.status import Status, recorded_status
 from robo_genesis.sim import visual_shape
-from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.evidence import ledger as sphinx_ledger
 from robo_genesis.site.evidence import ledger_data, provenance
 from robo_genesis.site.evidence import panel as sphinx_panel
@@ -62,9 +59,7 @@ def test_text_of_a_bundle_is_shown_as_it_is_and_never_as_markup(folder, tmp_path
 
 def write_shape(folder, tmp_path):
     """Let this build's lecture have the shape of a bundle's links."""
-    box = trimesh.creation.box((0.1, 0.1, 0.1))
-    links = bundle.read_arrays(folder).coords["link"]
-    parts = [Part(link, (9, 9, 9), box.vertices.astype(np.float32), box.faces) for link in links]
+    parts = [box(link) for link in bundle.read_arrays(folder).coords["link"]]
     visual_shape.write_shape(tmp_path / "l04" / "lecture", parts)
 
 

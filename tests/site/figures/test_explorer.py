@@ -1,18 +1,15 @@
 """The explorer in a browser, from disk: cells with curves or postures, and pixels of a picture."""
 
-from collections.abc import Iterator
 from types import SimpleNamespace
 
 import numpy as np
 import pygltflib
 import pytest
-import trimesh
-from browsers import SOFTWARE, launched
 from closed_views import plane_depth, sphere_depth
 from docutils import nodes
-from playwright.sync_api import Browser, Page
-from watching import POSES, errors, violations
-from without_sphinx import Panel, falling, page_of
+from falling import LINKS, falling
+from watching import POSES, violations
+from without_sphinx import Panel, box, rows_of
 
 from robo_genesis.core.channels import Replay
 from robo_genesis.core.scene import CAMERA_RES
@@ -32,31 +29,7 @@ TRANSFORM = np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 2], [0, 0, 0, 1]])
 BALL = (0.2, 0.1, 0.3, 0.1)
 """Centre and radius of a sphere below a camera that looks straight down from z = 2 [m]."""
 
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with launched(*SOFTWARE) as browser:
-        yield browser
-
-
-@pytest.fixture
-def open_block(browser, tmp_path):
-    """Return a function that opens a block on a phone; no script may fail."""
-    opened = []
-
-    def open_block(block: nodes.Node) -> Page:
-        page = browser.new_page(viewport={"width": 390, "height": 844}, has_touch=True)
-        problems = errors(page)
-        scripts, sheets = ("plot", "stage", "explorer"), ("course", "plot", "explorer", "replay")
-        page.goto(page_of(block, tmp_path, scripts, sheets).as_uri())
-        page.locator(".explorer .panel").wait_for()
-        opened.append((page, problems))
-        return page
-
-    yield open_block
-    for page, problems in opened:
-        assert problems == []
-        page.close()
+PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True}
 
 
 def block_of(tmp_path, folder, data, *name, **experiment) -> nodes.Node:
@@ -100,7 +73,7 @@ def maps() -> dict:
 
 def assigned(height: float) -> Trace:
     """Return the places of a falling box as assigned postures of a robot with one joint."""
-    body = falling(height)
+    body = falling(height, len(TARGETS))
     q, one, step = np.zeros((41, 1)), np.zeros(1), np.zeros((40, 1))
     rest = dict.fromkeys(("qd", "target", "control_force", "internal_force"), step)
     start = dict.fromkeys(("start_control_force", "start_qd", "effort_limit"), one)
@@ -109,21 +82,19 @@ def assigned(height: float) -> Trace:
 
 @pytest.fixture
 def postures(folder, tmp_path, monkeypatch) -> nodes.Node:
-    box = trimesh.creation.box((0.2, 0.2, 0.2))
-    part = visual_shape.Part("box", (200, 80, 0), box.vertices, box.faces)
-    visual_shape.write_shape(tmp_path, [part])
+    visual_shape.write_shape(tmp_path, [box("box")])
     monkeypatch.setattr(explorer, "find_replay", lambda lesson: Replay((), "box", "box"))
     monkeypatch.setattr(explorer, "shape_file", lambda *_: tmp_path / visual_shape.FILE)
     rows = {run: [{"answer": f"{k}", "left [mm]": f"{10 * k}"} for k in of]
             for run, of in (("upright", range(1, 6)), ("level", range(7, 10)))}  # fmt: skip
     data = maps() | {"postures": {"upright": TARGETS, "level": TARGETS}, "tables": rows}
     traces = {"upright": assigned(2.0), "level": assigned(1.0)}
-    return block_of(tmp_path, folder, data, "reach", traces=traces, links=["box"])
+    return block_of(tmp_path, folder, data, "reach", traces=traces, links=LINKS)
 
 
 def test_every_answer_is_in_a_table_and_in_the_model_with_its_target(postures, tmp_path):
     assert postures["evidence_runs"] == ("l99/answers/cpu",)
-    rows = [[entry.astext() for entry in row] for row in postures.findall(nodes.row)]
+    rows = rows_of([postures])
     assert (rows[2], len(rows)) == (["2", "20"], 2 + 5 + 3)
     file = tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.glb"
     model = pygltflib.GLTF2.load_binary(file)
@@ -134,7 +105,7 @@ def test_every_answer_is_in_a_table_and_in_the_model_with_its_target(postures, t
 
 @pytest.mark.browser
 def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(postures, open_block):
-    page = open_block(postures)
+    page = open_block(postures, **PHONE)
     assert texts(page, "output") == ["Answer 2, accepted."]  # the first that is
     page.locator("[aria-selected=true]").focus()
     for key in ("ArrowDown", "ArrowRight", "ArrowUp", "ArrowLeft", "ArrowLeft", "ArrowDown"):
@@ -158,7 +129,7 @@ def test_pointer_touch_and_keys_choose_a_cell_and_its_posture_is_shown(postures,
     page.get_by_role("gridcell", name="0.20 margin [rad]: z 1, x 0.2, accepted").tap()
     page.wait_for_function("document.querySelector('model-viewer').currentTime > 0.049")
     place = page.evaluate(POSES)["box"]["position"]
-    assert place == pytest.approx(falling(2.0).link_pos[5, 0], abs=1e-5)
+    assert place == pytest.approx(falling(2.0).link_pos[5, 1], abs=1e-5)
     assert texts(page, ".shown") == ["Answer 5, accepted."]
     assert violations(page, ".explorer", preload=False) == []
 
@@ -175,7 +146,7 @@ def test_the_last_run_stays_beside_the_chosen_one(open_block, folder, tmp_path):
             row["cells"] = [c | {"q": [0, c["answer"], 2 * c["answer"]]} for c in row["cells"]]
     words = {"lower": "earlier", "higher": "later", "margin": 0.0, "within": "5 ms"}
     data["measures"][0] |= {"noun": "time", "column": 0} | words
-    page = open_block(block_of(tmp_path, folder, data))
+    page = open_block(block_of(tmp_path, folder, data), **PHONE)
     page.get_by_role("gridcell", name="z 0, x 0.3, accepted").tap()
     assert page.locator(".ghost").count() == 0
     page.get_by_role("button", name="Skip").click()
@@ -213,7 +184,7 @@ def picture(tmp_path, folder) -> nodes.Node:
 
 @pytest.mark.browser
 def test_a_pixel_has_its_recorded_depth_point_and_closed_form(picture, open_block):
-    page = open_block(picture)
+    page = open_block(picture, **PHONE)
     width, height = CAMERA_RES
 
     def choose(column: int, row: int) -> list[str]:
@@ -239,8 +210,8 @@ def test_a_pixel_has_its_recorded_depth_point_and_closed_form(picture, open_bloc
         read = choose(*at)
         assert [read[k] for k in (1, 2, 4, 5)] == says
         assert "−0.0000" not in read[3]
-    box = page.locator(".stage").bounding_box()
-    page.mouse.click(box["x"] + box["width"] / 4, box["y"] + box["height"] / 2)
+    stage = page.locator(".stage").bounding_box()
+    page.mouse.click(stage["x"] + stage["width"] / 4, stage["y"] + stage["height"] / 2)
     column, row = (int(part.split()[-1]) for part in texts(page, "dd")[0].split(","))
     assert (column, row) == (pytest.approx(width / 4, abs=3), pytest.approx(height / 2, abs=3))
     page.get_by_label("Column").press("ArrowRight")

@@ -1,6 +1,5 @@
 """The joined sheet keeps what a page or a script can use, and loses the rest of the theme."""
 
-import pytest
 from bs4 import BeautifulSoup
 
 from robo_genesis.site.frame import style_sheets
@@ -16,8 +15,9 @@ details[open] > summary { color: red }
 FIRST, THEME, OWN = "_static/basic.css", style_sheets.SHEETS[1], "_static/course.css"
 
 
-@pytest.fixture
-def joined(tmp_path):
+def test_the_joined_sheet_keeps_order_addresses_and_rules_for_names_that_a_page_or_script_has(
+    tmp_path,
+):
     (tmp_path / "_static/styles").mkdir(parents=True)
     (tmp_path / THEME).write_text(SHEET + ".used { src: url(../vendor/a.woff2) }")
     (tmp_path / FIRST).write_text(".used { background: url('file.png') url(data:x) }")
@@ -26,18 +26,12 @@ def joined(tmp_path):
     (tmp_path / "deep").mkdir()
     (tmp_path / "deep/page.html").write_text('<p class="other used">unused</p><b id="by-id"></b>')
     style_sheets.join_sheets(tmp_path)
-    return (tmp_path / style_sheets.JOINED).read_text()
-
-
-def test_rules_of_the_theme_for_names_that_no_page_and_no_script_has_go(joined):
+    joined = (tmp_path / style_sheets.JOINED).read_text()
     theme, own = joined.split(".unused { color: blue }")
     assert own == ""
     assert "unused" not in theme
     for kept in (".used > a", "#by-id", ".added-by-script.show", "details[open] > summary"):
         assert f"{kept} {{ color: red }}" in theme
-
-
-def test_sheets_keep_their_order_and_their_addresses(joined):
     assert joined.index("url('../file.png')") < joined.index("url(../vendor/a.woff2)")
     assert "url(data:x)" in joined
 

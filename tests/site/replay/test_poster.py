@@ -4,23 +4,16 @@ from io import BytesIO
 
 import numpy as np
 import pytest
-import trimesh
 from falling import falling
 from PIL import Image
-from trimesh.transformations import translation_matrix
+from without_sphinx import box
 
-from robo_genesis.sim.visual_shape import Part
 from robo_genesis.site.replay import model, poster
 from robo_genesis.site.replay.scenery import Camera, Scenery
 
 RED, BLUE, GREY = (255, 0, 0), (0, 0, 255), (200, 200, 200)
 GROUND = np.array([*bytes.fromhex(poster.GROUND[1:])])
 CAMERA = Camera(np.array([0.0, 0.5, 0.0]), 3.0)
-
-
-def box(link, rgb, size, at=(0, 0, 0)):
-    mesh = trimesh.creation.box((size, size, size), translation_matrix(at))
-    return Part(link, rgb, mesh.vertices, mesh.faces)
 
 
 def drawn(*parts, target=None, camera=CAMERA):
@@ -37,7 +30,7 @@ def middle(image):
 
 
 def test_a_link_is_drawn_where_the_camera_sees_it():
-    image = drawn(box("box", RED, 0.2))
+    image = drawn(box("box", rgb=RED))
     assert image.shape == (poster.HEIGHT, poster.WIDTH, 3)
     red, green, blue = middle(image)
     assert red > 100 > max(green, blue)
@@ -51,16 +44,16 @@ def test_a_link_is_drawn_where_the_camera_sees_it():
 
 @pytest.mark.parametrize("order", [1, -1])
 def test_the_nearer_part_hides_the_other_one(order):
-    nearer = box("box", BLUE, 0.2, 0.5 * CAMERA.axes[2][[0, 2, 1]] * [1, -1, 1])
-    red, _, blue = middle(drawn(*[box("box", RED, 0.2), nearer][::order]))
+    nearer = box("box", rgb=BLUE, at=0.5 * CAMERA.axes[2][[0, 2, 1]] * [1, -1, 1])
+    red, _, blue = middle(drawn(*[box("box", rgb=RED), nearer][::order]))
     assert blue > red
 
 
 def test_the_copy_at_the_target_is_translucent():
-    alone = drawn(box("box", GREY, 0.2))
+    alone = drawn(box("box", rgb=GREY))
     beside = np.eye(4)
     beside[:3, 3] = [0, 0, 0.9]
-    above = drawn(box("box", GREY, 0.2), target={"box": beside})
+    above = drawn(box("box", rgb=GREY), target={"box": beside})
     assert middle(above).tolist() == pytest.approx(middle(alone).tolist(), abs=6)
     rows = np.nonzero(np.abs(above - alone).max(axis=2) > 40)[0]
     shade = above[(rows.min() + rows.max()) // 2, poster.WIDTH // 2]

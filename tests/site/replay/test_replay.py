@@ -7,18 +7,17 @@ import base64
 import gzip
 import re
 import shutil
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 import pygltflib
 import pytest
-import trimesh
-from browsers import SOFTWARE, chromium, launched
+from browsers import chromium
 from docutils import nodes
-from playwright.sync_api import Browser, Page
-from watching import POSES, choose, errors, show_model, violations
-from without_sphinx import STEPS, Panel, falling, page_of
+from falling import LINKS, G, falling
+from playwright.sync_api import Page
+from watching import POSES, choose, show_model, violations
+from without_sphinx import Panel, box, rows_of
 
 from robo_genesis import lessons as registry
 from robo_genesis.core.channels import Replay
@@ -35,9 +34,7 @@ from robo_genesis.site.replay.directive import replay_block
 LESSON, KEY = "l99", "l99/lecture/cpu"
 NAME = "replay-l99-lecture-cpu"
 DROPPED = Replay(("high", "low"), "box", "box")
-G = 10.0
-
-
+STEPS = 40
 FRAMES_ASKED = """async () => {
   const request = requestAnimationFrame.bind(window);
   let asked = 0;
@@ -56,16 +53,14 @@ FRAMES_ASKED = """async () => {
 def dropped(folder, monkeypatch, tmp_path, built):
     """A bundle of two falls, of a lesson that declares them and wrote its shape."""
     shutil.rmtree(folder / "arrays")
-    traces = {"high": falling(2.0), "low": falling(1.0)}
-    arrays = write_traces(folder, traces, None, ["box"])
+    traces = {"high": falling(2.0, STEPS), "low": falling(1.0, STEPS)}
+    arrays = write_traces(folder, traces, None, [*LINKS])
     write_json(folder / "arrays.json", arrays.model_dump(by_alias=True))
     spec = registry.LESSONS["l04"].spec
     lesson = Lesson(spec, {}, {}, {"drops": DROPPED})
     monkeypatch.setitem(registry.LESSONS.found, LESSON, lesson)
     built({f"{LESSON}/lecture": tmp_path / LESSON / "lecture"})
-    box = trimesh.creation.box((0.2, 0.2, 0.2))
-    part = visual_shape.Part("box", (200, 80, 0), box.vertices.astype(np.float32), box.faces)
-    visual_shape.write_shape(tmp_path / LESSON / "lecture", [part, visual_shape.floor(1.0)])
+    visual_shape.write_shape(tmp_path / LESSON / "lecture", [box("box"), visual_shape.floor(1.0)])
     return folder
 
 
@@ -91,7 +86,7 @@ def test_pictures_draw_what_the_bundle_holds(dropped, tmp_path):
 
 def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, tmp_path):
     assert block["evidence_runs"] == (KEY,)
-    rows = [[cell.astext() for cell in row] for row in block.findall(nodes.row)]
+    rows = rows_of([block])
     heads = ["z [m]", "ż [m/s]"]
     assert rows[0] == ["t [s]", *(f"{case} {head}" for case in ("high", "low") for head in heads)]
     assert len(rows) == 1 + STEPS + 1
@@ -102,7 +97,7 @@ def test_the_block_plays_the_record_and_names_no_other_s_model(block, dropped, t
     model = pygltflib.GLTF2.load_binary(written / f"{NAME}.glb")
     assert [animation.name for animation in model.animations] == ["high", "low"]
     recorded = read_any_trace(dropped, bundle.read_arrays(dropped), "low")
-    assert recorded.link_pos[:, 0].tobytes() in model.binary_blob()
+    assert recorded.link_pos[:, 1].tobytes() in model.binary_blob()
     assert model.asset.copyright is None
     assert "Franka" not in text
     assert ">licence</a>" in text  # the viewer's
@@ -119,7 +114,7 @@ def test_a_brief_replay_has_the_same_model_one_channel_and_no_sentences(dropped,
     model = written.read_bytes()
     block = replay_block(Panel(tmp_path / "book"), KEY, dropped, brief=True)
     assert written.read_bytes() == model
-    rows = [[cell.astext() for cell in row] for row in block.findall(nodes.row)]
+    rows = rows_of([block])
     assert rows[21] == ["0.2", "1.8", "0.8"]  # heights: high, low
     assert not list(block.findall(nodes.list_item))
     opening = next(iter(block.findall(nodes.raw))).astext()
@@ -134,36 +129,9 @@ def test_a_lesson_without_a_shape_gets_the_call_that_writes_one(dropped, tmp_pat
     assert "page.write_shape(l99.read_shape(entity)) after scene.build()" in str(caught.value)
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with launched(*SOFTWARE) as browser:
-        yield browser
-
-
 @pytest.fixture
-def opened(block, tmp_path, browser):
-    """Return a function that opens the replay alone from disk, in some kind of window.
-
-    What the page asks for is its `asked`, errors of its scripts are its `problems`.
-    """
-    file = page_of(block, tmp_path, ("plot", "stage", "replay"), ("plot", "replay"))
-
-    def open_it(of: Browser = browser, address: str = file.as_uri(), **context) -> Page:
-        page = of.new_page(**{"viewport": {"width": 480, "height": 700}, **context})
-        page.problems, page.asked = errors(page), []
-        page.on("request", lambda request: page.asked.append(request.url.rpartition("/replay/")[2]))
-        page.goto(address)
-        return page
-
-    return open_it
-
-
-@pytest.fixture
-def page(opened) -> Iterator[Page]:
-    page = opened()
-    yield page
-    assert page.problems == []
-    page.close()
+def page(block, open_block) -> Page:
+    return open_block(block)
 
 
 def readout(page: Page) -> dict[str, str]:
@@ -240,46 +208,42 @@ def test_play_runs_to_the_end_and_pauses_on_a_sample(page):
 
 
 @pytest.mark.browser
-def test_reduced_motion_goes_by_steps(opened):
-    page = opened(reduced_motion="reduce")
+def test_reduced_motion_goes_by_steps(block, open_block):
+    page = open_block(block, reduced_motion="reduce")
     play = page.locator(".play")
     assert play.inner_text() == "Next 0.05 s"
     play.click()
     page.get_by_text("Turn the view").wait_for(timeout=120_000)
     assert page.evaluate(FRAMES_ASKED) == 0  # it stands still
     assert readout(page)["time"] == "0.05 s"
-    assert page.problems == []
-    page.close()
 
 
 @pytest.mark.browser
-def test_without_3d_or_with_a_missing_file_the_plots_play_and_it_is_said(opened, browser, tmp_path):
+def test_without_3d_or_with_a_missing_file_the_plots_play_and_it_is_said(
+    block, open_block, browser_3d, tmp_path
+):
     arguments = ["--no-sandbox", "--disable-3d-apis"]
-    blind = browser.browser_type.launch(executable_path=chromium(), args=arguments)
-    page = opened(blind)
+    blind = browser_3d.browser_type.launch(executable_path=chromium(), args=arguments)
+    page = open_block(block, blind)
     page.locator(".play").click()
     page.get_by_text("This browser draws no 3D").wait_for()
     page.wait_for_function("document.querySelector('input[type=range]').value > 0")
     assert f"{NAME}.js" not in page.asked
     assert page.locator(".still").is_visible()
-    assert page.problems == []
     blind.close()
     (tmp_path / "book" / "_build" / "html" / "replay" / f"{NAME}.js").unlink()
-    page = opened()
+    page = open_block(block)
     page.locator(".play").click()
     page.get_by_text("cannot be shown").wait_for()
     assert page.locator("model-viewer").count() == 0
     assert page.locator(".play").inner_text() == "Pause"
-    page.close()
+    page.problems.clear()  # the browser names the missing file
 
 
 @pytest.mark.browser
-def test_two_replays_of_a_page_are_two(block, dropped, tmp_path, opened):
+def test_two_replays_of_a_page_are_two(block, dropped, tmp_path, open_block):
     other = replay_block(Panel(tmp_path / "book"), "l99/lab/cpu", dropped)
-    both = nodes.container("", block, other)
-    page = opened(
-        address=page_of(both, tmp_path, ("plot", "stage", "replay"), ("plot", "replay")).as_uri()
-    )
+    page = open_block(nodes.container("", block, other))
     first, second = (f".replay[data-name=replay-l99-{name}-cpu]" for name in ("lecture", "lab"))
     choose(page, "low", 7, second)
     assert page.locator(f"{first} input:checked").input_value() == "high"
@@ -287,5 +251,3 @@ def test_two_replays_of_a_page_are_two(block, dropped, tmp_path, opened):
     for replay in (first, second):
         show_model(page, replay)
     assert page.locator("model-viewer").count() == 2
-    assert page.problems == []
-    page.close()

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import trimesh
 from falling import LINKS as BOXES
 from falling import falling
 from trimesh.transformations import quaternion_from_matrix, rotation_matrix, translation_matrix
+from without_sphinx import box
 
 from robo_genesis.core.channels import Channel, Level, Replay, Runs
 from robo_genesis.core.trace import BodyTrace
@@ -27,7 +27,6 @@ POSES_AT_REST = [
     rotation_matrix(angle, [1, 2, k]) @ translation_matrix([0.2 * k, 0.1, 0.3])
     for k, angle in enumerate((0.1, 0.4, 1.2, 2.0))
 ]  # fmt: skip
-BOX = trimesh.creation.box((0.1, 0.1, 0.2))
 
 
 def turned(angle: float, sag: float = 0.0) -> list[np.ndarray]:
@@ -89,7 +88,7 @@ def test_runs_with_several_targets_show_none():
 
 
 def test_an_arm_gets_floor_axis_and_target_and_the_view_of_what_moves():
-    shape = [Part(link, (9, 9, 9), BOX.vertices, BOX.faces) for link in LINKS]
+    shape = [box(link) for link in LINKS]
     found = scenery.scenery(shape, turning())
     assert found.axis
     assert found.followed is None
@@ -97,13 +96,6 @@ def test_an_arm_gets_floor_axis_and_target_and_the_view_of_what_moves():
     hand = turned(0.1)[3][:3, 3]
     assert np.linalg.norm(found.camera.centre - hand[[0, 2, 1]] * [1, 1, -1]) < 0.3
     assert found.camera.distance < 2.0
-
-
-def test_a_marker_in_the_air_is_no_ground():
-    marker = Part(WORLD, (9, 9, 9), BOX.vertices * 0.3 + (0.4, 0, 0.5), BOX.faces)
-    ground, tiles = floor_of([marker])
-    assert np.ptp(ground.vertices[:, 2]) == 0
-    assert tiles.vertices[:, 2].max() == pytest.approx(scenery.RAISED)
 
 
 @pytest.mark.parametrize(("drift", "followed"), [(3.0, 0), (0.1, None)])
@@ -114,21 +106,25 @@ def test_a_single_body_that_moves_away_is_followed_horizontally(drift, followed)
         **{name: getattr(trace, name)[:, 1:] for name in ("link_vel", "link_ang")},
     )  # fmt: skip
     runs = body_channels.runs({"run": one}, ["box"], Replay(("run",), "box", "box"))
-    found = scenery.scenery([Part("box", (9, 9, 9), BOX.vertices, BOX.faces)], runs)
+    found = scenery.scenery([box("box")], runs)
     assert (found.followed, found.axis, found.target) == (followed, False, {})
     lowest, highest = one.link_pos[:, 0, 2].min() - 0.1, one.link_pos[:, 0, 2].max() + 0.1
     middle = [0, (lowest + highest) / 2, 0]
     assert found.camera.centre == pytest.approx(middle, abs=0.02)
 
 
-def test_tiles_lie_on_the_highest_still_part():
+def test_tiles_lie_on_the_highest_still_part_and_a_marker_in_the_air_is_no_ground():
     table = slab((1.0, 0.4, 0.05), top=0.7)
     (tiles,) = floor_of([table])
     assert (tiles.link, len(tiles.faces)) == (WORLD, 40)
     low, high = tiles.vertices.min(axis=0), tiles.vertices.max(axis=0)
     assert low == pytest.approx([-0.5, -0.2, 0.7005])
     assert high == pytest.approx([0.5, 0.2, 0.7005])
-    assert [part.link for part in floor_of([])] == [WORLD, WORLD]
+    marker = box(WORLD, 0.05, at=(0.4, 0, 0.5))
+    for still in ([], [marker]):
+        ground, tiles = floor_of(still)
+        assert np.ptp(ground.vertices[:, 2]) == 0
+        assert tiles.vertices[:, 2].max() == pytest.approx(scenery.RAISED)
 
 
 def test_the_picture_holds_all_points_and_no_more_room_than_stated():
@@ -151,15 +147,11 @@ PLACES = ((-0.5, 0.0), (0.5, 0.25))
 SHAPE = [Part("box", (1, 2, 3), np.eye(3), np.array([[0, 1, 2]])), floor(2.0)]
 
 
-@pytest.fixture(scope="module")
-def runs():
+def test_each_case_moves_all_links_and_keeps_its_curve_and_none_is_without_a_place():
     one = falling(1.0)
     other = replace(one, link_pos=one.link_pos * 2)
     replay = Replay(("one", "other"), "box", "box", places=PLACES)
-    return body_channels.runs({"one": one, "other": other}, BOXES, replay)
-
-
-def test_each_case_moves_all_links_and_keeps_its_curve(runs):
+    runs = body_channels.runs({"one": one, "other": other}, BOXES, replay)
     found, parts = side_by_side(runs, SHAPE)
     assert found.links == [f"{run}: {link}" for run in ("one", "other") for link in BOXES]
     assert [part.link for part in parts] == ["one: box", "other: box", WORLD]
@@ -171,8 +163,5 @@ def test_each_case_moves_all_links_and_keeps_its_curve(runs):
     around = scenery.scenery(parts, found)
     assert not around.axis
     assert around.followed is None
-
-
-def test_a_run_without_a_place_is_refused(runs):
     with pytest.raises(ValueError, match="1 places given for 2 runs: one, other"):
         side_by_side(replace(runs, replay=replace(runs.replay, places=PLACES[:1])), SHAPE)

@@ -8,11 +8,7 @@ from nbformat.v4 import new_code_cell, new_notebook, new_output
 from tiny_book import LAB_FRONT, cell, make_book, notebook
 
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.site.takeaways.notebooks import (
-    executed_notebook,
-    student_notebook,
-    version_check,
-)
+from robo_genesis.site.takeaways import notebooks
 from robo_genesis.site.takeaways.plain_markdown import ProseError, Writer
 
 FOLD = "\n:::{dropdown} Answer\n:class-container: solution\nSECRET prose\n:::\n"
@@ -25,11 +21,12 @@ CELLS = (
     '\n+++ {"tags": ["site-only"]}\n\nOnly on the site.\n',
 )
 COMMANDS = ("python3 -m venv course", "course/bin/pip install ./robo.whl jupyterlab")
-CHECK = version_check({"genesis-world": "1.2.3", "robo-genesis": "0.1.0"}, "robo.whl", COMMANDS)
+PINNED = {"genesis-world": "1.2.3", "robo-genesis": "0.1.0"}
+CHECK = notebooks.version_check(PINNED, "robo.whl", COMMANDS)
 
 
 def student_of(page):
-    return student_notebook(
+    return notebooks.student_notebook(
         page, "The origin.", CHECK, Writer(page.path.parent, lambda _: "(yours)")
     )
 
@@ -115,7 +112,7 @@ def test_a_work_sheet_without_predictions_or_numbers_is_refused(tmp_path, sheet,
 @pytest.mark.parametrize(
     ("installed", "said"),
     [
-        ({"genesis-world": "1.2.3", "robo-genesis": "0.1.0"}, None),
+        (PINNED, None),
         ({"genesis-world": "1.0.0", "robo-genesis": "0.1.0"}, "genesis-world 1.2.3; it is 1.0.0"),
         ({"genesis-world": "1.2.3"}, "robo-genesis 0.1.0; it is not installed here"),
     ],
@@ -143,7 +140,7 @@ def executed(page, folder, *outputs):
         for k, (source, output) in enumerate(zip(codes, outputs, strict=True), 1)
     ]
     writer = Writer(folder, lambda _: "0.12 s")
-    found = executed_notebook(page, new_notebook(cells=ran), "The origin.", writer)
+    found = notebooks.executed_notebook(page, new_notebook(cells=ran), "The origin.", writer)
     return [c for c in found.cells if c.cell_type == "code"], nbformat.writes(found)
 
 

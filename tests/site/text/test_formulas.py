@@ -58,12 +58,13 @@ def test_the_font_is_light_with_each_character_and_the_tables_that_place_accents
     assert formulas.cut(npm.published(formulas.FILE)) == content
 
 
-@pytest.fixture(scope="module")
-def drawn(browser):
-    """Return what draws a formula with the course's style at one device pixel for one CSS pixel."""
+@pytest.mark.browser
+def test_the_dot_of_a_velocity_is_visible_at_one_pixel_per_pixel(browser):
     page = browser.new_page(viewport={"width": 300, "height": 100}, device_scale_factor=1)
 
-    def draw(latex: str, css: str) -> np.ndarray:
+    css = formulas.css()
+
+    def drawn(latex: str) -> np.ndarray:
         body = f"<p style='font-size: 17px; margin: 40px'>{to_mathml(latex, 'inline')}</p>"
         page.set_content(f"<!doctype html><style>{css}</style>{body}")
         page.evaluate("document.fonts.ready")
@@ -72,14 +73,8 @@ def drawn(browser):
         assert loaded == ["loaded"] * css.count("@font-face")
         return ink
 
-    yield draw
+    with_dot, without = drawn(r"\dot{q}"), drawn("q")
     page.close()
-
-
-@pytest.mark.browser
-def test_the_dot_of_a_velocity_is_visible_at_one_pixel_per_pixel(drawn):
-    css = formulas.css()
-    with_dot, without = drawn(r"\dot{q}", css), drawn("q", css)
     top = np.nonzero(without.max(axis=1) > 64)[0][0]
     light = [row for row in range(top - 6, top + 1) if with_dot[row].max() < 64]
     assert light, "light pixels lie between the dot and the letter"

@@ -8,19 +8,6 @@ from robo_genesis.core.comparison import compare_values
 from robo_genesis.core.project import BOOK
 from robo_genesis.lessons.l04 import spec as l04
 from robo_genesis.site.text import question_nodes, questions
-from robo_genesis.site.text.questions import (
-    JUDGED,
-    LOWER,
-    UNDECIDED,
-    UNKNOWN,
-    WRONG,
-    asked_number,
-    declared_margin,
-    measured_order,
-    measured_sentence,
-    options,
-    split_causes,
-)
 
 
 @pytest.mark.parametrize(
@@ -29,7 +16,7 @@ from robo_genesis.site.text.questions import (
         ("s", "lower", "", "earlier"),
         ("rad", "higher", "", "more"),
         ("rad/s", "lower", "", "less"),
-        ("1", None, "", UNDECIDED),
+        ("1", None, "", questions.UNDECIDED),
         ("m", "equal", "", "the same (to 0.1 mm)"),
         ("1", "equal", "", "the same"),
         ("s", "equal", "settling_time", "at the same time"),
@@ -38,18 +25,19 @@ from robo_genesis.site.text.questions import (
     ],
 )
 def test_exactly_the_measured_option_is_right(unit, order, metric, text):
-    shown = options(unit, order, "0.1 mm", margin=declared_margin("l04", metric))
+    margin = questions.declared_margin("l04", metric)
+    shown = questions.options(unit, order, "0.1 mm", margin=margin)
     assert [name for name, right, _ in shown if right] == [text]
 
 
 def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
     first, second = (experiment.metrics[name].overshoot for name in ("G1", "G2"))
     assert abs(first - second) > l04.RESOLUTION["rad"]
-    order, unit, sentence, origin = measured_order("l04/lab", "overshoot", ["G1", "G2"])
+    order, unit, sentence, origin = questions.measured_order("l04/lab", "overshoot", ["G1", "G2"])
     assert (order, unit) == ("higher" if second > first else "lower", "rad")
     assert f"{first:.4f} rad for G1, {second:.4f} rad for G2" in sentence
     assert origin.startswith("Measured by l04/lab on cpu")
-    assert measured_order("l04/lab", "overshoot", ["G2", "G2"])[0] == "equal"
+    assert questions.measured_order("l04/lab", "overshoot", ["G2", "G2"])[0] == "equal"
 
 
 @pytest.mark.parametrize(
@@ -65,13 +53,11 @@ def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
 def test_the_answer_has_both_values_in_a_readable_unit(unit, values, margin, said):
     resolution = {"m": 1e-5, "s": 0.005}
     found = compare_values("depth", unit, *values, resolution, margin)
-    assert measured_sentence(("A", "B"), found).startswith(said)
+    assert questions.measured_sentence(("A", "B"), found).startswith(said)
 
 
-KEYS = [*LOWER, UNKNOWN]
-
-
-NUMERIC = [*JUDGED, WRONG]
+KEYS = [*questions.LOWER, questions.UNKNOWN]
+NUMERIC = [*questions.JUDGED, questions.WRONG]
 
 
 @pytest.mark.parametrize(
@@ -92,9 +78,9 @@ def test_the_causes_of_valid_keys_follow_a_question(lines, keys, causes):
     asked = ["When does", "it end?", "", *lines.splitlines()]
     if causes is None:
         with pytest.raises(LookupError, match=rf"is not a cause.*Valid.*`- {keys[0]}: …`"):
-            split_causes(asked, keys)
+            questions.split_causes(asked, keys)
     else:
-        assert split_causes(asked, keys) == ("When does it end?", causes)
+        assert questions.split_causes(asked, keys) == ("When does it end?", causes)
 
 
 def test_a_tolerance_is_a_share_in_percent():
@@ -112,7 +98,7 @@ MEASURED = {"answer": "G1 < G2", "origin": "Measured"}
 
 
 def test_each_option_tells_yes_or_no_with_its_cause_and_the_text_is_escaped():
-    shown = options("s", "higher", "5 ms", {"lower": "F < 9"})
+    shown = questions.options("s", "higher", "5 ms", {"lower": "F < 9"})
     html = written(question_nodes.choice("choice-3", options=shown, **MEASURED))
     assert re.findall(r'feedback (\w+)">(\w+)\. (.*?)</p>', html) == [
         ("wrong", "No", "F &lt; 9 G1 &lt; G2"),
@@ -130,7 +116,7 @@ def test_the_right_number_is_the_bundle_s(outputs, experiment):
         ("", 1, f"{value:.4f} rad"),
         ("mrad", 1000, f"{1000 * value:.3g} mra"),
     ):
-        found = asked_number("l04/lab", "G2.overshoot", 20, causes, unit)
+        found = questions.asked_number("l04/lab", "G2.overshoot", 20, causes, unit)
         assert found["value"] == pytest.approx(scale * value)
         assert found["tolerance"] == pytest.approx(scale * value / 5)
         assert found["unit"] == (unit or "rad")
@@ -138,42 +124,30 @@ def test_the_right_number_is_the_bundle_s(outputs, experiment):
     assert found["feedback"][1] == ("low", "Too low. The motor saturates.")
     assert found["feedback"][3] == ("x57.3", "No. In degrees.")
     with pytest.raises(LookupError, match=r"cannot be shown in 'mm'\. Valid is mrad"):
-        asked_number("l04/lab", "G2.overshoot", 20, {}, "mm")
+        questions.asked_number("l04/lab", "G2.overshoot", 20, {}, "mm")
 
 
 FEEDBACK = [("right", "Yes."), ("low", "Too low. It saturates."), ("high", "Too high.")]
 FEEDBACK += [("x57.3", "No. In degrees.")]
 
 
-@pytest.fixture
-def asked(browser):
-    """A page with a choice and a number, and the course's script and style."""
-    shown = options("s", None, "5 ms", {"lower": "Why"})
+@pytest.mark.browser
+def test_feedback_is_announced_by_keyboard_and_a_number_is_right_within_its_tolerance(page):
+    shown = questions.options("s", None, "5 ms", {"lower": "Why"})
     first = question_nodes.choice("choice-3", options=shown, **MEASURED)
     given = {"value": 0.05, "tolerance": 0.01, "unit": "rad", "feedback": FEEDBACK}
     second = question_nodes.number("choice-4", **MEASURED, **given)
     script, style = (BOOK / "_static" / name for name in ("choice.js", "course.css"))
-    page = browser.new_page()
     page.set_content(
         f"<!doctype html><style>{style.read_text()}</style>{written(first)}{written(second)}"
     )
     page.add_script_tag(path=script)
-    yield page
-    page.close()
-
-
-@pytest.mark.browser
-def test_feedback_is_announced_by_keyboard_too(asked):
-    asked.locator("#choice-3-0").focus()
-    asked.keyboard.press("Space")
-    said = asked.locator("fieldset output")
+    page.locator("#choice-3-0").focus()
+    page.keyboard.press("Space")
+    said = page.locator("fieldset output")
     assert said.first.inner_text() == "No. Why G1 < G2"
-    asked.keyboard.press("ArrowUp")  # from the first option to the last
+    page.keyboard.press("ArrowUp")  # from the first option to the last
     assert said.first.inner_text() == "Yes. G1 < G2"
-
-
-@pytest.mark.browser
-def test_a_number_is_right_within_its_tolerance(asked):
     for typed, text in (
         ("0.041", "Yes."),
         ("0.039", "Too low. It saturates."),
@@ -182,8 +156,8 @@ def test_a_number_is_right_within_its_tolerance(asked):
         ("1.0", "Too high."),
         ("", ""),
     ):
-        asked.locator("#choice-4").fill(typed)
-        asked.keyboard.press("Tab")
-        assert asked.locator("fieldset output").last.inner_text() == text
-        shown = [t.inner_text() for t in asked.locator(".number .feedback").all() if t.is_visible()]
+        page.locator("#choice-4").fill(typed)
+        page.keyboard.press("Tab")
+        assert said.last.inner_text() == text
+        shown = [t.inner_text() for t in page.locator(".number .feedback").all() if t.is_visible()]
         assert shown == [text] * bool(text)
