@@ -70,7 +70,8 @@ def test_a_verification_imports_no_plotting():
     found = (
         "import sys, robo_genesis.pipeline.bundles.verify as _; print('matplotlib' in sys.modules)"
     )
-    names = ", ".join(LESSONS)
+    drawing = [name for name in LESSONS if (PACKAGE / "lessons" / name / "plots.py").is_file()]
+    names = ", ".join(drawing)
     plots = f"from robo_genesis.lessons import {names}; print([x.plots for x in ({names})])"
     done = subprocess.run(
         [sys.executable, "-c", f"{found}; {plots}"],
@@ -81,4 +82,4 @@ def test_a_verification_imports_no_plotting():
     )
     drawn, modules = done.stdout.splitlines()
     assert drawn == "False"
-    assert modules.count("plots.py") == len(LESSONS)
+    assert modules.count("plots.py") == len(drawing)

@@ -28,7 +28,9 @@ from robo_genesis.pipeline.pages.syntax import PACKAGE, claims_in, imported_name
 if TYPE_CHECKING:  # a verification loads no Jupyter
     from robo_genesis.pipeline.pages.book import Page
 
-DATA_SUFFIXES = (".json", ".toml", ".yaml", ".yml", ".csv")
+DATA_SUFFIXES = (
+    ".json", ".toml", ".yaml", ".yml", ".csv", ".xml", ".urdf", ".obj", ".stl"
+)  # fmt: skip
 
 COMPUTING = ("core", "sim", "lessons")
 """The sub-packages with modules that measure."""

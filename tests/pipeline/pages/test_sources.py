@@ -77,7 +77,7 @@ def test_a_cell_that_cannot_run_or_needs_no_module_imports_nothing(source):
         ("robo_genesis/lazy.py", "# a comment", False),
         ("robo_genesis/lazy.py", "X = (", True),  # no longer Python: its text counts
         ("robo_genesis/evidence/data.json", "1", True),
-        ("robo_genesis/lessons/l04/data.csv", "1", True),
+        ("robo_genesis/lessons/l04/arm.xml", "1", True),
         ("robo_genesis/lessons/l03/data.csv", "1", False),
         ("requirements.lock", "# a comment", True),
         ("robo_genesis/sphinx_ext.py", "X = 1", False),  # no page imports it
@@ -159,7 +159,7 @@ CHANGES = [
     ("core/trace", DOCSTRING, NONE, NONE),
     ("core/trace", ("\n\n\n", "\n\n# A comment.\n\n\n\n"), NONE, NONE),
     ("core/trace", CONSTANT, ALL, ALL),
-    ("sim/session", CONSTANT, ALL, ALL),
+    ("sim/session", CONSTANT, ALL, ("l01", "l04", "l05", "l06")),
     ("core/project", CONSTANT, ALL, NONE),
     ("evidence/recorder", CONSTANT, ALL, NONE),
     ("pipeline/stages", CONSTANT, NONE, NONE),
