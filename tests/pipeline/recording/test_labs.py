@@ -136,7 +136,6 @@ FOUND += [StepResult("torch", "warning", "c")]
         ({"to": Path("file", "below")}, r"file is not a folder .* TO=folder"),
         ({"root": Path()}, r"Installed is genesis-world \S+, pinned in pyproject.toml is 0\.0\.1"),
         ({"probe": finds("cuda", *FOUND)}, r"^Broken: devices, kernel\. The lines"),
-        ({"probe": finds("cuda", *FOUND), "lesson": ""}, r"^Broken: devices, kernel\. The lines"),
     ],
 )
 def test_what_cannot_be_recorded_is_refused_before_the_run(tmp_path, monkeypatch, settings, said):
