@@ -3,11 +3,9 @@
 import json
 import subprocess
 import sys
-from pathlib import Path
 
-import robo_genesis
+from robo_genesis.core.project import ROOT
 
-PACKAGE = Path(robo_genesis.__file__).parent
 BLOCKED = """
 import importlib, json, sys
 for name in ("genesis", "quadrants", "torch", "mujoco"):
@@ -24,14 +22,14 @@ print(json.dumps(failed))
 
 def test_every_module_imports_without_the_engine():
     names = [
-        ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
-        for path in sorted(PACKAGE.rglob("*.py"))
+        ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+        for path in sorted((ROOT / "robo_genesis").rglob("*.py"))
     ]
     done = subprocess.run(
         [sys.executable, "-c", BLOCKED, json.dumps(names)],
         capture_output=True,
         text=True,
         check=True,
-        cwd=PACKAGE.parent,
+        cwd=ROOT,
     )
     assert json.loads(done.stdout.splitlines()[-1]) == {}

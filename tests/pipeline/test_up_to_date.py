@@ -129,9 +129,3 @@ def test_a_site_stands_as_long_as_inputs_and_site_are_what_they_were(published):
 def test_each_change_of_the_site_and_a_record_that_cannot_be_read_is_work(published, name, change):
     change(published / name)
     assert up_to_date.recorded_lines(published, "inputs") == []
-
-
-def test_inputs_that_changed_meanwhile_leave_no_record(published):
-    (published / up_to_date.RECORD).unlink()
-    up_to_date.record(published, "inputs", "others", [])
-    assert not (published / up_to_date.RECORD).exists()
