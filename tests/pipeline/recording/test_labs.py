@@ -163,9 +163,6 @@ def test_the_next_command_brings_back_what_a_kill_left_aside(tmp_path):
     assert old.read_text() == "old"
 
 
-# All labs in one command
-
-
 FACTS = SimpleNamespace(
     backend=SimpleNamespace(device_name="a GPU\x1b[1m"),
     checks=[SimpleNamespace(passed=True), SimpleNamespace(passed=False)],
