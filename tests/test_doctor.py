@@ -246,18 +246,10 @@ def test_a_machine_or_its_saved_report_is_compared_with_that_of_a_run(
 @pytest.mark.parametrize(
     ("here", "rows", "advice"),
     [
-        (
-            {"engine": "2" * 50, "backend": "a\x1b"},
-            ["2" * 50, "a\\x1b"],
-            "Install the engine",
-        ),
+        ({"engine": "2" * 50, "backend": "a\x1b"}, ["2" * 50, "a\\x1b"], "Install the engine"),
         ({"engine": "1", "backend": "cuda"}, ["equal", "cuda"], "Another backend"),
         ({"engine": "1", "backend": "cpu"}, ["equal"] * 2, "The engine is the same. Other differ"),
-        (
-            {"engine": "1"},
-            ["equal", "unknown: the engine did not start"],
-            "version is the same",
-        ),
+        ({"engine": "1"}, ["equal", "unknown: the engine did not start"], "version is the same"),
     ],
 )
 def test_the_advice_is_about_the_difference_that_matters_most(here, rows, advice):

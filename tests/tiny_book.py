@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import yaml
 
 from robo_genesis.core.project import BOOK, ROOT
+from robo_genesis.evidence.refusals import BundleRefused
 
 FRONT = (
     "---\nfile_format: mystnb\nkernelspec: {{name: python3}}\n{front}---\n# {title}\n\nA page.\n"
@@ -79,6 +80,10 @@ def accept(folder: Path, run_id: str) -> SimpleNamespace:
     manifest = json.loads(text, object_hook=lambda fields: SimpleNamespace(**fields))
     assert manifest.predicate.run_id == run_id
     return manifest
+
+
+def refuse(folder: Path, run_id: str) -> SimpleNamespace:
+    raise BundleRefused("metrics", "metrics.json g1.rise_time is not what the arrays say.")
 
 
 def make_book(folder: Path, **pages: str) -> Path:

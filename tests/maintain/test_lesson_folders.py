@@ -8,8 +8,7 @@ import shutil
 
 import pytest
 import yaml
-from bs4 import BeautifulSoup
-from built_site import PAGES
+from built_site import PAGES, parsed
 from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
 
 from robo_genesis.core.project import CACHE
@@ -57,10 +56,6 @@ def build(work):
     shutil.copytree(CACHE / "pages", cache / "pages", symlinks=True)
     print(make(work, "book"))
     return work / "book" / "_build" / "html"
-
-
-def parsed(site, name):
-    return BeautifulSoup((site / f"{name}.html").read_text(), "html.parser")
 
 
 @pytest.fixture(scope="module", params=REMOVED)

@@ -107,7 +107,7 @@ def test_pin_and_lock_change_together_with_a_report_and_git_restores_both(root):
 @pytest.mark.parametrize(
     ("stage", "why", "packages"),
     [
-        ("resolve", "ERROR: no set of packages", "Nothing was found here."),
+        ("resolve", "ERROR: no set of packages", "Nothing was found here"),
         ("install", "Error 1", "| zeta |  | 2 |"),
         ("book", "lab, code cell 3, line 7: rise()", "| zeta |  | 2 |"),
         ("test", "Error 1", "| zeta |  | 2 |"),

@@ -39,18 +39,14 @@ def changed(clone: Path) -> list[str]:
     return git(clone, "status", "--porcelain").split()
 
 
-def built(clone: Path) -> Path:
-    return clone / "book" / "_build" / "evidence" / "l04" / "cpu"
-
-
 def predicate(bundle: Path) -> dict:
     return json.loads((bundle / "manifest.json").read_text())["predicate"]
 
 
 def keep(clone: Path, name: str) -> Path:
     """Copy the built bundle to where no later build removes it; its folder names the backend."""
-    kept = clone.parent / name
-    return shutil.copytree(built(clone), kept / "cpu")
+    built = clone / "book" / "_build" / "evidence" / "l04" / "cpu"
+    return shutil.copytree(built, clone.parent / name / "cpu")
 
 
 def test_there_and_back(clone):

@@ -21,18 +21,9 @@ def executed(folder: Path, docname: str, files: dict[str, bytes]) -> Path:
     for name, content in files.items():
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         (place / name).write_bytes(content)
-    record = Record(
-        docname=docname,
-        lesson=None,
-        page=None,
-        fingerprint="f",
-        code="0" * 64,
-        run_id="1" * 32,
-        engine=None,
-        seconds=1.0,
-        cell_seconds=[],
-        files={},
-    )
+    of_page = {"docname": docname, "lesson": None, "page": None, "engine": None, "files": {}}
+    of_run = {"fingerprint": "f", "code": "0" * 64, "run_id": "1" * 32, "seconds": 1.0}
+    record = Record(**of_page, **of_run, cell_seconds=[])
     (place / RECORD).write_text(record.model_dump_json())
     return place
 

@@ -49,23 +49,27 @@ def built(root: Path, status: int = 0, executed: Path | None = None) -> dict:
     return json.loads((root.parent / "found.json").read_text())
 
 
-def hidden_change(root, monkeypatch):
+def hidden_changes(root, monkeypatch):
+    """Hide changes of tracked files from git, and let files that it ignores stand in the way."""
     git(root, "update-index", "--skip-worktree", "page.md", "course.py")
     (root / "page.md").write_text("changed\n")
     (root / "course.py").write_text("VALUE = 2\n")
-
-
-def ignored_elsewhere(root, monkeypatch):
     (root / ".git" / "info" / "exclude").write_text("new.md\n")
-    (root / "new.md").write_text("new\n")
+    left = root / ".cache" / FOLDER / "checkout"  # by a release that failed
+    for path in (root / "new.md", left / "left.md", root / ".cache" / "pages" / "forged"):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
 
 
 def stale_bytecode(root, monkeypatch):
-    other = root.parent / "other.py"
+    other = root.parent / "path" / "course.py"
+    other.parent.mkdir()
     other.write_text("VALUE = 2\n")
     cached = root / "__pycache__" / f"course.{os.sys.implementation.cache_tag}.pyc"
     unchecked = py_compile.PycInvalidationMode.UNCHECKED_HASH
     py_compile.compile(str(other), str(cached), invalidation_mode=unchecked)
+    monkeypatch.setenv("PYTHONPATH", str(other.parent))
+    monkeypatch.setenv("PYTHONPYCACHEPREFIX", str(other.parent))
 
 
 def other_repository(root, monkeypatch):
@@ -100,39 +104,14 @@ def configured_by_the_user(root, monkeypatch):
     monkeypatch.setenv("HOME", str(home))
 
 
-def forged_caches(root, monkeypatch):
-    for name in ("npm", "derived", "pages"):
-        (root / ".cache" / name).mkdir(parents=True)
-        (root / ".cache" / name / "forged").touch()
-
-
-def left_by_a_failed_release(root, monkeypatch):
-    left = root / ".cache" / FOLDER / "checkout"
-    left.mkdir(parents=True)
-    (left / "left.md").touch()
-
-
-def other_python_path(root, monkeypatch):
-    other = root.parent / "path"
-    other.mkdir()
-    (other / "course.py").write_text("VALUE = 2\n")
-    monkeypatch.setenv("PYTHONPATH", str(other))
-    monkeypatch.setenv("PYTHONPYCACHEPREFIX", str(other))
-
-
 @pytest.mark.parametrize(
     "spoil",
     [
-        lambda root, monkeypatch: None,
-        hidden_change,
-        ignored_elsewhere,
+        hidden_changes,
         stale_bytecode,
         other_repository,
         replaced_object,
         configured_by_the_user,
-        forged_caches,
-        left_by_a_failed_release,
-        other_python_path,
     ],
 )
 def test_a_release_sees_the_files_of_its_commit_and_no_others(root, monkeypatch, spoil):

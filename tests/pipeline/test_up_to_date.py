@@ -122,20 +122,10 @@ def test_a_site_stands_as_long_as_inputs_and_site_are_what_they_were(published):
         ("html/index.html", Path.unlink),
         ("evidence/l04/cpu/log.txt", lambda path: path.write_text("new")),
         ("pages/a", lambda path: path.with_name("new").touch()),
+        *((up_to_date.RECORD, lambda path, text=text: path.write_text(text))
+          for text in ("", "[]", "{}", '{"inputs": "inputs"}')),
     ],
-)
-def test_each_change_of_the_site_is_work(published, name, change):
+)  # fmt: skip
+def test_each_change_of_the_site_and_a_record_that_cannot_be_read_is_work(published, name, change):
     change(published / name)
     assert up_to_date.recorded_lines(published, "inputs") == []
-
-
-@pytest.mark.parametrize("text", ["", "[]", "{}", '{"inputs": "inputs"}'])
-def test_a_record_that_cannot_be_read_is_work(published, text):
-    (published / up_to_date.RECORD).write_text(text)
-    assert up_to_date.recorded_lines(published, "inputs") == []
-
-
-def test_inputs_that_changed_meanwhile_leave_no_record(published):
-    (published / up_to_date.RECORD).unlink()
-    up_to_date.record(published, "inputs", "others", [])
-    assert not (published / up_to_date.RECORD).exists()

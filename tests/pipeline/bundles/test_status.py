@@ -50,12 +50,6 @@ def test_a_build_without_a_camera_says_clean_kernel_and_skip(recorder, experimen
     assert "camera SKIP" in sentence
 
 
-def test_another_backend_s_evidence_is_missing_until_it_is_recorded(tmp_path):
-    status = recorded_status(tmp_path, "l04", "amdgpu")
-    assert (status.state, status.backend) == ("missing", "amdgpu")
-    assert f"recorded for Genesis {project.engine_pin()}." in status.sentence
-
-
 OLD_ENGINE = f"Genesis 1.2.0; this site uses {project.engine_pin()}."
 OLD_COMPILER = f"Quadrants 1.2.9; this site uses {QUADRANTS}."
 STATES = [

@@ -137,12 +137,12 @@ def test_neither_verification_nor_comparison_loads_the_engine_or_jupyter(folder)
         said, loaded = run_watched("verify.py", BUNDLE=str(folder))
     assert "verified" in said
     assert "numpy" in loaded
-    assert not loaded & {*ENGINE, *JUPYTER}
+    assert not loaded & {*ENGINE, *JUPYTER, "matplotlib"}
     said, loaded = run_watched(
         "compare.py", "--report", str(folder.parent), str(folder), str(folder)
     )
     assert "\nEqual. Rows: " in said
-    assert not loaded & {*ENGINE, *JUPYTER}
+    assert not loaded & {*ENGINE, *JUPYTER, "matplotlib"}
 
 
 def test_a_broken_book_is_named(command, recorded, monkeypatch):

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from bs4 import BeautifulSoup
+from built_site import parsed
 from tiny_book import WRITE_BUNDLE, cell, make_book, notebook
 
 from robo_genesis.pipeline.html.render import render
@@ -52,10 +52,6 @@ def html(tmp_path_factory):
     return html
 
 
-def parsed(page: Path) -> BeautifulSoup:
-    return BeautifulSoup(page.read_text(), "html.parser")
-
-
 def test_metadata_come_from_the_page_and_outputs_from_the_store(html):
     shown = (html / "page.html").read_text()
     assert "tag_hide-input" in shown
@@ -64,14 +60,14 @@ def test_metadata_come_from_the_page_and_outputs_from_the_store(html):
 
 @pytest.mark.parametrize("name", ["text", "lab"])
 def test_no_front_matter_or_bundle_s_word_can_set_a_badge(html, name):
-    badges = [badge.get_text() for badge in parsed(html / f"{name}.html").select(".evidence-badge")]
+    badges = [badge.get_text() for badge in parsed(html, name).select(".evidence-badge")]
     assert badges == ["cpu-refused", "amdgpu-missing"]
 
 
 def test_without_an_address_nothing_claims_one(html):
     assert not (html / "sitemap.xml").exists()
     claims = 'link[rel="canonical"], meta[property^="og:"]'
-    assert parsed(html / "page.html").select(claims) == []
+    assert parsed(html, "page").select(claims) == []
 
 
 def test_sphinx_executes_nothing_and_names_the_page(tmp_path):

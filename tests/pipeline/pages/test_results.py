@@ -10,7 +10,7 @@ from tiny_book import cell, make_book, notebook, raising
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.execute import execute_pages
 from robo_genesis.pipeline.pages.folder import stored_notebook
-from robo_genesis.pipeline.pages.results import at_cell, last_lines, unexpected_outcome
+from robo_genesis.pipeline.pages.results import at_cell, unexpected_outcome
 from robo_genesis.pipeline.pages.store import places
 
 RAISES = {"tags": ["raises-exception"], "expects": "ValueError: no"}
@@ -102,8 +102,3 @@ def test_a_line_of_a_run_of_other_text_is_not_named(failing):
     last = len(page.notebook.cells) - 1
     ran = executed.cells[1].copy() | {"source": "1 / 0"}
     assert at_cell(page, last, "E", "message", nbformat.from_dict(ran)).source == "one = 1"
-
-
-def test_last_lines_are_few_and_without_colours():
-    text = "".join(f"\x1b[31mline {n}\x1b[0m\n" for n in range(40))
-    assert last_lines(text) == tuple(f"line {n}" for n in range(25, 40))

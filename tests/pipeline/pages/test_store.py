@@ -175,11 +175,6 @@ def remove(name: str):
     return lambda here: lab(here, name).unlink()
 
 
-def file_of_text(here):
-    (here / "executed/text/outputs").mkdir()
-    (here / "executed/text/outputs/new").touch()
-
-
 def two(here):
     shutil.copytree(lab(here, ""), here / "executed/again")
 
@@ -212,7 +207,6 @@ SPOILT = {
     "what is no notebook": (file("executed.ipynb", "[]"), "notebook", "ipynb is not a notebook"),
     "a changed file": (lambda h: lab(h, SHAPE).write_text("new"), "digest", f"['{SHAPE}'] changed"),
     "a file of another page": (file("new", "new"), "files", "not of this page ['new']"),
-    "a file of a page without any": (file_of_text, "files", "not of this page ['outputs/new']"),
     "a path for a file": (record(files={"../../x": "0" * 64}), "files", "absent are ['../../x'"),
     "a link": (link, "files", "shape.npz is a link or device"),
     "a pipe": (lambda h: os.mkfifo(lab(h, "pipe")), "files", "pipe is a link or device"),
