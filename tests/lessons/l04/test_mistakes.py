@@ -7,7 +7,7 @@ import pytest
 
 from robo_genesis.core.checks import Check
 from robo_genesis.lessons.l04 import mistakes, spec
-from robo_genesis.lessons.l04.backend_mistake import absent_backend, absent_backend_failure
+from robo_genesis.lessons.l04.backend_mistake import absent_backend_failure
 
 STAY = replace(spec.BASELINE, q_target=spec.BASELINE.q_start)
 AT_START = replace(spec.G2, q_target=spec.G2.q_start)
@@ -33,13 +33,6 @@ def test_a_symptom_is_not_found_where_nothing_is_wrong(lab, mistake, args, says)
     found = mistake(arm, *args)
     assert not found.shown
     assert says in found.evidence
-
-
-@pytest.mark.engine
-def test_an_absent_backend_raises_by_name_and_falls_back_in_general(lab):
-    found = absent_backend(lab.engine.backend.hip_version)
-    assert found.shown
-    assert "`GenesisException`: Backend <gs.amdgpu> not available" in found.evidence
 
 
 GONE = ["GenesisException", "Backend ~~<gs.cuda>~~ not available on this machine."]

@@ -52,15 +52,6 @@ def test_the_stepped_joint_overshoots_by_known_amounts(case, step, forces, overs
     assert path[-1] == pytest.approx(-forces.get("gravity", 0.0) / kp, abs=1e-5)  # at rest
 
 
-def test_the_stepped_joint_approaches_the_ideal_one_as_its_step_shrinks():
-    ideal = IdealJoint(1.077, 101.0, 7000.0).response(np.linspace(0, 0.4, 9))
-    off = []
-    for h in (1e-3, 1e-4):
-        path = 1 + stepped("G2", 1.0, h, round(0.4 / h))
-        off.append(np.abs(path[:: round(0.05 / h)] - ideal).max())
-    assert off[1] < 0.2 * off[0] < 0.2
-
-
 def test_what_acts_on_both_runs_is_gone_from_the_share(make_trace):
     response, sag = np.array([0.0, 0.2, 0.5, 0.8, 1.0]), -0.02 * np.arange(5)
     share = step_share(make_trace(0.5 * response + sag, 0.5), make_trace(sag, 0.0), 0)

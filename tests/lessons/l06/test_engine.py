@@ -10,7 +10,6 @@ from robo_genesis.core.scene import DT, SUBSTEPS
 from robo_genesis.lessons.l06 import mistakes, spec, study
 from robo_genesis.lessons.l06.run import ask, reach
 from robo_genesis.sim.arm.batch import Batch, run_batch, set_link_mass
-from robo_genesis.sim.arm.engine_kinematics import NotAccepted
 from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES
 from robo_genesis.sim.arm.joint_control import CaseError
 from robo_genesis.sim.arm.joints import resolve_joints, to_numpy
@@ -70,12 +69,6 @@ def test_answers_of_some_environments_are_those_of_all(four):
     some = ask(four.robot, four.joints, [WORLDS[3], WORLDS[1]], envs=[3, 1])
     assert (some.q == every.q[[3, 1]]).all()
     assert (some.error == every.error[[3, 1]]).all()
-
-
-def test_a_refused_row_stops_the_command_of_all(four):
-    worlds = [*WORLDS[:3], replace(WORLDS[3], positions=spec.BEYOND_REACH[None])]
-    with pytest.raises(NotAccepted, match=r"Rows \[3\] are refused"):
-        reach(**vars(four), worlds=worlds)
 
 
 @pytest.mark.parametrize(("rows", "envs", "message"), [
