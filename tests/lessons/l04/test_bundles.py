@@ -12,7 +12,6 @@ from spoilers import METRICS, case, pop
 
 from robo_genesis.lessons.l04 import LESSON, spec, study_spec
 from robo_genesis.pipeline.bundles.verify import verify_bundle
-from robo_genesis.site.figures.explorer import Recorded
 
 RUN, OTHER = "grid_step_50mrad_KP_4375_KV_150", "grid_step_50mrad_KP_4375_KV_200"
 
@@ -68,9 +67,3 @@ def test_another_judgement_changes_a_verdict_and_nothing_else(studied, monkeypat
         (study_spec, "GRAVITY_AGREEMENT", -1.0, "gravity_support"),
     ]
     judged_again(studied("lecture"), monkeypatch, judgements)
-
-
-def test_a_page_can_show_the_explorer_of_another_page_s_runs(sound):
-    data = Recorded("l04", sound["batch"]).explored()
-    cells = (cell for one in data["maps"] for row in one["rows"] for cell in row["cells"])
-    assert [cell["tag"] for cell in cells if cell["opens"]] == ["G2"]

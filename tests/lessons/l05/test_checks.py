@@ -104,13 +104,6 @@ def test_the_metrics_of_a_run_are_three_distances(reaches):
         reach_metrics(changing, spec.BASELINE)
 
 
-def test_twice_the_gain_halves_the_sag():
-    q = np.array(spec.BASELINE.q_start)
-    one, other = (study.sag(q, factor * spec.BASELINE.kp) for factor in (1, 2))
-    assert other == pytest.approx(one / 2)
-    assert one[2] < 0  # the hand hangs below its command
-
-
 def test_a_self_motion_keeps_the_hand_in_place_and_groups_solutions(reaches):
     target = kinematics.Pose(spec.TARGET, spec.DOWN)
     curve = study.self_motion(reaches.traces["baseline"].target[0, :7], target)
