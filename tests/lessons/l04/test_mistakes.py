@@ -61,4 +61,3 @@ def test_mistakes_of_reading_are_not_found_where_nothing_is_wrong(traces):
     assert not mistakes.wrong_getter(resting).shown
     unobserved = mistakes.time_shift(replace(still, q=np.tile(still.q[0], (len(still.t), 1))))
     assert unobserved.check == Check("gallery_time_shift", False, unobserved.evidence)
-    assert "rise time not observed instead of not observed" in unobserved.evidence

@@ -4,7 +4,7 @@ import control
 import numpy as np
 import pytest
 
-from robo_genesis.lessons.l04 import study_spec
+from robo_genesis.lessons.l04 import study, study_spec
 from robo_genesis.lessons.l04.theory import IdealJoint, step_share, stepped_joint
 
 T = np.linspace(0, 1.2, 24001)
@@ -30,13 +30,6 @@ def test_the_regimes_meet_at_critical_damping(off):
     assert near.overshoot == pytest.approx(0.0)
 
 
-def stepped(case, step, h=0.005, steps=240, **forces):
-    kp, kv = (
-        float(gain[3]) for gain in (study_spec.COMPARED[case].kp, study_spec.COMPARED[case].kv)
-    )
-    return stepped_joint(IdealJoint(1.077, kv + 1.0, kp), 1.0, step, h, steps, **forces)
-
-
 @pytest.mark.parametrize(
     ("case", "step", "forces", "overshoot"),
     [
@@ -46,9 +39,9 @@ def stepped(case, step, h=0.005, steps=240, **forces):
     ],
 )
 def test_the_stepped_joint_overshoots_by_known_amounts(case, step, forces, overshoot):
-    path = stepped(case, step, **forces)
+    kp, kv = study_spec.COMPARED[case].kp[3], study_spec.COMPARED[case].kv[3]
+    path = stepped_joint(IdealJoint(1.077, kv + 1.0, kp), 1.0, step, 0.005, 240, **forces)
     assert max(0.0, path.max()) == pytest.approx(overshoot, rel=2e-3, abs=2.5e-6)
-    kp = study_spec.COMPARED[case].kp[3]
     assert path[-1] == pytest.approx(-forces.get("gravity", 0.0) / kp, abs=1e-5)  # at rest
 
 
@@ -56,3 +49,13 @@ def test_what_acts_on_both_runs_is_gone_from_the_share(make_trace):
     response, sag = np.array([0.0, 0.2, 0.5, 0.8, 1.0]), -0.02 * np.arange(5)
     share = step_share(make_trace(0.5 * response + sag, 0.5), make_trace(sag, 0.0), 0)
     assert share == pytest.approx(response)
+
+
+@pytest.mark.parametrize("term", [0.0, 100.0])
+def test_the_joint_alone_is_the_equation_by_hand(study_runs, term):
+    given = study_runs.readings[study.GROUP]
+    damping, h = given["passive_damping"], 0.005
+    mass = given["inertia_Genesis"] + h * (damping + term)
+    after_one = h * (87.0 - given["gravity_at_start_Genesis"]) / mass
+    more = h * (87.0 - given["gravity_at_start_Genesis"] - damping * after_one) / mass
+    assert study.first_speed(study_runs, "G1", term) == pytest.approx(after_one + more)
