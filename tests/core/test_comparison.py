@@ -4,7 +4,7 @@ import pytest
 
 from robo_genesis.core.comparison import compare_values
 from robo_genesis.core.tables import comparison_sentence, prediction_sentence
-from robo_genesis.core.text import format_value
+from robo_genesis.core.text import format_value, scaled_value
 
 NAMES, ADVICE = ("G1", "G2"), "Look at the window."
 
@@ -16,6 +16,20 @@ def test_values_are_written_with_their_unit():
     assert written == [
         "not observed", "0.0447 rad", "87.00 N·m", "1 sample", "19 samples", "0.0000 rad",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (0.00447, "mm", "4.47 mm"), (0.0123, "%", "1.23 %"), (0.5, "rad", "0.500 rad"),
+        (12.345, "mm", "12300 mm"), (0.9, "%", "90.0 %"), (1e-9, "m", "0.000000001 m"),
+        (-3e-8, "mm", "-0.00003 mm"), (0.0, "mm", "0.00 mm"),
+    ],
+)  # fmt: skip
+def test_a_value_in_another_unit_has_three_digits(value, unit, text):
+    assert scaled_value(value, unit) == text
+    with pytest.raises(LookupError, match="No text has the unit 'inch'"):
+        scaled_value(value, "inch")
 
 
 def rise_times(*values, margin=0.0):

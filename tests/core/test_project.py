@@ -38,6 +38,12 @@ def test_the_pin_is_one_exact_version(tmp_path, text, reason):
         project.engine_pin(root)
 
 
+def test_the_pin_is_not_repeated():
+    package = Path(project.__file__).parents[1]
+    sources = [*package.rglob("*.py"), *(project.BOOK / "lessons").rglob("*.md")]
+    assert [path for path in sources if project.engine_pin() in path.read_text("utf8")] == []
+
+
 def test_without_a_checkout_the_pin_is_that_of_the_installed_package(monkeypatch):
     monkeypatch.setattr(project, "in_checkout", lambda: False)
     monkeypatch.setattr(project, "requires", lambda package: ["genesis-world==9.8.7"])

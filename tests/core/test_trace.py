@@ -48,12 +48,6 @@ def test_a_wrong_length_and_a_missing_axis_are_refused(trace, name):
             replace(trace, **{name: wrong})
 
 
-def test_a_state_before_the_first_step_is_required(trace):
-    later = {name: getattr(trace, name)[1:] for name in ("q", "link_pos", "link_quat")}
-    with pytest.raises(TraceError, match=r"qd has shape .* a run of 119 steps has 120 states"):
-        replace(trace, t=trace.t[:-1], **later)
-
-
 def test_a_run_without_a_step_is_refused(make_trace):
     with pytest.raises(TraceError, match="run of 0 steps"):
         make_trace([0.0], 1.0)

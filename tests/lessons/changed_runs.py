@@ -1,6 +1,6 @@
 """Runs of an experiment with one change, and the checks that fail for them."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 
@@ -15,6 +15,13 @@ def with_fields(of, fields):
     """Return an object with other fields: values, or changes of a copy of the present array."""
     new = {n: v(np.array(getattr(of, n))) if callable(v) else v for n, v in fields.items()}
     return replace(of, **new)
+
+
+def beginning(trace, steps):
+    """Return the first steps of a run."""
+    arrays = {field.name: getattr(trace, field.name) for field in fields(trace)}
+    counts = {trace.steps: steps, trace.steps + 1: steps + 1}
+    return replace(trace, **{name: a[: counts.get(len(a), len(a))] for name, a in arrays.items()})
 
 
 # What follows returns a function that changes a run, for tables of spoiled runs.

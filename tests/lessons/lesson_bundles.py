@@ -7,56 +7,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bundles import written
-from spoilers import edit, predicate, seal
+from spoilers import ARRAYS, METRICS, both, manifest, pop, predicate, put, remove, seal
 
 from robo_genesis.core import project
-from robo_genesis.core.experiment import Experiment
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.npz_archive import write_archive
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.trace_files import read_any_trace
-from robo_genesis.lessons import find_page
 from robo_genesis.pipeline.bundles import keys as evidence_key
 from robo_genesis.pipeline.bundles.status import bundle_status
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.site.takeaways.files import csv_text
 
 
-def recorded(engine, outputs, lesson, page, traces, links, readings, frames, joints=None):
-    """Write the bundle of an experiment with camera frames, and return its folder."""
-    declared = find_page(lesson, page)
-    run = Experiment(declared, traces, links, readings, frames, True, joints)
-    return written(engine, outputs, lesson, page, run)
-
-
-def in_json(name, change):
-    return lambda folder: edit(folder, name, change)
-
-
 def metric(group, name, value):
-    return in_json("metrics.json", lambda found: found[group][name].update(value=value))
-
-
-def pop(file, *path):
-    """Remove one entry of a JSON file by its path."""
-
-    def change(content):
-        for key in path[:-1]:
-            content = content[key]
-        content.pop(path[-1])
-
-    return in_json(file, change)
+    return put(METRICS, group, name, value=value)
 
 
 def without_run(name):
     """Remove a run and its description."""
-
-    def spoil(folder):
-        (folder / "arrays" / f"{name}.npz").unlink()
-        pop("arrays.json", "cases", name)(folder)
-
-    return spoil
+    return both(remove(f"arrays/{name}.npz"), pop(ARRAYS, "cases", name))
 
 
 def in_archive(case, change):
@@ -133,9 +104,9 @@ def judged_again(folder, monkeypatch, judgements):
 def altered(check):
     """Alter the first value that a check found by more than rounding."""
 
-    def alter(manifest):
-        checks = manifest["predicate"]["checks"]
+    def alter(content):
+        checks = content["predicate"]["checks"]
         (found,) = [one["found"] for one in checks if one["name"] == check]
         found[next(iter(found))] += 1e-3
 
-    return in_json("manifest.json", alter)
+    return manifest(alter)

@@ -85,22 +85,8 @@ def loaded_modules(lab, tmp_path):
 @pytest.mark.engine
 def test_a_run_loads_only_modules_that_the_keys_know(lab, tmp_path):
     loaded = set(loaded_modules(lab, tmp_path))
-    imports = lab.code.imports
-    reached = Tree().closure([*lesson_modules(lab.lesson, ROOT), *imports])
+    reached = Tree().closure([*lesson_modules(lab.lesson, ROOT), *lab.code.imports])
     assert loaded <= reached.keys()
-    computing = computing_modules(lab.lesson, {name: reached[name] for name in loaded})
-    assert {f"lessons.{lab.lesson}.metrics", "sim.session"} <= computing
-    assert computing <= measuring_modules(lab.lesson, imports).keys()
-
-
-def computing_modules(lesson, modules):
-    """Return those of some modules that compute and are the engine's side or the lesson's own."""
-    own = (f"{PACKAGE}.sim.", f"{PACKAGE}.lessons.{lesson}.")
-    return {
-        name.removeprefix(f"{PACKAGE}.")
-        for name, path in modules.items()
-        if name.startswith(own) and Tree().measures(name, path)
-    }
 
 
 @pytest.mark.parametrize("page", find_pages(BOOK), ids=lambda page: f"{page.lesson}-{page.page}")
@@ -111,7 +97,12 @@ def test_whatever_a_page_may_import_is_known_to_its_key(page):
         [f"{PACKAGE}.lessons.{page.lesson}", *imports],
         enter=lambda name, path: not name.endswith("laws"),
     )
-    computing = computing_modules(page.lesson, reached)
+    own = (f"{PACKAGE}.sim.", f"{PACKAGE}.lessons.{page.lesson}.")
+    computing = {
+        name.removeprefix(f"{PACKAGE}.")
+        for name, path in reached.items()
+        if name.startswith(own) and Tree().measures(name, path)
+    }
     assert {f"lessons.{page.lesson}.metrics", "sim.session"} <= computing
     assert computing <= measuring_modules(page.lesson, imports).keys()
 

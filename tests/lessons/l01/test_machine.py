@@ -47,8 +47,3 @@ def test_both_starts_share_one_folder_of_kernels(monkeypatch):
     assert seen[0] == seen[1] != {}
     assert list(found) == [f"{start}_{part}" for start in machine.STARTS for part in machine.PARTS]
     assert (found["first_more_steps"], found["second_more_steps"]) == (1, 2)
-
-
-def test_the_doctor_stops_at_another_version_and_at_a_file_that_is_no_library():
-    for failure in (mistakes.wrong_version(), mistakes.no_egl()):
-        assert failure.shown, failure.evidence

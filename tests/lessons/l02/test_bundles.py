@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 from bundles import written
-from lessons.lesson_bundles import in_archive, in_json, pop, refused
+from lessons.lesson_bundles import in_archive, refused
+from spoilers import METRICS, coords, pop, remove
 
 from robo_genesis.core.trace import BodyTrace, Trace
 from robo_genesis.evidence import bundle
@@ -45,13 +46,12 @@ def test_runs_of_bodies_and_of_joints_are_not_exchanged(sound, folder):
 
 
 SPOILED = {
-    "one more link": ("labels", in_json(
-        "arrays.json", lambda a: a["coords"].update(link=[spec.LINK, "lid"]))),
+    "one more link": ("labels", coords(link=[spec.LINK, "lid"])),
     "a position was moved": ("motion", in_archive(
         "baseline", lambda a: a["link_pos_m"][5:6].__iadd__(1e-3))),
     "a call that was never tried": (
-        "metrics", pop("metrics.json", "life_cycle", "camera.render after build")),
-    "no picture of the trays": ("frames", lambda f: (f / "frames" / "trays.png").unlink()),
+        "metrics", pop(METRICS, "life_cycle", "camera.render after build")),
+    "no picture of the trays": ("frames", remove("frames/trays.png")),
 }  # fmt: skip
 
 

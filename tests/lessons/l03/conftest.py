@@ -1,11 +1,12 @@
 """Landings, slides and bounces without Genesis."""
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from lessons.body_runs import slide_on_corners
+from lessons.changed_runs import beginning
 
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.trace import ContactTrace
@@ -52,15 +53,9 @@ def contact_traces() -> dict[str, ContactTrace]:
     return traces
 
 
-def beginning(trace: ContactTrace, steps: int) -> ContactTrace:
-    """Return the first steps of a run: the lecture ends some landings earlier than the lab."""
-    arrays = {of.name: getattr(trace, of.name)[: steps + 1] for of in fields(trace)}
-    return replace(trace, **arrays)
-
-
 @pytest.fixture(scope="session")
 def experiments(contact_traces, frames) -> dict[str, Experiment]:
-    """A sound experiment of each page."""
+    """A sound experiment of each page; the lecture ends some landings earlier than the lab."""
     return {
         name: Experiment(
             page,

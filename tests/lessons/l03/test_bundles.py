@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 from bundles import written
-from lessons.lesson_bundles import in_archive, judged_again, metric, pop, refused, table
-from spoilers import predicate
+from lessons.lesson_bundles import in_archive, judged_again, metric, refused, table
+from spoilers import ARRAYS, pop, predicate
 
 from robo_genesis.core.comparison import same_arrays
 from robo_genesis.evidence import bundle
@@ -57,7 +57,7 @@ def changed(case, name, change):
 
 def without_contacts(folder):
     in_archive("baseline", lambda arrays: arrays.pop("contacts"))(folder)
-    pop("arrays.json", "cases", "baseline", "variables", "contacts")(folder)
+    pop(ARRAYS, "cases", "baseline", "variables", "contacts")(folder)
 
 
 def copied(name, other):

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from bundles import written
 from lessons.l04.conftest import PAGES, of_page
-from lessons.lesson_bundles import altered, in_json, judged_again, pop, refused, without_run
+from lessons.lesson_bundles import altered, judged_again, metric, refused, without_run
+from spoilers import METRICS, case, pop
 
 from robo_genesis.lessons.l04 import LESSON, spec, study_spec
 from robo_genesis.pipeline.bundles.verify import verify_bundle
-from robo_genesis.site.figures.explorer import Recorded
 
 RUN, OTHER = "grid_step_50mrad_KP_4375_KV_150", "grid_step_50mrad_KP_4375_KV_200"
 
@@ -47,11 +47,10 @@ def as_other(folder):
         ("batch", without_run(RUN), f"cases: .*{RUN}"),
         ("batch", as_other, f"law: .*{RUN}"),
         ("lecture", without_run("assigned"), "cases: .*assigned"),
-        ("integrator", in_json("arrays.json", lambda a: a["cases"][
-            "MuJoCo_Euler_G2_substeps_2"].update(note="")), "cases: .*note of the case MuJoCo"),
-        ("integrator", pop("metrics.json", "readings", "inertia_MuJoCo"), "metrics: .*inertia_Mu"),
-        ("lecture", in_json("metrics.json", lambda m: m["readings"]["gravity_G2"].update(
-            value=30.0)), "checks: .*gravity_support"),
+        ("integrator", case("MuJoCo_Euler_G2_substeps_2", note=""),
+         "cases: .*note of the case MuJoCo"),
+        ("integrator", pop(METRICS, "readings", "inertia_MuJoCo"), "metrics: .*inertia_Mu"),
+        ("lecture", metric("readings", "gravity_G2", 30.0), "checks: .*gravity_support"),
         ("integrator", altered("one_limit"), "checks: "),
     ],
 )  # fmt: skip
@@ -68,9 +67,3 @@ def test_another_judgement_changes_a_verdict_and_nothing_else(studied, monkeypat
         (study_spec, "GRAVITY_AGREEMENT", -1.0, "gravity_support"),
     ]
     judged_again(studied("lecture"), monkeypatch, judgements)
-
-
-def test_a_page_can_show_the_explorer_of_another_page_s_runs(sound):
-    data = Recorded("l04", sound["batch"]).explored()
-    cells = (cell for one in data["maps"] for row in one["rows"] for cell in row["cells"])
-    assert [cell["tag"] for cell in cells if cell["opens"]] == ["G2"]

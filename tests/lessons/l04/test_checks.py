@@ -151,7 +151,6 @@ def test_a_study_case_with_a_second_factor_fails(study_runs, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "spoil"),
     [
-        ("G1", trace("G1", link_pos=put((4, 1, 2), 0.6))),
         ("assigned", trace("assigned", qd=put((3, 1), 0.1))),
         (MOTION, trace(MOTION, qd=put((9, 1), 0.1))),
         ("MuJoCo_implicitfast_G2_substeps_2", copied("MuJoCo_implicitfast_G2_substeps_2", "G2")),

@@ -4,34 +4,22 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lessons.engine_scenes import robot_in_scene
 from lessons.l04.conftest import LINKS
 
 from robo_genesis.core.comparison import same_arrays
-from robo_genesis.core.scene import DT, SUBSTEPS
+from robo_genesis.core.scene import DT
 from robo_genesis.lessons.l04 import spec, study_spec
 from robo_genesis.lessons.l04.metrics import step_metrics
 from robo_genesis.sim.arm import dynamics
 from robo_genesis.sim.arm.batch import run_batch
-from robo_genesis.sim.arm.franka import FRANKA_MJCF, JOINT_NAMES, LINK_PARENTS, Q_START
+from robo_genesis.sim.arm.franka import LINK_PARENTS, Q_START
 from robo_genesis.sim.arm.joint_control import CaseError, run_case
-from robo_genesis.sim.arm.joints import resolve_joints
 from robo_genesis.sim.mujoco import joints as mujoco_joints
 
 pytestmark = pytest.mark.engine
 
 K = spec.ENTRY
-
-
-def robot_in_scene(lab, substeps=SUBSTEPS, envs=0, **options):
-    gs = lab.gs
-    scene = gs.Scene(
-        sim_options=gs.options.SimOptions(dt=DT, substeps=substeps), show_viewer=False,
-        rigid_options=gs.options.RigidOptions(**options),
-    )  # fmt: skip
-    scene.add_entity(gs.morphs.Plane())
-    robot = scene.add_entity(gs.morphs.MJCF(file=FRANKA_MJCF))
-    scene.build(n_envs=envs)
-    return scene, robot, resolve_joints(robot, JOINT_NAMES)
 
 
 def test_a_case_repeats_to_the_last_bit_whatever_ran_before(lab, run):
@@ -46,16 +34,15 @@ def test_a_case_repeats_to_the_last_bit_whatever_ran_before(lab, run):
         assert same_arrays(run(spec.CASES[name]), first[name]), name
 
 
-def test_the_map_is_what_each_joint_owns(lab, joints):
-    assert lab.joints.lower == pytest.approx(joints.lower, abs=1e-6)
-    assert lab.joints.upper == pytest.approx(joints.upper, abs=1e-6)
+def test_the_parents_of_links_are_those_of_the_engine(lab):
     parents = [link.parent_idx - lab.franka.links[0].idx for link in lab.franka.links]
     assert (-1, *parents[1:]) == LINK_PARENTS
 
 
 def test_a_batch_repeats_and_refuses_cases_that_do_not_fit(lab):
     few = study_spec.COMPARED
-    batch = robot_in_scene(lab, envs=3, batch_dofs_info=True, enable_self_collision=False)
+    scene = robot_in_scene(lab.gs, 3, batch_dofs_info=True, enable_self_collision=False)
+    batch = vars(scene).values()
     first, again = (run_batch(*batch, few) for _ in "ab")
     assert all(same_arrays(first[name], again[name]) for name in few)
     with pytest.raises(CaseError, match="Build it with n_envs=2"):
@@ -77,7 +64,8 @@ def test_both_engines_give_one_inertia_and_one_gravity_in_each_posture(lab):
 def test_with_one_explicit_integrator_both_engines_agree(lab):
     """At a step fine enough for Euler to hold the stiff wrist without chatter."""
     case = replace(spec.G2, substeps=20)
-    first = run_case(*robot_in_scene(lab, 20, integrator=lab.gs.integrator.Euler), case)
+    scene = robot_in_scene(lab.gs, substeps=20, integrator=lab.gs.integrator.Euler)
+    first = run_case(*vars(scene).values(), case)
     second = mujoco_joints.run_case(case, LINKS, DT / 20, "Euler")
     apart = step_metrics(first, K).overshoot - step_metrics(second, K).overshoot
     assert abs(apart) < 5e-4

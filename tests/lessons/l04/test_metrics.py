@@ -1,4 +1,3 @@
-import control
 import numpy as np
 import pytest
 
@@ -6,18 +5,6 @@ from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import StepMetrics, step_metrics
 
 STEP = 0.25
-
-
-@pytest.mark.parametrize("zeta", [0.2, 0.8, 1, 3])
-def test_rise_settling_and_overshoot_agree_with_python_control(make_trace, zeta):
-    t = np.arange(121) * 0.01
-    y = control.step_response(control.tf([400], [1, 40 * zeta, 400]), t).outputs
-    m = step_metrics(make_trace(-2.0 + STEP * y, -2.0 + STEP), 0)
-    info = control.step_info(
-        STEP * y, t, final_output=STEP, SettlingTimeThreshold=0.01 / STEP, RiseTimeLimits=(0, 0.9)
-    )
-    expected = info["RiseTime"], info["SettlingTime"], STEP * info["Overshoot"] / 100
-    assert (m.rise_time, m.settling_time, m.overshoot) == pytest.approx(expected, abs=1e-12)
 
 
 def test_every_number_of_a_small_run(make_trace):
@@ -58,7 +45,6 @@ def test_saturation_counts_either_sign_from_the_threshold_on(make_trace, force, 
     trace = make_trace([0, 0, 0], STEP, control_force=[0.0, force], effort_limit=100.0)
     m = step_metrics(trace, 0)
     assert (m.saturation_samples, m.saturation_duration) == (samples, samples * trace.dt)
-    assert m.peak_control == abs(force)
 
 
 @pytest.mark.parametrize(

@@ -4,21 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.core import project
 from robo_genesis.lessons.l04 import LESSON, spec, study_spec
 from robo_genesis.pipeline.pages.sources import measuring_modules
 from robo_genesis.sim.arm.franka import JOINT_NAMES
 
 PACKAGE = Path(spec.__file__).parents[2]
 PAGES = ("lecture", "formula", "integrator", "batch")
-
-
-def test_the_grid_has_the_compared_cases_and_each_point_once():
-    assert len({*study_spec.POINTS}) == len(study_spec.GRID_CASES) == 100
-    assert [study_spec.point_of(point.case) for point in study_spec.POINTS] == [*study_spec.POINTS]
-    for name, point in study_spec.CASE_POINTS.items():
-        case, same = spec.CASES[name], study_spec.GRID_CASES[point.name]
-        assert all((getattr(case, f) == getattr(same, f)).all() for f in ("kp", "kv", "q_target"))
 
 
 OTHER = {
@@ -69,8 +60,3 @@ def test_a_computing_module_reads_parameters_of_the_lesson_and_nothing_else():
         if isinstance(node, ast.Attribute) and getattr(node.value, "id", None) == "spec"
     }
     assert read <= {*OTHER, "CASES", "ENTRY"}  # ENTRY follows from joints and stepped joint
-
-
-def test_the_pin_is_not_repeated():
-    sources = [*PACKAGE.rglob("*.py"), *(project.BOOK / "lessons").rglob("*.md")]
-    assert [path for path in sources if project.engine_pin() in path.read_text("utf8")] == []

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from robo_genesis.lessons.l04 import tables, text
 from robo_genesis.lessons.l04.metrics import StepMetrics
-from robo_genesis.lessons.l04.spec import MARGINS
 
 MEASURED = StepMetrics(0.25, 0.12, 0.0111, 0.31, 0.0061, 0.002, 3.234, 86.5, 7, 0.07)
 
@@ -32,7 +31,6 @@ def with_metrics(run, **by_case):
         ({"G1": MEASURED}, "- G1 stays within ±0.01 rad from 0.31 s on."),
         ({"G1": MEASURED}, "- G1 has 7 samples (0.07 s) at or above 99 % of its limit; its peak"),
         ({"G1": replace(MEASURED, saturation_samples=0)}, "- G1 has no sample at or above 99 %"),
-        ({"G1": MEASURED}, "does not prove it."),
     ],
 )  # fmt: skip
 def test_the_lab_says_what_the_runs_show(experiment, change, says):
@@ -74,7 +72,6 @@ def test_a_prediction_within_the_margin_is_too_close_to_call(experiment, rise, o
     run = with_metrics(experiment, G1=MEASURED, G2=replace(MEASURED, rise_time=rise))
     row = tables.outcomes_of_predictions(run).splitlines()[2]
     assert row.split("|")[4].strip() == outcome
-    assert f"{MARGINS['rise_time']:g} s" in row
 
 
 def test_tables_mark_unstable_runs_and_name_regimes(study_runs):

@@ -5,27 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robo_genesis.core.comparison import same_arrays
 from robo_genesis.lessons.l05 import spec, study
-from robo_genesis.lessons.l05.run import reach, solve_all
+from robo_genesis.lessons.l05.run import solve_all
 from robo_genesis.sim.arm import kinematics
-from robo_genesis.sim.arm.engine_kinematics import NotAccepted, link_poses_at
+from robo_genesis.sim.arm.engine_kinematics import link_poses_at
 
 pytestmark = pytest.mark.engine
 
 CHAIN = [name for name, *_ in kinematics.CHAIN]
-
-
-def test_a_second_run_is_equal_to_the_last_bit(lab):
-    first, again = (reach(lab.scene, lab.franka, lab.joints, spec.BASELINE) for _ in range(2))
-    assert same_arrays(first, again)
-
-
-def test_a_target_beyond_reach_is_refused_and_nothing_is_commanded(lab):
-    before = lab.franka.get_dofs_position()
-    with pytest.raises(NotAccepted, match="Nothing is commanded"):
-        reach(lab.scene, lab.franka, lab.joints, replace(spec.BASELINE, position=spec.BEYOND_REACH))
-    assert (lab.franka.get_dofs_position() == before).all()
 
 
 def test_poses_are_read_without_a_change_of_the_state(lab):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from closed_views import PLANE, closed_view, looking
 from lessons.changed_runs import reading
-from lessons.lesson_bundles import accepted_then_refused, in_archive, in_json, metric
+from lessons.lesson_bundles import accepted_then_refused, in_archive, metric
+from spoilers import coords
 
 from robo_genesis.core.checks import evaluate
 from robo_genesis.core.scene import CAMERA_RES, FRAME_SHAPE
@@ -81,8 +82,8 @@ SPOILED = {
         "baseline", lambda arrays: arrays["link_pos_m"][:, 8].__iadd__(0.01))),
     "a residual that was written": ("checks", metric("ik", "residual_m", 1.0)),
     "a camera that was moved": ("checks", metric("view_world", "transform_03", 1.6)),
-    "another hand": ("pose", in_json(
-        "arrays.json", lambda a: a["coords"]["link"].__setitem__(8, "flange"))),
+    "another hand": ("pose", coords(
+        link=lambda links: [*links[:8], "flange", *links[9:]])),
 }  # fmt: skip
 
 

@@ -1,9 +1,10 @@
 """Worlds of L06 without Genesis: answers by damped least squares in NumPy, runs by MuJoCo."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from lessons.changed_runs import beginning
 from robot_runs import LINKS, answer, driven
 
 from robo_genesis.core.experiment import Experiment
@@ -30,13 +31,6 @@ def run_of(world: Environment) -> Trace:
     return driven(world.commanding(targets), LINKS, weight)
 
 
-def shortened(trace: Trace, steps: int) -> Trace:
-    """Return the first steps of a run."""
-    arrays = {field.name: getattr(trace, field.name) for field in fields(Trace)}
-    counts = {trace.steps: steps, trace.steps + 1: steps + 1}
-    return Trace(**{name: a[: counts.get(len(a), len(a))] for name, a in arrays.items()})
-
-
 @pytest.fixture(scope="session")
 def worlds(joints) -> Experiment:
     """A run of the lecture, without a camera, that passes its checks."""
@@ -45,9 +39,9 @@ def worlds(joints) -> Experiment:
         f"alone_{k}": replace(runs[f"env_{k}"], q=runs[f"env_{k}"].q + ROUNDING) for k in spec.ENVS
     }
     runs |= {name: run_of(w) for name, w in spec.VARIANTS.items() if name != "plain_robot"}
-    runs["plain_robot"] = shortened(runs["env_0"], spec.SWITCH)
+    runs["plain_robot"] = beginning(runs["env_0"], spec.SWITCH)
     for name, world in spec.COPIES.items():
-        runs[name] = shortened(runs[f"env_{name[-1]}"], world.steps)
+        runs[name] = beginning(runs[f"env_{name[-1]}"], world.steps)
     masses = {name: spec.HAND_MASS + world.load for name, world in spec.VARIANTS.items()}
     residuals = [2.3 if (t == spec.BEYOND_REACH).all() else 1e-4 for t in spec.MIXED]
     return Experiment(

@@ -6,15 +6,17 @@ from copy import deepcopy
 from pathlib import Path
 
 import pytest
+from bundles import written
 from lessons.body_runs import make_drop
-from lessons.lesson_bundles import recorded
 from nbformat.v4 import new_code_cell, new_notebook, new_output
 
 from robo_genesis.core import shown
+from robo_genesis.core.experiment import Experiment
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.refusals import BundleRefused
 from robo_genesis.lessons.l02 import spec
+from robo_genesis.lessons.l02.pages import LAB
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.bound import difference_of, require_shown
 
@@ -38,7 +40,8 @@ def folder(tmp_path_factory, engine, frames) -> Path:
     readings = {"model": spec.EXPECTED_MODEL, "body": {"mass": spec.BASELINE.mass}}
     traces = {"baseline": make_drop(spec.BASELINE)}
     outputs = tmp_path_factory.mktemp("shown")
-    return recorded(engine, outputs, "l02", "lab", traces, [spec.LINK], readings, frames)
+    run = Experiment(LAB, traces, [spec.LINK], readings, frames, True)
+    return written(engine, outputs, "l02", "lab", run)
 
 
 def page_of(*sources: str) -> Page:

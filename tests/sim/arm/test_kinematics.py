@@ -12,25 +12,6 @@ POSTURES = np.vstack([Q_START, spec.RANDOM_STARTS[:5]])
 DOWN = of.Pose(spec.TARGET, spec.DOWN)
 
 
-@pytest.mark.parametrize(
-    ("quat", "vector", "turned"),
-    [
-        ((0, 1, 0, 0), (1, 2, 3), (1, -2, -3)),
-        ((of.HALF, 0, 0, of.HALF), (1, 0, 0), (0, 1, 0)),
-        ((-of.HALF, 0, 0, -of.HALF), (1, 0, 0), (0, 1, 0)),
-    ],
-)
-def test_a_quaternion_turns_a_vector_and_its_negative_does_the_same(quat, vector, turned):
-    assert of.rotate(np.array(quat), np.array(vector)) == pytest.approx(turned)
-
-
-def test_a_product_turns_by_the_second_factor_first():
-    about_x, about_z = np.array([of.HALF, of.HALF, 0, 0]), of.about_z(np.pi / 2)
-    product, up = of.quat_multiply(about_z, about_x), np.array([0.0, 0.0, 1.0])
-    assert of.rotate(product, up) == pytest.approx(of.rotate(about_z, of.rotate(about_x, up)))
-    assert of.rotate(product, up) == pytest.approx([1, 0, 0])  # about_x takes z to -y
-
-
 @pytest.mark.parametrize("angle", [0.0, 1e-9, 0.5, np.pi, 3.3])
 def test_a_rotation_vector_has_the_shorter_angle(angle):
     found = of.rotation_vector(of.about_z(np.array(angle)))
@@ -63,12 +44,6 @@ def test_a_pose_error_leads_to_the_target():
     turn = np.append(np.cos(angle / 2), np.sin(angle / 2) * error[3:] / angle)
     reached = of.Pose(pose.position + error[:3], of.quat_multiply(turn, pose.quat))
     assert of.pose_error(DOWN, reached) == pytest.approx(np.zeros(6), abs=1e-9)
-
-
-def test_a_damped_step_minimises_error_and_step_together():
-    rows, error, damping = of.jacobian(Q_START), np.arange(1.0, 7.0) / 100, 0.1
-    step = of.damped_step(rows, error, damping)
-    assert rows.T @ (rows @ step - error) + damping**2 * step == pytest.approx(np.zeros(7))
 
 
 @pytest.mark.parametrize(

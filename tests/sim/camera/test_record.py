@@ -42,18 +42,6 @@ def test_a_recorded_view_differs_in_the_rounding_of_its_depth_alone(tmp_path, vi
     assert np.abs(found.depth - view.depth).max() <= view_record.DEPTH_UNIT
 
 
-def test_without_a_camera_a_view_has_its_matrix_and_its_pose(view):
-    blind = View(view.intrinsics, view.transform, view.size, view.limits)
-    run = recorded(blind, rendered=False)
-    assert run.frames == {}
-    assert (
-        run.readings["view_world"].keys() == view_record.groups("world")["view_world"].units.keys()
-    )
-    found = view_record.view_of(run, "world")
-    assert found.depth is None
-    assert (found.transform == view.transform).all()
-
-
 def test_a_depth_that_does_not_fit_is_refused(view):
     far = View(K, view.transform, CAMERA_RES, (0.1, 500.0), view.rgb, view.depth * 20,
                view.segmentation)  # fmt: skip

@@ -8,15 +8,6 @@ from robo_genesis.sim.mujoco import joints as mujoco_joints
 from robo_genesis.sim.mujoco import kinematics as of
 
 
-def test_the_jacobian_is_the_change_of_the_position():
-    rows, h = of.jacobian(Q_START), 1e-6
-    for k in range(9):
-        ends = [Q_START + sign * h * np.eye(9)[k] for sign in (1, -1)]
-        position, _ = of.link_poses(np.stack(ends), ["hand"])
-        assert (position[0, 0] - position[1, 0]) / (2 * h) == pytest.approx(rows[:3, k], abs=1e-8)
-    assert (rows[:, 7:] == 0).all()  # the fingers move nothing behind them
-
-
 def test_a_load_adds_its_weight_times_the_lever_and_leaves_the_model_as_it_was():
     bare, one, two = (of.gravity_effort(Q_START, load) for load in (0.0, 1.0, 2.0))
     assert bare == pytest.approx(mujoco_joints.at_rest(Q_START)[1])
