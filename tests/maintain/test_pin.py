@@ -4,7 +4,7 @@ import pytest
 
 from robo_genesis.core import project
 from robo_genesis.core.project import ProjectError
-from robo_genesis.maintain.pin import RepinError, set_pin, wanted_version
+from robo_genesis.maintain.repin import RepinError, set_pin, wanted_version
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,7 @@ from tiny_book import commit, fails, git, wait_for
 
 from robo_genesis.core.files import locked
 from robo_genesis.core.project import ROOT, ProjectError, engine_pin
-from robo_genesis.maintain.pin import RepinError
-from robo_genesis.maintain.repin import Repin, run_logged, run_repin
+from robo_genesis.maintain.repin import Repin, RepinError, run_logged, run_repin
 
 OLD, NEW = engine_pin(), "99.1"
 FAILS = {"resolve": "99.2", "install": "99.3", "book": "99.4", "test": "99.5"}

@@ -16,7 +16,7 @@ from robo_genesis.evidence.bundle_files import MANIFEST
 from robo_genesis.evidence.recorder import git_record
 from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.pipeline.bundles.of_build import require_contract
-from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, bundle_status, cpu_runs
+from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, bundle_status
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.command import TIMEOUT, Progress, say
 from robo_genesis.pipeline.pages.book import Page, find_pages
@@ -154,7 +154,7 @@ def _kept(recording: Recording, page: Page, backend: str, progress: Progress) ->
     """Return the outcome of a lab whose bundle is accepted as it is, None if it needs a run."""
     lesson = str(page.lesson)
     place = recording.evidence / lesson / backend
-    runs, book, root = cpu_runs(place, {}), recording.book, recording.root
+    runs, book, root = [place.with_name("cpu")], recording.book, recording.root
     status = bundle_status(place, lesson, RECORDED_PAGE, book=book, root=root, cpu_runs=runs)
     if status.manifest is None:
         return None

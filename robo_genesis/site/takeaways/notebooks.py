@@ -1,7 +1,7 @@
 """A lab as two notebooks: one to work in, without outputs or solutions, and one executed."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import pairwise
 
 import nbformat
@@ -76,11 +76,8 @@ def student_notebook(page: Page, origin: str, check: str, writer: Writer) -> Not
         check: code of the second; see `version_check`.
         writer: of its prose; it must not return measured values.
     """
-    cells = [new_markdown_cell(origin), new_code_cell(check)]
-    for cell in page.notebook.cells:
-        if not {SOLUTION, SITE_ONLY} & set(cell.metadata.get("tags", [])):
-            is_prose = cell.cell_type == "markdown"
-            cells += _sections(plain(cell.source, writer)) if is_prose else _code(cell, writer)
+    start = [new_markdown_cell(origin), new_code_cell(check)]
+    cells = [*start, *_cells(page, writer, {SITE_ONLY, SOLUTION})]
     return _notebook(_with_work_sheet(cells, page))
 
 
@@ -95,17 +92,24 @@ def executed_notebook(
         origin: Markdown of the first cell.
         writer: of its prose; measured values are those of this run.
     """
-    ran = (cell for cell in executed.cells if cell.cell_type == "code")
-    cells = [new_markdown_cell(origin)]
-    left_out = set() if solutions_shown() else {SOLUTION}
+    ran = [cell for cell in executed.cells if cell.cell_type == "code"]
+    left_out = {SITE_ONLY} if solutions_shown() else {SITE_ONLY, SOLUTION}
+    return _notebook([new_markdown_cell(origin), *_cells(page, writer, left_out, ran)])
+
+
+def _cells(
+    page: Page, writer: Writer, left_out: Set[str], ran: Sequence[NotebookNode] = ()
+) -> Iterator[NotebookNode]:
+    """Yield the cells of a page without some tags, with the outputs of its code as it ran."""
+    outputs = iter(ran)
     for cell in page.notebook.cells:
-        tags, is_code = set(cell.metadata.get("tags", [])), cell.cell_type == "code"
-        output = next(ran) if is_code else None
-        if is_code and not tags & left_out:
-            cells += _code(cell, writer, output)
-        elif not is_code and SITE_ONLY not in tags:
-            cells += _sections(plain(cell.source, writer))
-    return _notebook(cells)
+        is_code = cell.cell_type == "code"
+        output = next(outputs, None) if is_code else None
+        if not left_out & set(cell.metadata.get("tags", [])):
+            if is_code:
+                yield from _code(cell, writer, output)
+            else:
+                yield from _sections(plain(cell.source, writer))
 
 
 def _sections(text: str) -> list[NotebookNode]:
