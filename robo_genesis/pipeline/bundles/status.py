@@ -232,12 +232,8 @@ def refused_records(book: Path, labs: Mapping[str, Path | None]) -> list[str]:
         book: the folder of the pages.
         labs: see `recorded_status`.
     """
-    found = [
-        (path, recorded_status(book, *path.parts[-2:], labs=labs))
-        for path in recorded_folders(book)
-    ]
     return [
         f"{path.relative_to(book)}: the recorded bundle is {status.state}: {status.reason}"
-        for path, status in found
-        if status.state not in PASSING
+        for path in recorded_folders(book)
+        if (status := recorded_status(book, *path.parts[-2:], labs=labs)).state not in PASSING
     ]

@@ -7,7 +7,7 @@ next build empties: a warning is given only when a page is read.
 
 import json
 import shutil
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from hashlib import sha256
 from pathlib import Path
 
@@ -90,8 +90,7 @@ def keep(folder: Path, before: State, after: State) -> None:
         after: the state now.
     """
     if before == after and fit(folder):
-        state = {"others": after.others, "pages": after.pages}
-        (folder / STATE).write_text(json.dumps(state, indent=1) + "\n", "utf8")
+        (folder / STATE).write_text(json.dumps(asdict(after), indent=1) + "\n", "utf8")
 
 
 def discard(folder: Path) -> None:

@@ -5,7 +5,6 @@ import os
 import tempfile
 import uuid
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
@@ -21,18 +20,8 @@ from robo_genesis.pipeline.pages.results import Failure, PageResult, Status, fin
 from robo_genesis.pipeline.pages.store import last_record, stored_result
 from robo_genesis.pipeline.pages.worker import PageRun, work
 
-
-@dataclass(frozen=True, slots=True)
-class Worker:
-    """The process that executes one page, the run, and how far it is."""
-
-    process: Any
-    run: PageRun
-    underway: Underway
-
-
-Running = dict[Any, Worker]
-"""The workers that run, by the connection of their progress and result."""
+Running = dict[Any, tuple[Any, PageRun, Underway]]
+"""The workers that run: process, run and how far it is, by the connection of its messages."""
 
 
 def execute_pages(
@@ -93,15 +82,15 @@ def execute_pages(
                     report.say(page.docname, underway.started())
                     _start(run, underway, running)
                 for connection in wait(list(running), timeout=report.pause()):
-                    result = _receive(connection, running[connection])
+                    result = _receive(connection, *running[connection])
                     if result is None:
                         continue
                     del running[connection]
                     results[result.page.docname] = result
                     report.say(result.page.docname, f"{result.status} in {result.seconds:.0f} s")
-                report.show([worker.underway for worker in running.values()])
+                report.show([underway for *_, underway in running.values()])
         finally:
-            kill_with_descendants(worker.process.pid for worker in running.values())
+            kill_with_descendants(process.pid for process, *_ in running.values())
     return [results[page.docname] for page in pages]
 
 
@@ -166,30 +155,31 @@ def _start(run: PageRun, underway: Underway, running: Running) -> None:
     process = context.Process(target=work, args=(run, sender))
     with interrupts_blocked():  # a Ctrl-C from here on finds the worker among the running
         process.start()
-        running[receiver] = Worker(process, run, underway)
+        running[receiver] = process, run, underway
     sender.close()
 
 
-def _receive(connection: Any, worker: Worker) -> PageResult | None:
+def _receive(connection: Any, process: Any, run: PageRun, underway: Underway) -> PageResult | None:
     """Return the result of a page whose worker sent it, or died without sending it.
 
     It is None if a cell starts.
     """
-    run, log = worker.run, worker.underway.log
     try:
         received = connection.recv()
         if isinstance(received, int):
-            worker.underway.reach(received)
+            underway.reach(received)
             return None
         seconds, failure = received
     except EOFError:
-        worker.process.join()
-        cell = f" in cell {worker.underway.cell}" if worker.underway.cell else ""
-        code = worker.process.exitcode
+        process.join()
+        cell = f" in cell {underway.cell}" if underway.cell else ""
+        code = process.exitcode
         message = f"the worker process ended{cell} with status {code}; out of memory?"
         seconds, failure = 0.0, Failure("WorkerDied", message)
-    worker.process.join()
+    process.join()
     connection.close()
     status: Status = "failed" if failure else "executed"
     bundle = None if failure else find_bundle(run.place / OUTPUTS, run.run_id)
-    return PageResult(run.page, status, seconds, run.run_id, bundle, failure, run.place, log)
+    return PageResult(
+        run.page, status, seconds, run.run_id, bundle, failure, run.place, underway.log
+    )

@@ -38,9 +38,9 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
     }
     moved = [np.tile([x, y, 0.0], (len(runs.links), 1)) for x, y in places]
     arrays["link_pos"] = arrays["link_pos"] + np.concatenate(moved)
-    links = [name_of(case, link) for case, _ in traces for link in runs.links]
+    links = [f"{case}: {link}" for case, _ in traces for link in runs.links]
     parts = [
-        replace(part, link=name_of(case, part.link))
+        replace(part, link=f"{case}: {part.link}")
         for case, _ in traces
         for part in shape
         if part.link != WORLD
@@ -48,8 +48,3 @@ def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
     still = [part for part in shape if part.link == WORLD]
     together = {case: replace(trace, **arrays) for case, trace in traces}
     return replace(runs, traces=together, links=links), [*parts, *still]
-
-
-def name_of(case: str, link: str) -> str:
-    """Return the name of a link of one of several runs."""
-    return f"{case}: {link}"

@@ -6,7 +6,7 @@ import pytest
 from watching import SERVED_ONLY, watch
 
 from robo_genesis.pipeline.html.archive import ARCHIVE
-from robo_genesis.pipeline.html.checks import Site, check_site
+from robo_genesis.pipeline.html.checks import Site, run_checks
 from robo_genesis.pipeline.html.sums import SUMS
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
@@ -54,7 +54,7 @@ def test_the_theme_switches_and_stays_on_the_next_page(browser, base):
 
 
 def test_the_archive_is_a_whole_site_without_itself(unpacked, site):
-    assert {c.name: c.problems for c in check_site(unpacked) if c.problems} == {}
+    assert {c.name: c.problems for c in run_checks(Site(unpacked)) if c.problems} == {}
     kept = {p.relative_to(unpacked) for p in unpacked.rglob("*") if p.is_file()}
     assert kept == {p.relative_to(site) for p in site.rglob("*") if p.is_file()} - {
         Path(ARCHIVE),
