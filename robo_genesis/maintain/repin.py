@@ -31,10 +31,6 @@ LINES = 50
 """How many last lines of a log an error and the report show."""
 
 
-class RepinError(project.ProjectError):
-    """The new pin was refused or failed; the message is the whole report."""
-
-
 @dataclass(frozen=True, slots=True)
 class Repin:
     """Which checkout gets which engine version."""
@@ -61,7 +57,7 @@ def run_repin(request: Repin) -> list[str]:
     old = project.engine_pin(root)
     new = wanted_version(request.genesis, old)
     if problems := unclean(root, "make repin tries the last commit"):
-        raise RepinError("\n".join(problems))
+        raise project.ProjectError("\n".join(problems))
     require_locked_packages(root)
     before = texts(root)
 
@@ -72,7 +68,7 @@ def run_repin(request: Repin) -> list[str]:
         trial = Trial(request, old, new, work, Progress(request.say))
         pages, new = trial.run(), trial.new
         if texts(root) != before:
-            raise RepinError(
+            raise project.ProjectError(
                 f"{' or '.join(FILES)} changed while {new} was tried, so neither is written. "
                 "Commit or stash that change, then run make repin again; it reuses what is "
                 "compiled and executed."
@@ -95,20 +91,20 @@ def wanted_version(given: str, pin: str) -> str:
         pin: the version that is pinned now.
 
     Raises:
-        RepinError: it is not a version, or it is the pin.
+        ProjectError: it is not a version, or it is the pin.
     """
     try:
         version = Version(given)
     except InvalidVersion:
         valid = f"Usage: make repin GENESIS=1.2.3 (the pin is {pin})."
-        raise RepinError(f"GENESIS={given!r} is not a version. {valid}") from None
+        raise project.ProjectError(f"GENESIS={given!r} is not a version. {valid}") from None
     if version == Version(pin):
-        raise RepinError(f"GENESIS={given} is the pin already. Give another version.")
+        raise project.ProjectError(f"GENESIS={given} is the pin already. Give another version.")
     return str(version)
 
 
 def require_locked_packages(root: Path) -> None:
-    """Raise RepinError if this environment is not the one that the lock describes.
+    """Raise ProjectError if this environment is not the one that the lock describes.
 
     The new lock keeps the installed versions, so they must be those of the old one.
     """
@@ -119,7 +115,7 @@ def require_locked_packages(root: Path) -> None:
         if installed.get(canonicalize_name(name)) != version
     ]
     if unlike:
-        raise RepinError(
+        raise project.ProjectError(
             f"This environment differs from requirements.lock: {', '.join(unlike[:5])}"
             f"{', …' if unlike[5:] else ''}. Install the lock (pip install -r requirements.lock), "
             "or omit PYTHON=…, so that .venv is used."
@@ -130,13 +126,13 @@ def set_pin(root: Path, old: str, new: str) -> None:
     """Write another engine version into the one line that pins it.
 
     Raises:
-        RepinError: the line is not written as expected.
+        ProjectError: the line is not written as expected.
     """
     path = root / FILES[0]
     pattern = rf"(?<=[\"']){ENGINE}\s*==\s*{re.escape(old)}(?=[\"'])"
     text, count = re.subn(pattern, f"{ENGINE}=={new}", path.read_text("utf8"))
     if count != 1:
-        raise RepinError(
+        raise project.ProjectError(
             f'{path} has "{ENGINE}=={old}" {count} times, expected once. Write the pin in one line.'
         )
     path.write_text(text, "utf8")
@@ -189,7 +185,7 @@ class Trial:
         """Run one command there; a failure names it and its log, and ends with a report.
 
         Raises:
-            RepinError: the command failed.
+            ProjectError: the command failed.
         """
         version = project.engine_pin(self.work)
         log = self.request.cache / "repin" / "logs" / f"{stage}-{version}.log"
@@ -203,7 +199,7 @@ class Trial:
             )
             pages = self.write_report(head, remedy, *lines)
             places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
-            raise RepinError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
+            raise project.ProjectError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
 
     def write_report(self, *failed: str) -> list[Path]:
         """Compare what both versions built, as far as they did, and write the report."""

@@ -38,7 +38,7 @@ def render(
         The site, complete but for archive and sums.
 
     Raises:
-        RenderError: Sphinx failed or gave a warning.
+        ProjectError: Sphinx failed or gave a warning.
     """
     shutil.rmtree(staging, ignore_errors=True)
     staging.mkdir(parents=True)

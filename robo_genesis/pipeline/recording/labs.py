@@ -35,10 +35,6 @@ BACKENDS = (*ACCELERATORS, "cpu")
 COMMAND = "make evidence"
 
 
-class RecordingError(project.ProjectError):
-    """Nothing was recorded; the message is the whole report, and its first line the reason."""
-
-
 def probe_here(expected: str | None) -> tuple[str, list[StepResult]]:
     """Return the result of `accelerator.probe` with the variables that the kernel of a lab gets."""
     return accelerator.probe(accelerator.ProbedMachine(users_variables()), expected)
@@ -90,12 +86,12 @@ def record(recording: Recording) -> int:
         is unchanged unless a new one is accepted.
 
     Raises:
-        RecordingError: the lesson or backend is not valid, or a step of the probe is broken.
+        ProjectError: the lesson or backend is not valid, or a step of the probe is broken.
         ProjectError: checkout, environment or the folder of bundles is not fit for it, or a build
             or another recording runs here.
     """
     if recording.expected not in (None, *BACKENDS):
-        raise RecordingError(
+        raise project.ProjectError(
             f"BACKEND={recording.expected!r} is not valid. Choices: {', '.join(BACKENDS)}; "
             "unset, any accelerator."
         )
@@ -117,14 +113,14 @@ def _labs(recording: Recording) -> list[Page]:
     """Return the lab of the given lesson, or all labs in the order of the book.
 
     Raises:
-        RecordingError: the lesson has no lab.
+        ProjectError: the lesson has no lab.
     """
     pages = find_pages(recording.book)
     labs = {str(page.lesson): page for page in pages if page.page == RECORDED_PAGE}
     if not recording.lesson:
         return [*labs.values()]
     if recording.lesson not in labs:
-        raise RecordingError(
+        raise project.ProjectError(
             f"LESSON={recording.lesson!r} is not valid. "
             f"Lessons with a lab: {', '.join(sorted(labs)) or 'none'}; unset, all."
         )
@@ -135,7 +131,7 @@ def _found_backend(recording: Recording, progress: Progress) -> str:
     """Return the backend that a run would find, after a probe of the accelerator.
 
     Raises:
-        RecordingError: a step of the probe is broken.
+        ProjectError: a step of the probe is broken.
     """
     if recording.expected == "cpu":
         return "cpu"
@@ -143,7 +139,7 @@ def _found_backend(recording: Recording, progress: Progress) -> str:
     for step in steps:
         progress("probe", f"{step.step:12} {step.state:8} {printable(step.found)}")
     if broken := [step.step for step in steps if step.state == "broken"]:
-        raise RecordingError(
+        raise project.ProjectError(
             f"Broken: {', '.join(broken)}. The lines of the probe above say what was found, what "
             "is expected and what to do. No lab was run."
         )
@@ -186,7 +182,7 @@ def record_lab(recording: Recording, page: Page, progress: Progress) -> tuple[Pa
     """Run one lab, and return the place of its verified bundle and the facts in its manifest.
 
     Raises:
-        RecordingError, ProjectError: see `record`.
+        ProjectError: see `record`.
     """
     project.remove_stale_kernel_lock(recording.cache)
     folder = recording.cache / project.RECORDING  # new each time: nothing is ever reused
@@ -221,7 +217,7 @@ def _execute(
     )
     if failure := result.failure:
         report = failure_report([result])
-        raise RecordingError(f"{failure.error}: {failure.message}\n\n{report}")
+        raise project.ProjectError(f"{failure.error}: {failure.message}\n\n{report}")
     assert result.bundle is not None  # a lab without a bundle has failed
     return result.bundle, result.run_id
 
@@ -233,20 +229,20 @@ def _accepted(recording: Recording, bundle: Path, run_id: str) -> Any:
         require_contract(facts, recording.contract)
         expect("command", "manifest.json", "command", facts.command, COMMAND)
     except BundleRefused as error:
-        raise RecordingError(f"The bundle of this run is refused: {error}") from error
+        raise project.ProjectError(f"The bundle of this run is refused: {error}") from error
     require_expected(recording, facts.backend.actual)
     return facts
 
 
 def require_expected(recording: Recording, actual: str) -> None:
-    """Raise RecordingError if the backend found is not the expected one."""
+    """Raise ProjectError if the backend found is not the expected one."""
     if actual in (ACCELERATORS if recording.expected is None else (recording.expected,)):
         return
     expected = recording.expected or f"none given, so one of {', '.join(ACCELERATORS)}"
     remedy = "Check driver, device and Torch build"
     if actual in BACKENDS:
         remedy += f", or record {actual} on purpose with BACKEND={actual}"
-    raise RecordingError(
+    raise project.ProjectError(
         f"Expected backend: {expected}; {BACKEND}={recording.contract[BACKEND]} finds "
         f"{actual!r}. Nothing is relabelled. {remedy}."
     )

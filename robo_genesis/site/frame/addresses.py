@@ -57,7 +57,7 @@ def setup(app: Sphinx) -> None:
     """Register the 404 page, and the extensions that need an address if there is one.
 
     Raises:
-        AddressError: the given address is not valid.
+        ProjectError: the given address is not valid.
     """
     app.setup_extension("notfound.extension")
     if site_address():
