@@ -83,8 +83,8 @@ def run_build(build: Build) -> list[str]:
 
     Raises:
         BuildError: a stage failed; nothing was published.
-        StoreError: pages that were executed elsewhere are refused; nothing was published.
-        ProjectError: the checkout or SITE_URL is not fit for a build.
+        ProjectError: pages that were executed elsewhere are refused, or the checkout or SITE_URL is
+            not fit for a build; nothing was published.
     """
     with (
         build.sphinx or SphinxProcess(build.book, build.cache / LOG) as sphinx,

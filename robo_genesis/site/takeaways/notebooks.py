@@ -13,7 +13,7 @@ from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.site.course.facts import WORK_SHEET
-from robo_genesis.site.takeaways.plain_markdown import SOLUTION, ProseError, Writer, plain
+from robo_genesis.site.takeaways.plain_markdown import SOLUTION, Writer, plain
 
 SITE_ONLY = "site-only"
 """The tag of a cell that makes sense only on the site."""
@@ -129,7 +129,7 @@ def _with_work_sheet(cells: list[NotebookNode], page: Page) -> list[NotebookNode
     the rest is at the end.
 
     Raises:
-        ProseError: the heading of a part has no number, or no part is to be filled in before the
+        ValueError: the heading of a part has no number, or no part is to be filled in before the
             run.
     """
     sheet = page.path.with_name(WORK_SHEET)
@@ -147,12 +147,12 @@ def _with_work_sheet(cells: list[NotebookNode], page: Page) -> list[NotebookNode
             title = f"## Work sheet, part {part['number']}: {part['title']}"
             place = _place(cells, heading, int(part["number"]))
         else:
-            raise ProseError(
+            raise ValueError(
                 f"{sheet} has the part {heading!r}. Number it, as in `## 2. Measured`."
             )
         follow.setdefault(place, []).append(new_markdown_cell(f"{title}\n{rest}".rstrip()))
     if not found_before:
-        raise ProseError(
+        raise ValueError(
             f"{sheet} has no part to fill in {BEFORE}: end the heading of its predictions with "
             "these words."
         )
