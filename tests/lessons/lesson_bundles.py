@@ -17,7 +17,7 @@ from robo_genesis.evidence.npz_archive import write_archive
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.trace_files import read_any_trace
 from robo_genesis.lessons import find_page
-from robo_genesis.pipeline.bundles import keys as evidence_key
+from robo_genesis.pipeline.bundles import verify as evidence_key
 from robo_genesis.pipeline.bundles.status import bundle_status
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.site.takeaways.files import csv_text

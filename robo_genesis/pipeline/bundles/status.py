@@ -13,8 +13,7 @@ from robo_genesis.evidence import bundle, copies
 from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.compare import specification
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.pipeline.bundles import keys as evidence_key
-from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.pipeline.bundles.verify import changed, verify_bundle
 from robo_genesis.pipeline.pages.guards import contradicted
 from robo_genesis.sim.backends import BACKENDS
 
@@ -194,8 +193,8 @@ def why_stale(manifest: Manifest, book: Path, root: Path = project.ROOT) -> str:
         book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
     """
-    changed = changes(manifest, book, root)
-    text = "; ".join(text for _, text in changed) or "it answers an older question"
+    found = changes(manifest, book, root)
+    text = "; ".join(text for _, text in found) or "it answers an older question"
     return f"{text[0].upper()}{text[1:]}."
 
 
@@ -204,7 +203,7 @@ def changes(manifest: Manifest, book: Path, root: Path = project.ROOT) -> list[t
 
     The kinds are those of `advice.BY_CHANGE`.
     """
-    found = evidence_key.changed(manifest, root, book) or []
+    found = changed(manifest, root, book) or []
     return [
         (kind, words.format(here, there, page=manifest.predicate.page))
         for start, (kind, words) in CHANGES.items()

@@ -20,9 +20,8 @@ from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, bundle_status
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.command import TIMEOUT, Progress, say
 from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.pipeline.pages.execute import execute_pages, kernel_environment
+from robo_genesis.pipeline.pages.execute import Lines, execute_pages, kernel_environment
 from robo_genesis.pipeline.pages.kernels import users_variables
-from robo_genesis.pipeline.pages.progress import Lines
 from robo_genesis.pipeline.pages.results import failure_report
 from robo_genesis.pipeline.pages.store import Verify, places
 from robo_genesis.pipeline.recording.report import STATUS, Outcome, report

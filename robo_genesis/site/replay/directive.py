@@ -87,8 +87,7 @@ def replay_block(
             these links.
     """
     from robo_genesis.site.replay import model as replay_model  # these load slowly
-    from robo_genesis.site.replay.scenery import scenery
-    from robo_genesis.site.replay.side_by_side import side_by_side
+    from robo_genesis.site.replay.scenery import scenery, side_by_side
 
     env, lesson = directive.env, key.split("/")[0]
     name = "-".join(("replay", *key.split("/"), *filter(None, [chosen])))

@@ -16,8 +16,7 @@ from robo_genesis.core.project import (
     engine_cache_folder,
 )
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.execute import execute_pages, longest_first
-from robo_genesis.pipeline.pages.progress import Lines
+from robo_genesis.pipeline.pages.execute import Lines, execute_pages, longest_first
 from robo_genesis.pipeline.pages.results import failure_report
 from robo_genesis.pipeline.pages.store import places, stored_result
 

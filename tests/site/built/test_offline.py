@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 from watching import SERVED_ONLY, watch
 
-from robo_genesis.pipeline.html.archive import ARCHIVE
+from robo_genesis.pipeline.html.archive import ARCHIVE, SUMS
 from robo_genesis.pipeline.html.checks import Site, run_checks
-from robo_genesis.pipeline.html.sums import SUMS
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
