@@ -23,7 +23,6 @@ from robo_genesis.pipeline.bundles.status import (
     Status,
     bundle_status,
     changes,
-    cpu_runs,
     recorded_folders,
     recorded_status,
 )
@@ -34,8 +33,8 @@ def all_bundles() -> Iterator[tuple[str, Status]]:
     """Yield (place, status) of the recorded bundles, then of the last build's."""
     for folder in recorded_folders(BOOK):
         lesson, backend = folder.parts[-2:]
-        runs = cpu_runs(folder, {lesson: built(lesson)})
-        yield f"{lesson} recorded", recorded_status(BOOK, lesson, backend, cpu_runs=runs)
+        labs = {lesson: built(lesson)}
+        yield f"{lesson} recorded", recorded_status(BOOK, lesson, backend, labs=labs)
     for folder in recorded_folders(BOOK / PUBLISHED):
         lesson = folder.parent.name
         yield f"{lesson} built", bundle_status(folder, lesson, "lab")

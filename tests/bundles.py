@@ -14,8 +14,8 @@ from robo_genesis.evidence import recorder as record
 from robo_genesis.evidence.recorder import Recorder
 from robo_genesis.lessons import find_page
 from robo_genesis.lessons.l04 import spec as l04
-from robo_genesis.pipeline.bundles import keys as evidence_key
-from robo_genesis.pipeline.bundles.keys import page_code
+from robo_genesis.pipeline.bundles import verify as evidence_key
+from robo_genesis.pipeline.bundles.verify import page_code
 from robo_genesis.pipeline.pages.sources import running_modules
 from robo_genesis.sim import session
 from robo_genesis.sim.camera import frames as camera

@@ -11,7 +11,7 @@ from typing import Any
 import yaml
 
 from robo_genesis.core.project import BOOK, ROOT, engine_cache_folder
-from robo_genesis.pipeline.html.sums import SUMS
+from robo_genesis.pipeline.html.archive import SUMS
 from robo_genesis.pipeline.pages.book import find_pages
 
 FOLDER = ROOT / ".github"

@@ -1,7 +1,5 @@
 """Constants of the course scene, with units, and what a built scene must have."""
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -37,14 +35,3 @@ def read_only(values: ArrayLike) -> FloatArray:
     array = np.array(values, dtype=np.float64)
     array.setflags(write=False)
     return array
-
-
-def require_built(scene: Any, case: Any, error: type[Exception]) -> None:
-    """Raise `error` unless a scene is built with the `dt` and `substeps` of a case."""
-    if not scene.is_built:
-        raise error("The scene is not built: call scene.build() before any joint call or step.")
-    if (scene.dt, scene.substeps) != (case.dt, case.substeps):
-        raise error(
-            f"The scene was built with dt={scene.dt}, substeps={scene.substeps}; the case asks for "
-            f"dt={case.dt}, substeps={case.substeps}. Restart and build the scene for this case."
-        )

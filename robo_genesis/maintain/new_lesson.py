@@ -18,10 +18,6 @@ NAME = re.compile(r"l\d\d")
 CHAPTER, ENTRY = "  - file: ", "- id: "
 
 
-class LessonError(ProjectError):
-    """The lesson cannot be added; the message says why, and what is valid."""
-
-
 def add_lesson(root: Path, lesson: str) -> list[str]:
     """Write the files of a new lesson, and then its lines in the two lists of the book.
 
@@ -33,7 +29,7 @@ def add_lesson(root: Path, lesson: str) -> list[str]:
         Lines for the user: what was written, and what to do next.
 
     Raises:
-        LessonError: the name is not valid, the lesson exists, or a list has another form.
+        ProjectError: the name is not valid, the lesson exists, or a list has another form.
         OSError: a file cannot be written. A next call names the folders that were made.
     """
     require_new(root, lesson)
@@ -51,17 +47,17 @@ def require_new(root: Path, lesson: str) -> None:
     """Refuse a name that is not valid or is in use.
 
     Raises:
-        LessonError: the message says what is valid.
+        ProjectError: the message says what is valid.
     """
     if not NAME.fullmatch(lesson):
-        raise LessonError(f"NEW={lesson!r} is not valid: write `l` and two digits, as in NEW=l07.")
+        raise ProjectError(f"NEW={lesson!r} is not valid: write `l` and two digits, as in NEW=l07.")
     used = [
         found.relative_to(root).as_posix()
         for parent in ("robo_genesis/lessons", "book/lessons", "tests/lessons")
         for found in sorted((root / parent).glob(f"{lesson}*"))
     ]
     if used:
-        raise LessonError(
+        raise ProjectError(
             f"Lesson {lesson} exists: {', '.join(used)}. Give another number, or remove these."
         )
 
@@ -85,12 +81,12 @@ def with_chapter(toc: str, lesson: str) -> str:
     """Return the table of contents with the lesson's pages, in the order of the lessons.
 
     Raises:
-        LessonError: it names no lesson.
+        ProjectError: it names no lesson.
     """
     head, *chapters = re.split(f"(?m)^(?={CHAPTER})", f"{toc.rstrip()}\n")
     lessons = [k for k, text in enumerate(chapters) if text.startswith(f"{CHAPTER}lessons/")]
     if not lessons:
-        raise LessonError(f"book/_toc.yml has no line `{CHAPTER}lessons/...`. Add one there.")
+        raise ProjectError(f"book/_toc.yml has no line `{CHAPTER}lessons/...`. Add one there.")
     later = [k for k in lessons if chapters[k] > f"{CHAPTER}lessons/{lesson}"]
     folder = f"lessons/{lesson}-new-lesson"
     pages = [f"      - file: {folder}/{page}\n" for page in ("lab", "mistakes")]
@@ -103,7 +99,7 @@ def with_entry(course_map: str, lesson: str) -> str:
     """Return the course map with the lesson: a planned one gets its page, another one is added.
 
     Raises:
-        LessonError: the map already names a page of this lesson.
+        ProjectError: the map already names a page of this lesson.
     """
     head, *entries = re.split(f"(?m)^(?={ENTRY})", f"{course_map.rstrip()}\n")
     names, name = [entry.split()[2] for entry in entries], lesson.upper()
@@ -112,7 +108,7 @@ def with_entry(course_map: str, lesson: str) -> str:
         at = sum(other < name for other in names)
         entries.insert(at, f"{ENTRY}{name}\n  title: {TITLE}\n{new}")
     elif "\n  page:" in entries[names.index(name)]:
-        raise LessonError(f"book/course_map.yml names a page of {name}. Remove that line.")
+        raise ProjectError(f"book/course_map.yml names a page of {name}. Remove that line.")
     else:
         entries[names.index(name)] += new
     return "".join([head, *entries])

@@ -1,4 +1,4 @@
-"""The steps of `make repin`: try another engine in a fresh checkout, then change pin and lock.
+"""`make repin`: try another engine in a fresh checkout, then change pin and lock.
 
 Nothing of the checkout is touched before the last step, which writes two files.
 """
@@ -9,23 +9,23 @@ import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from importlib.metadata import distributions
 from pathlib import Path
+
+from packaging.utils import canonicalize_name
+from packaging.version import InvalidVersion, Version
 
 from robo_genesis.core import project
 from robo_genesis.core.files import locked, write_whole
 from robo_genesis.core.git import git, unclean
 from robo_genesis.core.project import ENGINE, PUBLISHED, locked_versions
 from robo_genesis.maintain import report as refresh
-from robo_genesis.maintain.pin import (
-    FILES,
-    RepinError,
-    require_locked_packages,
-    set_pin,
-    wanted_version,
-)
 from robo_genesis.pipeline.command import ANSI, Progress, end_with_parent, say
 from robo_genesis.pipeline.fresh_checkout import environment, fresh_checkout
 from robo_genesis.pipeline.pages.kernels import wait_or_kill
+
+FILES = ("pyproject.toml", "requirements.lock")
+"""What a change of the pin changes: measured results are never kept in the tree."""
 
 LINES = 50
 """How many last lines of a log an error and the report show."""
@@ -57,7 +57,7 @@ def run_repin(request: Repin) -> list[str]:
     old = project.engine_pin(root)
     new = wanted_version(request.genesis, old)
     if problems := unclean(root, "make repin tries the last commit"):
-        raise RepinError("\n".join(problems))
+        raise project.ProjectError("\n".join(problems))
     require_locked_packages(root)
     before = texts(root)
 
@@ -68,7 +68,7 @@ def run_repin(request: Repin) -> list[str]:
         trial = Trial(request, old, new, work, Progress(request.say))
         pages, new = trial.run(), trial.new
         if texts(root) != before:
-            raise RepinError(
+            raise project.ProjectError(
                 f"{' or '.join(FILES)} changed while {new} was tried, so neither is written. "
                 "Commit or stash that change, then run make repin again; it reuses what is "
                 "compiled and executed."
@@ -81,6 +81,61 @@ def run_repin(request: Repin) -> list[str]:
         "make book sets up .venv anew (with PYTHON=…, install the lock there first).",
         f"git restore {' '.join(FILES)} restores the old pin.",
     ]  # fmt: skip
+
+
+def wanted_version(given: str, pin: str) -> str:
+    """Return the wanted version, without a leading `v`; whether it exists, pip knows.
+
+    Args:
+        given: what the user gave.
+        pin: the version that is pinned now.
+
+    Raises:
+        ProjectError: it is not a version, or it is the pin.
+    """
+    try:
+        version = Version(given)
+    except InvalidVersion:
+        valid = f"Usage: make repin GENESIS=1.2.3 (the pin is {pin})."
+        raise project.ProjectError(f"GENESIS={given!r} is not a version. {valid}") from None
+    if version == Version(pin):
+        raise project.ProjectError(f"GENESIS={given} is the pin already. Give another version.")
+    return str(version)
+
+
+def require_locked_packages(root: Path) -> None:
+    """Raise ProjectError if this environment is not the one that the lock describes.
+
+    The new lock keeps the installed versions, so they must be those of the old one.
+    """
+    installed = {canonicalize_name(d.name): d.version.split("+")[0] for d in distributions()}
+    unlike = [
+        f"{name} {installed.get(canonicalize_name(name), '(none)')} instead of {version}"
+        for name, version in locked_versions((root / FILES[1]).read_text("utf8")).items()
+        if installed.get(canonicalize_name(name)) != version
+    ]
+    if unlike:
+        raise project.ProjectError(
+            f"This environment differs from requirements.lock: {', '.join(unlike[:5])}"
+            f"{', …' if unlike[5:] else ''}. Install the lock (pip install -r requirements.lock), "
+            "or omit PYTHON=…, so that .venv is used."
+        )
+
+
+def set_pin(root: Path, old: str, new: str) -> None:
+    """Write another engine version into the one line that pins it.
+
+    Raises:
+        ProjectError: the line is not written as expected.
+    """
+    path = root / FILES[0]
+    pattern = rf"(?<=[\"']){ENGINE}\s*==\s*{re.escape(old)}(?=[\"'])"
+    text, count = re.subn(pattern, f"{ENGINE}=={new}", path.read_text("utf8"))
+    if count != 1:
+        raise project.ProjectError(
+            f'{path} has "{ENGINE}=={old}" {count} times, expected once. Write the pin in one line.'
+        )
+    path.write_text(text, "utf8")
 
 
 def texts(root: Path) -> dict[str, bytes]:
@@ -130,7 +185,7 @@ class Trial:
         """Run one command there; a failure names it and its log, and ends with a report.
 
         Raises:
-            RepinError: the command failed.
+            ProjectError: the command failed.
         """
         version = project.engine_pin(self.work)
         log = self.request.cache / "repin" / "logs" / f"{stage}-{version}.log"
@@ -144,7 +199,7 @@ class Trial:
             )
             pages = self.write_report(head, remedy, *lines)
             places = [f"Log: {log}", *(f"Report: {page}" for page in pages)]
-            raise RepinError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
+            raise project.ProjectError("\n".join([*lines, *places, "", f"{head}. {remedy}"]))
 
     def write_report(self, *failed: str) -> list[Path]:
         """Compare what both versions built, as far as they did, and write the report."""

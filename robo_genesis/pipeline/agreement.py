@@ -15,10 +15,6 @@ Digests = dict[str, str]
 """The SHA-256 of each archive of one page, by its name in the folder of the page."""
 
 
-class AgreementError(ProjectError):
-    """Two executions of the book differ; the message has a line for each difference."""
-
-
 def agree(first: Path | None, second: Path | None) -> list[str]:
     """Require equal arrays from two executions of the same pages.
 
@@ -33,7 +29,7 @@ def agree(first: Path | None, second: Path | None) -> list[str]:
         The last line for the user: the number of arrays and pages.
 
     Raises:
-        AgreementError: a page or an archive is missing in one of them, or its digest differs.
+        ProjectError: a page or an archive is missing in one of them, or its digest differs.
         PageRefused: a folder is not an executed page.
     """
     one, other = _digests("FIRST", first), _digests("SECOND", second)
@@ -42,14 +38,14 @@ def agree(first: Path | None, second: Path | None) -> list[str]:
     if not number:
         lines.append(f"FIRST={first} has no arrays ({ARRAYS}). Execute the measuring pages.")
     if lines:
-        raise AgreementError("\n".join([f"{first} and {second} do not agree.", *lines]))
+        raise ProjectError("\n".join([f"{first} and {second} do not agree.", *lines]))
     return [f"Equal: {number} archives of arrays on {len(one)} pages."]
 
 
 def _digests(name: str, folder: Path | None) -> dict[str, Digests]:
     """Return the digests of the arrays of each executed page of a folder."""
     if folder is None or not folder.is_dir():
-        raise AgreementError(
+        raise ProjectError(
             f"{name}={str(folder or '')!r} is not a folder. Usage: make agree FIRST=folder "
             "SECOND=folder; `make execute TO=folder` fills each on another machine."
         )
@@ -57,7 +53,7 @@ def _digests(name: str, folder: Path | None) -> dict[str, Digests]:
     for place in exported_folders(folder):
         docname = read_record(place).docname
         if docname in found:
-            raise AgreementError(f"{name}={folder} has {docname} twice. Remove one.")
+            raise ProjectError(f"{name}={folder} has {docname} twice. Remove one.")
         archives = (file for file in plain_files(place) if file.endswith(ARRAYS))
         found[docname] = {file: sha256(place / file) for file in archives}
     return found

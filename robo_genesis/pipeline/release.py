@@ -6,12 +6,7 @@ from pathlib import Path
 from robo_genesis.core.git import git
 from robo_genesis.evidence.bundle import GitRecord, Manifest
 from robo_genesis.lessons import find_lesson
-from robo_genesis.pipeline.bundles.status import (
-    bundle_status,
-    cpu_runs,
-    recorded_folders,
-    recorded_status,
-)
+from robo_genesis.pipeline.bundles.status import bundle_status, recorded_folders, recorded_status
 
 
 def missing_for_release(
@@ -35,7 +30,7 @@ def missing_for_release(
     for page, manifest in manifests.items():
         lines += _of_commit(f"{page}, this build", manifest, commit)
     for path in recorded_folders(book):
-        recorded = recorded_status(book, *path.parts[-2:], cpu_runs=cpu_runs(path, built))
+        recorded = recorded_status(book, *path.parts[-2:], labs=built)
         lines += _of_commit(f"{path.relative_to(book)}", recorded.manifest)
     return lines
 
@@ -48,8 +43,7 @@ def _required(book: Path, lesson: str, folder: Path | None) -> Iterator[str]:
     hardware = find_lesson(lesson).spec.MINIMUM_HARDWARE
     needed = here
     if hardware != here.backend:
-        runs = cpu_runs(book / "evidence" / lesson / hardware, {lesson: folder})
-        needed = recorded_status(book, lesson, hardware, cpu_runs=runs)
+        needed = recorded_status(book, lesson, hardware, labs={lesson: folder})
     if needed.state != "verified":
         yield (
             f"{lesson} requires evidence of its minimum hardware, {hardware}, which is "

@@ -21,17 +21,16 @@ from robo_genesis.pipeline.bundles.status import refused_records
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.command import TIMEOUT, Progress, say
 from robo_genesis.pipeline.html.address import site_address, site_root
+from robo_genesis.pipeline.html.archive import write_sums
 from robo_genesis.pipeline.html.checks import Site, run_checks
 from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.kept import discard
 from robo_genesis.pipeline.html.publish import add_bundles, publish, staging_folder
 from robo_genesis.pipeline.html.render import render
 from robo_genesis.pipeline.html.sphinx_process import LOG, SphinxProcess
-from robo_genesis.pipeline.html.sums import write_sums
 from robo_genesis.pipeline.pages.book import Page, find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
-from robo_genesis.pipeline.pages.execute import execute_pages, kernel_environment
-from robo_genesis.pipeline.pages.progress import Lines
+from robo_genesis.pipeline.pages.execute import Lines, execute_pages, kernel_environment
 from robo_genesis.pipeline.pages.results import PageResult, failure_report
 from robo_genesis.pipeline.pages.store import (
     Verify,
@@ -83,8 +82,8 @@ def run_build(build: Build) -> list[str]:
 
     Raises:
         BuildError: a stage failed; nothing was published.
-        StoreError: pages that were executed elsewhere are refused; nothing was published.
-        ProjectError: the checkout or SITE_URL is not fit for a build.
+        ProjectError: pages that were executed elsewhere are refused, or the checkout or SITE_URL is
+            not fit for a build; nothing was published.
     """
     with (
         build.sphinx or SphinxProcess(build.book, build.cache / LOG) as sphinx,

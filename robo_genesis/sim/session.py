@@ -283,3 +283,14 @@ def require_agreement(found: Backend) -> None:
             f"Found: {found}. Unset QD_ARCH and "
             "GS_TORCH_FORCE_CPU_DEVICE, check the Torch build, and restart the kernel."
         )
+
+
+def require_built(scene: Any, case: Any, error: type[Exception]) -> None:
+    """Raise `error` unless a scene is built with the `dt` and `substeps` of a case."""
+    if not scene.is_built:
+        raise error("The scene is not built: call scene.build() before any joint call or step.")
+    if (scene.dt, scene.substeps) != (case.dt, case.substeps):
+        raise error(
+            f"The scene was built with dt={scene.dt}, substeps={scene.substeps}; the case asks for "
+            f"dt={case.dt}, substeps={case.substeps}. Restart and build the scene for this case."
+        )

@@ -15,7 +15,7 @@ from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.evidence.npz_archive import write_archive
 from robo_genesis.evidence.reader import from_bundle
 from robo_genesis.evidence.trace_files import read_any_trace
-from robo_genesis.pipeline.bundles import keys as evidence_key
+from robo_genesis.pipeline.bundles import verify as evidence_key
 from robo_genesis.pipeline.bundles.status import bundle_status
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.site.takeaways.files import csv_text

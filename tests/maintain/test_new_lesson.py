@@ -4,11 +4,10 @@ import pytest
 import yaml
 from checkout import copy_checkout, import_contracts, make, run_in, unit_tests
 
-from robo_genesis.core.project import BOOK
+from robo_genesis.core.project import BOOK, ProjectError
 from robo_genesis.maintain.new_lesson import (
     OUTCOME,
     TEMPLATE,
-    LessonError,
     add_lesson,
     with_chapter,
     with_entry,
@@ -77,7 +76,7 @@ def small(tmp_path):
 )
 def test_a_name_that_cannot_be_used_changes_nothing(small, name, message):
     before = files(small)
-    with pytest.raises(LessonError) as raised:
+    with pytest.raises(ProjectError) as raised:
         add_lesson(small, name)
     assert message in str(raised.value)
     assert files(small) == before
@@ -113,5 +112,5 @@ def test_a_list_in_another_order_without_a_last_line_break_loses_nothing():
 
 
 def test_a_list_without_lessons_is_refused():
-    with pytest.raises(LessonError, match="has no line"):
+    with pytest.raises(ProjectError, match="has no line"):
         with_chapter("format: jb-book\nroot: index\n", "l05")

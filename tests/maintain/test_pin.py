@@ -4,7 +4,7 @@ import pytest
 
 from robo_genesis.core import project
 from robo_genesis.core.project import ProjectError
-from robo_genesis.maintain.pin import RepinError, set_pin, wanted_version
+from robo_genesis.maintain.repin import set_pin, wanted_version
 
 
 @pytest.mark.parametrize(
@@ -23,7 +23,7 @@ def test_a_version_is_read_as_pip_reads_it(given, found):
     ],
 )
 def test_what_is_no_other_version_is_refused(given, says):
-    with pytest.raises(RepinError, match=says):
+    with pytest.raises(ProjectError, match=says):
         wanted_version(given, "1.3.3")
 
 

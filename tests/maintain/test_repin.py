@@ -14,7 +14,6 @@ from tiny_book import commit, fails, git, wait_for
 
 from robo_genesis.core.files import locked
 from robo_genesis.core.project import ROOT, ProjectError, engine_pin
-from robo_genesis.maintain.pin import RepinError
 from robo_genesis.maintain.repin import Repin, run_logged, run_repin
 
 OLD, NEW = engine_pin(), "99.1"
@@ -117,7 +116,7 @@ def test_a_step_that_fails_ends_with_a_report_and_leaves_the_tree_as_it_was(
     root, stage, why, packages
 ):
     before = state(root)
-    with pytest.raises(RepinError) as caught:
+    with pytest.raises(ProjectError) as caught:
         repin(root, FAILS[stage])
     message = str(caught.value)
     remedy = f"The checkout still pins {OLD}. Give another version, or change what failed so that"
@@ -151,7 +150,7 @@ def commit_another_lock(root: Path) -> None:
 )  # fmt: skip
 def test_what_cannot_be_tried_is_refused_before_anything_runs(root, spoil, says):
     spoil(root)
-    with pytest.raises(RepinError, match=says):
+    with pytest.raises(ProjectError, match=says):
         repin(root, NEW)
     assert (root / "pyproject.toml").read_text() == PROJECT.format(OLD)
     assert not (root / ".cache" / "repin").exists()
@@ -172,7 +171,7 @@ def test_a_pin_that_is_edited_meanwhile_is_kept(root):
         if "] test " in line:
             (root / "pyproject.toml").write_text(mine)
 
-    with pytest.raises(RepinError, match=r"pyproject\.toml .* changed while .* again"):
+    with pytest.raises(ProjectError, match=r"pyproject\.toml .* changed while .* again"):
         repin(root, NEW, say=edit_during_the_tests)
     assert (root / "pyproject.toml").read_text() == mine
     assert (root / "requirements.lock").read_text() == LOCK.format(OLD)

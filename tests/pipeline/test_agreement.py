@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.core.project import ROOT
-from robo_genesis.pipeline.agreement import AgreementError, agree
+from robo_genesis.core.project import ROOT, ProjectError
+from robo_genesis.pipeline.agreement import agree
 from robo_genesis.pipeline.pages.folder import RECORD, Record
 
 FILES = {"outputs/cpu/arrays/a.npz": b"a", "outputs/shape.npz": b"s", "outputs/cpu/log.txt": b"1"}
@@ -55,16 +55,16 @@ def test_a_different_or_missing_archive_or_page_is_named(machines, files, said):
     shutil.rmtree(machines[1] / "lessons--lab")
     if files:
         executed(machines[1], "lessons/lab", files)
-    with pytest.raises(AgreementError, match=said):
+    with pytest.raises(ProjectError, match=said):
         agree(*machines)
 
 
 def test_folders_without_arrays_and_a_page_twice_are_refused(machines, tmp_path):
     executed(tmp_path / "third", "text", {})
-    with pytest.raises(AgreementError, match="has no arrays"):
+    with pytest.raises(ProjectError, match="has no arrays"):
         agree(tmp_path / "third", tmp_path / "third")
     executed(machines[1] / "again", "text", {})
-    with pytest.raises(AgreementError, match="has text twice"):
+    with pytest.raises(ProjectError, match="has text twice"):
         agree(*machines)
 
 

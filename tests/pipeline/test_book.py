@@ -26,7 +26,6 @@ from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline import up_to_date
 from robo_genesis.pipeline.html import kept
 from robo_genesis.pipeline.pages.book import PageError
-from robo_genesis.pipeline.pages.folder import StoreError
 from robo_genesis.pipeline.pages.kernels import kill_with_descendants
 from robo_genesis.pipeline.stages import (
     Build,
@@ -124,7 +123,7 @@ def test_pages_from_elsewhere_are_built_without_a_run(built, tmp_path):
         (NO_CAMERA, {}, BuildError, "render.mode is skip, expected camera"),
         (FORGED_LAB, {}, BuildError, "shown: lab, code cell 2: number of measured outputs is 1"),
         ("# A\n\n<script src='https://example.org/a.js'></script>\n", {}, BuildError, "third p"),
-        (LAB, {"executed": Path()}, StoreError, r"lab is not among them\.\nExecute these pages"),
+        (LAB, {"executed": Path()}, ProjectError, r"lab is not among them\.\nExecute these pages"),
         (LAB, {"release": True}, BuildError, r"RELEASE=1 cannot be met\.\n.* 1 changed file"),
     ],
     ids=["bundle", "another contract", "output", "site", "missing page", "changed tree"],

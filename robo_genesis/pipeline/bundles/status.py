@@ -4,6 +4,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 from robo_genesis.core import project
 from robo_genesis.core.checks import FAILED
@@ -12,8 +13,7 @@ from robo_genesis.evidence import bundle, copies
 from robo_genesis.evidence.bundle import Manifest, Metric
 from robo_genesis.evidence.compare import specification
 from robo_genesis.evidence.refusals import BundleRefused
-from robo_genesis.pipeline.bundles import keys as evidence_key
-from robo_genesis.pipeline.bundles.verify import verify_bundle
+from robo_genesis.pipeline.bundles.verify import changed, verify_bundle
 from robo_genesis.pipeline.pages.guards import contradicted
 from robo_genesis.sim.backends import BACKENDS
 
@@ -99,16 +99,26 @@ def recorded_status(
     lesson: str,
     backend: str,
     *,
+    labs: Mapping[str, Path | None] = MappingProxyType({}),
     root: Path = project.ROOT,
-    cpu_runs: Sequence[Path] = (),
 ) -> Status:
-    """Return the state of the recorded bundle of a lab on a backend; see `bundle_status`."""
+    """Return the state of the recorded bundle of a lab on a backend; see `bundle_status`.
+
+    Args:
+        book: the folder of the pages.
+        lesson: of the lab.
+        backend: names the folder of the bundle.
+        labs: by lesson, the bundle of a build's lab, of which it must not be a copy, nor of the
+            recorded run on the CPU.
+        root: the checkout, for pin, lock and modules.
+    """
     absent = f"No run on this backend is recorded for Genesis {project.engine_pin(root)}."
     folder = book / "evidence" / lesson / backend
     if folder.parent.is_symlink():
         reason = f"evidence/{lesson} is a link, expected a folder. Replace the link."
         return Status("refused", backend, reason, None, "path", UNREADABLE)
-    return bundle_status(folder, lesson, RECORDED_PAGE, absent, book, root=root, cpu_runs=cpu_runs)
+    runs = [folder.with_name("cpu"), *([lab] if (lab := labs.get(lesson)) else [])]
+    return bundle_status(folder, lesson, RECORDED_PAGE, absent, book, root=root, cpu_runs=runs)
 
 
 def bundle_status(
@@ -183,8 +193,8 @@ def why_stale(manifest: Manifest, book: Path, root: Path = project.ROOT) -> str:
         book: the folder of the pages.
         root: the checkout, for pin, lock and modules.
     """
-    changed = changes(manifest, book, root)
-    text = "; ".join(text for _, text in changed) or "it answers an older question"
+    found = changes(manifest, book, root)
+    text = "; ".join(text for _, text in found) or "it answers an older question"
     return f"{text[0].upper()}{text[1:]}."
 
 
@@ -193,7 +203,7 @@ def changes(manifest: Manifest, book: Path, root: Path = project.ROOT) -> list[t
 
     The kinds are those of `advice.BY_CHANGE`.
     """
-    found = evidence_key.changed(manifest, root, book) or []
+    found = changed(manifest, root, book) or []
     return [
         (kind, words.format(here, there, page=manifest.predicate.page))
         for start, (kind, words) in CHANGES.items()
@@ -219,20 +229,10 @@ def refused_records(book: Path, labs: Mapping[str, Path | None]) -> list[str]:
 
     Args:
         book: the folder of the pages.
-        labs: by lesson, the bundle of this build's lab, of which a recorded one must not be a copy.
+        labs: see `recorded_status`.
     """
-    found = [
-        (path, recorded_status(book, *path.parts[-2:], cpu_runs=cpu_runs(path, labs)))
-        for path in recorded_folders(book)
-    ]
     return [
         f"{path.relative_to(book)}: the recorded bundle is {status.state}: {status.reason}"
-        for path, status in found
-        if status.state not in PASSING
+        for path in recorded_folders(book)
+        if (status := recorded_status(book, *path.parts[-2:], labs=labs)).state not in PASSING
     ]
-
-
-def cpu_runs(folder: Path, labs: Mapping[str, Path | None]) -> list[Path]:
-    """Return the CPU runs that a recorded bundle must not be a copy of: recorded ones and labs."""
-    recorded, lab = folder.parent / "cpu", labs.get(folder.parent.name)
-    return [recorded, *([lab] if lab else [])]

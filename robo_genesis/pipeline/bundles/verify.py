@@ -1,15 +1,141 @@
-"""Accept or refuse a bundle: whatever can be recomputed from its arrays is recomputed."""
+"""Accept or refuse a bundle: whatever can be recomputed from its arrays is recomputed.
+
+An accepted bundle has the evidence key of the current checkout.
+"""
 
 import json
+import os
 from functools import lru_cache, partial
+from glob import glob
 from pathlib import Path
+from typing import Any
 
 from robo_genesis.core import project
+from robo_genesis.core.comparison import differences
 from robo_genesis.core.files import derived
+from robo_genesis.core.project import PUBLISHED
+from robo_genesis.core.scene import SEED
+from robo_genesis.core.text import quoted
 from robo_genesis.evidence import bundle, bundle_files, manifest_rules
 from robo_genesis.evidence.bundle import Manifest
 from robo_genesis.evidence.recompute import as_judged_today, recompute
-from robo_genesis.pipeline.bundles import keys as evidence_key
+from robo_genesis.evidence.refusals import BundleRefused, expect
+from robo_genesis.lessons import find_page
+from robo_genesis.pipeline.pages import sources, syntax
+from robo_genesis.sim import session
+
+
+def question(lesson: str, page: str, root: Path, book: Path) -> dict[str, Any]:
+    """Return the fields that `bundle.evidence_key` covers, with the values of a checkout.
+
+    Args:
+        lesson: as the front matter of the page declares it.
+        page: likewise.
+        root: the checkout, for pin, lock and modules.
+        book: the folder of the pages.
+
+    Raises:
+        BundleRefused: `lesson`, the book has no such page.
+    """
+    try:
+        measuring = find_page(lesson, page)
+    except LookupError as error:
+        raise BundleRefused("lesson", f"manifest.json: {error}") from error
+    digest, imports = page_code(lesson, page, book)
+    locked = project.locked_versions((root / "requirements.lock").read_text("utf8"))
+    if "quadrants" not in locked:
+        raise project.ProjectError("requirements.lock lacks quadrants. Run `make lock`.")
+    return {
+        "schema_version": bundle.SCHEMA_VERSION,
+        "lesson": lesson,
+        "page": page,
+        "engine": {
+            "version": project.engine_pin(root),
+            "quadrants_version": locked["quadrants"],
+            "precision": session.PRECISION,
+        },
+        "seed": SEED,
+        "parameters": json.loads(json.dumps(measuring.parameters())),
+        "source": {
+            "page": digest,
+            "modules": sources.measuring_modules(lesson, imports, root),
+        },
+    }
+
+
+def page_code(lesson: str, page: str, book: Path) -> tuple[str, list[str]]:
+    """Return the digest of the code cells of a page in the book, and what they import.
+
+    Raises:
+        BundleRefused: `lesson`, the book has no such page.
+    """
+    files = _page_files(book)
+    inputs = [path.relative_to(book).as_posix().encode() for path in files]
+    readers = [Path(syntax.__file__).with_name("book.py"), Path(syntax.__file__)]
+    inputs += [path.read_bytes() for path in (*files, *readers)]
+    listed = json.loads(derived("page-code", inputs, partial(_read_codes, book)))
+    found = {(lesson, page): (digest, names) for lesson, page, digest, names in listed}
+    if (lesson, page) not in found:
+        wanted, pages = f"{lesson}/{page}", " or ".join(sorted(map("/".join, found)))
+        remedy = "Put the bundle into the folder of its own lesson."
+        expect("lesson", "manifest.json", "lesson and page", wanted, pages, remedy)
+    return found[lesson, page]
+
+
+def _page_files(book: Path) -> list[Path]:
+    """Return the table of contents and every file that may be a page, also in linked folders."""
+    found = glob(
+        "**/*.md", root_dir=book, recursive=True
+    )  # it follows links, and skips hidden ones
+    pages = sorted(name for name in found if not name.startswith(f"{PUBLISHED}{os.sep}"))
+    return [*book.glob("_toc.yml"), *(book / name for name in pages)]
+
+
+def _read_codes(book: Path) -> bytes:
+    """Return lesson, page, digest and imports of each page that declares a bundle, as JSON.
+
+    The reader of pages is imported here, because MyST-NB and Jupyter take longer to load than a
+    whole verification.
+    """
+    from robo_genesis.pipeline.pages import book as pages
+
+    found = [page for page in pages.find_pages(book) if page.declares_bundle]
+    codes = [(p.lesson, p.page, pages.code_digest(p), p.code.imports) for p in found]
+    return json.dumps(codes).encode()
+
+
+def changed(manifest: Manifest, root: Path, book: Path) -> list[tuple[str, Any, Any]] | None:
+    """Return (path, recorded, current) of what differs; None if a bundle has the current key.
+
+    Raises:
+        BundleRefused: `lesson`, the book has no such page.
+    """
+    predicate = manifest.predicate.model_dump()
+    current = question(predicate["lesson"], predicate["page"], root, book)
+    if predicate["evidence_key"] == bundle.evidence_key(current):
+        return None
+    recorded = {name: predicate[name] for name in current}
+    recorded["engine"] = {name: recorded["engine"][name] for name in current["engine"]}
+    return list(differences(recorded, current))
+
+
+def check_current(manifest: Manifest, root: Path, book: Path) -> None:
+    """Require that a bundle has the evidence key of the checkout.
+
+    Raises:
+        BundleRefused: `stale`, with everything that differs; `lesson`.
+    """
+    found = changed(manifest, root, book)
+    if found is None:
+        return
+    named = "; ".join(
+        f"{path} is {quoted(here)}, expected {quoted(there)}" for path, here, there in found
+    )
+    raise BundleRefused(
+        "stale",
+        f"manifest.json: {named or 'evidence_key differs'}. The bundle answers an "
+        f"older question. Record it again: `make evidence LESSON={manifest.predicate.lesson}`.",
+    )
 
 
 def verify_bundle(
@@ -50,7 +176,7 @@ def verify_bundle(
     bundle_files.check_files(folder, present, manifest)
     manifest_rules.check_circumstances(folder, manifest.predicate)
     manifest_rules.check_log(folder, manifest, root)
-    evidence_key.check_current(manifest, root, book)
+    check_current(manifest, root, book)
     if once:
         contents = [(folder / name).read_bytes() for name in sorted(present)]
         inputs = [json.dumps(sorted(present)).encode(), *contents, _code()]

@@ -9,22 +9,18 @@ from robo_genesis.core.project import ProjectError
 SITE_URL = "SITE_URL"
 
 
-class AddressError(ProjectError):
-    """`SITE_URL` is not an address; the message says what is valid."""
-
-
 def site_address(environment: Mapping[str, str] = os.environ) -> str | None:
     """Return the site's address with a slash at its end, None if none is given.
 
     Raises:
-        AddressError: it is not an address of the web, or it has a query or a fragment.
+        ProjectError: it is not an address of the web, or it has a query or a fragment.
     """
     given = environment.get(SITE_URL)
     if not given:
         return None
     parts = urlsplit(given)
     if parts.scheme not in ("http", "https") or not parts.netloc or parts.query or parts.fragment:
-        raise AddressError(
+        raise ProjectError(
             f"{SITE_URL}={given!r} is not valid. Give an address like https://example.org/course/."
         )
     return given.rstrip("/") + "/"

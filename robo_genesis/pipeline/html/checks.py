@@ -57,6 +57,12 @@ class Site:
     """The files of a built site, and the facts of each page."""
 
     def __init__(self, html: Path, base: str = "/"):
+        """Read the pages.
+
+        Args:
+            html: the folder with the site's `index.html`.
+            base: the path that this folder will have on its server, with a slash at both ends.
+        """
         self.root, self.base = html.resolve(), base
         self.files: dict[str, Path | None] = {}
         self.pages = {path: self._facts(path) for path in sorted(self.root.rglob("*.html"))}
@@ -118,16 +124,6 @@ def page_facts(page: scripts.Page) -> PageFacts:
             "leftovers": list(_leftovers(page.parsed)),
         },
     )
-
-
-def check_site(html: Path, base: str = "/") -> list[SiteCheck]:
-    """Run all checks on a built site; see `run_checks`.
-
-    Args:
-        html: the folder with the site's `index.html`.
-        base: the path that this folder will have on its server, with a slash at both ends.
-    """
-    return run_checks(Site(html, base))
 
 
 def run_checks(site: Site) -> list[SiteCheck]:

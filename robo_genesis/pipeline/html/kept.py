@@ -7,7 +7,7 @@ next build empties: a warning is given only when a page is read.
 
 import json
 import shutil
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from hashlib import sha256
 from pathlib import Path
 
@@ -21,7 +21,8 @@ from robo_genesis.pipeline.pages.folder import RECORD
 
 STATE = "state.json"
 UNFIT = "unfit"
-"""Sphinx writes this file if the pages must not be kept; see `site.frame.incremental`."""
+"""Sphinx writes this file if it found something that an incremental render could get wrong; see
+`site.frame.incremental`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,11 +77,6 @@ def prepare(folder: Path, state: State) -> bool:
     return usable
 
 
-def fit(folder: Path) -> bool:
-    """Return whether Sphinx found nothing that an incremental render could get wrong."""
-    return not (folder / UNFIT).exists()
-
-
 def keep(folder: Path, before: State, after: State) -> None:
     """Mark a render as successful, unless an input changed meanwhile or the pages are unfit.
 
@@ -89,9 +85,8 @@ def keep(folder: Path, before: State, after: State) -> None:
         before: the state from which the render began.
         after: the state now.
     """
-    if before == after and fit(folder):
-        state = {"others": after.others, "pages": after.pages}
-        (folder / STATE).write_text(json.dumps(state, indent=1) + "\n", "utf8")
+    if before == after and not (folder / UNFIT).exists():
+        (folder / STATE).write_text(json.dumps(asdict(after), indent=1) + "\n", "utf8")
 
 
 def discard(folder: Path) -> None:

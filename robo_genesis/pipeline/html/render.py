@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from robo_genesis.pipeline.html.draft import Draft
-from robo_genesis.pipeline.html.kept import fit, keep, prepare, read_state
+from robo_genesis.pipeline.html.kept import UNFIT, keep, prepare, read_state
 from robo_genesis.pipeline.html.sphinx_process import HTML, SphinxProcess
 from robo_genesis.pipeline.pages.built import BuiltPages
 
@@ -38,7 +38,7 @@ def render(
         The site, complete but for archive and sums.
 
     Raises:
-        RenderError: Sphinx failed or gave a warning.
+        ProjectError: Sphinx failed or gave a warning.
     """
     shutil.rmtree(staging, ignore_errors=True)
     staging.mkdir(parents=True)
@@ -62,7 +62,7 @@ def _render_changes(
     was_kept = prepare(folder, before)
     kept = built.model_copy(update={"states": folder / STATES})
     sphinx.render(folder, kept, meanwhile)
-    if was_kept and not fit(folder):  # the state is gone, so this one starts from nothing
+    if was_kept and (folder / UNFIT).exists():  # the state is gone, so this one starts from nothing
         with SphinxProcess(sphinx.book, sphinx.log) as another:
             return _render_changes(another, folder, built)
     keep(folder, before, read_state(sphinx.book, built))

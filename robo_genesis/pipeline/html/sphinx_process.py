@@ -34,10 +34,6 @@ EXECUTED = "executed-pages.json"
 """The file in that folder which lists the executed pages."""
 
 
-class RenderError(ProjectError):
-    """Sphinx failed or warned; the message holds its complaints and the place of the log."""
-
-
 class SphinxProcess:
     """The process; as a context manager, it is ended when the context is left."""
 
@@ -81,7 +77,7 @@ class SphinxProcess:
             meanwhile: called while Sphinx works. What it raises ends Sphinx and is raised here.
 
         Raises:
-            RenderError: Sphinx failed or gave a warning.
+            ProjectError: Sphinx failed or gave a warning.
         """
         self.order(folder, built.write(folder / EXECUTED), last=True)
         with self:  # nothing writes into the folder after an interrupt, or a refusal meanwhile
@@ -89,7 +85,7 @@ class SphinxProcess:
             said = self.complaints()
             self.process.wait()
         if said:
-            raise RenderError("\n".join([*said, f"The complete log is in {self.log}"]))
+            raise ProjectError("\n".join([*said, f"The complete log is in {self.log}"]))
 
     def order(
         self,

@@ -8,7 +8,7 @@ same output. Other outputs are not compared, and the site says so below them.
 import ast
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -42,12 +42,9 @@ NAME = re.compile(r'(\sid="|url\(#|href="#)([^")]*)')
 """A name in a drawing. Matplotlib makes some of them from coordinates."""
 
 
-@dataclass(frozen=True, slots=True)
-class Shown:
-    """One call that shows an output: the name of its function, and its arguments."""
-
-    function: str
-    arguments: list[Any]
+Shown = dict[str, Any]
+"""One call that shows an output: its `function`, the name, and its `arguments`, a list; so is the
+metadata of the output."""
 
 
 def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Manifest) -> int:
@@ -74,7 +71,7 @@ def require_shown(page: Page, executed: NotebookNode, folder: Path, manifest: Ma
         expect("shown", place, what, len(found), len(named), f"{ONCE} {AGAIN}")
         for call, output in zip(named, found, strict=True):
             experiment = experiment or accepted_experiment(folder, manifest)
-            _compare(f"{place}, {call.function}", call, output, experiment)
+            _compare(f"{place}, {call['function']}", call, output, experiment)
             compared += 1
     return compared
 
@@ -125,7 +122,7 @@ def _method(node: ast.AST) -> str | None:
 
 def _call(place: str, node: ast.Call, names: Mapping[str, str]) -> Shown:
     if _method(node) == "finish":
-        return Shown(shown.CHECKS, [])
+        return {"function": shown.CHECKS, "arguments": []}
     name = ast.unparse(node.args[0]) if node.args else ""
     root, _, rest = name.partition(".")
     function = f"{names.get(root, root)}.{rest}"
@@ -141,7 +138,7 @@ def _call(place: str, node: ast.Call, names: Mapping[str, str]) -> Shown:
             f"{place}: `{ast.unparse(node)}` has an argument that is not written out. Give text, "
             "numbers or lists of them by position, or let the function choose them."
         ) from error
-    return Shown(function, arguments)
+    return {"function": function, "arguments": arguments}
 
 
 def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
@@ -164,10 +161,9 @@ def marked(cell: NotebookNode) -> list[NotebookNode]:
 def _compare(place: str, call: Shown, output: NotebookNode, experiment: Experiment) -> None:
     """Raise BundleRefused unless an output is that of its call."""
     says = output.metadata[shown.METADATA]
-    expected = {"function": call.function, "arguments": call.arguments}
-    expect("shown", place, "function of the output", says, expected, AGAIN)
+    expect("shown", place, "function of the output", says, call, AGAIN)
     try:
-        valid = shown.mime_data(call.function, experiment, call.arguments)
+        valid = shown.mime_data(call["function"], experiment, call["arguments"])
     except (shown.ShownError, LookupError, ValueError, ArithmeticError, TypeError) as error:
         raise _refused(f"{place}: it cannot be called on the bundle: {error!r}") from error
     data: Mapping[str, Any] = output.get("data", {})

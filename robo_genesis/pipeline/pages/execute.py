@@ -3,9 +3,10 @@
 import multiprocessing
 import os
 import tempfile
+import time
 import uuid
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
@@ -16,23 +17,95 @@ from robo_genesis.pipeline.command import TIMEOUT
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import OUTPUTS, PageRefused, Record
 from robo_genesis.pipeline.pages.kernels import interrupts_blocked, kill_with_descendants
-from robo_genesis.pipeline.pages.progress import Lines, Underway
 from robo_genesis.pipeline.pages.results import Failure, PageResult, Status, find_bundle
 from robo_genesis.pipeline.pages.store import last_record, stored_result
 from robo_genesis.pipeline.pages.worker import PageRun, work
 
-
-@dataclass(frozen=True, slots=True)
-class Worker:
-    """The process that executes one page, the run, and how far it is."""
-
-    process: Any
-    run: PageRun
-    underway: Underway
+HEARTBEAT = 30.0
 
 
-Running = dict[Any, Worker]
-"""The workers that run, by the connection of their progress and result."""
+@dataclass(slots=True)
+class Underway:
+    """One page that runs.
+
+    `cells` is the number of its code cells and `cell` the one that runs, counted from 1; 0 while
+    the kernel starts. `last` is the record of its last stored run, `log` the file that gets what
+    the engine writes, None if it is not kept. Times are seconds of the monotonic clock.
+    """
+
+    name: str
+    cells: int
+    last: Record | None = None
+    log: Path | None = None
+    begin: float = field(default_factory=time.monotonic)
+    cell: int = 0
+    cell_begin: float = 0.0
+
+    def reach(self, cell: int) -> None:
+        """Note that a cell starts."""
+        self.cell, self.cell_begin = cell, time.monotonic()
+
+    def left(self, now: float) -> float | None:
+        """Return the estimated seconds to the end of the last cell, None without an earlier run.
+
+        Cells that wait are expected to take as long as last time. If the page has another number
+        of cells now, the estimate is for the whole page.
+        """
+        if self.last is None:
+            return None
+        seconds = self.last.cell_seconds
+        if self.cell == 0 or len(seconds) != self.cells:
+            return max(0.0, self.last.seconds - (now - self.begin))
+        this_cell = max(0.0, seconds[self.cell - 1] - (now - self.cell_begin))
+        return this_cell + sum(seconds[self.cell :])
+
+    def started(self) -> str:
+        """Return what the line at its start says."""
+        expected = f", about {self.last.seconds:.0f} s" if self.last else ""
+        followed = f"; its log: {self.log}" if self.log else ""
+        return f"started: {self.cells} cells{expected}{followed}"
+
+    def state(self, now: float) -> str:
+        """Return cell, elapsed time and estimated remaining time."""
+        cell = f"cell {self.cell} of {self.cells}" if self.cell else "kernel starts"
+        left = self.left(now)
+        estimate = "" if left is None else f", ~{left:.0f} s left"
+        return f"{cell}, {now - self.begin:.0f} s{estimate}"
+
+
+class Lines:
+    """Reports pages as lines: each start and end, and now and then how far the pages are."""
+
+    def __init__(
+        self, say: Callable[[str, str], None] = lambda what, event: None, every: float = HEARTBEAT
+    ) -> None:
+        """Report to `say`, which takes a page's name and an event, or the running pages and "".
+
+        Args:
+            say: prints one line.
+            every: seconds without a line after which the running pages are reported.
+        """
+        self._say, self.every, self.last = say, every, time.monotonic()
+
+    def say(self, what: str, event: str) -> None:
+        """Print one line."""
+        self._say(what, event)
+        self.last = time.monotonic()
+
+    def pause(self) -> float:
+        """Return the seconds after which `show` is due."""
+        return max(0.0, self.last + self.every - time.monotonic())
+
+    def show(self, pages: Sequence[Underway]) -> None:
+        """Report the running pages, if it is time."""
+        if pages and self.pause() == 0:
+            now = time.monotonic()
+            states = "; ".join(f"{page.name}: {page.state(now)}" for page in pages)
+            self.say(f"{len(pages)} running: {states}", "")
+
+
+Running = dict[Any, tuple[Any, PageRun, Underway]]
+"""The workers that run: process, run and how far it is, by the connection of its messages."""
 
 
 def execute_pages(
@@ -93,15 +166,15 @@ def execute_pages(
                     report.say(page.docname, underway.started())
                     _start(run, underway, running)
                 for connection in wait(list(running), timeout=report.pause()):
-                    result = _receive(connection, running[connection])
+                    result = _receive(connection, *running[connection])
                     if result is None:
                         continue
                     del running[connection]
                     results[result.page.docname] = result
                     report.say(result.page.docname, f"{result.status} in {result.seconds:.0f} s")
-                report.show([worker.underway for worker in running.values()])
+                report.show([underway for *_, underway in running.values()])
         finally:
-            kill_with_descendants(worker.process.pid for worker in running.values())
+            kill_with_descendants(process.pid for process, *_ in running.values())
     return [results[page.docname] for page in pages]
 
 
@@ -166,30 +239,31 @@ def _start(run: PageRun, underway: Underway, running: Running) -> None:
     process = context.Process(target=work, args=(run, sender))
     with interrupts_blocked():  # a Ctrl-C from here on finds the worker among the running
         process.start()
-        running[receiver] = Worker(process, run, underway)
+        running[receiver] = process, run, underway
     sender.close()
 
 
-def _receive(connection: Any, worker: Worker) -> PageResult | None:
+def _receive(connection: Any, process: Any, run: PageRun, underway: Underway) -> PageResult | None:
     """Return the result of a page whose worker sent it, or died without sending it.
 
     It is None if a cell starts.
     """
-    run, log = worker.run, worker.underway.log
     try:
         received = connection.recv()
         if isinstance(received, int):
-            worker.underway.reach(received)
+            underway.reach(received)
             return None
         seconds, failure = received
     except EOFError:
-        worker.process.join()
-        cell = f" in cell {worker.underway.cell}" if worker.underway.cell else ""
-        code = worker.process.exitcode
+        process.join()
+        cell = f" in cell {underway.cell}" if underway.cell else ""
+        code = process.exitcode
         message = f"the worker process ended{cell} with status {code}; out of memory?"
         seconds, failure = 0.0, Failure("WorkerDied", message)
-    worker.process.join()
+    process.join()
     connection.close()
     status: Status = "failed" if failure else "executed"
     bundle = None if failure else find_bundle(run.place / OUTPUTS, run.run_id)
-    return PageResult(run.page, status, seconds, run.run_id, bundle, failure, run.place, log)
+    return PageResult(
+        run.page, status, seconds, run.run_id, bundle, failure, run.place, underway.log
+    )

@@ -31,11 +31,7 @@ SIZE_LIMIT = 64 * 2**20
 FILES_LIMIT = 500
 
 
-class StoreError(ProjectError):
-    """Executed pages cannot be exported or imported; nothing was changed."""
-
-
-class PageRefused(StoreError):  # noqa: N818 - the word of the domain, as for bundles
+class PageRefused(ProjectError):  # noqa: N818 - the word of the domain, as for bundles
     """A folder is not this page as this checkout executes it. `code` is stable."""
 
     def __init__(self, code: str, message: str) -> None:
@@ -85,7 +81,7 @@ def write_page(
         cell_seconds: how long each cell with code took.
 
     Raises:
-        StoreError: the run left a link, a device, or too much.
+        PageRefused: the run left a link, a device, or too much.
         OSError: the folder cannot be written.
     """
     place.parent.mkdir(parents=True, exist_ok=True)

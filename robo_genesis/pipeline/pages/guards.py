@@ -6,7 +6,6 @@ its page, or of `lesson/page check`. If the check fails, the sentence must be wr
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 GUARD = re.compile(r"\s*\{guard\}`([^`]+)`")
@@ -14,17 +13,8 @@ DECLARED = re.compile(r"^robo_genesis:\s*\{?\s*lesson: *(\w+),?\s*page: *(\w+)",
 START = re.compile(r"(?<=[.!?])\s+(?=\S)|\n\s*(?:[-*]|\d+\.|\|)\s|\n\s*\n|\|")
 
 
-@dataclass(frozen=True, slots=True)
-class Guarded:
-    """A sentence, its line in the file, and the checks that guard it."""
-
-    line: int
-    sentence: str
-    check: str
-
-
-def guarded_sentences(text: str) -> Iterator[Guarded]:
-    """Yield each guarded sentence of a page's Markdown; one with two guards twice."""
+def guarded_sentences(text: str) -> Iterator[tuple[int, str, str]]:
+    """Yield (line, sentence, check) of each guard in a page's Markdown."""
     sentence = ""
     last = 0
     for match in GUARD.finditer(text):
@@ -32,7 +22,7 @@ def guarded_sentences(text: str) -> Iterator[Guarded]:
         if before.strip():
             sentence = " ".join(START.split(before.rstrip())[-1].split())
         last = match.end()
-        yield Guarded(text.count("\n", 0, match.start()) + 1, sentence, match[1])
+        yield text.count("\n", 0, match.start()) + 1, sentence, match[1]
 
 
 def contradicted(book: Path, lesson_page: str, message: str) -> str:
@@ -48,9 +38,9 @@ def contradicted(book: Path, lesson_page: str, message: str) -> str:
         text = file.read_text("utf8")
         front = DECLARED.search(text)
         own = front is not None and "/".join(front.groups()) == lesson_page
-        for found in guarded_sentences(text):
-            place, _, check = found.check.rpartition(" ")
+        for line, sentence, guard in guarded_sentences(text):
+            place, _, check = guard.rpartition(" ")
             if check in failed and (place == lesson_page or (own and not place)):
                 name = file.relative_to(book).as_posix()
-                said.append(f"{name}, line {found.line}, says “{found.sentence}” ({check})")
+                said.append(f"{name}, line {line}, says “{sentence}” ({check})")
     return f" Write again what the runs contradict: {'; '.join(said)}." if said else ""

@@ -97,17 +97,14 @@ def clean_environment(
     }
     for folder in folders.values():
         folder.mkdir(parents=True, exist_ok=True)
-    own = {
+    return {
+        **users_variables(),
+        **{name: str(path) for name, path in folders.items()},
         "JUPYTER_NO_CONFIG": "1",
         "JUPYTER_PREFER_ENV_PATH": "1",
         "MPLBACKEND": "module://matplotlib_inline.backend_inline",
         "PYTHONNOUSERSITE": "1",
         "PYTHONPATH": str(root),
-    }
-    return {
-        **users_variables(),
-        **{name: str(path) for name, path in folders.items()},
-        **own,
         **extra,
     }
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from robo_genesis.core.files import put, require_replaceable, require_writable
-from robo_genesis.core.project import ROOT
+from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.evidence.bundle import BundleRefused
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.pipeline.pages.folder import (
@@ -18,7 +18,6 @@ from robo_genesis.pipeline.pages.folder import (
     RECORD,
     PageRefused,
     Record,
-    StoreError,
     plain_files,
     read_record,
     require_this_page,
@@ -152,10 +151,10 @@ def import_pages(
         verify: verifies the bundles.
 
     Raises:
-        StoreError: it names each page that is missing, or each refused one with code and reason.
+        ProjectError: it names each page that is missing, or each refused one with code and reason.
     """
     if not source.is_dir():
-        raise StoreError(
+        raise ProjectError(
             f"EXECUTED={source} is not a folder. Name the one that `make execute TO=folder` filled."
         )
     known = {page.docname: page for page in pages}
@@ -184,7 +183,7 @@ def import_pages(
         problems = [f"{name} is not among them." for name in known if name not in found]
     if problems:
         first = f"The executed pages in {source} are refused."
-        raise StoreError("\n".join([first, *problems, AGAIN]))
+        raise ProjectError("\n".join([first, *problems, AGAIN]))
     for name, place in found.items():
         put(place, into[name])
 

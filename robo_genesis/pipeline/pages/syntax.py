@@ -101,7 +101,7 @@ def _canonical(node: Any) -> Any:
         fields["values"] = list(_joined(node.values))
     for name in ("body", "orelse", "finalbody"):
         if isinstance(fields.get(name), list):
-            fields[name] = [s for s in fields[name] if not _is_text(s)]
+            fields[name] = [s for s in fields[name] if not is_text(s)]
     filled = {
         name: _canonical(value)
         for name, value in fields.items()
@@ -110,13 +110,10 @@ def _canonical(node: Any) -> Any:
     return [type(node).__name__, filled]
 
 
-def _is_text(statement: ast.AST) -> bool:
-    """Whether a statement is only a string, as docstrings are."""
-    return (
-        isinstance(statement, ast.Expr)
-        and isinstance(statement.value, ast.Constant)
-        and isinstance(statement.value.value, str)
-    )
+def is_text(statement: ast.AST) -> bool:
+    """Return whether a statement is only a string, as docstrings are."""
+    value = statement.value if isinstance(statement, ast.Expr) else None
+    return isinstance(value, ast.Constant) and isinstance(value.value, str)
 
 
 def _joined(parts: Iterable[ast.expr]) -> Iterator[ast.expr]:

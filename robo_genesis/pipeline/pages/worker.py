@@ -15,7 +15,7 @@ from nbformat import NotebookNode
 
 from robo_genesis.core.project import OUTPUTS_DIR, PAGE_IMPORTS, PAGE_SHA256, ROOT, RUN_ID
 from robo_genesis.pipeline.pages.book import Page, code_digest
-from robo_genesis.pipeline.pages.folder import StoreError, write_page
+from robo_genesis.pipeline.pages.folder import PageRefused, write_page
 from robo_genesis.pipeline.pages.kernels import (
     ARGUMENTS,
     CleanKernelManager,
@@ -152,7 +152,7 @@ def execute_page(run: PageRun, on_cell: Callable[[int], None]) -> Failure | None
                 seconds=elapsed,
                 cell_seconds=seconds,
             )
-        except (StoreError, OSError) as caught:
+        except (PageRefused, OSError) as caught:
             failure = Failure("NotStored", f"the executed page cannot be stored: {caught}")
     return failure
 

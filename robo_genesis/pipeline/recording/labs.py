@@ -16,13 +16,12 @@ from robo_genesis.evidence.bundle_files import MANIFEST
 from robo_genesis.evidence.recorder import git_record
 from robo_genesis.evidence.refusals import BundleRefused, expect
 from robo_genesis.pipeline.bundles.of_build import require_contract
-from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, bundle_status, cpu_runs
+from robo_genesis.pipeline.bundles.status import RECORDED_PAGE, bundle_status
 from robo_genesis.pipeline.bundles.verify import verify_bundle
 from robo_genesis.pipeline.command import TIMEOUT, Progress, say
 from robo_genesis.pipeline.pages.book import Page, find_pages
-from robo_genesis.pipeline.pages.execute import execute_pages, kernel_environment
+from robo_genesis.pipeline.pages.execute import Lines, execute_pages, kernel_environment
 from robo_genesis.pipeline.pages.kernels import users_variables
-from robo_genesis.pipeline.pages.progress import Lines
 from robo_genesis.pipeline.pages.results import failure_report
 from robo_genesis.pipeline.pages.store import Verify, places
 from robo_genesis.pipeline.recording.report import STATUS, Outcome, report
@@ -33,10 +32,6 @@ from robo_genesis.sim.diagnosis import StepResult
 ACCELERATORS = ("amdgpu", "cuda")
 BACKENDS = (*ACCELERATORS, "cpu")
 COMMAND = "make evidence"
-
-
-class RecordingError(project.ProjectError):
-    """Nothing was recorded; the message is the whole report, and its first line the reason."""
 
 
 def probe_here(expected: str | None) -> tuple[str, list[StepResult]]:
@@ -90,12 +85,12 @@ def record(recording: Recording) -> int:
         is unchanged unless a new one is accepted.
 
     Raises:
-        RecordingError: the lesson or backend is not valid, or a step of the probe is broken.
+        ProjectError: the lesson or backend is not valid, or a step of the probe is broken.
         ProjectError: checkout, environment or the folder of bundles is not fit for it, or a build
             or another recording runs here.
     """
     if recording.expected not in (None, *BACKENDS):
-        raise RecordingError(
+        raise project.ProjectError(
             f"BACKEND={recording.expected!r} is not valid. Choices: {', '.join(BACKENDS)}; "
             "unset, any accelerator."
         )
@@ -117,14 +112,14 @@ def _labs(recording: Recording) -> list[Page]:
     """Return the lab of the given lesson, or all labs in the order of the book.
 
     Raises:
-        RecordingError: the lesson has no lab.
+        ProjectError: the lesson has no lab.
     """
     pages = find_pages(recording.book)
     labs = {str(page.lesson): page for page in pages if page.page == RECORDED_PAGE}
     if not recording.lesson:
         return [*labs.values()]
     if recording.lesson not in labs:
-        raise RecordingError(
+        raise project.ProjectError(
             f"LESSON={recording.lesson!r} is not valid. "
             f"Lessons with a lab: {', '.join(sorted(labs)) or 'none'}; unset, all."
         )
@@ -135,7 +130,7 @@ def _found_backend(recording: Recording, progress: Progress) -> str:
     """Return the backend that a run would find, after a probe of the accelerator.
 
     Raises:
-        RecordingError: a step of the probe is broken.
+        ProjectError: a step of the probe is broken.
     """
     if recording.expected == "cpu":
         return "cpu"
@@ -143,7 +138,7 @@ def _found_backend(recording: Recording, progress: Progress) -> str:
     for step in steps:
         progress("probe", f"{step.step:12} {step.state:8} {printable(step.found)}")
     if broken := [step.step for step in steps if step.state == "broken"]:
-        raise RecordingError(
+        raise project.ProjectError(
             f"Broken: {', '.join(broken)}. The lines of the probe above say what was found, what "
             "is expected and what to do. No lab was run."
         )
@@ -154,7 +149,7 @@ def _kept(recording: Recording, page: Page, backend: str, progress: Progress) ->
     """Return the outcome of a lab whose bundle is accepted as it is, None if it needs a run."""
     lesson = str(page.lesson)
     place = recording.evidence / lesson / backend
-    runs, book, root = cpu_runs(place, {}), recording.book, recording.root
+    runs, book, root = [place.with_name("cpu")], recording.book, recording.root
     status = bundle_status(place, lesson, RECORDED_PAGE, book=book, root=root, cpu_runs=runs)
     if status.manifest is None:
         return None
@@ -186,7 +181,7 @@ def record_lab(recording: Recording, page: Page, progress: Progress) -> tuple[Pa
     """Run one lab, and return the place of its verified bundle and the facts in its manifest.
 
     Raises:
-        RecordingError, ProjectError: see `record`.
+        ProjectError: see `record`.
     """
     project.remove_stale_kernel_lock(recording.cache)
     folder = recording.cache / project.RECORDING  # new each time: nothing is ever reused
@@ -221,7 +216,7 @@ def _execute(
     )
     if failure := result.failure:
         report = failure_report([result])
-        raise RecordingError(f"{failure.error}: {failure.message}\n\n{report}")
+        raise project.ProjectError(f"{failure.error}: {failure.message}\n\n{report}")
     assert result.bundle is not None  # a lab without a bundle has failed
     return result.bundle, result.run_id
 
@@ -233,20 +228,20 @@ def _accepted(recording: Recording, bundle: Path, run_id: str) -> Any:
         require_contract(facts, recording.contract)
         expect("command", "manifest.json", "command", facts.command, COMMAND)
     except BundleRefused as error:
-        raise RecordingError(f"The bundle of this run is refused: {error}") from error
+        raise project.ProjectError(f"The bundle of this run is refused: {error}") from error
     require_expected(recording, facts.backend.actual)
     return facts
 
 
 def require_expected(recording: Recording, actual: str) -> None:
-    """Raise RecordingError if the backend found is not the expected one."""
+    """Raise ProjectError if the backend found is not the expected one."""
     if actual in (ACCELERATORS if recording.expected is None else (recording.expected,)):
         return
     expected = recording.expected or f"none given, so one of {', '.join(ACCELERATORS)}"
     remedy = "Check driver, device and Torch build"
     if actual in BACKENDS:
         remedy += f", or record {actual} on purpose with BACKEND={actual}"
-    raise RecordingError(
+    raise project.ProjectError(
         f"Expected backend: {expected}; {BACKEND}={recording.contract[BACKEND]} finds "
         f"{actual!r}. Nothing is relabelled. {remedy}."
     )

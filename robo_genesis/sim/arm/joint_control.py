@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from robo_genesis.core.check_spec import LIMIT_TOLERANCE
-from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray, require_built
+from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import Trace
 from robo_genesis.sim.arm import franka
 from robo_genesis.sim.arm.joints import JointMap, resolve_joints, to_numpy
+from robo_genesis.sim.session import require_built
 
 
 class CaseError(ValueError):

@@ -7,10 +7,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from robo_genesis.core.check_spec import START_TOLERANCE
-from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray, require_built
+from robo_genesis.core.scene import DT, SEED, SUBSTEPS, FloatArray
 from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.arm.joints import to_numpy
 from robo_genesis.sim.bodies.free_fall import GRAVITY
+from robo_genesis.sim.session import require_built
 
 Read = TypeVar("Read")
 

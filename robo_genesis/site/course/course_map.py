@@ -29,10 +29,6 @@ LINK = re.compile(r"(.+?)\s*<(l\d\d)/([a-z][\w-]*)>", re.DOTALL)
 """A link to a lesson's page: its words, the lesson and the page."""
 
 
-class CourseMapError(ValueError):
-    """The map cannot be used; the message names the lesson and the reason."""
-
-
 @dataclass(frozen=True, slots=True, config={"extra": "forbid"})
 class Lesson:
     """One lesson.
@@ -54,32 +50,32 @@ def read_map(book: Path) -> list[Lesson]:
     """Return the lessons of a book's map in their order.
 
     Raises:
-        CourseMapError: the file is not a list of lessons, an id occurs twice, a lesson needs one
+        ValueError: the file is not a list of lessons, an id occurs twice, a lesson needs one
             that does not come before it, a published one has no outcomes, or two are featured.
     """
     try:
         rows = yaml.safe_load((book / FILE).read_text("utf8"))
         lessons = TypeAdapter(list[Lesson]).validate_python(rows)
     except (yaml.YAMLError, ValidationError) as error:
-        raise CourseMapError(f"{FILE}: {error}") from error
+        raise ValueError(f"{FILE}: {error}") from error
     for place, lesson in enumerate(lessons):
         known = [earlier.id for earlier in lessons[:place]]
         if lesson.id in known:
-            raise CourseMapError(f"{FILE} names {lesson.id} twice.")
+            raise ValueError(f"{FILE} names {lesson.id} twice.")
         unknown = [need for need in lesson.needs or () if need not in known]
         if unknown:
-            raise CourseMapError(
+            raise ValueError(
                 f"{FILE}: {lesson.id} needs {', '.join(unknown)}; before it come "
                 f"{', '.join(known) or 'none'}."
             )
         if lesson.page and not lesson.outcomes:
-            raise CourseMapError(
+            raise ValueError(
                 f"{FILE}: {lesson.id} is published and has no outcomes. Add `outcomes:` with up to "
                 "three things that a student can do after it."
             )
     featured = [lesson.id for lesson in lessons if lesson.featured]
     if len(featured) > 1:
-        raise CourseMapError(f"{FILE} features {' and '.join(featured)}; keep one `featured`.")
+        raise ValueError(f"{FILE} features {' and '.join(featured)}; keep one `featured`.")
     return lessons
 
 
@@ -90,14 +86,14 @@ class MapDirective(PageDirective):
         """Return the lessons.
 
         Raises:
-            CourseMapError: the map is not valid, or the book lacks one of its pages.
+            ValueError: the map is not valid, or the book lacks one of its pages.
         """
         book = Path(self.env.srcdir)
         self.env.note_dependency(str(book / FILE))
         lessons = read_map(book)
         gone = [x.page for x in lessons if x.page and x.page not in self.env.found_docs]
         if gone:
-            raise CourseMapError(f"the book has no page {', '.join(gone)}.")
+            raise ValueError(f"the book has no page {', '.join(gone)}.")
         return lessons
 
 
@@ -156,7 +152,12 @@ class CourseMap(MapDirective):
         lessons = self.lessons()
         cards = [self.card(lesson) for lesson in lessons if lesson.page]
         shown: list[nodes.Node] = [nodes.bullet_list("", *cards, classes=["course-map"])]
-        if planned := [planned_line(lesson) for lesson in lessons if not lesson.page]:
+        planned = [
+            nodes.list_item("", named(lesson, lesson.title), ids=[anchor(lesson.id)])
+            for lesson in lessons
+            if not lesson.page
+        ]
+        if planned:
             shown.append(nodes.paragraph("", "Planned lessons:"))
             shown.append(nodes.bullet_list("", *planned, classes=["planned-lessons"]))
         return shown
@@ -167,7 +168,7 @@ class CourseMap(MapDirective):
         title = page_link(self.env.docname, lesson.page, lesson.title)
         return nodes.list_item(
             "",
-            paragraph(nodes.strong("", f"{lesson.id} "), title),
+            named(lesson, title),
             bullets(*map(marked, lesson.outcomes)),
             *needs_line(lesson),
             *self.times(lesson, lesson.page),
@@ -189,10 +190,9 @@ class CourseMap(MapDirective):
         ]
 
 
-def planned_line(lesson: Lesson) -> nodes.list_item:
-    """Return the line of a planned lesson: its name and title, without a link."""
-    line = paragraph(nodes.strong("", f"{lesson.id} "), lesson.title)
-    return nodes.list_item("", line, ids=[anchor(lesson.id)])
+def named(lesson: Lesson, title: str | nodes.Node) -> nodes.paragraph:
+    """Return a line of a lesson's name and title."""
+    return paragraph(nodes.strong("", f"{lesson.id} "), title)
 
 
 def needs_line(lesson: Lesson) -> list[nodes.Node]:

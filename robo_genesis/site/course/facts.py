@@ -16,6 +16,7 @@ from sphinx.application import Sphinx
 
 from robo_genesis.core.git import git_or_none
 from robo_genesis.site.evidence.origin import above
+from robo_genesis.site.evidence.plain_nodes import html
 from robo_genesis.site.text.question_nodes import question
 
 WORDS_A_MINUTE = 200
@@ -150,22 +151,20 @@ def add_facts(app: Sphinx, document: nodes.document, docname: str) -> None:
     if docname != app.config.root_doc:
         time = f"About {app.env.metadata[docname][MINUTES]}."
         section.insert(1, nodes.paragraph("", time, classes=["page-facts"]))
-    section += nodes.raw("", history_html(Path(app.env.doc2path(docname))), format="html")
+    section += html(history_html(Path(app.env.doc2path(docname))))
 
 
-def keep_minutes(app: Sphinx, document: nodes.document) -> None:
-    """Keep the time that a page takes, before lines of provenance are added to its text."""
-    counted = count_minutes(document, Path(app.env.doc2path(app.env.docname)))
-    app.env.metadata[app.env.docname][MINUTES] = counted
+def keep_facts(app: Sphinx, document: nodes.document) -> None:
+    """Keep the time that a page takes, before lines of provenance are added to its text.
 
-
-def keep_description(app: Sphinx, document: nodes.document) -> None:
-    """Keep the beginning of a page's first paragraph for search engines and link previews."""
+    The beginning of its first paragraph is kept for search engines and link previews.
+    """
+    facts: dict[str, Any] = app.env.metadata[app.env.docname]
+    facts[MINUTES] = count_minutes(document, Path(app.env.doc2path(app.env.docname)))
     section = document.next_node(nodes.section)
     paragraphs = (n for n in section or () if isinstance(n, nodes.paragraph))
     for node in islice(paragraphs, 1):
-        text = textwrap.shorten(node.astext(), DESCRIPTION, placeholder=" …")
-        app.env.metadata[app.env.docname]["og:description"] = text
+        facts["og:description"] = textwrap.shorten(node.astext(), DESCRIPTION, placeholder=" …")
 
 
 def write_description(
@@ -178,7 +177,6 @@ def write_description(
 
 def setup(app: Sphinx) -> None:
     """Register the additions."""
-    app.connect("doctree-read", keep_minutes)
-    app.connect("doctree-read", keep_description)
+    app.connect("doctree-read", keep_facts)
     app.connect("html-page-context", write_description, priority=400)  # read by others at 500
     app.connect("doctree-resolved", add_facts)

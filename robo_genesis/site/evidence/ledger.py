@@ -14,10 +14,11 @@ from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util.osutil import relative_uri
 
+from robo_genesis.core.files import write_whole
 from robo_genesis.site.evidence import ledger_data
 from robo_genesis.site.evidence.ledger_data import PageRun
 from robo_genesis.site.evidence.measured import badge_node
-from robo_genesis.site.evidence.plain_nodes import Cell, between, paragraph, table
+from robo_genesis.site.evidence.plain_nodes import Cell, between, html, paragraph, table
 from robo_genesis.site.evidence.provenance import ITEMS, all_runs, measured_pages
 from robo_genesis.site.pages import PageDirective
 
@@ -133,7 +134,7 @@ def _reading_order(env: BuildEnvironment) -> list[str]:
 
 def _digest(value: str) -> nodes.Node:
     """Return a sha256 whose first digits are visible, and all of them on hover or focus."""
-    return nodes.raw("", f'<code class="digest" tabindex="0">{value}</code>', format="html")
+    return html(f'<code class="digest" tabindex="0">{value}</code>')
 
 
 def _link(text: str, address: str) -> nodes.Node:
@@ -151,13 +152,12 @@ def write_downloads(app: Sphinx, exception: Exception | None) -> None:
     if exception is not None or LEDGER not in app.env.found_docs:
         return
     folder = Path(app.outdir) / DOWNLOADS
-    folder.mkdir(parents=True, exist_ok=True)
     for item in chain.from_iterable(page.get(ITEMS, ()) for page in app.env.metadata.values()):
         if item.data is not None:
-            (folder / item.file).write_bytes(item.data)
+            write_whole(folder / item.file, item.data)
     for run in all_runs(Path(app.srcdir)).values():
         if run.predicate is not None:
-            (folder / ledger_data.archive_name(run)).write_bytes(ledger_data.archive(run.folder))
+            write_whole(folder / ledger_data.archive_name(run), ledger_data.archive(run.folder))
 
 
 def setup(app: Sphinx) -> None:

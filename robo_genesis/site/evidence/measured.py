@@ -36,7 +36,6 @@ from robo_genesis.pipeline.bundles.status import (
     RECORDED_PAGE,
     Status,
     bundle_status,
-    cpu_runs,
     recorded_folders,
     recorded_status,
 )
@@ -170,8 +169,7 @@ def recorded_runs(book: Path, lesson: str) -> tuple[PageRun, ...]:
     labs = {lesson: page_run(book, lesson).folder}
 
     def run(backend: str) -> PageRun:
-        runs = cpu_runs(folder / backend, labs)
-        status = recorded_status(book, lesson, backend, cpu_runs=runs)
+        status = recorded_status(book, lesson, backend, labs=labs)
         return PageRun(name, folder / backend, status, recorded=True)
 
     backends = dict.fromkeys((REFERENCE, *recorded))

@@ -49,6 +49,11 @@ def image(env: BuildEnvironment, name: str, content: bytes, alt: str) -> nodes.i
     return nodes.image(uri=f"/{os.path.relpath(file, env.srcdir)}", alt=alt)
 
 
+def html(text: str) -> nodes.Node:
+    """Return markup of the site's own."""
+    return nodes.raw("", text, format="html")
+
+
 def paragraph(*parts: str | nodes.Node, **attributes: Any) -> nodes.paragraph:
     """Return a paragraph of nodes and texts, each text as it is."""
     texts = (nodes.Text(part) if isinstance(part, str) else part for part in parts)

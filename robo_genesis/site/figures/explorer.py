@@ -46,7 +46,7 @@ from robo_genesis.lessons import find_replay
 from robo_genesis.pipeline.pages.bound import accepted_experiment
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
-from robo_genesis.site.evidence.plain_nodes import image
+from robo_genesis.site.evidence.plain_nodes import html, image
 from robo_genesis.site.figures.posture_model import glb, with_target
 from robo_genesis.site.pages import PageDirective
 from robo_genesis.site.replay import controls
@@ -126,11 +126,6 @@ def explorer_block(
     else:
         block += [opening("", data), panel(data)]
     return block
-
-
-def html(text: str) -> nodes.Node:
-    """Return markup of the site's own."""
-    return nodes.raw("", text, format="html")
 
 
 def opening(kind: str, data: Mapping[str, Any], **words: str) -> nodes.Node:

@@ -13,6 +13,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.transforms.post_transforms import SphinxPostTransform
 
+from robo_genesis.core.files import write_whole
 from robo_genesis.core.palette import CASE_CLASSES, MARKS, PARTS, Mark, css_name
 from robo_genesis.lessons import course_marks
 from robo_genesis.site.evidence.origin import above
@@ -117,9 +118,7 @@ def _named(text: nodes.Text) -> list[nodes.Node]:
 
 def write_css(app: Sphinx) -> None:
     """Write the style sheet where Sphinx collects the site's own."""
-    folder = Path(app.outdir) / "_static"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "palette.css").write_text(css(), "utf8")
+    write_whole(Path(app.outdir) / "_static" / "palette.css", css().encode())
 
 
 def setup(app: Sphinx) -> None:

@@ -9,9 +9,8 @@ from typing import Any
 
 from sphinx.application import Sphinx
 from sphinx.config import Config
-from sphinx.errors import ConfigError
 
-from robo_genesis.pipeline.html.address import AddressError, site_address, site_root
+from robo_genesis.pipeline.html.address import site_address, site_root
 
 NOT_FOUND = """\
 <h1>There is no such page</h1>
@@ -58,14 +57,10 @@ def setup(app: Sphinx) -> None:
     """Register the 404 page, and the extensions that need an address if there is one.
 
     Raises:
-        ConfigError: the given address is not valid.
+        ProjectError: the given address is not valid.
     """
     app.setup_extension("notfound.extension")
-    try:
-        address = site_address()
-    except AddressError as error:
-        raise ConfigError(str(error)) from error
-    if address:
+    if site_address():
         app.setup_extension("sphinx_sitemap")
         app.setup_extension("sphinxext.opengraph")
     app.connect("config-inited", configure, priority=400)  # notfound checks the prefix at 500

@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 
 from bs4 import BeautifulSoup
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived, write_whole
 from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline import npm
 from robo_genesis.pipeline.command import output_of
@@ -95,15 +95,11 @@ def join_sheets(html: Path) -> None:
         derived("sheets", inputs, lambda: json.dumps(_purged(trimmed, names)).encode())
     )
     joined = html / JOINED
-    joined.parent.mkdir(parents=True, exist_ok=True)
-    texts = ((path, found.get(path.name, path.read_text("utf8"))) for path in sheets)
-    joined.write_text(
-        "\n".join(
-            text if path.parent == joined.parent else ADDRESS.sub(r"url(\1../", text)
-            for path, text in texts
-        ),
-        "utf8",
-    )
+    texts = []
+    for path in sheets:
+        text = found.get(path.name, path.read_text("utf8"))
+        texts.append(text if path.parent == joined.parent else ADDRESS.sub(r"url(\1../", text))
+    write_whole(joined, "\n".join(texts).encode())
 
 
 def used_names(html: Path) -> set[bytes]:

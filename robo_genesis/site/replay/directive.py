@@ -22,7 +22,7 @@ from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective
 
 from robo_genesis.core import project
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived, write_whole
 from robo_genesis.evidence import bundle
 from robo_genesis.evidence.replay_data import read_runs
 from robo_genesis.lessons import find_replay
@@ -30,7 +30,7 @@ from robo_genesis.pipeline.pages.built import page_outputs
 from robo_genesis.sim import visual_shape
 from robo_genesis.site.evidence.ledger import scroll_box
 from robo_genesis.site.evidence.measured import BACKEND
-from robo_genesis.site.evidence.plain_nodes import bullets, image, marked
+from robo_genesis.site.evidence.plain_nodes import bullets, html, image, marked
 from robo_genesis.site.figures.case_labels import labelled
 from robo_genesis.site.frame.incremental import note_files
 from robo_genesis.site.pages import PageDirective
@@ -87,8 +87,7 @@ def replay_block(
             these links.
     """
     from robo_genesis.site.replay import model as replay_model  # these load slowly
-    from robo_genesis.site.replay.scenery import scenery
-    from robo_genesis.site.replay.side_by_side import side_by_side
+    from robo_genesis.site.replay.scenery import scenery, side_by_side
 
     env, lesson = directive.env, key.split("/")[0]
     name = "-".join(("replay", *key.split("/"), *filter(None, [chosen])))
@@ -113,16 +112,16 @@ def replay_block(
     summary = f"Results and all {samples}" if shown.moves else f"All {samples}"
 
     block = nodes.container(classes=["replay-block"], evidence_runs=(key,))
-    block += nodes.raw("", opening, format="html")
+    block += html(opening)
     over = controls.over_the_picture("Play")
     block += stage(still, over, controls.caption(runs, around), f"{name}-model")
-    block += nodes.raw("", controls.panel(name, shown, weight), format="html")
-    block += nodes.raw("", f"<details><summary>{summary}</summary>", format="html")
+    fold = f"<details><summary>{summary}</summary>"
+    block += html(controls.panel(name, shown, weight) + fold)
     if shown.moves:
         block += bullets(*map(marked, shown.moves.values()))
     block += scroll_box(summary, *directive.parse_text_to_nodes(controls.samples(shown)))
     origin = origin_html(name, folder, replay_folder(env), replay.credit)
-    block += nodes.raw("", f"</details>{origin}", format="html")
+    block += html(f"</details>{origin}")
     return block
 
 
@@ -158,9 +157,8 @@ def leave_model(
     text = base64.b64encode(model).decode()
     script = f'(globalThis.replayModels ??= {{}})["{name}"] = "{text}";\n'.encode()
     folder, up = Path(env.app.outdir) / FOLDER, replay_folder(env)
-    folder.mkdir(parents=True, exist_ok=True)
     for file, content in ((f"{name}.glb", model), (f"{name}.js", script)):
-        (folder / file).write_bytes(content)
+        write_whole(folder / file, content)
         note_files(env, folder / file)
     weight = round(sum(len(gzip.compress(of)) for of in (script, viewer.viewer())) / 1000)
     shown = image(env, f"{name}.jpg", still, alt)
@@ -170,7 +168,7 @@ def leave_model(
 
 def stage(picture: nodes.image, over: str, caption: str, anchor: str) -> nodes.figure:
     """Return a figure with some markup on top of its picture."""
-    content = nodes.container("", picture, nodes.raw("", over, format="html"), classes=["stage"])
+    content = nodes.container("", picture, html(over), classes=["stage"])
     return nodes.figure("", content, nodes.caption("", caption), ids=[anchor])
 
 

@@ -1,11 +1,14 @@
 """What a replay shows around the recorded links: a floor, the axis, the target, and its camera.
 
+Several runs can be in one view: the links of each at a place of its own, and all move at once.
+
 All of it follows from the record and the shape; nothing here needs the engine.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -39,6 +42,9 @@ ASPECT = 4 / 3
 
 ROOM = 1.2
 """Size of the picture by that of the motion in it."""
+
+OF_LINKS = ("link_pos", "link_quat", "link_vel", "link_ang")
+"""The arrays with an axis of links; free bodies have them all, robots the first two."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,3 +245,40 @@ def turn(start: FloatArray, end: FloatArray) -> tuple[float, FloatArray]:
     sine = float(np.linalg.norm(twice)) / 2
     angle = float(np.arctan2(sine, (np.trace(rotation) - 1) / 2))
     return angle, twice / (2 * sine) if sine else np.array([0.0, 0.0, 1.0])
+
+
+def side_by_side(runs: Runs, shape: Sequence[Part]) -> tuple[Runs, list[Part]]:
+    """Return runs whose traces all have the links of all runs, and the shape of these links.
+
+    A case then decides which curves are drawn bold, and not what moves.
+
+    Args:
+        runs: the runs, each with the links of one robot; their replay has a place for each.
+        shape: of the robot; parts of the world remain where they are.
+
+    Raises:
+        ValueError: there is not one place for each run.
+    """
+    places, traces = runs.replay.places, list(runs.traces.items())
+    if len(places) != len(traces):
+        raise ValueError(
+            f"{len(places)} places given for {len(traces)} runs: {', '.join(runs.traces)}. Give "
+            "each run a place in the lesson's declaration."
+        )
+    arrays: dict[str, Any] = {
+        name: np.concatenate([getattr(trace, name) for _, trace in traces], axis=1)
+        for name in OF_LINKS
+        if all(hasattr(trace, name) for _, trace in traces)
+    }
+    moved = [np.tile([x, y, 0.0], (len(runs.links), 1)) for x, y in places]
+    arrays["link_pos"] = arrays["link_pos"] + np.concatenate(moved)
+    links = [f"{case}: {link}" for case, _ in traces for link in runs.links]
+    parts = [
+        replace(part, link=f"{case}: {part.link}")
+        for case, _ in traces
+        for part in shape
+        if part.link != WORLD
+    ]
+    still = [part for part in shape if part.link == WORLD]
+    together = {case: replace(trace, **arrays) for case, trace in traces}
+    return replace(runs, traces=together, links=links), [*parts, *still]

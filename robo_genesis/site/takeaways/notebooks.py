@@ -1,7 +1,7 @@
 """A lab as two notebooks: one to work in, without outputs or solutions, and one executed."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import pairwise
 
 import nbformat
@@ -13,7 +13,7 @@ from robo_genesis.core.project import solutions_shown
 from robo_genesis.pipeline.command import ANSI
 from robo_genesis.pipeline.pages.book import Page
 from robo_genesis.site.course.facts import WORK_SHEET
-from robo_genesis.site.takeaways.plain_markdown import SOLUTION, ProseError, Writer, plain
+from robo_genesis.site.takeaways.plain_markdown import SOLUTION, Writer, plain
 
 SITE_ONLY = "site-only"
 """The tag of a cell that makes sense only on the site."""
@@ -76,11 +76,8 @@ def student_notebook(page: Page, origin: str, check: str, writer: Writer) -> Not
         check: code of the second; see `version_check`.
         writer: of its prose; it must not return measured values.
     """
-    cells = [new_markdown_cell(origin), new_code_cell(check)]
-    for cell in page.notebook.cells:
-        if not {SOLUTION, SITE_ONLY} & set(cell.metadata.get("tags", [])):
-            is_prose = cell.cell_type == "markdown"
-            cells += _sections(plain(cell.source, writer)) if is_prose else _code(cell, writer)
+    start = [new_markdown_cell(origin), new_code_cell(check)]
+    cells = [*start, *_cells(page, writer, {SITE_ONLY, SOLUTION})]
     return _notebook(_with_work_sheet(cells, page))
 
 
@@ -95,17 +92,24 @@ def executed_notebook(
         origin: Markdown of the first cell.
         writer: of its prose; measured values are those of this run.
     """
-    ran = (cell for cell in executed.cells if cell.cell_type == "code")
-    cells = [new_markdown_cell(origin)]
-    left_out = set() if solutions_shown() else {SOLUTION}
+    ran = [cell for cell in executed.cells if cell.cell_type == "code"]
+    left_out = {SITE_ONLY} if solutions_shown() else {SITE_ONLY, SOLUTION}
+    return _notebook([new_markdown_cell(origin), *_cells(page, writer, left_out, ran)])
+
+
+def _cells(
+    page: Page, writer: Writer, left_out: Set[str], ran: Sequence[NotebookNode] = ()
+) -> Iterator[NotebookNode]:
+    """Yield the cells of a page without some tags, with the outputs of its code as it ran."""
+    outputs = iter(ran)
     for cell in page.notebook.cells:
-        tags, is_code = set(cell.metadata.get("tags", [])), cell.cell_type == "code"
-        output = next(ran) if is_code else None
-        if is_code and not tags & left_out:
-            cells += _code(cell, writer, output)
-        elif not is_code and SITE_ONLY not in tags:
-            cells += _sections(plain(cell.source, writer))
-    return _notebook(cells)
+        is_code = cell.cell_type == "code"
+        output = next(outputs, None) if is_code else None
+        if not left_out & set(cell.metadata.get("tags", [])):
+            if is_code:
+                yield from _code(cell, writer, output)
+            else:
+                yield from _sections(plain(cell.source, writer))
 
 
 def _sections(text: str) -> list[NotebookNode]:
@@ -125,7 +129,7 @@ def _with_work_sheet(cells: list[NotebookNode], page: Page) -> list[NotebookNode
     the rest is at the end.
 
     Raises:
-        ProseError: the heading of a part has no number, or no part is to be filled in before the
+        ValueError: the heading of a part has no number, or no part is to be filled in before the
             run.
     """
     sheet = page.path.with_name(WORK_SHEET)
@@ -143,12 +147,12 @@ def _with_work_sheet(cells: list[NotebookNode], page: Page) -> list[NotebookNode
             title = f"## Work sheet, part {part['number']}: {part['title']}"
             place = _place(cells, heading, int(part["number"]))
         else:
-            raise ProseError(
+            raise ValueError(
                 f"{sheet} has the part {heading!r}. Number it, as in `## 2. Measured`."
             )
         follow.setdefault(place, []).append(new_markdown_cell(f"{title}\n{rest}".rstrip()))
     if not found_before:
-        raise ProseError(
+        raise ValueError(
             f"{sheet} has no part to fill in {BEFORE}: end the heading of its predictions with "
             "these words."
         )

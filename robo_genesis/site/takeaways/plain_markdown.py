@@ -43,10 +43,6 @@ PARSER = create_md_parser(
 )
 
 
-class ProseError(ValueError):
-    """The prose cannot be converted to plain Markdown; the message says what to write instead."""
-
-
 @dataclass(frozen=True, slots=True)
 class Writer:
     """The page's folder, and the function that returns the text of a measured value."""
@@ -59,12 +55,12 @@ def plain(text: str, writer: Writer) -> str:
     """Return MyST prose, of a cell or a directive, as plain Markdown without solutions.
 
     Raises:
-        ProseError: a fold is written as HTML, in which a solution cannot be recognized.
+        ValueError: a fold is written as HTML, in which a solution cannot be recognized.
     """
     lines, written, at = text.splitlines(), [], 0
     for token in PARSER.parse(text):
         if token.type == "html_block" and "<details" in token.content.lower():
-            raise ProseError(
+            raise ValueError(
                 "a fold is written as <details>. Write a dropdown: `:::{dropdown} Title`."
             )
         first, last = token.map or (0, 0)

@@ -8,7 +8,7 @@ import tempfile
 from functools import cache
 from pathlib import Path
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived, write_whole
 from robo_genesis.core.project import ROOT
 from robo_genesis.pipeline.command import output_of
 
@@ -40,8 +40,7 @@ def build_wheel(folder: Path, root: Path = ROOT, repository: str = "") -> Path:
     built = derived("wheel", inputs, lambda: built_wheel(root, repository))
     name, _, content = built.partition(b"\n")
     wheel = folder / name.decode()
-    folder.mkdir(parents=True, exist_ok=True)
-    wheel.write_bytes(content)
+    write_whole(wheel, content)
     return wheel
 
 

@@ -20,7 +20,7 @@ from sphinx.application import Sphinx
 from sphinx.util import logging
 from sphinx.util.math import get_node_equation_number
 
-from robo_genesis.core.files import derived
+from robo_genesis.core.files import derived, write_whole
 from robo_genesis.pipeline import npm
 
 LOGGER = logging.getLogger(__name__)
@@ -169,9 +169,8 @@ def css() -> str:
 def write_css(app: Sphinx) -> None:
     """Write style sheet and licence where Sphinx collects the site's own."""
     folder = Path(app.outdir) / "_static"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / STYLE).write_text(css(), "utf8")
-    (folder / LICENCE).write_bytes(npm.published(f"{PACKAGE}/LICENSE"))
+    write_whole(folder / STYLE, css().encode())
+    write_whole(folder / LICENCE, npm.published(f"{PACKAGE}/LICENSE"))
 
 
 def add_css(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:

@@ -15,6 +15,7 @@ from sphinx.directives.code import LiteralInclude
 from sphinx.transforms import SphinxTransform
 
 from robo_genesis.core.project import solutions_shown
+from robo_genesis.pipeline.pages.syntax import is_text
 from robo_genesis.site.takeaways.plain_markdown import ANSWER, SOLUTION
 
 TAG = f"tag_{SOLUTION}"
@@ -51,19 +52,14 @@ def without_docstrings(code: str) -> str:
     lines = code.splitlines()
     for node in ast.walk(tree):
         body = getattr(node, "body", None)
-        if not isinstance(body, list) or all(map(_is_docstring, body)):
+        if not isinstance(body, list) or all(map(is_text, body)):
             continue
-        for part in filter(_is_docstring, body):
+        for part in filter(is_text, body):
             first, last = part.lineno - 1, part.end_lineno
             if body[0] is part and not lines[last].strip():
                 last += 1  # the empty line after the docstring of a function
             lines[first:last] = [LEFT_OUT] * (last - first)
     return "\n".join(line for line in lines if line != LEFT_OUT) + "\n"
-
-
-def _is_docstring(node: ast.AST) -> bool:
-    value = node.value if isinstance(node, ast.Expr) else None
-    return isinstance(value, ast.Constant) and isinstance(value.value, str)
 
 
 class LeaveOutSolutions(SphinxTransform):

@@ -111,11 +111,10 @@ class Choice(Question):
         """See `Question.ask`."""
         lesson_page, metric, *cases = self.arguments
         text, causes = split_causes(self.content, [*LOWER, UNKNOWN])
-        order, unit, answer, origin = measured_order(lesson_page, metric, cases)
-        lesson = lesson_page.split("/")[0]
-        margin = declared_margin(lesson, metric)
-        resolution = small(find_lesson(lesson).spec.RESOLUTION[unit], unit)
-        shown = options(unit, order, resolution, causes, margin)
+        found, answer, origin = measured_order(lesson_page, metric, cases)
+        smallest = find_lesson(lesson_page.split("/")[0]).spec.RESOLUTION[found.unit]
+        resolution = small(smallest, found.unit)
+        shown = options(found.unit, found.order, resolution, causes, found.margin)
         return text, choice(name, answer, origin, shown)
 
 
@@ -179,10 +178,8 @@ def asked_number(
     }  # fmt: skip
 
 
-def measured_order(
-    lesson_page: str, metric: str, cases: list[str]
-) -> tuple[str | None, str, str, str]:
-    """Return (order of the second case relative to the first, unit, sentence, provenance).
+def measured_order(lesson_page: str, metric: str, cases: list[str]) -> tuple[Comparison, str, str]:
+    """Return (comparison of the two cases, sentence, provenance).
 
     Raises:
         LookupError: the metric or a case is not in the bundle; the message lists the known ones.
@@ -197,7 +194,7 @@ def measured_order(
     values, margin = (first.value, second.value), declared_margin(lesson_name, metric)
     found = compare_values(noun, first.unit, *values, resolution, margin)
     names = (label(lesson_name, cases[0]), label(lesson_name, cases[1]))
-    return found.order, found.unit, measured_sentence(names, found), origin
+    return found, measured_sentence(names, found), origin
 
 
 def measured_sentence(names: tuple[str, str], found: Comparison) -> str:

@@ -27,7 +27,6 @@ from robo_genesis.core import project
 from robo_genesis.pipeline.bundles.status import (
     UNREADABLE,
     bundle_status,
-    cpu_runs,
     recorded_folders,
     recorded_status,
     refused_records,
@@ -168,8 +167,8 @@ def test_an_accelerator_s_bundle_is_not_a_run_on_the_cpu(
     here = on("amdgpu")(here)
     IMPORTED(folder)
     lab = Path(shutil.copytree(folder, lesson / "cpu")) if where == "recorded" else folder
-    runs = cpu_runs(here, {"l04": lab if where == "built" else None})
-    status = recorded_status(tmp_path / "book", "l04", "amdgpu", cpu_runs=runs)
+    labs = {"l04": lab if where == "built" else None}
+    status = recorded_status(tmp_path / "book", "l04", "amdgpu", labs=labs)
     assert (status.state, status.code) == ("refused" if code else "verified", code)
     assert said in status.reason
     refused = refused_records(tmp_path / "book", {"l04": lab})

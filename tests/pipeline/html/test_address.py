@@ -2,7 +2,8 @@
 
 import pytest
 
-from robo_genesis.pipeline.html.address import AddressError, site_address, site_root
+from robo_genesis.core.project import ProjectError
+from robo_genesis.pipeline.html.address import site_address, site_root
 
 
 @pytest.mark.parametrize(
@@ -24,5 +25,5 @@ def test_an_address_ends_with_a_slash_and_has_a_root(given, address, root):
     ["example.org", "ftp://example.org", "https://", "https://a.org/?x", "https://a.org/#x"],
 )
 def test_another_text_is_refused(given):
-    with pytest.raises(AddressError, match="Give an address like"):
+    with pytest.raises(ProjectError, match="Give an address like"):
         site_address({"SITE_URL": given})

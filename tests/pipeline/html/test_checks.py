@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from robo_genesis.pipeline.html.checks import check_site
+from robo_genesis.pipeline.html.checks import Site, run_checks
 
 PAGE = "<!DOCTYPE html><html><head>{head}</head><body><article id='top-of-page'>{body}</article>"
 GOOD = """\
@@ -35,16 +35,16 @@ def make_site(folder: Path, body: str = GOOD, head: str = "") -> Path:
 )
 def test_addresses_from_the_root_begin_with_the_path_of_the_site(tmp_path, href, reason):
     make_site(tmp_path, body=f'<a href="{href}">a page</a>')
-    links = check_site(tmp_path, "/course/")[0]
+    links = run_checks(Site(tmp_path, "/course/"))[0]
     assert links.problems == ((f"index.html: {href!r} {reason}",) if reason else ())
 
 
 def problems(folder: Path) -> dict[str, tuple[str, ...]]:
-    return {check.name: check.problems for check in check_site(folder) if check.problems}
+    return {check.name: check.problems for check in run_checks(Site(folder)) if check.problems}
 
 
 def test_a_good_site_passes_and_everything_was_looked_at(tmp_path):
-    checks = {check.name: check for check in check_site(make_site(tmp_path))}
+    checks = {check.name: check for check in run_checks(Site(make_site(tmp_path)))}
     assert [*checks] == ["links", "alt texts", "third parties", "scripts", "leftovers"]
     assert not any(check.problems for check in checks.values())
     assert checks["links"].count == 7

@@ -11,11 +11,12 @@ import pytest
 import yaml
 from tiny_book import cell, make_book, notebook
 
+from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.html import kept
 from robo_genesis.pipeline.html.draft import Draft
 from robo_genesis.pipeline.html.kept import State
 from robo_genesis.pipeline.html.render import render
-from robo_genesis.pipeline.html.sphinx_process import DOCTREES, RenderError, SphinxProcess
+from robo_genesis.pipeline.html.sphinx_process import DOCTREES, SphinxProcess
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.folder import NOTEBOOK, RECORD
@@ -174,7 +175,7 @@ def test_a_page_does_not_depend_on_pictures_that_reading_another_page_writes_aga
 def test_a_warning_is_repeated_until_its_cause_is_corrected(tmp_path):
     book = make_book(tmp_path, text="# Text\n\n{doc}`nowhere`\n")
     for _ in range(2):
-        with pytest.raises(RenderError, match=r"text\.md:3.*nowhere"):
+        with pytest.raises(ProjectError, match=r"text\.md:3.*nowhere"):
             publish(tmp_path, BuiltPages())
         assert not (tmp_path / "kept" / kept.STATE).exists()
     replace(book / "text.md", ("{doc}`nowhere`", "Words."))

@@ -10,8 +10,9 @@ import pytest
 from built_site import parsed
 from tiny_book import WRITE_BUNDLE, cell, make_book, notebook
 
+from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.html.render import render
-from robo_genesis.pipeline.html.sphinx_process import RenderError, SphinxProcess
+from robo_genesis.pipeline.html.sphinx_process import SphinxProcess
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.built import BuiltPages
 from robo_genesis.pipeline.pages.execute import execute_pages
@@ -74,7 +75,7 @@ def test_sphinx_executes_nothing_and_names_the_page(tmp_path):
     """A page that the execution stage has not seen would leave a file behind if it were run."""
     trace, front = tmp_path / "was executed", "mystnb: {execution_mode: force}\n"
     make_book(tmp_path, page=notebook(cell(f"open({str(trace)!r}, 'w')"), front=front))
-    with pytest.raises(RenderError, match=r"page\.md is not executed, and Sphinx executes nothing"):
+    with pytest.raises(ProjectError, match=r"page\.md is not executed, and Sphinx executes"):
         build(tmp_path)
     assert not trace.exists()
 

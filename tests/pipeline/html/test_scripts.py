@@ -6,7 +6,7 @@ import hashlib
 import pytest
 
 from robo_genesis.pipeline.html import scripts
-from robo_genesis.pipeline.html.checks import check_site
+from robo_genesis.pipeline.html.checks import Site, run_checks
 
 KNOWN = "let known = 1;"
 PAGE = "<!DOCTYPE html><html><head>{head}</head><body><article>{body}</article></body></html>"
@@ -29,7 +29,7 @@ def site(tmp_path, monkeypatch):
 
 def problems(site, body="", head="", name="index.html") -> list[str]:
     (site / name).write_text(PAGE.format(head=head, body=body))
-    (found,) = [check for check in check_site(site, "/course/") if check.name == "scripts"]
+    (found,) = [check for check in run_checks(Site(site, "/course/")) if check.name == "scripts"]
     return list(found.problems)
 
 

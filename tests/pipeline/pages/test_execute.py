@@ -12,8 +12,7 @@ from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook, raisin
 
 from robo_genesis.core.project import engine_cache_environment, engine_cache_folder
 from robo_genesis.pipeline.pages.book import find_pages
-from robo_genesis.pipeline.pages.execute import execute_pages, longest_first
-from robo_genesis.pipeline.pages.progress import Lines
+from robo_genesis.pipeline.pages.execute import Lines, execute_pages, longest_first
 from robo_genesis.pipeline.pages.results import failure_report
 from robo_genesis.pipeline.pages.store import places, stored_result
 

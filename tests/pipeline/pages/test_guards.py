@@ -15,7 +15,7 @@ WRITE = " Write again what the runs contradict: "
 
 
 def test_a_guard_belongs_to_the_sentence_in_front_of_it():
-    assert [(found.line, found.sentence, found.check) for found in guarded_sentences(PAGE)] == [
+    assert [*guarded_sentences(PAGE)] == [
         (4, "KP grows: the sag falls by 5 %.", "sag"),
         (5, "Another sentence follows.", "l04/lab order"),
         (5, "Another sentence follows.", "sag"),

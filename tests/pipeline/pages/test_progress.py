@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from robo_genesis.pipeline.pages.progress import Lines, Underway
+from robo_genesis.pipeline.pages.execute import Lines, Underway
 
 LAST = SimpleNamespace(seconds=20.0, cell_seconds=[4.0, 6.0, 5.0])
 

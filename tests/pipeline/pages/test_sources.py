@@ -156,7 +156,7 @@ DOCSTRING, CONSTANT = ('"""', '"""Also: '), ("\n\n\n", "\n\nCHANGED = 1\n\n\n")
 CHANGES = [
     ("core/trace", DOCSTRING, NONE, NONE),
     ("core/trace", CONSTANT, ALL, ALL),
-    ("sim/session", CONSTANT, ALL, ("l01", "l04", "l05", "l06")),
+    ("sim/session", CONSTANT, ALL, ALL),
     ("core/project", CONSTANT, ALL, NONE),
     ("evidence/recorder", CONSTANT, ALL, NONE),
     ("pipeline/stages", CONSTANT, NONE, NONE),

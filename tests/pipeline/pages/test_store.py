@@ -11,11 +11,11 @@ from nbformat.v4 import new_output
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
 from robo_genesis.core.files import put
+from robo_genesis.core.project import ProjectError
 from robo_genesis.evidence.bundle import BundleRefused, sha256
 from robo_genesis.pipeline.pages import folder as page_folder
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.pipeline.pages.execute import execute_pages
-from robo_genesis.pipeline.pages.folder import StoreError
 from robo_genesis.pipeline.pages.results import PageResult
 from robo_genesis.pipeline.pages.store import (
     exported,
@@ -152,11 +152,11 @@ def test_a_bundle_that_is_refused_leaves_what_was_executed_here(here):
 
     take(here)
     before = stored(here)
-    with pytest.raises(StoreError, match=r"lab: bundle: its bundle is refused: stale: cpu answers"):
+    with pytest.raises(ProjectError, match=r"lab: bundle: its bundle is refused: stale: cpu"):
         take(here, verify=refuse)
     assert stored(here) == before
     shutil.rmtree(here / "store")
-    with pytest.raises(StoreError):
+    with pytest.raises(ProjectError):
         take(here, verify=refuse)
     assert not (here / "store").exists()
 
@@ -217,7 +217,7 @@ SPOILT = {
 @pytest.mark.parametrize(("spoil", "code", "said"), SPOILT.values(), ids=SPOILT)
 def test_a_page_that_does_not_hold_is_refused_and_nothing_is_imported(here, spoil, code, said):
     spoil(here)
-    with pytest.raises(StoreError) as refused:
+    with pytest.raises(ProjectError) as refused:
         take(here)
     first, *problems = str(refused.value).splitlines()
     assert first == f"The executed pages in {here / 'executed'} are refused."
@@ -245,12 +245,12 @@ def test_the_newest_folders_of_a_page_are_kept_and_other_pages_go(tmp_path):
 
 def test_a_folder_that_is_missing_is_named(here):
     shutil.rmtree(here / "executed")
-    with pytest.raises(StoreError, match=r"EXECUTED=.*executed is not a folder"):
+    with pytest.raises(ProjectError, match=r"EXECUTED=.*executed is not a folder"):
         take(here)
 
 
 @pytest.mark.parametrize(("name", "limit"), [("SIZE_LIMIT", 3), ("FILES_LIMIT", 1)])
 def test_too_much_is_refused_before_it_is_read(here, monkeypatch, name, limit):
     monkeypatch.setattr(page_folder, name, limit)
-    with pytest.raises(StoreError, match="exceeds a limit: at most"):
+    with pytest.raises(ProjectError, match="exceeds a limit: at most"):
         take(here)

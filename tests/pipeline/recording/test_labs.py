@@ -14,7 +14,7 @@ from robo_genesis.core.project import ROOT, ProjectError
 from robo_genesis.pipeline.pages.execute import kernel_environment
 from robo_genesis.pipeline.pages.kernels import clean_environment
 from robo_genesis.pipeline.recording import labs as recording
-from robo_genesis.pipeline.recording.labs import Recording, RecordingError, record
+from robo_genesis.pipeline.recording.labs import Recording, record
 from robo_genesis.pipeline.recording.report import checkout
 from robo_genesis.pipeline.stages import build_lock
 from robo_genesis.sim.diagnosis import StepResult
@@ -72,7 +72,7 @@ def test_the_cpu_is_recorded_without_a_probe_and_by_default_in_the_book(tmp_path
     ],
 )
 def test_another_backend_than_expected_is_refused(expected, actual, said):
-    with pytest.raises(RecordingError, match=said):
+    with pytest.raises(ProjectError, match=said):
         recording.require_expected(Recording("l04", expected), actual)
 
 
@@ -158,7 +158,7 @@ def test_a_recording_beside_a_build_is_refused(tmp_path):
 def test_the_next_command_brings_back_what_a_kill_left_aside(tmp_path):
     old = old_bundle(tmp_path, "cuda")
     old.parent.rename(old.parents[1] / ".cuda.old")
-    with pytest.raises(RecordingError):
+    with pytest.raises(ProjectError):
         run(tmp_path, lab("cuda"), lesson="l05")
     assert old.read_text() == "old"
 
@@ -229,7 +229,7 @@ def test_all_labs_are_recorded_in_the_order_of_the_book(labs, tmp_path):
 @pytest.mark.parametrize(
     ("error", "reason"),
     [
-        (RecordingError("E: no\n\nlab, cell 1"), "E: no"),
+        (ProjectError("E: no\n\nlab, cell 1"), "E: no"),
         (OSError(28, "No space left"), "[Errno 28] No space left"),
     ],
 )

@@ -11,7 +11,7 @@ from built_site import LESSON_PAGES
 from robo_genesis.core import project
 from robo_genesis.lessons import LESSONS, find_page
 from robo_genesis.pipeline import npm
-from robo_genesis.pipeline.html.sums import SUMS
+from robo_genesis.pipeline.html.archive import SUMS
 from robo_genesis.site.course.course_map import read_map
 
 pytestmark = pytest.mark.engine

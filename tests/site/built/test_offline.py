@@ -4,7 +4,7 @@ import pytest
 from watching import SERVED_ONLY, watch
 
 from robo_genesis.pipeline.html.archive import ARCHIVE
-from robo_genesis.pipeline.html.checks import Site, check_site
+from robo_genesis.pipeline.html.checks import Site, run_checks
 
 pytestmark = [pytest.mark.engine, pytest.mark.browser]
 
@@ -56,7 +56,7 @@ def test_the_theme_switches_and_stays_on_the_next_page(browser, base):
 
 
 def test_the_archive_is_a_whole_site_without_itself(unpacked):
-    assert {c.name: c.problems for c in check_site(unpacked) if c.problems} == {}
+    assert {c.name: c.problems for c in run_checks(Site(unpacked)) if c.problems} == {}
     assert not (unpacked / ARCHIVE).exists()
 
 

@@ -7,7 +7,7 @@ import yaml
 from small_book import as_executed, draft_of, executed
 from tiny_book import LAB_FRONT, WRITE_BUNDLE, cell, make_book, notebook
 
-from robo_genesis.pipeline.html.sphinx_process import RenderError
+from robo_genesis.core.project import ProjectError
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.course import course_map
 from robo_genesis.site.text import glossary
@@ -92,7 +92,7 @@ def report(tmp_path_factory):
     (book / "innocent.svg").symlink_to(frame)
     *others, timed = find_pages(book)
     results = [*executed(others, folder), as_executed(timed, folder, [1.5])]
-    with pytest.raises(RenderError) as caught:
+    with pytest.raises(ProjectError) as caught:
         draft_of(book, folder, results)
     assert str(folder / "render.log") in str(caught.value)
     return str(caught.value)

@@ -13,7 +13,7 @@ from PIL import Image
 from small_book import render_with
 from tiny_book import cell, make_book, notebook
 
-from robo_genesis.pipeline.html.checks import check_site
+from robo_genesis.pipeline.html.checks import Site, run_checks
 
 ADDRESS = "https://example.org/robot/course/"
 PUBLIC, SECRET = "public_line = 1", "secret_line = 2"
@@ -77,7 +77,8 @@ def test_links_of_the_404_page_begin_at_the_root_and_the_site_passes_its_checks(
     inside = [tag["href"] for tag in page.select("a[href], link[href]") if tag["href"][0] != "#"]
     assert len(inside) > 5
     assert [href for href in inside if not href.startswith(("/robot/course/", ADDRESS))] == []
-    assert [line for check in check_site(html, "/robot/course/") for line in check.problems] == []
+    checks = run_checks(Site(html, "/robot/course/"))
+    assert [line for check in checks for line in check.problems] == []
 
 
 def leaks(html: Path, text: str) -> set[str]:

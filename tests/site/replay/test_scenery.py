@@ -14,8 +14,14 @@ from robo_genesis.core.trace import BodyTrace
 from robo_genesis.sim.bodies import channels as body_channels
 from robo_genesis.sim.visual_shape import WORLD, Part, floor, slab
 from robo_genesis.site.replay import scenery
-from robo_genesis.site.replay.scenery import ROOM, Camera, find_hinge, fitted, floor_of
-from robo_genesis.site.replay.side_by_side import side_by_side
+from robo_genesis.site.replay.scenery import (
+    ROOM,
+    Camera,
+    find_hinge,
+    fitted,
+    floor_of,
+    side_by_side,
+)
 
 AXIS = np.array([0.48, -0.6, 0.64])
 POINT = np.array([0.1, 0.2, 0.3])

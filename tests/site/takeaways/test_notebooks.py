@@ -9,7 +9,7 @@ from tiny_book import LAB_FRONT, cell, make_book, notebook
 
 from robo_genesis.pipeline.pages.book import find_pages
 from robo_genesis.site.takeaways import notebooks
-from robo_genesis.site.takeaways.plain_markdown import ProseError, Writer
+from robo_genesis.site.takeaways.plain_markdown import Writer
 
 FOLD = "\n:::{dropdown} Answer\n:class-container: solution\nSECRET prose\n:::\n"
 PROSE = "\nIt was {measured}`l04/lab G1.rise_time`.\n" + FOLD
@@ -105,7 +105,7 @@ def test_each_part_of_a_work_sheet_follows_what_it_belongs_to(tmp_path):
     ],
 )
 def test_a_work_sheet_without_predictions_or_numbers_is_refused(tmp_path, sheet, said):
-    with pytest.raises(ProseError, match=said):
+    with pytest.raises(ValueError, match=said):
         sheet_of(tmp_path, sheet, cell("x = 1"))
 
 

@@ -1,6 +1,6 @@
 import pytest
 
-from robo_genesis.site.takeaways.plain_markdown import ProseError, Writer, plain
+from robo_genesis.site.takeaways.plain_markdown import Writer, plain
 
 
 @pytest.fixture
@@ -61,7 +61,7 @@ def test_no_solution_travels(writer, fold):
 
 
 def test_a_fold_in_html_is_refused(writer):
-    with pytest.raises(ProseError, match="Write a dropdown"):
+    with pytest.raises(ValueError, match="Write a dropdown"):
         plain("<details><summary>Answer</summary>\n\nSECRET\n\n</details>", writer)
 
 

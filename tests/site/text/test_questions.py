@@ -33,11 +33,11 @@ def test_exactly_the_measured_option_is_right(unit, order, metric, text):
 def test_the_order_is_that_of_the_bundle_s_metrics(outputs, experiment):
     first, second = (experiment.metrics[name].overshoot for name in ("G1", "G2"))
     assert abs(first - second) > l04.RESOLUTION["rad"]
-    order, unit, sentence, origin = questions.measured_order("l04/lab", "overshoot", ["G1", "G2"])
-    assert (order, unit) == ("higher" if second > first else "lower", "rad")
+    found, sentence, origin = questions.measured_order("l04/lab", "overshoot", ["G1", "G2"])
+    assert (found.order, found.unit) == ("higher" if second > first else "lower", "rad")
     assert f"{first:.4f} rad for G1, {second:.4f} rad for G2" in sentence
     assert origin.startswith("Measured by l04/lab on cpu")
-    assert questions.measured_order("l04/lab", "overshoot", ["G2", "G2"])[0] == "equal"
+    assert questions.measured_order("l04/lab", "overshoot", ["G2", "G2"])[0].order == "equal"
 
 
 @pytest.mark.parametrize(
