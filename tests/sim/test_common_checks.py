@@ -20,7 +20,7 @@ def test_the_times_of_every_run_are_judged(experiment):
     run = replace(
         experiment, page=page, traces={**experiment.traces, "longer": experiment.traces["G1"]}
     )
-    assert problems(common_checks.sample_times(run)) == ["longer.steps"]
+    assert problems(common_checks.stamps(run)) == ["longer.steps"]
     assert failed(run) == {"stamps"}
 
 
