@@ -120,7 +120,7 @@ def test_anything_else_is_refused(page, displayed, function, arguments, message)
         ("os.system", "cannot be shown"),
         ("robo_genesis.pipeline.pages.bound.marked", "cannot be shown"),
         ("robo_genesis.lessons.l02.text.tables", "cannot be shown"),
-        ("robo_genesis.core.checks.sample_times", "returned generator"),
+        ("robo_genesis.core.checks.model_counts", "returned generator"),
     ],
 )
 def test_only_functions_of_lessons_and_core_that_return_a_table_or_figure_are_shown(

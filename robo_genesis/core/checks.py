@@ -12,9 +12,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from robo_genesis.core.check_spec import MASS_SHARE, TIME_TOLERANCE
+from robo_genesis.core.check_spec import MASS_SHARE
 from robo_genesis.core.text import quoted
-from robo_genesis.core.trace import TimeSeries
 
 Subject = TypeVar("Subject")
 Value = bool | int | float | str | None
@@ -141,20 +140,6 @@ def masses(found: Mapping[str, float], expected: Mapping[str, float]) -> Iterato
     """
     for body, mass in expected.items():
         yield within(f"{body}.mass_kg", found.get(body), mass, MASS_SHARE * mass)
-
-
-def sample_times(cases: Mapping[str, Any], traces: Mapping[str, TimeSeries]) -> Iterator[Finding]:
-    """Require of each run one state at t = 0 and one after each outer step, at k · dt.
-
-    Args:
-        cases: by name, with their outer `steps` and `dt` [s].
-        traces: by case.
-    """
-    for name, case in cases.items():
-        t = traces[name].t
-        yield equal(f"{name}.steps", len(t) - 1, case.steps)
-        apart = np.abs(t - np.arange(len(t)) * case.dt).max()
-        yield at_most(f"{name}.time_error_s", apart, TIME_TOLERANCE)
 
 
 def factors(

@@ -6,7 +6,7 @@ theme, so a figure has no colours but the palette's.
 """
 
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -134,6 +134,7 @@ def channel(
             ax.axhline(value, **look(level.mark, label=name, linewidth=1.4))
     for case, mark in marks_of(list(drawn.values), marks).items():
         ax.plot(t, drawn.values[case], label=case, **look(mark))
+    ax.margins(x=0.01)
     return finish(ax, f"{drawn.name.capitalize()} of {subject}", f"{drawn.head} [{drawn.unit}]")
 
 
@@ -147,6 +148,7 @@ def failure(ax: Axes, curves: Mapping[str, tuple[Any, Any]], quantity: str) -> A
     """Draw a quantity, named with its unit, of a failure: one curve or two, the mistake first."""
     for number, (label, (t, q)) in enumerate(curves.items()):
         ax.plot(t, q, label=label, **look(("other", "baseline")[number]))
+    ax.margins(x=0.01)
     return finish(ax, "", quantity, "best")
 
 
@@ -172,19 +174,24 @@ def both_ends(pictures: Mapping[str, np.ndarray]) -> Figure:
     return drawn
 
 
-def robot_ends(frames: Mapping[str, np.ndarray], trace: Trace, parents: Sequence[int]) -> Figure:
-    """Show the camera frames of both ends of a run, or without frames its link origins.
+def ends(frames: Mapping[str, np.ndarray], height: float, draw: Callable[[Axes], object]) -> Figure:
+    """Show the camera frames of both ends of a run, or what is drawn without frames.
 
     Args:
         frames: as for `both_ends`; none without a camera.
-        trace: of the run.
-        parents: as for `schematic`.
+        height: of the drawing [inch].
+        draw: draws a schematic.
     """
     if frames:
         return both_ends(frames)
-    drawn, ax = axes(5)
-    schematic(ax, trace, parents)
+    drawn, ax = axes(height)
+    draw(ax)
     return drawn
+
+
+def robot_ends(frames: Mapping[str, np.ndarray], trace: Trace, parents: Sequence[int]) -> Figure:
+    """Show both ends of a run of a robot, without frames its link origins as `schematic` does."""
+    return ends(frames, 5, lambda ax: schematic(ax, trace, parents))
 
 
 def schematic(ax: Axes, trace: Trace, parents: Sequence[int]) -> Axes:
@@ -238,9 +245,7 @@ def _from_the_side(
 
 def finish(ax: Axes, title: str, ylabel: str, legend: str = "above") -> Axes:
     """Label a plot over time; the legend is `above` it or at a place that Matplotlib names."""
-    ax.set_xlabel("time [s]")
-    ax.set_ylabel(ylabel)
-    ax.margins(x=0.01)
+    ax.set(xlabel="time [s]", ylabel=ylabel)
     if legend == "above":
         legend_above(ax, title)
     else:

@@ -5,6 +5,7 @@ from functools import wraps
 from typing import Any
 
 from robo_genesis.core import text
+from robo_genesis.core.checks import Check
 from robo_genesis.core.comparison import HELD_BY, Comparison
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.metrics import CaseMetrics
@@ -119,6 +120,13 @@ def comparison_sentence(names: tuple[str, str], comparison: Comparison) -> str:
         return f"The {label} is too close to call: {values}, within the margin of {margin}."
     verb = {"lower": "goes down", "higher": "goes up", "equal": "does not change measurably"}
     return f"The {label} {verb[comparison.order]} ({values})."
+
+
+def sentence_of(check: Check, sentence: str, values: Mapping[str, Any], advice: str) -> str:
+    """Return what a lab says of a check: its sentence with values, or why it failed, and advice."""
+    if check.passed:
+        return sentence.format(**values)
+    return f"The check `{check.name}` failed: {check.detail}. {advice}"
 
 
 def prediction_sentence(

@@ -1,8 +1,7 @@
 """Measured values and lists as text, and text that others wrote, made safe for messages."""
 
 import re
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 
 MEASURES = False
@@ -80,16 +79,9 @@ def quoted(value: object) -> str:
     return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
 
 
-@dataclass(frozen=True, slots=True)
-class Block:
-    """A title and its sentences."""
-
-    title: str
-    sentences: tuple[str, ...]
-
-    def markdown(self) -> str:
-        """Return the block as a Markdown list under a bold title."""
-        return "\n".join([f"**{self.title}**", "", *(f"- {s}" for s in self.sentences), ""])
+def blocks(titled: Mapping[str, Iterable[str]]) -> str:
+    """Return sentences by title, each as a Markdown list under its bold title."""
+    return "\n".join(f"**{title}**\n\n{bullets(of)}\n" for title, of in titled.items())
 
 
 def bullets(sentences: Iterable[str]) -> str:

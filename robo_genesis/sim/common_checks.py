@@ -4,21 +4,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from robo_genesis.core import checks
-from robo_genesis.core.check_spec import START_TOLERANCE
-from robo_genesis.core.checks import Finding, above, equal, within
+from robo_genesis.core.check_spec import START_TOLERANCE, TIME_TOLERANCE
+from robo_genesis.core.checks import Finding, above, at_most, equal, within
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.sim.camera.frames import FrameError, require_frame
 
 
-def sample_times(run: Experiment) -> Iterator[Finding]:
-    """Each run has a state at t = 0 and one after each of its configured outer steps, at k · dt."""
-    return checks.sample_times(run.cases, run.traces)
-
-
 def stamps(run: Experiment) -> Iterator[Finding]:
     """Each run has a state at t = 0 and one after each of its configured outer steps, at k · dt."""
-    return sample_times(run)
+    for name, case in run.cases.items():
+        t = run.traces[name].t
+        yield equal(f"{name}.steps", len(t) - 1, case.steps)
+        apart = np.abs(t - np.arange(len(t)) * case.dt).max()
+        yield at_most(f"{name}.time_error_s", apart, TIME_TOLERANCE)
 
 
 def start(run: Experiment) -> Iterator[Finding]:

@@ -20,9 +20,7 @@ def height(run: Experiment) -> Figure:
     ax.plot(trace.t, trace.link_pos[:, 0, 2], ".", label="measured", color=colour)
     ax.axhline(case.size / 2, label="centre of a sphere on the ground", **look("limit"))
     ax.set_ylim(bottom=0)
-    ax.set(xlabel="time [s]", ylabel="height z [m]")
-    ax.set_title("Height of the sphere's centre", loc="left")
-    ax.legend(loc="center left")
+    plotting.finish(ax, "Height of the sphere's centre", "height z [m]", "center left")
     return figure
 
 

@@ -5,7 +5,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.plotting import look
+from robo_genesis.core.plotting import body_schematic, look
 from robo_genesis.lessons.l02 import spec, trials
 from robo_genesis.lessons.l02.study import by_step, expected_gap
 from robo_genesis.sim.bodies.falls import fallen, predicted
@@ -16,12 +16,8 @@ MEASURES = False
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured positions."""
-    if run.rendered:
-        return plotting.both_ends(run.frames)
-    figure = plotting.figure(4.5)
     case, trace = run.cases["baseline"], run.traces["baseline"]
-    plotting.body_schematic(figure.subplots(), trace, case.size)
-    return figure
+    return plotting.ends(run.frames, 4.5, lambda ax: body_schematic(ax, trace, case.size))
 
 
 def trays(run: Experiment) -> Figure:
@@ -66,9 +62,7 @@ def draw_height(ax: Axes, run: Experiment) -> None:
             **look("baseline"))  # fmt: skip
     ax.axhline(case.size / 2, label="centre of a box on the ground", **look("limit"))
     ax.set_ylim(bottom=0)
-    ax.set(xlabel="time [s]", ylabel="height z [m]")
-    ax.set_title("Height of the box", loc="left")
-    ax.legend(loc="center left")
+    plotting.finish(ax, "Height of the box", "height z [m]", "center left")
 
 
 def draw_speed(ax: Axes, run: Experiment) -> None:
@@ -77,9 +71,7 @@ def draw_speed(ax: Axes, run: Experiment) -> None:
     ax.plot(trace.t, -trace.link_vel[:, 0, 2], marker=".", label="measured, get_links_vel",
             **look("baseline"))  # fmt: skip
     ax.plot(trace.t, case.gravity * trace.t, label="g t", **look("target"))
-    ax.set(xlabel="time [s]", ylabel="speed downwards [m/s]")
-    ax.set_title("Speed of the box", loc="left")
-    ax.legend(loc="upper left")
+    plotting.finish(ax, "Speed of the box", "speed downwards [m/s]", "upper left")
 
 
 def three_drops(run: Experiment) -> Figure:
@@ -96,9 +88,7 @@ def three_drops(run: Experiment) -> Figure:
             **look("target"))  # fmt: skip
     ax.plot(trace.t, 1000 * (fallen(trace) - continuous), "o", markersize=4.5, label="measured",
             color=look("baseline")["color"])  # fmt: skip
-    ax.set(xlabel="time [s]", ylabel="farther down [mm]")
-    ax.set_title("Against continuous free fall", loc="left")
-    ax.legend(loc="upper left")
+    plotting.finish(ax, "Against continuous free fall", "farther down [mm]", "upper left")
     return figure
 
 

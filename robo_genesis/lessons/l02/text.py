@@ -22,19 +22,14 @@ SENTENCES = {
 }
 """What the lab says if a check passed, with the metrics of the baseline."""
 
-FAILED = (
-    "The check `{name}` failed: {detail}. Look first at the times of the samples, the first state, "
-    "gravity, and contacts."
-)
+ADVICE = "Look first at the times of the samples, the first state, gravity, and contacts."
 
 
 def conclusions(run: Experiment) -> str:
     """Return the sentences about the baseline, or what the checks found in its place."""
     values = {n: readable(value, unit) for n, value, unit in run.metrics["baseline"].items()}
     return bullets(
-        SENTENCES[check.name].format(**values)
-        if check.passed
-        else FAILED.format(name=check.name, detail=check.detail)
+        tables.sentence_of(check, SENTENCES[check.name], values, ADVICE)
         for check in run.outcomes()
         if check.name in SENTENCES
     )

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from robo_genesis.core import plotting
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.plotting import LINE, legend_above, look, solid
+from robo_genesis.core.plotting import LINE, body_schematic, legend_above, look, solid
 from robo_genesis.lessons.l03 import checks, spec, theory
 from robo_genesis.lessons.l03.metrics import (
     BounceMetrics,
@@ -58,11 +58,8 @@ def legend_below(figure: Figure) -> None:
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the measured positions."""
-    if run.rendered:
-        return plotting.both_ends(run.frames)
-    figure = plotting.figure(5)
-    plotting.body_schematic(figure.subplots(), run.traces["baseline"], spec.BASELINE.size, TOP)
-    return figure
+    trace, size = run.traces["baseline"], spec.BASELINE.size
+    return plotting.ends(run.frames, 5, lambda ax: body_schematic(ax, trace, size, TOP))
 
 
 def landings(run: Experiment) -> Figure:

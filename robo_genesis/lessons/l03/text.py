@@ -3,7 +3,8 @@
 from types import SimpleNamespace
 
 from robo_genesis.core.experiment import Experiment
-from robo_genesis.core.text import MICRO, NOT_OBSERVED, Block, format_value
+from robo_genesis.core.tables import sentence_of
+from robo_genesis.core.text import MICRO, NOT_OBSERVED, blocks, format_value
 
 MEASURES = False
 
@@ -57,9 +58,8 @@ SENTENCES = {
 }
 """By title, what the lab says if a check passed, with the metrics of its runs."""
 
-FAILED = (
-    "The check `{name}` failed: {detail}. Look first at the settings of the cases, the times of "
-    "the samples, and contacts with the body."
+ADVICE = (
+    "Look first at the settings of the cases, the times of the samples, and contacts with the body."
 )
 
 
@@ -70,19 +70,11 @@ def conclusions(run: Experiment) -> str:
         for name, of in run.metrics.items()
     }
     checks = {check.name: check for check in run.outcomes()}
-    blocks = [
-        Block(
-            title,
-            tuple(
-                sentence.format(**values)
-                if checks[name].passed
-                else FAILED.format(name=name, detail=checks[name].detail)
-                for name, sentence in sentences.items()
-            ),
-        )
+    said = {
+        title: [sentence_of(checks[name], of, values, ADVICE) for name, of in sentences.items()]
         for title, sentences in SENTENCES.items()
-    ]
-    return "\n".join(block.markdown() for block in blocks)
+    }
+    return blocks(said)
 
 
 def readable(value: float | None, unit: str) -> str:

@@ -1,11 +1,11 @@
 """The interpretation that L04's lab generates: sentences that are right for every outcome."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from robo_genesis.core.comparison import Comparison, compare
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.core.tables import comparison_sentence, prediction_sentence
-from robo_genesis.core.text import Block, format_value
+from robo_genesis.core.text import blocks, format_value
 from robo_genesis.lessons.l04 import spec
 from robo_genesis.lessons.l04.metrics import SATURATION_THRESHOLD, SETTLING_BAND, StepMetrics
 from robo_genesis.lessons.l04.study_spec import AT_REST, COMPARED
@@ -42,37 +42,27 @@ def conclusions(run: Experiment) -> str:
     found = {name: run.metrics[name] for name in COMPARED}
     errors = [line for name, m in found.items() for line in final_error_sentences(name, m)]
     cost = COSTS[compared(run, kv_pair, "rise_time").order]
-    blocks = (
-        Block("1. {} → {}: the effect of KP".format(*kp_pair), pair_sentences(run, kp_pair)),
-        Block(
-            "2. {} → {}: the effect of KV, and its cost".format(*kv_pair),
-            (*pair_sentences(run, kv_pair), cost.format(first=kv_pair[0], second=kv_pair[1])),
-        ),
-        Block("3. The final error, and its limits as evidence", (*errors, LIMITS_OF_ERROR)),
-        Block(
-            "4. The actuator limit",
-            tuple(actuator_sentence(name, m, limit) for name, m in found.items()),
-        ),
-    )
-    return "\n".join(block.markdown() for block in blocks)
+    cost = cost.format(first=kv_pair[0], second=kv_pair[1])
+    said: dict[str, Iterable[str]] = {
+        "1. {} → {}: the effect of KP".format(*kp_pair): pair_sentences(run, kp_pair),
+        "2. {} → {}: the effect of KV, and its cost".format(*kv_pair): [
+            *pair_sentences(run, kv_pair), cost,
+        ],
+        "3. The final error, and its limits as evidence": [*errors, LIMITS_OF_ERROR],
+        "4. The actuator limit": [actuator_sentence(name, m, limit) for name, m in found.items()],
+    }  # fmt: skip
+    return blocks(said)
 
 
-def pair_sentences(run: Experiment, names: tuple[str, str]) -> tuple[str, ...]:
+def pair_sentences(run: Experiment, names: tuple[str, str]) -> Iterator[str]:
     """Compare two cases that should differ in one entry, and judge the predictions about them."""
     predictions = spec.PREDICTIONS[names]
     cases = run.cases[names[0]], run.cases[names[1]]
-    of_metric = {
-        metric: compared(run, names, metric)
-        for metric in (*COMPARED_METRICS, *(metric for metric, _ in predictions))
-    }
-    return (
-        factor_sentence(names, differences(*cases, run.joints)),
-        *(comparison_sentence(names, of_metric[metric]) for metric in COMPARED_METRICS),
-        *(
-            prediction_sentence(names, of_metric[metric], order, INSPECT)
-            for metric, order in predictions
-        ),
-    )
+    yield factor_sentence(names, differences(*cases, run.joints))
+    for metric in COMPARED_METRICS:
+        yield comparison_sentence(names, compared(run, names, metric))
+    for metric, order in predictions:
+        yield prediction_sentence(names, compared(run, names, metric), order, INSPECT)
 
 
 def factor_sentence(names: tuple[str, str], changed: list[str]) -> str:

@@ -44,8 +44,7 @@ def distance(run: Experiment) -> Figure:
         apart = np.linalg.norm(trace.link_pos[:, HAND] - spec.TARGET, axis=-1)
         style = plotting.look(spec.CASE_MARKS[name]) | {"linestyle": "-"}
         ax.semilogy(trace.t, 1000 * apart, label=spec.LABELS[name], **style)
-    ax.set(xlabel="time [s]", ylabel="hand to target [mm]")
-    plotting.legend_above(ax, "Distance of the hand from its target")
+    plotting.finish(ax, "Distance of the hand from its target", "hand to target [mm]")
     return figure
 
 

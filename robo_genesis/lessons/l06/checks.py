@@ -9,9 +9,8 @@ from robo_genesis.core.checks import Finding, above, at_most, equal, model_count
 from robo_genesis.core.experiment import Experiment
 from robo_genesis.lessons.l06 import spec, study, throughput
 from robo_genesis.lessons.l06.laws import laws_of_motion
-from robo_genesis.sim.arm import kinematics
 from robo_genesis.sim.arm.franka import JOINT_NAMES
-from robo_genesis.sim.arm.kinematics import ARM, Pose
+from robo_genesis.sim.arm.kinematics import ARM, Pose, distance_and_angle, hand_pose
 from robo_genesis.sim.common_checks import posture, stamps
 from robo_genesis.sim.mujoco import kinematics as mujoco_kinematics
 
@@ -30,12 +29,10 @@ def acceptance_per_row(run: Experiment) -> Iterator[Finding]:
     for name, world in spec.CASES.items():
         for number, position in enumerate(world.positions):
             q = run.traces[name].target[-number]  # the first command, or the last
-            target = Pose(position, world.quat)
-            error = kinematics.pose_error(target, kinematics.hand_pose(q))
-            apart, angle = kinematics.distances(error)
+            apart, angle = distance_and_angle(Pose(position, world.quat), hand_pose(q))
             label = f"{name}.target_{number}"
-            yield at_most(f"{label}.residual_m", float(apart), most + spec.SAME_POSE[0])
-            yield at_most(f"{label}.residual_rad", float(angle), angle_most + spec.SAME_POSE[1])
+            yield at_most(f"{label}.residual_m", apart, most + spec.SAME_POSE[0])
+            yield at_most(f"{label}.residual_rad", angle, angle_most + spec.SAME_POSE[1])
     for k, (name, residual) in enumerate(run.readings["mixed"].items()):
         beyond = bool((spec.MIXED[k] == spec.BEYOND_REACH).all())
         yield (above if beyond else at_most)(f"mixed.{name}", residual, most)

@@ -27,11 +27,7 @@ FLOOR = 1e-9
 
 def posture(run: Experiment) -> Figure:
     """Show the camera frames of both ends, without a camera the link origins of environment 0."""
-    if run.rendered:
-        return plotting.both_ends({name: run.frames[name] for name in ("initial", "final")})
-    figure, ax = plotting.axes(5)
-    plotting.schematic(ax, run.traces["env_0"], LINK_PARENTS)
-    return figure
+    return plotting.robot_ends(run.frames, run.traces["env_0"], LINK_PARENTS)
 
 
 def to_target(run: Experiment, name: str, world: Environment) -> FloatArray:

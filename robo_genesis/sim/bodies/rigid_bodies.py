@@ -47,11 +47,6 @@ class Drop:
         """Mass of the solid cube [kg]."""
         return self.density * self.size**3
 
-    @property
-    def clearance(self) -> float:
-        """Distance from the cube's underside to the ground at the start [m]."""
-        return self.height - self.size / 2
-
 
 def run_drop(scene: Any, box: Any, case: Drop) -> BodyTrace:
     """Reset the scene, step, and record every state.

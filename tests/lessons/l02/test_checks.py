@@ -108,7 +108,7 @@ def test_tables_have_words_units_and_signs(run):
 
 
 def test_figures_without_a_camera_show_what_was_measured(run):
-    without = replace(run, rendered=False)
+    without = replace(run, rendered=False, frames={})
     (heights,) = plots.trays(without).axes
     assert [bar.get_height() for bar in heights.patches] == [0.0308, 0.1749]
     assert [len(plots.posture(of).axes) for of in (run, without)] == [2, 1]
